@@ -1,0 +1,23 @@
+# Target `bundle`: a folder of programs and the shared libraries they need beyond glibc, to be
+# copied to a machine that has a driver and nothing else.
+set(tetwarp_bundled tetwarp_tests)
+if(TETWARP_IO)
+  list(APPEND tetwarp_bundled tetwarp_command)
+endif()
+if(TETWARP_BENCH)
+  list(APPEND tetwarp_bundled tetwarp_bench)
+endif()
+# RPATH, not RUNPATH: it holds for the libraries' libraries, too. The folder must be called lib,
+# where libniftiio looks for its own.
+set_target_properties(${tetwarp_bundled} PROPERTIES
+  BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/lib")
+foreach(program IN LISTS tetwarp_bundled)
+  target_link_options(${program} PRIVATE -Wl,--disable-new-dtags)
+  list(APPEND tetwarp_bundled_files $<TARGET_FILE:${program}>)
+endforeach()
+add_custom_target(bundle
+  COMMAND ${CMAKE_COMMAND} "-DPROGRAMS=${tetwarp_bundled_files}" -DSTRIP=${CMAKE_STRIP}
+    -DFOLDER=${PROJECT_BINARY_DIR}/bundle -P ${PROJECT_SOURCE_DIR}/cmake/MakeBundle.cmake
+  COMMAND ${CMAKE_COMMAND}
+    -DFOLDER=${PROJECT_BINARY_DIR}/bundle -P ${PROJECT_SOURCE_DIR}/cmake/CheckBundle.cmake
+  DEPENDS ${tetwarp_bundled} VERBATIM)

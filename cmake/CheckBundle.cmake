@@ -1,0 +1,25 @@
+# Fails when a file in FOLDER needs a library that is neither of glibc nor in FOLDER/lib, or when
+# the folder is larger than it should be. Run by target `bundle`.
+cmake_minimum_required(VERSION 3.22)
+set(largest_mib 40)
+file(GLOB_RECURSE files ${FOLDER}/*)
+set(bytes 0)
+foreach(file IN LISTS files)
+  execute_process(COMMAND readelf --dynamic ${file}
+    OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "\\(NEEDED\\)[^\n]*" entries "${dynamic}")
+  foreach(entry IN LISTS entries)
+    string(REGEX REPLACE ".*\\[(.*)\\].*" "\\1" library "${entry}")
+    if(NOT library MATCHES "^(libc|libm|libdl|libpthread|librt|ld-linux-.*)\\.so"
+        AND NOT EXISTS ${FOLDER}/lib/${library})
+      message(FATAL_ERROR "${file} needs ${library}, which the bundle does not hold")
+    endif()
+  endforeach()
+  file(SIZE ${file} size)
+  math(EXPR bytes "${bytes} + ${size}")
+endforeach()
+math(EXPR mib "${bytes} / 1048576")
+if(mib GREATER largest_mib)
+  message(FATAL_ERROR "the bundle is ${mib} MiB, more than ${largest_mib}")
+endif()
+message(STATUS "bundle: ${mib} MiB in ${FOLDER}, needs glibc and nothing else")

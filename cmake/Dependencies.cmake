@@ -1,0 +1,92 @@
+# Everything comes from the distribution or the CUDA toolkit; nothing is downloaded.
+# The apt names are in ./dev.
+
+# ---- CUDA: language and toolkit, or neither -----------------------------------
+set(TETWARP_HAS_CUDA FALSE)
+if(NOT TETWARP_CUDA STREQUAL "OFF")
+  if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES "75-real;80-real;90-real;120-real;90-virtual" CACHE STRING "CUDA targets")
+  endif()
+  include(CheckLanguage)
+  find_package(CUDAToolkit 12.0 QUIET)
+  if(CUDAToolkit_FOUND AND NOT CMAKE_CUDA_COMPILER AND NOT DEFINED ENV{CUDACXX} AND CUDAToolkit_NVCC_EXECUTABLE)
+    set(CMAKE_CUDA_COMPILER "${CUDAToolkit_NVCC_EXECUTABLE}" CACHE FILEPATH "")  # toolkit not on PATH
+  endif()
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER AND CUDAToolkit_FOUND)
+    enable_language(CUDA)
+    if(CMAKE_VERSION VERSION_LESS 3.26)  # which does not know how nvcc calls C++20
+      set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+      set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+    endif()
+    set(TETWARP_HAS_CUDA TRUE)
+  elseif(TETWARP_CUDA STREQUAL "ON")
+    message(FATAL_ERROR "TETWARP_CUDA=ON, but no CUDA compiler and toolkit >= 12.0 were found; "
+      "install the CUDA toolkit or set TETWARP_CUDA=OFF")
+  endif()
+endif()
+message(STATUS "tetwarp: CUDA back end: ${TETWARP_HAS_CUDA}")
+
+# ---- flags that every file of ours gets; not exported ---------------------------
+# No contraction: results must not depend on the processor that runs them.
+# g++ 12 warns of overlaps inside std::string that are not there (-Wrestrict).
+# x86-64-v2 (2009) is what Highway's narrowest vectors need; wider ones are chosen at run time.
+add_library(tetwarp_options INTERFACE)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(tetwarp_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-march=x86-64-v2>)
+endif()
+target_compile_options(tetwarp_options INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wconversion;-ffp-contract=off>
+  $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;$<$<BOOL:${TETWARP_STRICT_FP}>:-fmad=false>>)
+
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.2 REQUIRED)
+
+# ---- libraries behind one target each, installed as plain paths, so that a consumer
+#      needs none of their find modules
+function(tetwarp_wrap name)  # tetwarp_wrap(NAME build-time targets... INSTALLED installed libraries...)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "INSTALLED")
+  add_library(${name} INTERFACE)
+  foreach(item IN LISTS arg_UNPARSED_ARGUMENTS)
+    target_link_libraries(${name} INTERFACE $<BUILD_INTERFACE:${item}>)
+  endforeach()
+  target_link_libraries(${name} INTERFACE "$<INSTALL_INTERFACE:${arg_INSTALLED}>")
+endfunction()
+
+find_package(OpenMP COMPONENTS CXX)
+if(OpenMP_CXX_FOUND)
+  tetwarp_wrap(tetwarp_openmp OpenMP::OpenMP_CXX INSTALLED ${OpenMP_CXX_LIBRARIES})
+  target_compile_options(tetwarp_openmp INTERFACE
+    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${OpenMP_CXX_FLAGS}>>)
+else()
+  add_library(tetwarp_openmp INTERFACE)
+  target_compile_options(tetwarp_openmp INTERFACE
+    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Wno-unknown-pragmas>>
+    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wno-unknown-pragmas>>)
+endif()
+
+find_path(TETWARP_HWY_INCLUDE hwy/highway.h REQUIRED)
+find_library(TETWARP_HWY_LIBRARY hwy REQUIRED)
+tetwarp_wrap(tetwarp_hwy ${TETWARP_HWY_LIBRARY} INSTALLED ${TETWARP_HWY_LIBRARY})
+target_include_directories(tetwarp_hwy SYSTEM INTERFACE $<BUILD_INTERFACE:${TETWARP_HWY_INCLUDE}>)
+
+if(TETWARP_IO)
+  find_package(CLI11 REQUIRED)
+  find_package(fmt REQUIRED)
+  set(HDF5_PREFER_PARALLEL OFF)
+  if(TETWARP_BUNDLE)
+    include(cmake/StaticHdf5.cmake)
+  else()
+    find_package(HDF5 REQUIRED COMPONENTS C)
+    tetwarp_wrap(tetwarp_hdf5 hdf5::hdf5 INSTALLED ${HDF5_C_LIBRARIES})
+  endif()
+  find_package(PNG REQUIRED)
+  tetwarp_wrap(tetwarp_png PNG::PNG INSTALLED ${PNG_LIBRARIES})
+  find_path(TETWARP_NIFTI_INCLUDE nifti1_io.h PATH_SUFFIXES nifti REQUIRED)
+  find_library(TETWARP_NIFTI_LIBRARY niftiio REQUIRED)
+  find_library(TETWARP_ZNZ_LIBRARY znz REQUIRED)
+  tetwarp_wrap(tetwarp_nifti ${TETWARP_NIFTI_LIBRARY} ${TETWARP_ZNZ_LIBRARY}
+    INSTALLED ${TETWARP_NIFTI_LIBRARY} ${TETWARP_ZNZ_LIBRARY})
+  target_include_directories(tetwarp_nifti SYSTEM INTERFACE $<BUILD_INTERFACE:${TETWARP_NIFTI_INCLUDE}>)
+endif()

@@ -1,0 +1,23 @@
+# What `cmake --install` puts down: libraries, public headers, package files for find_package().
+include(CMakePackageConfigHelpers)
+set(tetwarp_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tetwarp)
+
+install(TARGETS ${tetwarp_exported} EXPORT tetwarpTargets)
+install(DIRECTORY host/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(TETWARP_IO)
+  install(DIRECTORY io/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endif()
+
+if(BUILD_SHARED_LIBS AND TETWARP_IO)  # an installed tree may stand anywhere
+  file(RELATIVE_PATH tetwarp_lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(tetwarp_command PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_bin}")
+  set_target_properties(tetwarp_io PROPERTIES INSTALL_RPATH "$ORIGIN")
+endif()
+
+install(EXPORT tetwarpTargets NAMESPACE tetwarp:: DESTINATION ${tetwarp_package_dir})
+configure_package_config_file(cmake/tetwarpConfig.cmake.in tetwarpConfig.cmake
+  INSTALL_DESTINATION ${tetwarp_package_dir})
+write_basic_package_version_file(tetwarpConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/tetwarpConfig.cmake ${PROJECT_BINARY_DIR}/tetwarpConfigVersion.cmake
+  DESTINATION ${tetwarp_package_dir})

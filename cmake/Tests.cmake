@@ -1,0 +1,134 @@
+# All tests, run by ctest: `ctest -L parity` and so on chooses by label.
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+# tetwarp_add_tests(PROGRAM [LIBRARIES ...] SOURCES ...)
+function(tetwarp_add_tests program)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;SOURCES")
+  add_executable(${program} ${arg_SOURCES})
+  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${program} PRIVATE
+    tetwarp ${arg_LIBRARIES} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+endfunction()
+
+# tetwarp_discover(PROGRAM LABEL [FILTER gtest-filter] [PROPERTIES ...])
+function(tetwarp_discover program label)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "FILTER" "PROPERTIES")
+  gtest_discover_tests(${program} TEST_FILTER "${arg_FILTER}" DISCOVERY_TIMEOUT 120
+    NO_PRETTY_TYPES NO_PRETTY_VALUES PROPERTIES LABELS ${label} TIMEOUT 300 ${arg_PROPERTIES})
+endfunction()
+
+# ---- stages and whole warps. They reach private code, which a shared library hides ------------
+if(NOT BUILD_SHARED_LIBS)
+  set(tetwarp_stage_tests
+    tests/test_exec.cpp
+    tests/test_node_quantize.cpp
+    tests/test_tet_setup.cpp
+    tests/test_corner_mask.cpp
+    tests/test_cell_cull.cpp
+    tests/test_cell_pairs.cpp)
+  if(TETWARP_HAS_CUDA)
+    set_source_files_properties(${tetwarp_stage_tests} PROPERTIES LANGUAGE CUDA)
+  endif()
+  tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
+    ${tetwarp_stage_tests}
+    tests/scenes.cpp
+    tests/test_face_sign.cpp
+    tests/test_volume_sample.cpp
+    tests/test_lattice_mesh.cpp
+    tests/test_deform_mesh.cpp
+    tests/test_phantom.cpp
+    tests/test_render_volume.cpp
+    tests/test_report.cpp
+    tests/test_warp.cpp
+    tests/test_warp_arguments.cpp
+    tests/test_warp_invariance.cpp
+    tests/test_warp_values.cpp
+    tests/test_coverage.cpp
+    tests/test_parity.cpp)
+  if(TETWARP_HAS_CUDA)
+    target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
+  endif()
+  tetwarp_discover(tetwarp_tests unit FILTER "-*cuda*:*Cuda*:*Parity*:*Coverage*")
+  tetwarp_discover(tetwarp_tests unit FILTER "*cuda*:*Cuda*:-*Parity*:*Coverage*"
+    PROPERTIES RESOURCE_LOCK gpu)
+  tetwarp_discover(tetwarp_tests parity FILTER "*Parity*" PROPERTIES RESOURCE_LOCK gpu)
+  tetwarp_discover(tetwarp_tests reference FILTER "*Coverage*")
+
+  # A program of its own: the emulation defines CUDA's names.
+  tetwarp_add_tests(tetwarp_simt_tests SOURCES
+    tests/scenes.cpp
+    tests/test_simt.cpp
+    tests/test_cell_raster_simt.cpp)
+  tetwarp_discover(tetwarp_simt_tests simt)
+endif()
+
+# ---- every public header compiles alone, without CUDA ------------------------------------------
+set(tetwarp_public_headers backend error make mesh report tetwarp version volume warp)
+if(TETWARP_IO)
+  list(APPEND tetwarp_public_headers io)
+endif()
+foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
+  configure_file(tests/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
+  list(APPEND tetwarp_header_sources ${PROJECT_BINARY_DIR}/test_headers/${TETWARP_HEADER}.cpp)
+endforeach()
+add_library(tetwarp_header_tests OBJECT ${tetwarp_header_sources})
+target_compile_features(tetwarp_header_tests PRIVATE cxx_std_20)
+target_include_directories(tetwarp_header_tests PRIVATE host io)
+target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
+
+if(TETWARP_IO)
+  # ---- files, private code included -------------------------------------------------------------
+  if(NOT BUILD_SHARED_LIBS)
+    tetwarp_add_tests(tetwarp_io_tests LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
+      SOURCES
+      tests/test_io_vtkhdf_volume.cpp
+      tests/test_io_vtkhdf_mesh.cpp
+      tests/test_io_nifti.cpp
+      tests/test_io_png.cpp
+      tests/test_io_bad_files.cpp)
+    tetwarp_discover(tetwarp_io_tests io)
+  endif()
+
+  add_executable(fuzz_io tests/fuzz_io.cpp)
+  target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
+  add_test(NAME fuzz_io COMMAND fuzz_io 5 1)
+  set_tests_properties(fuzz_io PROPERTIES LABELS io)
+
+  # The distribution's interpreter first: its VTK is what the packages in ./dev install.
+  find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(TETWARP_PYTHON python3)
+  if(TETWARP_PYTHON)
+    add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
+      ${PROJECT_SOURCE_DIR}/tests/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
+    set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  endif()
+
+  # ---- the command and the example in the README ---------------------------------------------
+  tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io nlohmann_json::nlohmann_json SOURCES
+    tests/test_cli.cpp
+    tests/test_cli_bad_input.cpp
+    tests/test_cli_batch.cpp
+    tests/test_cli_resume.cpp)
+  target_compile_definitions(tetwarp_cli_tests PRIVATE
+    TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
+  add_dependencies(tetwarp_cli_tests tetwarp_command)
+  tetwarp_discover(tetwarp_cli_tests cli)
+
+  add_executable(example_quickstart tests/example_quickstart.cpp)
+  target_link_libraries(example_quickstart PRIVATE tetwarp_io tetwarp_options)
+  add_test(NAME example_quickstart COMMAND example_quickstart
+    WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
+  set_tests_properties(example_quickstart PROPERTIES LABELS cli)
+endif()
+
+# ---- a stranger's project finds and links what was installed ----------------------------------
+if(NOT TETWARP_BUNDLE)
+  add_test(NAME install COMMAND ${CMAKE_COMMAND}
+    -DBUILD=${PROJECT_BINARY_DIR} -DCONFIG=$<CONFIG> -DWITH_IO=${TETWARP_IO}
+    -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER} "-DCXX_FLAGS=${CMAKE_CXX_FLAGS}"
+    -DCUDA_ROOT=${CUDAToolkit_TARGET_DIR}
+    -P ${PROJECT_SOURCE_DIR}/tests/install/run_install_test.cmake)
+  set_tests_properties(install PROPERTIES LABELS install TIMEOUT 300)
+endif()

@@ -1,0 +1,118 @@
+/// @file batch.cpp
+#include "host/cli/batch.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tetwarp/error.hpp>
+
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+#include "host/cli/interrupt.hpp"
+#include "host/cli/job_plan.hpp"
+#include "host/cli/warp_job.hpp"
+#include "io/finished_file.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What happened to the jobs so far.
+struct Outcome {
+  int done = 0;
+  int failed = 0;
+  int skipped = 0;
+  Json reports = Json::array();
+};
+
+/// The files a job will write. A job that cannot be planned yet, because an earlier one makes its
+/// input, is known by the output it names.
+std::vector<std::string> files_written(const BatchJob& job) {
+  if (!job.error.empty()) return {};
+  std::vector<std::string> files;
+  try {
+    files = plan_job(job.arguments).outputs();
+  } catch (const std::exception&) {
+    files = {job.arguments.output};
+  }
+  if (!job.arguments.report.empty()) files.push_back(job.arguments.report);
+  return files;
+}
+
+/// Throws IoError when two jobs, or a job and the batch report, write the same file.
+void check_collisions(const std::vector<BatchJob>& jobs, const WarpArguments& shared) {
+  std::map<std::string, std::string> writers;
+  const auto claim = [&](const std::string& file, const std::string& writer) {
+    const auto [first, is_new] = writers.emplace(canonical_path(file), writer);
+    if (!is_new && first->second != writer) {
+      throw IoError(file, "",
+                    fmt::format("{} and {} both write it; nothing was started, give one of them "
+                                "another name",
+                                first->second, writer));
+    }
+  };
+  if (!shared.report.empty()) {
+    check_output_file(shared.report, {shared.batch});
+    claim(shared.report, "the report");
+  }
+  for (std::size_t j = 0; j < jobs.size(); ++j) {
+    stop_if_interrupted();
+    for (const std::string& file : files_written(jobs[j]))
+      claim(file, fmt::format("job {}", j + 1));
+  }
+}
+
+void fail(Outcome& outcome, const std::string& name, Json report, const std::string& reason) {
+  fmt::print(stderr, "tetwarp: {}: {}\n", name, reason);
+  ++outcome.failed;
+  report["status"] = "failed";
+  report["error"] = reason;
+  outcome.reports.push_back(report);
+}
+
+void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
+  const std::string name = fmt::format("job {}", number);
+  Json report{{"job", number}};
+  if (!job.error.empty()) {
+    fail(outcome, name, report, job.error);
+    return;
+  }
+  try {
+    const JobResult result = run_warp_job(job.arguments, {.label = name, .shows_progress = !quiet});
+    report.update(Json::parse(report_json(result)));
+    ++(result.written == 0 ? outcome.skipped : outcome.done);
+    outcome.reports.push_back(report);
+    if (!quiet) fmt::print("{}: {}", name, summary(result));
+  } catch (const Cancelled&) {
+    report["status"] = "interrupted";
+    outcome.reports.push_back(report);
+  } catch (const std::bad_alloc&) {
+    fail(outcome, name, report, "out of memory");
+  } catch (const std::exception& error) {
+    fail(outcome, name, report, one_line(error.what()));
+  }
+}
+
+}  // namespace
+
+int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
+  const PoliteInterrupts polite;
+  const std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
+  check_collisions(jobs, shared);
+  Outcome outcome;
+  for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
+    run_job(jobs[j], static_cast<int>(j) + 1, shared.quiet, outcome);
+  }
+  if (!shared.report.empty()) write_finished_file(shared.report, outcome.reports.dump(2) + "\n");
+  if (!shared.quiet) {
+    fmt::print("{} done, {} failed, {} skipped\n", outcome.done, outcome.failed, outcome.skipped);
+  }
+  stop_if_interrupted();
+  return outcome.failed > 0 ? 1 : 0;
+}
+
+}  // namespace tetwarp::cli

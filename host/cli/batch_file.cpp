@@ -1,0 +1,160 @@
+/// @file batch_file.cpp
+/// From a batch file to arguments: a job becomes the words one would type, parsed like those.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "host/cli/batch.hpp"
+#include "host/cli/declare.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// The words of one option or positional, ready to be parsed.
+using Words = std::vector<std::string>;
+
+/// Options of the whole batch, which no job has.
+const Words batch_options{"help", "batch", "quiet"};
+
+bool is_one_of(const std::string& word, const Words& words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// Words of an option's values: repeated where a value may hold commas, else one comma list.
+Words option_words(const std::string& name, const Words& values) {
+  if (name != "array") return {"--" + name + "=" + CLI::detail::join(values, ",")};
+  Words words;
+  for (const std::string& value : values) words.push_back("--" + name + "=" + value);
+  return words;
+}
+
+std::string scalar_text(const std::string& key, const Json& value) {
+  if (value.is_string() && !value.get<std::string>().empty()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  throw std::invalid_argument(
+      fmt::format("'{}' holds {}, expected text or numbers", key, value.dump()));
+}
+
+Words value_texts(const std::string& key, const Json& value) {
+  Words texts;
+  if (!value.is_array()) return {scalar_text(key, value)};
+  for (const Json& item : value) texts.push_back(scalar_text(key, item));
+  if (texts.empty()) throw std::invalid_argument(fmt::format("'{}' is an empty list", key));
+  return texts;
+}
+
+/// Turns one job into words.
+class JobReader {
+ public:
+  JobReader(fs::path folder, const CLI::App& defaults)
+      : folder_(std::move(folder)), defaults_(defaults) {}
+
+  Words words_of(const Json& job) const {
+    if (!job.is_object()) throw std::invalid_argument("is no JSON object");
+    Words files;
+    Words options;
+    for (const std::string key : {"volume", "mesh"}) {
+      if (!job.contains(key)) throw std::invalid_argument("has no '" + key + "'");
+      for (const std::string& path : value_texts(key, job[key])) files.push_back(located(path));
+    }
+    for (const auto& [key, value] : job.items()) {
+      if (key == "volume" || key == "mesh") continue;
+      const Words some = words_of_key(key, value);
+      options.insert(options.end(), some.begin(), some.end());
+    }
+    for (const CLI::Option* option : defaults_.get_options()) {
+      const Words some = words_of_default(*option, job);
+      options.insert(options.end(), some.begin(), some.end());
+    }
+    files.insert(files.end(), options.begin(), options.end());
+    return files;
+  }
+
+ private:
+  std::string located(const std::string& path) const { return (folder_ / path).string(); }
+
+  Words words_of_key(const std::string& key, const Json& value) const {
+    const CLI::Option* option = defaults_.get_option_no_throw("--" + key);
+    if (option == nullptr || is_one_of(key, batch_options)) {
+      throw std::invalid_argument("unknown key '" + key + "'");
+    }
+    if (option->get_items_expected_max() == 0) {
+      if (!value.is_boolean()) {
+        throw std::invalid_argument("'" + key + "' holds " + value.dump() +
+                                    ", expected true or false");
+      }
+      return value.get<bool>() ? Words{"--" + key} : Words{};
+    }
+    Words texts = value_texts(key, value);
+    const bool is_path = key == "output" || key == "report" || key == "rest" ||
+                         (key == "grid" && !is_one_of(texts.front(), {"same", "bounds"}));
+    if (is_path) texts.front() = located(texts.front());
+    return option_words(key, texts);
+  }
+
+  static Words words_of_default(const CLI::Option& option, const Json& job) {
+    if (option.count() == 0 || option.get_lnames().empty()) return {};
+    const std::string& name = option.get_lnames().front();
+    // The report beside --batch is that of the whole batch.
+    if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
+    if (option.get_items_expected_max() == 0) return {"--" + name};
+    return option_words(name, option.results());
+  }
+
+  fs::path folder_;
+  const CLI::App& defaults_;
+};
+
+/// "line L, column C" of a byte offset, both from 1.
+std::string position_text(const std::string& text, std::size_t offset) {
+  const std::string before = text.substr(0, offset == 0 ? 0 : offset - 1);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start =
+      before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1;
+  return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
+}
+
+Json read_json(const std::string& path) {
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw IoError(path, "", "cannot be read; check the name of the batch file");
+  try {
+    return Json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw IoError(path, position_text(text, error.byte), "no valid JSON here; mend it");
+  }
+}
+
+}  // namespace
+
+std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {
+  const Json batch = read_json(path);
+  if (!batch.is_object() || batch.size() != 1 || !batch.contains("jobs") ||
+      !batch["jobs"].is_array() || batch["jobs"].empty()) {
+    throw IoError(path, "", "expected {\"jobs\": [...]} with one job or more and no other key");
+  }
+  const JobReader reader(fs::path(path).parent_path(), defaults);
+  std::vector<BatchJob> jobs;
+  for (const Json& job : batch["jobs"]) {
+    BatchJob& parsed = jobs.emplace_back();
+    try {
+      parsed.arguments = parse_warp_arguments(reader.words_of(job));
+    } catch (const CLI::ParseError& error) {
+      parsed.error = one_line(error.what());
+    } catch (const std::invalid_argument& error) {
+      parsed.error = one_line(error.what());
+    }
+  }
+  return jobs;
+}
+
+}  // namespace tetwarp::cli

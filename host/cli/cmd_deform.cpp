@@ -1,0 +1,84 @@
+/// @file cmd_deform.cpp
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/make.hpp>
+#include <vector>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/displacement.hpp"
+#include "host/cli/file_checks.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+const Choices<Deformation> kinds{
+    {"twist", Deformation::twist},   {"bend", Deformation::bend},
+    {"swim", Deformation::swim},     {"random", Deformation::random},
+    {"rotate", Deformation::rotate}, {"translate", Deformation::translate}};
+const Choices<int> axes{{"x", 0}, {"y", 1}, {"z", 2}};
+
+struct DeformArguments {
+  std::string input;
+  std::string output;
+  int steps = 8;
+  DeformOptions deform;
+};
+
+int run_deform(const DeformArguments& arguments) {
+  check_kind(arguments.input, FileKind::mesh, "usage: tetwarp deform MESH -o MESH");
+  check_hdf_name(arguments.output);
+  check_output_file(arguments.output, {arguments.input});
+  const MeshReader reader(arguments.input);
+  write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
+  fmt::print("{} nodes, {} tetrahedra, {} steps of {}: {}\n", reader.header().node_count,
+             reader.header().tet_count, arguments.steps, name_of(arguments.deform.kind),
+             arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_deform_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<DeformArguments>();
+  DeformOptions& deform = arguments->deform;
+  CLI::App* command = add_subcommand(
+      app, "deform", "Give a mesh a procedural displacement, from rest to the full amount",
+      "MESH -o MESH [options]",
+      "  tetwarp deform mesh.vtkhdf -o moving.vtkhdf --kind twist --steps 8\n");
+  command->add_option("MESH", arguments->input, "mesh to deform")->required()->type_name("");
+  command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
+      ->required()
+      ->type_name("MESH");
+  add_choice(*command, "--kind", deform.kind, kinds, "[twist]");
+  command
+      ->add_option("--steps", arguments->steps,
+                   "steps at times 0 to 1; a single one is at time 1 [8]")
+      ->check(between(1, 1000000))
+      ->type_name("N");
+  command
+      ->add_option("--amount", deform.amount,
+                   "quarter turns of twist, bend and rotate; else share of the mesh's box [1]")
+      ->type_name("A");
+  add_choice(*command, "--axis", deform.axis, axes, "of twist, bend, swim and rotate [z]");
+  command->add_option("--seed", deform.seed, "of random [1]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  command->add_option("--offset", deform.offset, "of translate, in world units [0,0,0]")
+      ->delimiter(',')
+      ->type_name("X,Y,Z");
+  command->callback([arguments, &run] {
+    if (!std::isfinite(arguments->deform.amount)) {
+      throw CLI::ValidationError("--amount", "expected a finite number");
+    }
+    run = [arguments] { return run_deform(*arguments); };
+  });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,147 @@
+/// @file cmd_info.cpp
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <vector>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+#include "host/cli/pixel_range.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoArguments {
+  std::string file;
+  bool stats = false;
+  bool json = false;
+};
+
+Json times_json(const std::vector<double>& times) {
+  Json json{{"steps", std::max<std::size_t>(1, times.size())}};
+  if (times.size() > 1) json["times"] = {times.front(), times.back()};
+  return json;
+}
+
+Json volume_json(const InfoArguments& arguments) {
+  const VolumeHeader header = read_volume_header(arguments.file);
+  Json json{{"kind", "volume"},
+            {"dims", header.grid.dims},
+            {"origin", header.grid.origin},
+            {"spacing", header.grid.spacing},
+            {"direction", header.grid.direction}};
+  json.update(times_json(header.times));
+  for (const ArrayHeader& array : header.arrays) {
+    Json entry{{"type", name_of(array.type)}, {"components", array.components}};
+    if (arguments.stats) {
+      const PixelRange range = range_of(read_volume(arguments.file, array.name));
+      entry["min"] = range.min;
+      entry["max"] = range.max;
+    }
+    json["arrays"][array.name] = entry;
+  }
+  if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
+  return json;
+}
+
+Json mesh_json(const InfoArguments& arguments) {
+  const MeshReader reader(arguments.file);
+  const MeshHeader& header = reader.header();
+  Json json{{"kind", "mesh"}, {"nodes", header.node_count}, {"tetrahedra", header.tet_count}};
+  json.update(times_json(header.times));
+  json["deformation"] = header.has_displacement   ? "array displacement"
+                        : header.times.size() > 1 ? "points that move"
+                                                  : "none";
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Point3 low{infinity, infinity, infinity};
+  Point3 high{-infinity, -infinity, -infinity};
+  for (const Point3& position : reader.mesh().rest_positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], position[axis]);
+      high[axis] = std::max(high[axis], position[axis]);
+    }
+  }
+  json["rest_box"] = {low, high};
+  return json;
+}
+
+Json nifti_json(const InfoArguments& arguments) {
+  const Volume volume = read_nifti(arguments.file);
+  Json json{{"kind", "nifti"},
+            {"dims", volume.grid.dims},
+            {"origin", volume.grid.origin},
+            {"spacing", volume.grid.spacing},
+            {"direction", volume.grid.direction},
+            {"type", name_of(volume.type)},
+            {"components", volume.components}};
+  if (arguments.stats) {
+    const PixelRange range = range_of(volume);
+    json["min"] = range.min;
+    json["max"] = range.max;
+  }
+  return json;
+}
+
+/// One "key: value" per line, nested objects indented.
+void print_lines(const Json& json, int indent) {
+  for (const auto& [key, value] : json.items()) {
+    fmt::print("{:{}}{}:", "", indent, key);
+    if (value.is_object()) {
+      fmt::print("\n");
+      print_lines(value, indent + 2);
+    } else {
+      fmt::print(" {}\n", value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+}
+
+int run_info(const InfoArguments& arguments) {
+  const FileKind kind = kind_of(arguments.file);
+  Json json;
+  switch (kind) {
+    case FileKind::volume:
+      json = volume_json(arguments);
+      break;
+    case FileKind::mesh:
+      json = mesh_json(arguments);
+      break;
+    case FileKind::nifti:
+      json = nifti_json(arguments);
+      break;
+    default:
+      throw IoError(arguments.file, "",
+                    std::string("is ") + name_of(kind) +
+                        "; info reads VTKHDF volumes, VTKHDF meshes and NIfTI images");
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    print_lines(json, 0);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* command = add_subcommand(app, "info", "Show what a file holds", "FILE [options]",
+                                     "  tetwarp info warped.vtkhdf --stats\n");
+  command->add_option("FILE", arguments->file, "volume, mesh or NIfTI image")
+      ->required()
+      ->type_name("");
+  command->add_flag("--stats", arguments->stats, "read the samples and show their range");
+  command->add_flag("--json", arguments->json, "as JSON");
+  command->callback([arguments, &run] { run = [arguments] { return run_info(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,68 @@
+/// @file cmd_mesh.cpp
+#include <fmt/format.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/make.hpp>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+struct MeshArguments {
+  std::string volume;
+  std::string output;
+  std::string array;
+  std::int64_t step = 0;
+  LatticeOptions lattice;
+};
+
+int run_mesh(const MeshArguments& arguments) {
+  check_kind(arguments.volume, FileKind::volume, "usage: tetwarp mesh VOLUME -o MESH");
+  check_hdf_name(arguments.output);
+  check_output_file(arguments.output, {arguments.volume});
+  const Volume volume = read_volume(arguments.volume, arguments.array, arguments.step);
+  TetMesh mesh;
+  try {
+    mesh = make_lattice_mesh(volume, arguments.lattice);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.volume, volume.name, error.what());
+  }
+  write_mesh(arguments.output, mesh);
+  fmt::print("{} nodes, {} tetrahedra: {}\n", mesh.rest_positions.size(), mesh.tets.size(),
+             arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<MeshArguments>();
+  CLI::App* command = add_subcommand(
+      app, "mesh", "Make a tetrahedral lattice that embeds a volume", "VOLUME -o MESH [options]",
+      "  tetwarp mesh ct.vtkhdf -o mesh.vtkhdf --cells 8 --threshold -500\n");
+  command->add_option("VOLUME", arguments->volume, "VTKHDF image")->required()->type_name("");
+  command->add_option("-o,--output", arguments->output, "mesh to write")
+      ->required()
+      ->type_name("MESH");
+  command->add_option("--cells", arguments->lattice.cells, "cubes along the longest side [8]")
+      ->check(between(1, 1000))
+      ->type_name("N");
+  command
+      ->add_option("--threshold", arguments->lattice.threshold,
+                   "foreground is above it [every voxel is foreground]")
+      ->type_name("V");
+  command->add_option("--array", arguments->array, "array to look at [first]")->type_name("NAME");
+  command->add_option("--step", arguments->step, "of a volume file with several steps [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  command->callback([arguments, &run] { run = [arguments] { return run_mesh(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

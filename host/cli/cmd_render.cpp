@@ -1,0 +1,77 @@
+/// @file cmd_render.cpp
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/make.hpp>
+#include <vector>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+struct RenderArguments {
+  std::string volume;
+  std::string beside;
+  std::string output;
+  std::string array;
+  std::int64_t step = 0;
+  RenderOptions render;
+};
+
+int run_render(const RenderArguments& arguments) {
+  std::vector<std::string> inputs{arguments.volume};
+  if (!arguments.beside.empty()) inputs.push_back(arguments.beside);
+  for (const std::string& input : inputs) {
+    check_kind(input, FileKind::volume, "usage: tetwarp render VOLUME -o FILE.png");
+  }
+  if (!arguments.output.ends_with(".png")) {
+    throw IoError(arguments.output, "", "the name of a picture ends in .png");
+  }
+  check_output_file(arguments.output, inputs);
+  std::vector<Volume> volumes;
+  for (const std::string& input : inputs) {
+    volumes.push_back(read_volume(input, arguments.array, arguments.step));
+  }
+  std::vector<const Volume*> rows;
+  for (const Volume& volume : volumes) rows.push_back(&volume);
+  const Image image = render(rows, arguments.render);
+  write_png(arguments.output, image);
+  fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<RenderArguments>();
+  CLI::App* command =
+      add_subcommand(app, "render", "Draw middle slices and a maximum-intensity projection",
+                     "VOLUME -o FILE.png [options]",
+                     "  tetwarp render ct.vtkhdf --beside warped.vtkhdf -o compare.png\n");
+  command->add_option("VOLUME", arguments->volume, "VTKHDF image")->required()->type_name("");
+  command->add_option("-o,--output", arguments->output, "picture to write")
+      ->required()
+      ->type_name("FILE.png");
+  command->add_option("--beside", arguments->beside, "second volume, drawn with the same window")
+      ->type_name("VOLUME");
+  command->add_option("--array", arguments->array, "array to draw [first]")->type_name("NAME");
+  command->add_option("--step", arguments->step, "of volume files with several steps [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  command->add_option("--low", arguments->render.low, "drawn black [1st percentile]")
+      ->type_name("V");
+  command->add_option("--high", arguments->render.high, "drawn white [99.5th percentile]")
+      ->type_name("V");
+  command->add_option("--height", arguments->render.height, "of a panel, in pixels [360]")
+      ->check(between(16, 4096))
+      ->type_name("N");
+  command->callback([arguments, &run] { run = [arguments] { return run_render(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,22 @@
+/// @file commands.hpp
+/// The subcommands. Each function declares one on `app`; when the user has chosen it, parsing
+/// leaves in `run` what it does.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace tetwarp::cli {
+
+/// The chosen subcommand with its arguments bound. Returns the exit code; failures are exceptions.
+using Run = std::function<int()>;
+
+void add_warp_command(CLI::App& app, Run& run);
+void add_mesh_command(CLI::App& app, Run& run);
+void add_deform_command(CLI::App& app, Run& run);
+void add_import_command(CLI::App& app, Run& run);
+void add_export_command(CLI::App& app, Run& run);
+void add_render_command(CLI::App& app, Run& run);
+void add_info_command(CLI::App& app, Run& run);
+void add_demo_command(CLI::App& app, Run& run);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,72 @@
+/// @file declare.cpp
+#include "host/cli/declare.hpp"
+
+#include <cctype>
+#include <memory>
+
+namespace tetwarp::cli {
+
+namespace {
+
+/// CLI11's help with a usage line written by hand: positionals of a varying number need words.
+class UsageFormatter : public CLI::Formatter {
+ public:
+  explicit UsageFormatter(std::string synopsis) : synopsis_(std::move(synopsis)) {
+    column_width(34);
+  }
+
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    // CLI11 passes the name with its parents when help is asked for on the command line.
+    return "Usage: " + (name.empty() ? "tetwarp " + app->get_name() : name) + " " + synopsis_ +
+           "\n";
+  }
+
+ private:
+  std::string synopsis_;
+};
+
+}  // namespace
+
+CLI::App* add_subcommand(CLI::App& app,
+                         const std::string& name,
+                         const std::string& description,
+                         const std::string& synopsis,
+                         const std::string& examples) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->formatter(std::make_shared<UsageFormatter>(synopsis));
+  command->footer("Example:\n" + examples);
+  return command;
+}
+
+std::string one_line(const std::string& text) {
+  std::string line;
+  for (std::size_t i = 0; i < text.size();) {
+    std::size_t end = i;
+    bool breaks = false;
+    while (end < text.size() && std::isspace(static_cast<unsigned char>(text[end])) != 0) {
+      breaks = breaks || text[end] == '\n';
+      ++end;
+    }
+    if (end == i) {
+      line += text[i++];
+    } else {
+      if (end < text.size() && !line.empty()) line += breaks ? "; " : " ";
+      i = end;
+    }
+  }
+  return line;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  return CLI::detail::join(words, ", ");
+}
+
+CLI::Validator between(int low, int high) {
+  return CLI::Range(low, high).description("");
+}
+
+CLI::Validator at_least_zero() {
+  return CLI::Validator(CLI::NonNegativeNumber).description("");
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,71 @@
+/// @file declare.hpp
+/// What CLI11 lacks to declare this command's options: usage lines, words, one-line messages.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetwarp::cli {
+
+/// Adds a subcommand.
+/// @param synopsis  what follows the name in the usage line, e.g. "VOLUME -o MESH"
+/// @param examples  shown below the options
+CLI::App* add_subcommand(CLI::App& app,
+                         const std::string& name,
+                         const std::string& description,
+                         const std::string& synopsis,
+                         const std::string& examples);
+
+/// `text` on one line: line breaks become "; ", other runs of white space one space.
+std::string one_line(const std::string& text);
+
+/// "a, b, c".
+std::string listed(const std::vector<std::string>& words);
+
+/// Checks of numbers whose help shows no range.
+CLI::Validator between(int low, int high);
+CLI::Validator at_least_zero();
+
+/// Words with their meaning, in the order in which help shows them.
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+/// The words alone.
+template <class T>
+std::vector<std::string> words_of(const Choices<T>& choices) {
+  std::vector<std::string> words;
+  for (const auto& choice : choices) words.push_back(choice.first);
+  return words;
+}
+
+/// The meaning of `word`. Throws CLI::ValidationError listing the words.
+template <class T>
+T meaning_of(const std::string& option, const std::string& word, const Choices<T>& choices) {
+  const auto found = std::find_if(choices.begin(), choices.end(),
+                                  [&](const auto& choice) { return choice.first == word; });
+  if (found == choices.end()) {
+    throw CLI::ValidationError(option, "'" + word + "' is none of " + listed(words_of(choices)));
+  }
+  return found->second;
+}
+
+/// Declares an option that takes one of several words; its help lists them.
+template <class T>
+CLI::Option* add_choice(CLI::App& app,
+                        const std::string& option,
+                        T& target,
+                        const Choices<T>& choices,
+                        const std::string& description) {
+  return app
+      .add_option_function<std::string>(
+          option,
+          [&target, option, choices](const std::string& word) {
+            target = meaning_of(option, word, choices);
+          },
+          description)
+      ->type_name(CLI::detail::join(words_of(choices), "|"));
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,84 @@
+/// @file file_checks.cpp
+#include "host/cli/file_checks.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+namespace tetwarp::cli {
+
+namespace fs = std::filesystem;
+
+void check_output_folder(const std::string& folder, const std::string& output) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    throw IoError(output, "", "'" + folder + "' is no existing folder; create it first");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw IoError(output, "", "no permission to write in folder '" + folder + "'");
+  }
+}
+
+void check_output_file(const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code error;
+  if (output.empty()) throw IoError("output", "", "its name is empty");
+  if (fs::is_directory(output, error)) {
+    throw IoError(output, "", "is a folder; name the file to write");
+  }
+  if (fs::exists(output, error) && !fs::is_regular_file(output, error)) {
+    throw IoError(output, "", "exists and is no regular file; name another");
+  }
+  const std::string canonical = canonical_path(output);
+  for (const std::string& input : inputs) {
+    if (canonical == canonical_path(input) || fs::equivalent(output, input, error)) {
+      throw IoError(output, "", "is also an input; name another output");
+    }
+  }
+  const std::string folder = fs::path(output).parent_path().string();
+  check_output_folder(folder.empty() ? "." : folder, output);
+}
+
+void check_hdf_name(const std::string& output) {
+  const std::string extension = fs::path(output).extension().string();
+  const std::vector<std::string> known{".vtkhdf", ".hdf", ".h5"};
+  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+    throw IoError(output, "", "the name of a VTKHDF file ends in .vtkhdf, .hdf or .h5");
+  }
+}
+
+void check_kind(const std::string& path, FileKind wanted, const std::string& remedy) {
+  const FileKind kind = kind_of(path);
+  if (kind != wanted) {
+    throw IoError(
+        path, "",
+        std::string("is ") + name_of(kind) + ", expected " + name_of(wanted) + "; " + remedy);
+  }
+}
+
+const char* name_of(FileKind kind) {
+  switch (kind) {
+    case FileKind::volume:
+      return "a volume";
+    case FileKind::mesh:
+      return "a mesh";
+    case FileKind::other_vtkhdf:
+      return "another kind of VTKHDF file";
+    case FileKind::hdf5:
+      return "another kind of HDF5 file";
+    case FileKind::nifti:
+      return "a NIfTI image";
+    case FileKind::unknown:
+      break;
+  }
+  return "a file of unknown kind";
+}
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(fs::absolute(path), error);
+  return error ? path : canonical.string();
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,54 @@
+/// @file interrupt.cpp
+#include "host/cli/interrupt.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <tetwarp/error.hpp>
+
+#include "io/finished_file.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+volatile std::sig_atomic_t flag = 0;
+volatile std::sig_atomic_t polite = 0;  // scopes that ask for politeness
+
+// Only async-signal-safe calls.
+void handle(int) {
+  if (polite != 0 && flag == 0) {
+    flag = 1;
+    return;
+  }
+  remove_unfinished_files();
+  _exit(interrupted_exit_code);
+}
+
+}  // namespace
+
+void install_interrupt_handlers() {
+  struct sigaction action = {};
+  action.sa_handler = handle;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+PoliteInterrupts::PoliteInterrupts() {
+  polite = polite + 1;
+}
+PoliteInterrupts::~PoliteInterrupts() {
+  polite = polite - 1;
+}
+
+bool is_interrupted() {
+  return flag != 0;
+}
+
+void stop_if_interrupted() {
+  if (is_interrupted()) throw Cancelled();
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,242 @@
+/// @file job_plan.cpp
+#include "host/cli/job_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+#include "host/cli/memory.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string order = "the order is: tetwarp warp VOLUME... MESH -o OUT";
+
+std::vector<std::string> inputs_of(const WarpArguments& arguments) {
+  std::vector<std::string> inputs = arguments.files;
+  if (arguments.mesh.rest_file) inputs.push_back(*arguments.mesh.rest_file);
+  if (arguments.grid.base != "same" && arguments.grid.base != "bounds") {
+    inputs.push_back(arguments.grid.base);
+  }
+  return inputs;
+}
+
+void check_kinds(const WarpArguments& arguments) {
+  for (const std::string& volume : arguments.volumes()) {
+    check_kind(volume, FileKind::volume, order);
+  }
+  check_kind(arguments.mesh_file(), FileKind::mesh, order);
+}
+
+/// The back end that will run and the reason.
+std::pair<Backend, std::string> choose_backend(const WarpOptions& options) {
+  const std::vector<BackendStatus> known = available_backends(options.device);
+  const auto status_of = [&](Backend backend) {
+    return *std::find_if(known.begin(), known.end(),
+                         [&](const BackendStatus& status) { return status.backend == backend; });
+  };
+  if (options.backend != Backend::automatic) {
+    const BackendStatus status = status_of(options.backend);
+    if (!status.usable) {
+      throw CudaError(fmt::format("--backend {}: not usable here ({}); use --backend cpu",
+                                  name_of(options.backend), status.reason));
+    }
+    return {options.backend, "asked for"};
+  }
+  const BackendStatus cuda = status_of(Backend::cuda);
+  if (cuda.usable) return {Backend::cuda, cuda.device + " answers"};
+  return {Backend::cpu, "no CUDA device answers (" + cuda.reason + ")"};
+}
+
+/// The arrays to warp: those asked for, else all but this command's own extra outputs.
+std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
+                                       const WarpArguments& arguments,
+                                       const std::string& path) {
+  std::vector<ArrayHeader> chosen;
+  std::vector<std::string> names;
+  for (const ArrayHeader& array : header.arrays) {
+    names.push_back(array.name);
+    if (arguments.arrays.empty() && !array.name.starts_with("tetwarp_")) chosen.push_back(array);
+  }
+  for (const std::string& name : arguments.arrays) {
+    const auto is_named = [&](const ArrayHeader& array) { return array.name == name; };
+    const auto found = std::find_if(header.arrays.begin(), header.arrays.end(), is_named);
+    if (found == header.arrays.end()) {
+      throw IoError(path, name, "no such array; the file has " + listed(names));
+    }
+    if (std::find_if(chosen.begin(), chosen.end(), is_named) == chosen.end()) {
+      chosen.push_back(*found);
+    }
+  }
+  if (chosen.empty()) throw IoError(path, "", "holds no array to warp");
+  return chosen;
+}
+
+void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
+  for (const ArrayHeader& array : plan.arrays) {
+    if (arguments.warp.filter == Filter::linear && is_integer(array.type) &&
+        size_of(array.type) == 8) {
+      throw IoError(plan.path, array.name,
+                    fmt::format("{} samples cannot be interpolated; use --filter nearest",
+                                name_of(array.type)));
+    }
+    if (is_integer(array.type) && !std::isfinite(arguments.warp.background)) {
+      throw IoError(plan.path, array.name,
+                    fmt::format("{} samples cannot hold --background {}; give a finite value",
+                                name_of(array.type), arguments.warp.background));
+    }
+    if ((arguments.extra.mask && array.name == mask_array_name) ||
+        (arguments.extra.tet && array.name == tet_array_name)) {
+      throw IoError(plan.path, array.name, "an extra output has this name; leave out one of them");
+    }
+  }
+}
+
+/// Two copies of every array, source and output, and the extra outputs must fit.
+void check_memory(const VolumePlan& plan, const ExtraOutputs& extra) {
+  const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
+  const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
+  double bytes = output_voxels * ((extra.mask ? 1 : 0) + (extra.tet ? 4 : 0));
+  for (const ArrayHeader& array : plan.arrays) {
+    bytes += (source_voxels + output_voxels) * array.components *
+             static_cast<double>(size_of(array.type));
+  }
+  const double available = available_memory();
+  if (bytes > available) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {} x {} x {} output voxels need {} of memory with the source, {} are available; use "
+        "a smaller --roi, coarser --dims and --spacing, or fewer arrays",
+        plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
+        bytes_text(bytes), bytes_text(available)));
+  }
+}
+
+void check_axes(const VolumePlan& plan) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (plan.written_grid.dims[axis] == 1) {
+      throw std::invalid_argument(fmt::format(
+          "{}: the output has a single voxel along {}, which VTK cannot read; widen --roi, --dims "
+          "or the source to two",
+          plan.path, "ijk"[axis]));
+    }
+  }
+}
+
+/// One output per step: `output` itself for a single one, else its stem with the step's number.
+std::vector<std::string> output_names(const fs::path& output,
+                                      const std::vector<std::int64_t>& steps,
+                                      bool temporal) {
+  if (temporal || steps.size() == 1) return {output.string()};
+  std::vector<std::string> names;
+  for (const std::int64_t step : steps) {
+    fs::path name = output;
+    name.replace_filename(
+        fmt::format("{}_{:04}{}", output.stem().string(), step, output.extension().string()));
+    names.push_back(name.string());
+  }
+  return names;
+}
+
+VolumePlan plan_volume(const std::string& path,
+                       const fs::path& output,
+                       const WarpArguments& arguments,
+                       const MeshReader& mesh,
+                       const std::vector<std::int64_t>& steps) {
+  const VolumeHeader header = read_volume_header(path);
+  const auto step_count = std::max<std::int64_t>(1, std::ssize(header.times));
+  if (arguments.source_step >= step_count) {
+    throw IoError(path, "",
+                  fmt::format("--source-step {} does not exist, the volume has {} (0 to {})",
+                              arguments.source_step, step_count, step_count - 1));
+  }
+  VolumePlan plan;
+  plan.path = path;
+  plan.arrays = choose_arrays(header, arguments, path);
+  plan.source_grid = header.grid;
+  check_arrays(plan, arguments);
+  plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
+  plan.written_grid = cut_grid(plan.output_grid, arguments.warp.region);
+  check_axes(plan);
+  check_memory(plan, arguments.extra);
+  plan.outputs = output_names(output, steps, arguments.temporal);
+  return plan;
+}
+
+/// The folder for several outputs is there and takes files, or can be made.
+void check_folder(const std::string& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) {
+    check_output_file(folder, {});
+  } else if (!fs::is_directory(folder, error)) {
+    throw IoError(folder, "", "is a file; the output of several volumes is a folder");
+  } else {
+    check_output_folder(folder, folder);
+  }
+}
+
+/// Every output and the report can be written, and no two of them are one file.
+void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
+  if (!plan.output_folder.empty()) check_folder(plan.output_folder);
+  std::vector<std::string> outputs = plan.outputs();
+  if (!arguments.report.empty()) outputs.push_back(arguments.report);
+  std::set<std::string> seen;
+  for (const std::string& output : outputs) {
+    std::error_code error;
+    const bool folder_is_made = !plan.output_folder.empty() && output != arguments.report &&
+                                !fs::exists(plan.output_folder, error);
+    if (!folder_is_made) check_output_file(output, inputs_of(arguments));
+    if (!seen.insert(canonical_path(output)).second) {
+      throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> JobPlan::outputs() const {
+  std::vector<std::string> all;
+  for (const VolumePlan& volume : volumes) {
+    all.insert(all.end(), volume.outputs.begin(), volume.outputs.end());
+  }
+  return all;
+}
+
+JobPlan plan_job(const WarpArguments& arguments) {
+  check_kinds(arguments);
+  const auto [backend, reason] = choose_backend(arguments.warp);
+  JobPlan plan{.mesh = MeshReader(arguments.mesh_file(), arguments.mesh),
+               .steps = {},
+               .backend = backend,
+               .backend_reason = reason,
+               .output_folder = {},
+               .volumes = {}};
+  const std::int64_t step_count = std::max<std::int64_t>(1, std::ssize(plan.mesh.header().times));
+  try {
+    plan.steps = arguments.steps.of(step_count);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.mesh_file(), "", error.what());
+  }
+  const std::vector<std::string> volumes = arguments.volumes();
+  const bool several = volumes.size() > 1;
+  if (several) plan.output_folder = arguments.output;
+  if (!several) check_hdf_name(arguments.output);
+  for (const std::string& volume : volumes) {
+    const fs::path output = several ? fs::path(arguments.output) / fs::path(volume).filename()
+                                    : fs::path(arguments.output);
+    plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, plan.steps));
+  }
+  check_outputs(plan, arguments);
+  return plan;
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,105 @@
+/// @file main.cpp
+/// The command `tetwarp`: subcommands, exit codes, one-line errors.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <tetwarp/version.hpp>
+#include <vector>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/interrupt.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+constexpr int failed_exit_code = 1;
+constexpr int usage_exit_code = 2;
+
+int complain(const std::string& problem, int exit_code) {
+  fmt::print(stderr, "tetwarp: {}\n", one_line(problem));
+  return exit_code;
+}
+
+void declare(CLI::App& app, Run& run) {
+  app.set_version_flag("--version", "tetwarp " TETWARP_VERSION);
+  app.require_subcommand(1);
+  add_warp_command(app, run);
+  add_mesh_command(app, run);
+  add_deform_command(app, run);
+  add_import_command(app, run);
+  add_export_command(app, run);
+  add_render_command(app, run);
+  add_info_command(app, run);
+  add_demo_command(app, run);
+  app.footer("tetwarp SUBCOMMAND --help shows options and an example.\nTo begin: tetwarp demo");
+}
+
+/// CLI11 would call a mistyped subcommand a missing one.
+void check_subcommand(const CLI::App& app, int argument_count, const char* const* arguments) {
+  if (argument_count < 2 || arguments[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), arguments[1]) == names.end()) {
+    throw CLI::ValidationError(std::string("'") + arguments[1] + "'",
+                               "no such subcommand; there are " + listed(names));
+  }
+}
+
+/// Help and version are no errors; everything else is told in one line with where to read on.
+int handle_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::string command = chosen.empty() ? "tetwarp" : "tetwarp " + chosen[0]->get_name();
+  return complain(fmt::format("{} (see {} --help)", error.what(), command), usage_exit_code);
+}
+
+int run_main(int argument_count, const char* const* arguments) {
+  CLI::App app("Warps dense volumes by deforming tetrahedral meshes", "tetwarp");
+  Run run;
+  declare(app, run);
+  try {
+    check_subcommand(app, argument_count, arguments);
+    app.parse(argument_count, arguments);
+  } catch (const CLI::ParseError& error) {
+    return handle_parse_error(app, error);
+  }
+  const int exit_code = run();
+  if (std::fflush(stdout) != 0) throw std::runtime_error("standard output: cannot be written");
+  return exit_code;
+}
+
+int guarded_main(int argument_count, const char* const* arguments) {
+  try {
+    return run_main(argument_count, arguments);
+  } catch (const Cancelled&) {
+    return complain("interrupted", interrupted_exit_code);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory; use a smaller volume, --roi or --dims", failed_exit_code);
+  } catch (const std::exception& error) {
+    return complain(error.what(), failed_exit_code);
+  }
+}
+
+}  // namespace
+
+}  // namespace tetwarp::cli
+
+int main(int argument_count, char** arguments) {
+  tetwarp::cli::install_interrupt_handlers();
+  const int exit_code = tetwarp::cli::guarded_main(argument_count, arguments);
+  if (exit_code == 0) return 0;
+  // HDF5 1.10 crashes in its exit handler when a file could not be closed on a full disk. All our
+  // files are closed or removed by now.
+  std::fflush(nullptr);
+  std::_Exit(exit_code);
+}

@@ -1,0 +1,14 @@
+/// @file memory.hpp
+/// How much memory a job may take.
+#pragma once
+#include <string>
+
+namespace tetwarp::cli {
+
+/// Bytes that can be allocated without swapping, as the kernel estimates it.
+double available_memory();
+
+/// "1.5 GiB".
+std::string bytes_text(double bytes);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,121 @@
+/// @file output_grid.cpp
+#include "host/cli/output_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "host/cli/interrupt.hpp"
+#include "host/cli/step_selection.hpp"
+#include "host/index_space.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Index-space position of a world position.
+Point3 index_of(const IndexFromWorld& map, const Point3& world) {
+  Point3 index{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      index[row] += map.linear[row][axis] * (world[axis] - map.origin[axis]);
+    }
+  }
+  return index;
+}
+
+/// The smallest box of voxels of the source's lattice, continued beyond the source, that encloses
+/// the deformed tetrahedra of all steps; at least two voxels along each axis.
+Grid bounds_grid(const Grid& source,
+                 const MeshReader& mesh,
+                 const std::vector<std::int64_t>& steps) {
+  const IndexFromWorld map = index_from_world(source);
+  Point3 low{infinity, infinity, infinity};
+  Point3 high{-infinity, -infinity, -infinity};
+  for (const std::int64_t step : steps) {
+    stop_if_interrupted();
+    const std::vector<Point3> positions = mesh.read_step(step);
+    for (const auto& tet : mesh.mesh().tets) {
+      for (const std::int32_t node : tet) {
+        const Point3 index = index_of(map, positions[static_cast<std::size_t>(node)]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], index[axis]);
+          high[axis] = std::max(high[axis], index[axis]);
+        }
+      }
+    }
+  }
+  Grid grid = source;
+  Point3 first{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first[axis] = std::floor(low[axis]);
+    const double count = std::max(std::ceil(high[axis]) - first[axis] + 1, 2.0);
+    // Far beyond what check_grid() accepts; keeps the conversion defined.
+    grid.dims[axis] = static_cast<std::int64_t>(std::min(count, 0x1p40));
+  }
+  grid.origin = source.world_of(first);
+  return grid;
+}
+
+}  // namespace
+
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const MeshReader& mesh,
+                  const std::vector<std::int64_t>& steps) {
+  Grid grid = source;
+  if (choice.base == "bounds") {
+    grid = bounds_grid(source, mesh, steps);
+  } else if (choice.base != "same") {
+    grid = read_volume_header(choice.base).grid;
+  }
+  grid.dims = choice.dims.value_or(grid.dims);
+  grid.origin = choice.origin.value_or(grid.origin);
+  grid.spacing = choice.spacing.value_or(grid.spacing);
+  grid.direction = choice.direction.value_or(grid.direction);
+  check_grid(grid, "output grid");
+  return grid;
+}
+
+Region parse_region(const std::string& text) {
+  const std::vector<std::string> ranges = split(text, ',');
+  Region region;
+  bool valid = ranges.size() == 3;
+  for (std::size_t axis = 0; valid && axis < 3; ++axis) {
+    const std::vector<std::string> ends = split(ranges[axis], ':');
+    valid = ends.size() == 2 && whole_number(ends[0]) && whole_number(ends[1]);
+    if (!valid) break;
+    region.begin[axis] = *whole_number(ends[0]);
+    region.end[axis] = *whole_number(ends[1]);
+  }
+  if (!valid) {
+    throw std::invalid_argument("'" + text + "' is no region i0:i1,j0:j1,k0:k1 of whole numbers");
+  }
+  return region;
+}
+
+Grid cut_grid(const Grid& grid, const std::optional<Region>& region) {
+  if (!region) return grid;
+  Grid cut = grid;
+  Point3 first{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t begin = region->begin[axis];
+    const std::int64_t end = region->end[axis];
+    if (begin < 0 || begin >= end || end > grid.dims[axis]) {
+      throw std::invalid_argument(fmt::format(
+          "--roi {}:{} along {} is not inside the output grid, which has voxels 0:{} there", begin,
+          end, "ijk"[axis], grid.dims[axis]));
+    }
+    cut.dims[axis] = end - begin;
+    first[axis] = static_cast<double>(begin);
+  }
+  cut.origin = grid.world_of(first);
+  return cut;
+}
+
+}  // namespace tetwarp::cli

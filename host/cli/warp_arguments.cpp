@@ -1,0 +1,195 @@
+/// @file warp_arguments.cpp
+#include "host/cli/warp_arguments.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "host/cli/declare.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+const Choices<Filter> filters{{"linear", Filter::linear}, {"nearest", Filter::nearest}};
+const Choices<Outside> outsides{{"background", Outside::background},
+                                {"identity", Outside::identity}};
+const Choices<Backend> backends{{"auto", Backend::automatic},
+                                {"cuda", Backend::cuda},
+                                {"cpu", Backend::cpu},
+                                {"reference", Backend::reference}};
+const Choices<bool ExtraOutputs::*> extra_outputs{{"mask", &ExtraOutputs::mask},
+                                                  {"tet", &ExtraOutputs::tet}};
+
+/// Declares an option that takes a comma list of words, each of which is handed to `apply`.
+template <class T, class Apply>
+void add_word_list(CLI::App& app,
+                   const std::string& option,
+                   const Choices<T>& choices,
+                   Apply apply,
+                   const std::string& description) {
+  app.add_option_function<std::vector<std::string>>(
+         option,
+         [option, choices, apply](const std::vector<std::string>& words) {
+           for (const std::string& word : words) apply(meaning_of(option, word, choices));
+         },
+         description)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name(CLI::detail::join(words_of(choices), ","));
+}
+
+/// Declares an option whose text a function turns into a value; its std::invalid_argument is a
+/// usage error.
+template <class T, class Parse>
+void add_parsed(CLI::App& app,
+                const std::string& option,
+                T& target,
+                Parse parse,
+                const std::string& type_name,
+                const std::string& description) {
+  app.add_option_function<std::string>(
+         option,
+         [&target, option, parse](const std::string& text) {
+           try {
+             target = parse(text);
+           } catch (const std::invalid_argument& error) {
+             throw CLI::ValidationError(option, error.what());
+           }
+         },
+         description)
+      ->type_name(type_name);
+}
+
+/// Declares an option of a fixed count of numbers, separated by commas or spaces.
+template <class Numbers>
+void add_numbers(CLI::App& app,
+                 const std::string& option,
+                 std::optional<Numbers>& target,
+                 const std::string& type_name,
+                 const std::string& description) {
+  app.add_option_function<Numbers>(
+         option, [&target](const Numbers& numbers) { target = numbers; }, description)
+      ->delimiter(',')
+      ->type_name(type_name);
+}
+
+void declare_files(CLI::App& app, WarpArguments& arguments) {
+  app.add_option("FILES", arguments.files,
+                 "one or more VTKHDF images, then the mesh that warps them")
+      ->type_name("");
+  app.add_option("-o,--output", arguments.output, "file to write; for several volumes a folder")
+      ->type_name("OUT");
+  app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  app.add_option("--source-step", arguments.source_step, "step of a volume file that has several")
+      ->check(at_least_zero())
+      ->type_name("N");
+  add_parsed(
+      app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
+      "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
+  app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
+      ->type_name("FILE");
+  app.add_option("--rest-step", arguments.mesh.rest_step, "rest step of points that move [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+}
+
+void declare_grid(CLI::App& app, WarpArguments& arguments) {
+  GridChoice& grid = arguments.grid;
+  app.add_option("--grid", grid.base,
+                 "output grid: the source's, the deformed mesh's box on it, or a volume's [same]")
+      ->type_name("same|bounds|FILE");
+  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK", "voxels of the output grid");
+  add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
+  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z", "distance of its voxel centres");
+  add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
+  add_parsed(app, "--roi", arguments.warp.region, parse_region, "I0:I1,J0:J1,K0:K1",
+             "part of the output grid to compute, half-open");
+}
+
+void declare_result(CLI::App& app, WarpArguments& arguments) {
+  WarpOptions& warp = arguments.warp;
+  add_choice(app, "--filter", warp.filter, filters, "between voxel centres [linear]");
+  add_choice(app, "--outside", warp.outside, outsides, "what no tetrahedron covers [background]");
+  app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
+  ExtraOutputs& extra = arguments.extra;
+  add_word_list(
+      app, "--outputs", extra_outputs,
+      [&extra](bool ExtraOutputs::*wanted) { extra.*wanted = true; },
+      "extra arrays tetwarp_mask and tetwarp_tet");
+  app.add_flag("--temporal", arguments.temporal, "one file with all steps");
+  app.add_option("--compress", arguments.compress, "deflate level, 0 is none [0]")
+      ->check(between(0, 9))
+      ->type_name("L");
+  app.add_flag("--resume", arguments.resume, "keep outputs that are complete and up to date");
+}
+
+void declare_running(CLI::App& app, WarpArguments& arguments) {
+  WarpOptions& warp = arguments.warp;
+  add_choice(app, "--backend", warp.backend, backends, "where to compute [auto]");
+  app.add_option("--device", warp.device, "CUDA device number [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  app.add_option("--threads", warp.threads, "of the cpu back end, 0 is all cores [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  using Switch = std::vector<bool SkipOptions::*>;
+  const Choices<Switch> skips{{"rejected-cells", {&SkipOptions::rejected_cells}},
+                              {"accepted-cells", {&SkipOptions::accepted_cells}},
+                              {"copied-voxels", {&SkipOptions::copied_voxels}},
+                              {"unchanged-steps", {&SkipOptions::unchanged_steps}},
+                              {"background-chunks", {&SkipOptions::background_chunks}},
+                              {"all",
+                               {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells,
+                                &SkipOptions::copied_voxels, &SkipOptions::unchanged_steps,
+                                &SkipOptions::background_chunks}}};
+  SkipOptions& skip = warp.skip;
+  add_word_list(
+      app, "--no-skip", skips,
+      [&skip](const Switch& members) {
+        for (bool SkipOptions::*member : members) skip.*member = false;
+      },
+      "do work that cannot change the result");
+  app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
+  app.add_option("--report", arguments.report, "write timings and counts as JSON")
+      ->type_name("FILE");
+  app.add_flag("--quiet", arguments.quiet, "no progress and no summary");
+  app.add_option("--batch", arguments.batch, "run the jobs of a JSON file; options are defaults")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void declare_warp_options(CLI::App& app, WarpArguments& arguments) {
+  declare_files(app, arguments);
+  declare_grid(app, arguments);
+  declare_result(app, arguments);
+  declare_running(app, arguments);
+}
+
+void check_complete(const WarpArguments& arguments) {
+  if (!arguments.batch.empty()) {
+    if (!arguments.files.empty() || !arguments.output.empty()) {
+      throw CLI::ValidationError("--batch", "volumes, mesh and output stand in the file's jobs");
+    }
+    return;
+  }
+  if (arguments.files.size() < 2) {
+    throw CLI::ValidationError("VOLUME... MESH", "one or more volumes and a mesh are needed");
+  }
+  if (arguments.output.empty()) throw CLI::ValidationError("-o OUT", "an output is needed");
+}
+
+WarpArguments parse_warp_arguments(std::vector<std::string> words) {
+  WarpArguments arguments;
+  CLI::App app;
+  declare_warp_options(app, arguments);
+  std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+  app.parse(std::move(words));
+  check_complete(arguments);
+  return arguments;
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,58 @@
+/// @file warp_arguments.hpp
+/// Everything a user can say to `tetwarp warp`: one declaration for command line and batch files.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/warp.hpp>
+
+#include "host/cli/output_grid.hpp"
+#include "host/cli/step_selection.hpp"
+
+namespace tetwarp::cli {
+
+/// Names of the extra arrays.
+constexpr const char* mask_array_name = "tetwarp_mask";
+constexpr const char* tet_array_name = "tetwarp_tet";
+
+/// Arrays written beside the warped ones.
+struct ExtraOutputs {
+  bool mask = false;  ///< uint8, 1 where a tetrahedron covers the voxel
+  bool tet = false;   ///< int32, owning tetrahedron, -1 outside
+};
+
+/// Syntax is checked, files are not looked at.
+struct WarpArguments {
+  std::vector<std::string> files;   ///< volumes, then the mesh
+  std::string output;               ///< file, or folder for several volumes
+  std::vector<std::string> arrays;  ///< empty: every array
+  std::int64_t source_step = 0;     ///< of a volume file with several steps
+  StepSelection steps;
+  MeshReadOptions mesh;
+  GridChoice grid;
+  WarpOptions warp;  ///< without output_grid, which needs the files
+  ExtraOutputs extra;
+  int compress = 0;
+  bool temporal = false;
+  bool resume = false;
+  bool quiet = false;
+  std::string report;
+  std::string batch;
+
+  std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
+  const std::string& mesh_file() const { return files.back(); }
+};
+
+/// Declares every option and binds it to `arguments`, which must outlive `app`.
+void declare_warp_options(CLI::App& app, WarpArguments& arguments);
+
+/// Throws CLI::ValidationError when volumes, mesh or output are missing, or when they stand beside
+/// --batch.
+void check_complete(const WarpArguments& arguments);
+
+/// Parses words as if they stood on the command line. Throws CLI::ParseError.
+WarpArguments parse_warp_arguments(std::vector<std::string> words);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,43 @@
+/// @file pipelines_cuda.cu
+/// Back end cuda: the pipeline on a device.
+#include "host/warp_pipeline.hpp"
+#include "kernels/cell_raster.cuh"
+#include "kernels/exec_cuda.cuh"
+
+namespace tetwarp {
+
+/// One block per cell; counts are added by the kernel. @see cell_raster.cuh
+template <class T>
+void cell_raster(CudaExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
+  const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
+  exec.timed("warp/raster", [&] {
+    launch(exec.stream(), cell_raster_kernel<T>, cells, raster_threads, 0, job);
+  });
+  progress.report(1.0);
+}
+
+BackendStatus cuda_status(int device) {
+  BackendStatus status{Backend::cuda, false, "", ""};
+  int count = 0;
+  cudaError_t error = cudaGetDeviceCount(&count);
+  if (error == cudaSuccess && (device < 0 || device >= count)) {
+    status.reason = "no device " + std::to_string(device) + ", there are " + std::to_string(count);
+    return status;
+  }
+  cudaDeviceProp properties;
+  if (error == cudaSuccess) error = cudaGetDeviceProperties(&properties, device);
+  if (error != cudaSuccess) {
+    cudaGetLastError();  // leaves no error behind for the next call
+    status.reason = cudaGetErrorString(error);
+    return status;
+  }
+  status.usable = true;
+  status.device = properties.name;
+  return status;
+}
+
+std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
+  return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device));
+}
+
+}  // namespace tetwarp

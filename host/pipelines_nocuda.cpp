@@ -1,0 +1,17 @@
+/// @file pipelines_nocuda.cpp
+/// Back end cuda of a build without the CUDA toolkit: it says so.
+#include <tetwarp/error.hpp>
+
+#include "host/warp_backend.hpp"
+
+namespace tetwarp {
+
+namespace {
+constexpr const char* reason = "this build has no CUDA; build with the CUDA toolkit installed";
+}
+
+BackendStatus cuda_status(int) { return {Backend::cuda, false, "", reason}; }
+
+std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan&) { throw CudaError(reason); }
+
+}  // namespace tetwarp

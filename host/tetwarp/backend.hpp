@@ -1,0 +1,26 @@
+/// @file backend.hpp
+/// The back ends, and which of them answer on this machine.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace tetwarp {
+
+/// Where a warp runs. `automatic` takes cuda when a device answers, else cpu.
+enum class Backend { automatic, cuda, cpu, reference };
+
+/// "auto", "cuda", "cpu" or "reference".
+const char* name_of(Backend backend);
+
+/// One back end on this machine.
+struct BackendStatus {
+  Backend backend = Backend::cpu;
+  bool usable = false;
+  std::string device;  ///< device or processor name, empty when not usable
+  std::string reason;  ///< why it is not usable, in the runtime's own words
+};
+
+/// Status of cuda (on device number `device`), cpu and reference, in that order. Never throws.
+std::vector<BackendStatus> available_backends(int device = 0);
+
+}  // namespace tetwarp

@@ -1,0 +1,38 @@
+/// @file mesh.hpp
+/// Tetrahedral meshes that embed a volume.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tetwarp/volume.hpp>
+
+namespace tetwarp {
+
+/// Nodes at rest and the four nodes of each tetrahedron (either orientation).
+struct TetMesh {
+  std::vector<Point3> rest_positions;             ///< [node_count], world
+  std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], indices into rest_positions
+};
+
+/// Throws std::invalid_argument naming the first offender unless there is a tetrahedron, every
+/// index is in range and every position finite.
+void check_mesh(const TetMesh& mesh);
+
+/// Node positions owned by somebody else, possibly on the GPU: x y z per node, float64, world.
+struct PositionsView {
+  const double* xyz = nullptr;
+  std::int64_t node_count = 0;
+  Memory memory = Memory::host;
+
+  PositionsView() = default;
+  PositionsView(const std::vector<Point3>& positions)
+      : xyz(positions.empty() ? nullptr : positions.front().data()),
+        node_count(static_cast<std::int64_t>(positions.size())) {}
+  PositionsView(const double* positions, std::int64_t nodes, Memory where)
+      : xyz(positions), node_count(nodes), memory(where) {}
+};
+
+}  // namespace tetwarp

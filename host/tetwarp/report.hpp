@@ -1,0 +1,74 @@
+/// @file report.hpp
+/// What a warp did: timings, counts, back end. Field names of the JSON are an interface.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/backend.hpp>
+
+namespace tetwarp {
+
+/// Seconds per stage. A stage that did not run is zero.
+struct Timings {
+  double read = 0;
+  double upload = 0;
+  double setup = 0;
+  double mask = 0;
+  double cull = 0;
+  double raster = 0;
+  double download = 0;
+  double write = 0;
+  double total = 0;
+
+  Timings& operator+=(const Timings& other);
+};
+
+/// What was done and what was skipped, summed over steps (per-step values in StepReport).
+struct Counts {
+  std::int64_t voxels = 0;           ///< output voxels = covered + outside
+  std::int64_t covered = 0;
+  std::int64_t outside = 0;
+  std::int64_t tetrahedra = 0;
+  std::int64_t inverted = 0;         ///< det(deformed) * det(rest) < 0; they map like others
+  std::int64_t flat = 0;             ///< zero quantized volume; they own nothing
+  std::int64_t folded = 0;           ///< voxels strictly inside two or more, when asked for
+  std::int64_t cells = 0;            ///< 8x8x8-voxel cells of the output grid
+  std::int64_t candidate_pairs = 0;  ///< (tetrahedron, cell) pairs = rejected + accepted + partial
+  std::int64_t pairs_rejected = 0;
+  std::int64_t pairs_accepted = 0;
+  std::int64_t pairs_partial = 0;
+  std::int64_t inside_tests = 0;     ///< (voxel, tetrahedron) tests against four planes
+  std::int64_t exact_tests = 0;      ///< of these, decided in exact integers
+  std::int64_t steps_unchanged = 0;  ///< steps equal to the one before, not computed again
+  std::int64_t voxels_copied = 0;    ///< voxels moved by whole voxels: copied, not interpolated
+  std::int64_t bytes_read = 0;
+  std::int64_t bytes_written = 0;
+
+  Counts& operator+=(const Counts& other);
+};
+
+/// One step of a series.
+struct StepReport {
+  std::int64_t step = 0;
+  Timings timings;
+  Counts counts;
+};
+
+/// A whole run.
+struct Report {
+  std::string version;
+  Backend backend = Backend::cpu;
+  std::string backend_reason;  ///< why this back end, in one sentence
+  std::string device;
+  int threads = 1;
+  double position_quantum = 0;  ///< node positions are rounded to multiples of this [voxel]
+  Timings timings;              ///< sums over steps
+  Counts counts;                ///< sums over steps
+  std::vector<StepReport> steps;
+};
+
+/// The report as a JSON object.
+std::string to_json(const Report& report);
+
+}  // namespace tetwarp

@@ -1,0 +1,11 @@
+/// @file tetwarp.hpp
+/// Everything of tetwarp::tetwarp.
+#pragma once
+#include <tetwarp/backend.hpp>
+#include <tetwarp/error.hpp>
+#include <tetwarp/make.hpp>
+#include <tetwarp/mesh.hpp>
+#include <tetwarp/report.hpp>
+#include <tetwarp/version.hpp>
+#include <tetwarp/volume.hpp>
+#include <tetwarp/warp.hpp>

@@ -1,0 +1,118 @@
+/// @file volume.hpp
+/// Dense volumes: a regular grid of voxel centres in world space, and samples of any numeric type on it.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace tetwarp {
+
+using Point3 = std::array<double, 3>;
+
+/// Type of one sample.
+enum class PixelType : std::uint8_t {
+  uint8,
+  int8,
+  uint16,
+  int16,
+  uint32,
+  int32,
+  uint64,
+  int64,
+  float32,
+  float64
+};
+
+/// Bytes of one sample.
+std::size_t size_of(PixelType type);
+
+/// Name as in the enum, e.g. "int16".
+const char* name_of(PixelType type);
+
+/// True for the eight integer types.
+bool is_integer(PixelType type);
+
+/// The enumerator of a C++ type.
+template <class T>
+constexpr PixelType pixel_type_of() {
+  static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a numeric pixel type");
+  if constexpr (std::is_floating_point_v<T>) {
+    static_assert(sizeof(T) == 4 || sizeof(T) == 8, "float32 or float64");
+    return sizeof(T) == 4 ? PixelType::float32 : PixelType::float64;
+  } else {
+    constexpr int size = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 2 : sizeof(T) == 4 ? 4 : 6;
+    return static_cast<PixelType>(size + (std::is_signed_v<T> ? 1 : 0));
+  }
+}
+
+/// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k)) [world].
+struct Grid {
+  std::array<std::int64_t, 3> dims{0, 0, 0};               ///< voxels along i, j, k
+  Point3 origin{0, 0, 0};                                  ///< centre of voxel (0, 0, 0) [world]
+  Point3 spacing{1, 1, 1};                                 ///< distance of centres [world], > 0
+  std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major, invertible
+
+  /// Product of dims.
+  std::int64_t voxel_count() const { return dims[0] * dims[1] * dims[2]; }
+
+  /// World position of index-space position `index` (voxel centres are integers).
+  Point3 world_of(const Point3& index) const;
+
+  bool operator==(const Grid&) const = default;
+};
+
+/// Throws std::invalid_argument, naming `what`, unless dims are positive and at most 2^30 each,
+/// their product fits 64 bits, spacing is positive and finite, origin is finite and direction invertible.
+void check_grid(const Grid& grid, const std::string& what);
+
+/// Samples of one array on a grid, stored [k][j][i][component].
+struct Volume {
+  Grid grid;
+  std::string name = "values";              ///< array name; no '/' and no '.'
+  PixelType type = PixelType::float32;
+  int components = 1;                       ///< samples per voxel, 1 to 9
+  std::vector<std::byte> data;              ///< voxel_count * components * size_of(type) bytes
+
+  /// Bytes that `data` must hold.
+  std::size_t byte_count() const;
+
+  /// The samples as T. Throws std::invalid_argument when T is not this volume's type.
+  template <class T>
+  std::span<T> samples() {
+    check_type(pixel_type_of<T>());
+    return {reinterpret_cast<T*>(data.data()), data.size() / sizeof(T)};
+  }
+  template <class T>
+  std::span<const T> samples() const {
+    check_type(pixel_type_of<T>());
+    return {reinterpret_cast<const T*>(data.data()), data.size() / sizeof(T)};
+  }
+
+ private:
+  void check_type(PixelType asked) const;
+};
+
+/// A zero-filled volume. Throws std::invalid_argument on a bad grid or component count.
+Volume make_volume(const Grid& grid, PixelType type, int components = 1, std::string name = "values");
+
+/// Where memory lives.
+enum class Memory { host, device };
+
+/// Samples owned by somebody else, possibly on the GPU: [k][j][i][component].
+struct VolumeView {
+  Grid grid;
+  PixelType type = PixelType::float32;
+  int components = 1;
+  const void* data = nullptr;
+  Memory memory = Memory::host;
+
+  VolumeView() = default;
+  VolumeView(const Volume& volume);  // a volume is a view of itself
+  VolumeView(const Grid& grid, PixelType type, int components, const void* data, Memory memory);
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,132 @@
+/// @file warp.hpp
+/// Deform volumes by a tetrahedral mesh: every output voxel takes the sample of the source at the
+/// rest position of the material point that the deformed mesh has moved there.
+///
+/// Source: J. Gascon et al., "Fast Deformation of Volume Data Using Tetrahedral Mesh
+/// Rasterization", SCA 2013.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <tetwarp/backend.hpp>
+#include <tetwarp/mesh.hpp>
+#include <tetwarp/report.hpp>
+#include <tetwarp/volume.hpp>
+
+namespace tetwarp {
+
+/// How the source is sampled between voxel centres.
+enum class Filter { nearest, linear };
+
+/// What a voxel gets that no tetrahedron covers.
+enum class Outside {
+  background,  ///< the background value
+  identity     ///< the source at the same world position
+};
+
+/// Half-open range of voxels [begin, end) per axis, in the indices of the output grid.
+struct Region {
+  std::array<std::int64_t, 3> begin{0, 0, 0};
+  std::array<std::int64_t, 3> end{0, 0, 0};
+
+  bool operator==(const Region&) const = default;
+};
+
+/// Work left out because it cannot change the result. Each switch gives the same output bits (but
+/// for the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
+struct SkipOptions {
+  bool rejected_cells = true;   ///< cells certainly outside a tetrahedron are not tested against it
+  bool accepted_cells = true;   ///< cells certainly inside a tetrahedron are not tested against it
+  bool copied_voxels = true;    ///< tetrahedra moved by whole voxels are copied, not interpolated
+  bool unchanged_steps = true;  ///< a step equal to the one before is not computed again (series
+                                ///< of files; a single Warper::step() always computes)
+  bool background_chunks = true;  ///< chunks of a file that hold only background are not stored
+};
+
+/// Choices of a warp. Defaults give what most people want.
+struct WarpOptions {
+  Filter filter = Filter::linear;          ///< 64-bit integers: nearest only
+  Outside outside = Outside::background;
+  double background = 0.0;                 ///< rounded and saturated to the pixel type
+  std::optional<Grid> output_grid = {};         ///< nothing: the source's grid
+  std::optional<Region> region = {};            ///< part of the output grid to compute; nothing: all
+  Backend backend = Backend::automatic;
+  int device = 0;                          ///< CUDA device number
+  int threads = 0;                         ///< of the cpu back end; 0: all cores
+  bool count_folded = false;               ///< also count voxels strictly inside several tetrahedra
+  SkipOptions skip = {};
+};
+
+/// Told between slabs of work with the finished fraction of the step, 0 to 1; false cancels.
+/// Called from the thread that called step().
+using Progress = std::function<bool(double fraction)>;
+
+/// Where a step writes. Null pointers are outputs nobody asked for. One pointer per source volume,
+/// each [k][j][i][component] over Warper::output_grid() in the source's pixel type.
+struct WarpTarget {
+  std::span<void* const> volumes;
+  std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
+  std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
+  Memory memory = Memory::host;
+  void* stream = nullptr;        ///< cudaStream_t that orders work on device memory; cuda only
+};
+
+/// Results of warp().
+struct WarpResult {
+  Volume volume;
+  Report report;
+};
+
+class WarpBackend;
+
+/// Warps volumes step by step, keeping every buffer between steps; on CUDA the sources stay resident.
+///
+/// The owner of a voxel is the lowest-indexed tetrahedron whose closed deformed shape contains its
+/// centre, decided in exact integers after node positions have been rounded once to 2^-20 voxel:
+/// the same on every back end and for every thread count. Not safe for concurrent calls.
+class Warper {
+ public:
+  /// @param sources  volumes on one common grid, host or (cuda) device memory, kept by the caller
+  ///                 for the life of the Warper; at least one
+  /// @param mesh     copied
+  /// @param options  see WarpOptions
+  /// @throws std::invalid_argument  on any bad argument, naming it
+  /// @throws CudaError              when cuda was asked for and no device answers
+  Warper(std::span<const VolumeView> sources, const TetMesh& mesh, const WarpOptions& options = {});
+  Warper(const Volume& source, const TetMesh& mesh, const WarpOptions& options = {});
+  Warper(Warper&&) noexcept;
+  Warper& operator=(Warper&&) noexcept;
+  ~Warper();
+
+  /// Grid of what step() writes: the output grid cut to the region, its origin moved accordingly.
+  const Grid& output_grid() const;
+
+  /// Warps all sources by one set of node positions.
+  /// @param deformed  world, as many nodes as the mesh, finite
+  /// @param target    see WarpTarget
+  /// @param progress  may be empty
+  /// @returns timings and counts of this step
+  /// @throws std::invalid_argument, CudaError, Cancelled
+  StepReport step(const PositionsView& deformed, const WarpTarget& target,
+                  const Progress& progress = {});
+
+  /// The same for a single source, into a new volume.
+  Volume step(const PositionsView& deformed);
+
+  /// Sums over the steps so far.
+  const Report& report() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// One volume, one step. For several steps keep a Warper.
+WarpResult warp(const Volume& source, const TetMesh& mesh, const std::vector<Point3>& deformed,
+                const WarpOptions& options = {});
+
+}  // namespace tetwarp

@@ -1,0 +1,214 @@
+/// @file warp.cpp
+/// The public calls: check every argument once, choose a back end, run, fill the report.
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <tetwarp/version.hpp>
+#include <tetwarp/warp.hpp>
+#include <tuple>
+#include <utility>
+
+#include "host/warp_backend.hpp"
+#include "kernels/node_quantize.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
+  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  for (const VolumeView& source : sources) {
+    check_grid(source.grid, "source");
+    if (source.grid != sources.front().grid) {
+      throw std::invalid_argument("sources: volumes on different grids; warp them one by one");
+    }
+    if (source.components < 1 || source.components > 9) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, expected 1 to 9");
+    }
+    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+    const bool wide = is_integer(source.type) && size_of(source.type) == 8;
+    if (wide && options.filter != Filter::nearest) {
+      throw std::invalid_argument(std::string("source: ") + name_of(source.type) +
+                                  " cannot be interpolated without loss; use the nearest filter");
+    }
+    if (is_integer(source.type) && !std::isfinite(options.background)) {
+      throw std::invalid_argument(std::string("background: not a finite number, which ") +
+                                  name_of(source.type) + " cannot hold");
+    }
+  }
+}
+
+Region checked_region(const Grid& grid, const WarpOptions& options) {
+  if (!options.region) return {{0, 0, 0}, grid.dims};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t begin = options.region->begin[axis], end = options.region->end[axis];
+    if (begin < 0 || begin >= end || end > grid.dims[axis]) {
+      throw std::invalid_argument("region: " + std::to_string(begin) + " to " +
+                                  std::to_string(end) + " on axis " + std::to_string(axis) +
+                                  " is empty or not within 0 to " +
+                                  std::to_string(grid.dims[axis]));
+    }
+  }
+  return *options.region;
+}
+
+Grid grid_of_region(const Grid& grid, const Region& region) {
+  Grid part = grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    part.dims[axis] = region.end[axis] - region.begin[axis];
+  }
+  if (region.begin != std::array<std::int64_t, 3>{0, 0, 0}) {
+    part.origin = grid.world_of({static_cast<double>(region.begin[0]),
+                                 static_cast<double>(region.begin[1]),
+                                 static_cast<double>(region.begin[2])});
+  }
+  return part;
+}
+
+WarpPlan make_plan(std::span<const VolumeView> sources, const TetMesh& mesh,
+                   const WarpOptions& options) {
+  WarpPlan plan;
+  plan.sources.assign(sources.begin(), sources.end());
+  plan.mesh = mesh;
+  plan.options = options;
+  check_sources(plan.sources, options);
+  check_mesh(mesh);
+  if (options.threads < 0) throw std::invalid_argument("threads: negative");
+  plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);
+  check_grid(plan.output_grid, "output grid");
+  plan.region = checked_region(plan.output_grid, options);
+  plan.target_grid = grid_of_region(plan.output_grid, plan.region);
+  return plan;
+}
+
+/// The back end that will run, and why.
+std::pair<Backend, std::string> choose_backend(const WarpOptions& options) {
+  if (options.backend == Backend::cpu || options.backend == Backend::reference) {
+    return {options.backend, "asked for"};
+  }
+  const BackendStatus cuda = cuda_status(options.device);
+  if (cuda.usable) {
+    return {Backend::cuda, options.backend == Backend::cuda ? "asked for" : "a CUDA device answers"};
+  }
+  if (options.backend == Backend::cuda) {
+    throw CudaError("back end cuda: " + cuda.reason + "; use cpu or auto");
+  }
+  return {Backend::cpu, "no CUDA device answers (" + cuda.reason + ")"};
+}
+
+void check_memory_space(const WarpPlan& plan, Backend backend) {
+  for (const VolumeView& source : plan.sources) {
+    if (source.memory == Memory::device && backend != Backend::cuda) {
+      throw std::invalid_argument("source: device memory needs back end cuda");
+    }
+  }
+}
+
+void check_step(const WarpPlan& plan, Backend backend, const PositionsView& deformed,
+                const WarpTarget& target) {
+  const std::size_t nodes = plan.mesh.rest_positions.size();
+  if (deformed.node_count != static_cast<std::int64_t>(nodes) || deformed.xyz == nullptr) {
+    throw std::invalid_argument("deformed positions: expected " + std::to_string(nodes) +
+                                " nodes as at rest, got " + std::to_string(deformed.node_count));
+  }
+  if (deformed.memory == Memory::host) {
+    for (std::int64_t n = 0; n < deformed.node_count; ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(deformed.xyz[3 * n + axis])) {
+          throw std::invalid_argument("deformed positions: node " + std::to_string(n) +
+                                      " is not finite");
+        }
+      }
+    }
+  }
+  if (target.volumes.size() != plan.sources.size()) {
+    throw std::invalid_argument("target: expected one output per source, " +
+                                std::to_string(plan.sources.size()) + ", got " +
+                                std::to_string(target.volumes.size()));
+  }
+  for (const void* volume : target.volumes) {
+    if (volume == nullptr) throw std::invalid_argument("target: an output is null");
+  }
+  const bool on_device = deformed.memory == Memory::device || target.memory == Memory::device ||
+                         target.stream != nullptr;
+  if (on_device && backend != Backend::cuda) {
+    throw std::invalid_argument("device memory and streams need back end cuda");
+  }
+}
+
+}  // namespace
+
+struct Warper::State {
+  WarpPlan plan;
+  std::unique_ptr<WarpBackend> backend;
+  Report report;
+};
+
+Warper::Warper(std::span<const VolumeView> sources, const TetMesh& mesh,
+               const WarpOptions& options)
+    : state_(std::make_unique<State>()) {
+  state_->plan = make_plan(sources, mesh, options);
+  Report& report = state_->report;
+  std::tie(report.backend, report.backend_reason) = choose_backend(options);
+  check_memory_space(state_->plan, report.backend);
+  switch (report.backend) {
+    case Backend::cuda:
+      state_->backend = make_cuda_backend(state_->plan);
+      break;
+    case Backend::reference:
+      state_->backend = make_reference_backend(state_->plan);
+      break;
+    default:
+      state_->backend = make_cpu_backend(state_->plan);
+  }
+  report.version = TETWARP_VERSION;
+  report.device = state_->backend->device();
+  report.threads = state_->backend->threads();
+  report.position_quantum = 1.0 / static_cast<double>(quanta_per_voxel);
+}
+
+Warper::Warper(const Volume& source, const TetMesh& mesh, const WarpOptions& options)
+    : Warper(std::array{VolumeView(source)}, mesh, options) {}
+
+Warper::Warper(Warper&&) noexcept = default;
+Warper& Warper::operator=(Warper&&) noexcept = default;
+Warper::~Warper() = default;
+
+const Grid& Warper::output_grid() const { return state_->plan.target_grid; }
+
+const Report& Warper::report() const { return state_->report; }
+
+StepReport Warper::step(const PositionsView& deformed, const WarpTarget& target,
+                        const Progress& progress) {
+  Report& report = state_->report;
+  check_step(state_->plan, report.backend, deformed, target);
+  StepReport step = state_->backend->step(deformed, target, progress);
+  step.step = static_cast<std::int64_t>(report.steps.size());
+  report.timings += step.timings;
+  report.counts += step.counts;
+  report.steps.push_back(step);
+  return step;
+}
+
+Volume Warper::step(const PositionsView& deformed) {
+  if (state_->plan.sources.size() != 1) {
+    throw std::invalid_argument("step into a new volume: the Warper has several sources");
+  }
+  const VolumeView& source = state_->plan.sources.front();
+  Volume volume = make_volume(output_grid(), source.type, source.components);
+  void* const data = volume.data.data();
+  step(deformed, {.volumes = std::span(&data, 1)});
+  return volume;
+}
+
+WarpResult warp(const Volume& source, const TetMesh& mesh, const std::vector<Point3>& deformed,
+                const WarpOptions& options) {
+  Warper warper(source, mesh, options);
+  Volume volume = warper.step(deformed);
+  volume.name = source.name;
+  return {std::move(volume), warper.report()};
+}
+
+}  // namespace tetwarp

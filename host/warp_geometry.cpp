@@ -1,0 +1,101 @@
+/// @file warp_geometry.cpp
+#include "host/warp_geometry.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+
+#include "host/index_space.hpp"
+#include "kernels/face_sign.hpp"
+#include "kernels/tet_setup.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+OutputFrame make_frame(const Region& region) {
+  OutputFrame frame;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    frame.origin[axis] = region.begin[axis] / cell_edge * cell_edge;
+    frame.begin[axis] = static_cast<int>(region.begin[axis] - frame.origin[axis]);
+    frame.end[axis] = static_cast<int>(region.end[axis] - frame.origin[axis]);
+    frame.cells[axis] = (frame.end[axis] + cell_edge - 1) / cell_edge;
+  }
+  return frame;
+}
+
+OutsideMap make_outside_map(const WarpPlan& plan, const OutputFrame& frame) {
+  OutsideMap outside = {};
+  if (plan.options.outside == Outside::background) return outside;
+  const IndexMap map = source_from_output(plan.sources.front().grid, plan.output_grid);
+  outside.use_source = true;
+  outside.is_copy = map.linear == std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (std::size_t row = 0; row < 3; ++row) {
+    outside.offset[row] = map.offset[row];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      outside.linear[row][axis] = map.linear[3 * row + axis];
+      outside.offset[row] +=
+          map.linear[3 * row + axis] * static_cast<double>(frame.origin[axis]);
+    }
+  }
+  return outside;
+}
+
+double determinant(const IndexFromWorld& map) {
+  const auto& m = map.linear;
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+bool is_too_large(const TetNodes& tet) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::int64_t low = tet.x[0][axis], high = low;
+    for (int a = 1; a < 4; ++a) {
+      low = min_of(low, tet.x[a][axis]);
+      high = max_of(high, tet.x[a][axis]);
+    }
+    if (high - low > longest_extent) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+WarpGeometry make_geometry(const WarpPlan& plan) {
+  WarpGeometry geometry;
+  geometry.frame = make_frame(plan.region);
+  geometry.output_index = index_from_world(plan.output_grid);
+  geometry.outside = make_outside_map(plan, geometry.frame);
+
+  const IndexFromWorld source_index = index_from_world(plan.sources.front().grid);
+  const std::int64_t no_shift[3] = {0, 0, 0};
+  for (std::size_t n = 0; n < plan.mesh.rest_positions.size(); ++n) {
+    geometry.rest.push_back(
+        quantized(source_index, plan.mesh.rest_positions[n].data(), no_shift));
+    if (geometry.rest.back().x[0] == bad_node) {
+      throw std::invalid_argument("mesh: rest position of node " + std::to_string(n) +
+                                  " is over 2^40 voxels from the source grid");
+    }
+  }
+  // Seen from index spaces of opposite handedness the same tetrahedron has opposite signs.
+  const bool mirrored = determinant(source_index) * determinant(geometry.output_index) < 0;
+  const View<const Node> rest{geometry.rest.data(),
+                              static_cast<std::int64_t>(geometry.rest.size())};
+  for (std::size_t t = 0; t < plan.mesh.tets.size(); ++t) {
+    const TetNodes tet = tet_nodes(rest, plan.mesh.tets[t].data());
+    if (is_too_large(tet)) {
+      throw std::invalid_argument("mesh: tetrahedron " + std::to_string(t) +
+                                  " spans over 2^20 voxels of the source at rest");
+    }
+    geometry.rest_orientation.push_back(
+        static_cast<std::int8_t>(mirrored ? -orientation(tet) : orientation(tet)));
+  }
+  return geometry;
+}
+
+void ProgressPart::report(double fraction) const {
+  if (progress && !progress(begin + share * fraction)) throw Cancelled();
+}
+
+}  // namespace tetwarp

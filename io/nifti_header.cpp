@@ -1,0 +1,220 @@
+/// @file nifti_header.cpp
+#include "io/nifti_header.hpp"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <tetwarp/error.hpp>
+
+namespace tetwarp {
+
+namespace {
+
+static_assert(sizeof(nifti_1_header) == 348);
+
+constexpr std::pair<int, PixelType> datatypes[] = {
+    {NIFTI_TYPE_UINT8, PixelType::uint8},     {NIFTI_TYPE_INT8, PixelType::int8},
+    {NIFTI_TYPE_UINT16, PixelType::uint16},   {NIFTI_TYPE_INT16, PixelType::int16},
+    {NIFTI_TYPE_UINT32, PixelType::uint32},   {NIFTI_TYPE_INT32, PixelType::int32},
+    {NIFTI_TYPE_UINT64, PixelType::uint64},   {NIFTI_TYPE_INT64, PixelType::int64},
+    {NIFTI_TYPE_FLOAT32, PixelType::float32}, {NIFTI_TYPE_FLOAT64, PixelType::float64}};
+
+struct RawHeader {
+  nifti_1_header values{};
+  bool is_complete = false;
+  bool is_swapped = false;
+  bool is_gzip = false;
+
+  bool is_nifti() const {
+    return is_complete && values.sizeof_hdr == 348 && std::memcmp(values.magic, "n+1", 4) == 0;
+  }
+};
+
+struct stat status_of(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  if (!S_ISREG(status.st_mode)) throw IoError(path, "", "is not a plain file");
+  return status;
+}
+
+/// The header in this machine's byte order.
+RawHeader read_raw(const std::string& path) {
+  status_of(path);
+  NiftiStream stream(path, "rb", true);  // plain files pass through unchanged
+  if (!stream) throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  RawHeader raw;
+  std::ifstream plain(path, std::ios::binary);
+  raw.is_gzip = plain.get() == 0x1f && plain.get() == 0x8b;
+  raw.is_complete = stream.read(&raw.values, sizeof raw.values);
+  if (raw.is_complete && raw.values.sizeof_hdr != 348) {
+    nifti_1_header swapped = raw.values;
+    swap_nifti_header(&swapped, 1);
+    if (swapped.sizeof_hdr == 348) {
+      raw.values = swapped;
+      raw.is_swapped = true;
+    }
+  }
+  return raw;
+}
+
+void check_dims(const std::string& path, const nifti_1_header& raw) {
+  if (raw.dim[0] < 1 || raw.dim[0] > 7) {
+    throw IoError(path, "dim", "has " + std::to_string(raw.dim[0]) + " axes, expected 1 to 7");
+  }
+  for (int axis = 1; axis <= raw.dim[0]; ++axis) {
+    const std::string name = "dim[" + std::to_string(axis) + "]";
+    const std::string value = std::to_string(raw.dim[axis]);
+    if (raw.dim[axis] < 1) throw IoError(path, name, "is " + value + ", expected 1 or more");
+    if (axis == 4 && raw.dim[axis] != 1) {
+      throw IoError(path, name, "is " + value + " times, expected 1; split the series into files");
+    }
+    if (axis == 5 && raw.dim[axis] > 9) {
+      throw IoError(path, name, "is " + value + " components, expected 1 to 9");
+    }
+    if (axis > 5 && raw.dim[axis] != 1) {
+      throw IoError(path, name, "is " + value + ", expected 1: only 3-D volumes are read");
+    }
+  }
+}
+
+Grid grid_of(const std::string& path, const nifti_image& image) {
+  const bool has_sform = image.sform_code > 0;
+  const mat44& world = has_sform ? image.sto_xyz : image.qto_xyz;
+  Grid grid;
+  grid.dims = {image.nx, image.ny, image.nz};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double x = world.m[0][axis], y = world.m[1][axis], z = world.m[2][axis];
+    grid.spacing[axis] = std::sqrt(x * x + y * y + z * z);
+    grid.origin[axis] = world.m[axis][3];
+    for (std::size_t row = 0; row < 3; ++row) {
+      grid.direction[3 * row + axis] = world.m[row][axis] / grid.spacing[axis];
+    }
+  }
+  try {
+    check_grid(grid, "grid");
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, has_sform ? "sform" : "qform", error.what());
+  }
+  return grid;
+}
+
+PixelType type_of(const std::string& path, int datatype) {
+  for (const auto& [code, type] : datatypes) {
+    if (code == datatype) return type;
+  }
+  throw IoError(path, "datatype",
+                "is " + std::to_string(datatype) + " (" + nifti_datatype_string(datatype) +
+                    "), expected integers or floats of 1 to 8 bytes; convert the samples");
+}
+
+bool is_orthonormal(const Grid& grid) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) {
+      double dot = 0;
+      for (std::size_t row = 0; row < 3; ++row) {
+        dot += grid.direction[3 * row + a] * grid.direction[3 * row + b];
+      }
+      if (std::abs(dot - (a == b ? 1.0 : 0.0)) > 1e-5) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool has_nifti_header(const std::string& path) {
+  return read_raw(path).is_nifti();
+}
+
+NiftiHeader read_nifti_header(const std::string& path) {
+  const RawHeader raw = read_raw(path);
+  if (!raw.is_nifti()) {
+    throw IoError(path, "", "is not a single-file NIfTI-1 (.nii, .nii.gz), convert it to one");
+  }
+  check_dims(path, raw.values);
+  NiftiHeader header;
+  header.type = type_of(path, raw.values.datatype);
+  header.components = raw.values.dim[0] >= 5 ? raw.values.dim[5] : 1;
+  header.is_swapped = raw.is_swapped;
+
+  nifti_set_debug_level(0);  // the library prints its troubles otherwise
+  // Without a name of a kind it knows, the library refuses; it opens nothing here.
+  const std::unique_ptr<nifti_image, void (*)(nifti_image*)> image(
+      nifti_convert_nhdr2nim(raw.values, "volume.nii"), nifti_image_free);
+  if (!image) throw IoError(path, "", "damaged NIfTI header");
+  header.grid = grid_of(path, *image);
+  if (image->scl_slope != 0) {
+    header.slope = image->scl_slope;
+    header.intercept = image->scl_inter;
+  }
+
+  const double samples = static_cast<double>(header.grid.voxel_count()) * header.components;
+  const double bytes = samples * static_cast<double>(size_of(header.type));
+  const auto file_bytes = static_cast<double>(status_of(path).st_size);
+  const double offset = raw.values.vox_offset;
+  // Deflate cannot shrink data to less than 1/1032.
+  const double most = raw.is_gzip ? 1032 * file_bytes : file_bytes;
+  if (!(offset >= 352) || offset + bytes > most) {
+    throw IoError(path, "",
+                  "the header asks for " + std::to_string(static_cast<std::int64_t>(bytes)) +
+                      " bytes of samples from byte " + std::to_string(offset) +
+                      " on, the file cannot hold them: truncated or damaged, copy it again");
+  }
+  header.data_offset = static_cast<std::int64_t>(offset);
+  return header;
+}
+
+nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) {
+  const Grid& grid = volume.grid;
+  int dims[8] = {volume.components > 1 ? 5 : 3, 1, 1, 1, 1, volume.components, 1, 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (grid.dims[axis] > 32767) {
+      throw IoError(path, "",
+                    std::to_string(grid.dims[axis]) +
+                        " voxels on an axis, NIfTI-1 holds 32767; write a region of it");
+    }
+    dims[axis + 1] = static_cast<int>(grid.dims[axis]);
+  }
+  int datatype = 0;
+  for (const auto& [code, type] : datatypes) {
+    if (type == volume.type) datatype = code;
+  }
+  nifti_set_debug_level(0);
+  const std::unique_ptr<nifti_1_header, void (*)(void*)> made(nifti_make_new_header(dims, datatype),
+                                                              std::free);
+  if (!made) throw IoError(path, "", "the NIfTI library makes no such header");
+  nifti_1_header header = *made;
+  std::memcpy(header.magic, "n+1", 4);
+  header.vox_offset = 352;
+  header.xyzt_units = NIFTI_UNITS_MM;
+  if (volume.components > 1) header.intent_code = NIFTI_INTENT_VECTOR;
+
+  mat44 world{};
+  world.m[3][3] = 1;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      world.m[row][axis] = static_cast<float>(grid.direction[3 * row + axis] * grid.spacing[axis]);
+    }
+    world.m[row][3] = static_cast<float>(grid.origin[row]);
+    header.pixdim[row + 1] = static_cast<float>(grid.spacing[row]);
+  }
+  header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
+  std::memcpy(header.srow_x, world.m[0], sizeof header.srow_x);
+  std::memcpy(header.srow_y, world.m[1], sizeof header.srow_y);
+  std::memcpy(header.srow_z, world.m[2], sizeof header.srow_z);
+  if (!is_orthonormal(grid)) return header;
+  header.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+  nifti_mat44_to_quatern(world, &header.quatern_b, &header.quatern_c, &header.quatern_d,
+                         &header.qoffset_x, &header.qoffset_y, &header.qoffset_z, &header.pixdim[1],
+                         &header.pixdim[2], &header.pixdim[3], &header.pixdim[0]);
+  return header;
+}
+
+}  // namespace tetwarp

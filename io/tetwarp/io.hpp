@@ -1,0 +1,138 @@
+/// @file io.hpp
+/// Files: VTKHDF volumes and meshes (ParaView, VTK, PyVista), NIfTI volumes, PNG pictures.
+///
+/// Every failure is an IoError whose one line names file, dataset and remedy. Sizes are checked
+/// against the file and the machine's memory before anything is allocated. Writers write to a
+/// temporary name in the same folder and rename when complete: no half file stands under its name.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/error.hpp>
+#include <tetwarp/make.hpp>
+#include <tetwarp/mesh.hpp>
+#include <tetwarp/volume.hpp>
+
+namespace tetwarp {
+
+/// One array of a volume file, without its samples.
+struct ArrayHeader {
+  std::string name;
+  PixelType type = PixelType::float32;
+  int components = 1;
+};
+
+/// What a volume file holds.
+struct VolumeHeader {
+  Grid grid;                        ///< WholeExtent's start is folded into the origin
+  std::vector<ArrayHeader> arrays;  ///< numeric point arrays, in the file's name order
+  std::vector<double> times;        ///< one per step; empty: static
+};
+
+/// Reads the header of a VTKHDF ImageData file.
+VolumeHeader read_volume_header(const std::string& path);
+
+/// Reads one array of a VTKHDF ImageData file.
+/// @param array  empty: the only or first array
+/// @param step   of a temporal file; static files have step 0 only
+Volume read_volume(const std::string& path, const std::string& array = {}, std::int64_t step = 0);
+
+/// What a mesh file holds.
+struct MeshHeader {
+  std::int64_t node_count = 0;
+  std::int64_t tet_count = 0;
+  std::vector<double> times;      ///< one per step; a static file has one step at time 0
+  bool has_displacement = false;  ///< deformed = rest + displacement, else points that move
+};
+
+/// Choices of MeshReader.
+struct MeshReadOptions {
+  std::int64_t rest_step = 0;          ///< for points that move: the step that is rest
+  std::optional<std::string> rest_file = {};  ///< rest positions from another mesh file with as many nodes
+};
+
+/// A VTKHDF UnstructuredGrid of tetrahedra with its deformation, in this order of preference:
+/// point array `displacement` added to the rest points; points that move with the steps; the points
+/// of `rest_file` as rest and this file's points as deformed. Partitions are concatenated.
+class MeshReader {
+ public:
+  explicit MeshReader(const std::string& path, const MeshReadOptions& options = {});
+  MeshReader(MeshReader&&) noexcept;
+  ~MeshReader();
+
+  const MeshHeader& header() const;
+  const TetMesh& mesh() const;  ///< rest positions and checked tetrahedra
+
+  /// Deformed node positions of one step. Throws IoError for a step that does not exist.
+  std::vector<Point3> read_step(std::int64_t step) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// How a volume file is stored.
+struct VolumeWriteOptions {
+  int compress = 0;          ///< deflate level 0 to 9 with shuffle; 0: none
+  double background = 0;     ///< fill value: chunks that hold nothing else are not stored
+  bool skip_background_chunks = true;  ///< false: every chunk is stored
+  std::string fingerprint = {};   ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
+};
+
+/// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
+/// Throws IoError on an axis of one sample (VTK crashes on those) and on any write failure.
+/// @returns bytes of the file
+std::int64_t write_volumes(const std::string& path, const std::vector<const Volume*>& volumes,
+                           const VolumeWriteOptions& options = {});
+
+/// Writes one temporal VTKHDF ImageData file, Version [2,0], step by step.
+class TemporalVolumeWriter {
+ public:
+  TemporalVolumeWriter(const std::string& path, const VolumeWriteOptions& options = {});
+  TemporalVolumeWriter(TemporalVolumeWriter&&) noexcept;
+  ~TemporalVolumeWriter();  ///< without finish(): removes the temporary file
+
+  /// Appends a step. The same arrays in the same order each time.
+  void append(double time, const std::vector<const Volume*>& volumes);
+
+  /// Appends a step equal to the last one: its offset is repeated, its data are not stored twice.
+  void repeat(double time);
+
+  /// Flushes and moves the file to its name. @returns bytes of the file
+  std::int64_t finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
+void write_mesh(const std::string& path, const TetMesh& mesh,
+                const std::vector<std::vector<Point3>>& displacements = {},
+                const std::vector<double>& times = {});
+
+/// The fingerprint attribute of a complete file, nothing when there is no such file or attribute.
+std::optional<std::string> read_fingerprint(const std::string& path);
+
+/// Reads a NIfTI file (.nii, .nii.gz); the affine (sform, else qform) becomes the grid. Positions
+/// keep NIfTI's RAS world. scl_slope and scl_inter other than 1 and 0 give float32 samples
+/// (float64 for float64). A shear in the sform that no grid can hold is an error.
+/// Axis `dim[4]` (time) must be 1; `dim[5]` becomes components.
+Volume read_nifti(const std::string& path);
+
+/// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a rotation).
+void write_nifti(const std::string& path, const Volume& volume);
+
+/// Writes an 8-bit RGB PNG.
+void write_png(const std::string& path, const Image& image);
+
+/// Kinds of files that info and the checks of swapped arguments tell apart.
+enum class FileKind { volume, mesh, other_vtkhdf, hdf5, nifti, unknown };
+
+/// What a file is, by content. Throws IoError only when it cannot be opened.
+FileKind kind_of(const std::string& path);
+
+}  // namespace tetwarp

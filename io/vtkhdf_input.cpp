@@ -1,0 +1,85 @@
+/// @file vtkhdf_input.cpp
+#include "io/vtkhdf_input.hpp"
+
+#include <tetwarp/io.hpp>
+
+namespace tetwarp {
+
+namespace {
+
+std::string wrong_type(const std::string& found, const std::string& wanted) {
+  std::string problem = "Type is '" + found + "', expected '" + wanted + "'";
+  if (found == "UnstructuredGrid" && wanted == "ImageData") {
+    problem += ": this is a mesh where a volume is wanted, are the two swapped?";
+  } else if (found == "ImageData" && wanted == "UnstructuredGrid") {
+    problem += ": this is a volume where a mesh is wanted, are the two swapped?";
+  }
+  return problem;
+}
+
+void read_steps(VtkhdfInput& file) {
+  file.steps = h5::open_group(file.root, "Steps");
+  if (!h5::has_attribute(file.steps, "NSteps")) {
+    file.steps.fail("missing attribute NSteps: the file was not finished, write it again");
+  }
+  const std::int64_t count = h5::read_integer_attribute(file.steps, "NSteps", 1)[0];
+  const h5::Dataset values = h5::open_dataset(file.steps, "Values");
+  if (count < 1 || count > values.rows()) {
+    file.steps.fail("NSteps is " + std::to_string(count) + ", Values has " +
+                    std::to_string(values.rows()) + " entries; expected 1 to that many");
+  }
+  file.times = h5::read_reals(values);
+  file.times.resize(static_cast<std::size_t>(count));
+}
+
+}  // namespace
+
+void VtkhdfInput::check_step(std::int64_t step) const {
+  const auto last = is_temporal() ? static_cast<std::int64_t>(times.size()) - 1 : 0;
+  if (step >= 0 && step <= last) return;
+  file.fail("has no step " + std::to_string(step) + ", its steps are " +
+            (last == 0 ? "0 alone" : "0 to " + std::to_string(last)));
+}
+
+VtkhdfInput open_vtkhdf(const std::string& path, const std::string& type) {
+  if (kind_of(path) == FileKind::nifti) {
+    throw IoError(path, "", "is a NIfTI file, expected VTKHDF; convert it with 'tetwarp import'");
+  }
+  VtkhdfInput file;
+  file.file = h5::open_file(path);
+  file.root = h5::open_group(file.file, "VTKHDF");
+  if (!h5::has_attribute(file.root, "Type")) {
+    file.root.fail("missing attribute Type, expected '" + type + "'");
+  }
+  const std::string found = h5::read_text_attribute(file.root, "Type");
+  if (found != type) file.root.fail(wrong_type(found, type));
+  if (h5::has_child(file.root, "Steps")) read_steps(file);
+  return file;
+}
+
+std::vector<std::int64_t> read_step_offsets(const VtkhdfInput& file,
+                                            const h5::Object& group,
+                                            const std::string& name) {
+  if (!h5::has_child(group, name)) return {};
+  const h5::Dataset dataset = h5::open_dataset(group, name);
+  std::vector<std::int64_t> offsets = h5::read_integers(dataset);
+  if (offsets.size() < file.times.size()) {
+    dataset.fail("has " + std::to_string(offsets.size()) + " entries, expected one for each of " +
+                 std::to_string(file.times.size()) + " steps");
+  }
+  for (std::size_t step = 0; step < file.times.size(); ++step) {
+    if (offsets[step] < 0 || offsets[step] > std::int64_t{1} << 60) {
+      dataset.fail("entry " + std::to_string(step) + " is " + std::to_string(offsets[step]) +
+                   ", expected an offset from 0 to 2^60");
+    }
+  }
+  return offsets;
+}
+
+std::vector<std::int64_t> read_point_data_offsets(const VtkhdfInput& file,
+                                                  const std::string& array) {
+  if (!h5::is_group(file.steps, "PointDataOffsets")) return {};
+  return read_step_offsets(file, h5::open_group(file.steps, "PointDataOffsets"), array);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,38 @@
+/// @file vtkhdf_input.hpp
+/// What VTKHDF volumes and meshes share: the root group, its type, time steps and their offsets.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "io/h5.hpp"
+
+namespace tetwarp {
+
+/// An open VTKHDF file.
+struct VtkhdfInput {
+  h5::Object file;
+  h5::Object root;            ///< /VTKHDF
+  h5::Object steps;           ///< /VTKHDF/Steps, empty handle when static
+  std::vector<double> times;  ///< one per step, empty when static
+
+  bool is_temporal() const { return static_cast<bool>(steps.handle); }
+
+  /// Throws IoError unless `step` is one of the file's (0 in static files).
+  void check_step(std::int64_t step) const;
+};
+
+/// Opens `path`, whose attribute Type must be `type`: "ImageData" or "UnstructuredGrid".
+VtkhdfInput open_vtkhdf(const std::string& path, const std::string& type);
+
+/// Reads one integer per step, of shape [step] or [step][1], from `group`/`name`. All are checked
+/// to lie in 0 to 2^60; a file without that dataset gives an empty vector.
+std::vector<std::int64_t> read_step_offsets(const VtkhdfInput& file,
+                                            const h5::Object& group,
+                                            const std::string& name);
+
+/// The same from Steps/PointDataOffsets.
+std::vector<std::int64_t> read_point_data_offsets(const VtkhdfInput& file,
+                                                  const std::string& array);
+
+}  // namespace tetwarp

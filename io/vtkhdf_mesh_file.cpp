@@ -1,0 +1,255 @@
+/// @file vtkhdf_mesh_file.cpp
+#include "io/vtkhdf_mesh_file.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace tetwarp {
+
+namespace {
+
+constexpr int vtk_tetra = 10;
+
+/// VTK's own names of its cell types.
+std::string cell_type_name(std::int64_t type) {
+  static constexpr std::pair<int, const char*> names[] = {{0, "VTK_EMPTY_CELL"},
+                                                          {1, "VTK_VERTEX"},
+                                                          {2, "VTK_POLY_VERTEX"},
+                                                          {3, "VTK_LINE"},
+                                                          {4, "VTK_POLY_LINE"},
+                                                          {5, "VTK_TRIANGLE"},
+                                                          {6, "VTK_TRIANGLE_STRIP"},
+                                                          {7, "VTK_POLYGON"},
+                                                          {8, "VTK_PIXEL"},
+                                                          {9, "VTK_QUAD"},
+                                                          {11, "VTK_VOXEL"},
+                                                          {12, "VTK_HEXAHEDRON"},
+                                                          {13, "VTK_WEDGE"},
+                                                          {14, "VTK_PYRAMID"},
+                                                          {15, "VTK_PENTAGONAL_PRISM"},
+                                                          {16, "VTK_HEXAGONAL_PRISM"},
+                                                          {21, "VTK_QUADRATIC_EDGE"},
+                                                          {22, "VTK_QUADRATIC_TRIANGLE"},
+                                                          {23, "VTK_QUADRATIC_QUAD"},
+                                                          {24, "VTK_QUADRATIC_TETRA"},
+                                                          {25, "VTK_QUADRATIC_HEXAHEDRON"},
+                                                          {26, "VTK_QUADRATIC_WEDGE"},
+                                                          {27, "VTK_QUADRATIC_PYRAMID"},
+                                                          {42, "VTK_POLYHEDRON"},
+                                                          {71, "VTK_LAGRANGE_TETRAHEDRON"},
+                                                          {78, "VTK_BEZIER_TETRAHEDRON"}};
+  for (const auto& [number, name] : names) {
+    if (number == type) return std::to_string(type) + " (" + name + ")";
+  }
+  return std::to_string(type);
+}
+
+/// Throws unless rows [first, first + count) exist.
+void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t count) {
+  if (first >= 0 && count >= 0 && first <= dataset.rows() && count <= dataset.rows() - first)
+    return;
+  dataset.fail("rows " + std::to_string(first) + " to " + std::to_string(first) + " + " +
+               std::to_string(count) + " are wanted, there are " + std::to_string(dataset.rows()) +
+               "; mend the counts and the offsets under Steps, or the file is truncated");
+}
+
+h5::Dataset open_vectors(const h5::Object& parent, const std::string& name) {
+  h5::Dataset dataset = h5::open_dataset(parent, name);
+  if (!h5::is_numeric(dataset) || dataset.type_class != H5T_FLOAT) {
+    dataset.fail("expected float32 or float64");
+  }
+  if (dataset.dims.size() != 2 || dataset.dims[1] != 3) {
+    dataset.fail("expected shape [n][3]");
+  }
+  return dataset;
+}
+
+h5::Dataset open_column(const h5::Object& parent, const std::string& name) {
+  h5::Dataset dataset = h5::open_dataset(parent, name);
+  if (!h5::is_numeric(dataset) || dataset.type_class != H5T_INTEGER || dataset.dims.size() != 1) {
+    dataset.fail("expected integers of shape [n]");
+  }
+  return dataset;
+}
+
+std::vector<std::int64_t> read_column(const h5::Dataset& dataset,
+                                      std::int64_t first,
+                                      std::int64_t count) {
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
+  h5::read_block(dataset, H5T_NATIVE_INT64, {{first}}, {{count}}, values.data());
+  return values;
+}
+
+}  // namespace
+
+MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "UnstructuredGrid")) {
+  const h5::Object& root = file_.root;
+  node_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfPoints"));
+  cell_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfCells"));
+  id_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfConnectivityIds"));
+  points_ = open_vectors(root, "Points");
+  types_ = open_column(root, "Types");
+  offsets_ = open_column(root, "Offsets");
+  connectivity_ = open_column(root, "Connectivity");
+  if (file_.is_temporal()) {
+    part_counts_ = read_step_offsets(file_, file_.steps, "NumberOfParts");
+    part_offsets_ = read_step_offsets(file_, file_.steps, "PartOffsets");
+    point_offsets_ = read_step_offsets(file_, file_.steps, "PointOffsets");
+    cell_offsets_ = read_step_offsets(file_, file_.steps, "CellOffsets");
+    id_offsets_ = read_step_offsets(file_, file_.steps, "ConnectivityIdOffsets");
+    displacement_offsets_ = read_point_data_offsets(file_, "displacement");
+  }
+  if (!h5::is_group(root, "PointData")) return;
+  const h5::Object point_data = h5::open_group(root, "PointData");
+  if (h5::has_child(point_data, "displacement")) {
+    displacement_ = open_vectors(point_data, "displacement");
+  }
+}
+
+std::int64_t MeshFile::offset_of(const std::vector<std::int64_t>& offsets,
+                                 std::int64_t step) const {
+  return offsets.empty() ? 0 : offsets[static_cast<std::size_t>(step)];
+}
+
+std::vector<MeshPart> MeshFile::parts_of(std::int64_t step) const {
+  const auto entries = static_cast<std::int64_t>(node_counts_.size());
+  const std::int64_t first_part = offset_of(part_offsets_, step);
+  const std::int64_t part_count = part_counts_.empty() ? entries : offset_of(part_counts_, step);
+  if (cell_counts_.size() != node_counts_.size() || id_counts_.size() != node_counts_.size()) {
+    file_.root.fail("NumberOfPoints, NumberOfCells and NumberOfConnectivityIds differ in length");
+  }
+  if (first_part > entries || part_count > entries - first_part) {
+    file_.root.fail("step " + std::to_string(step) + " wants parts " + std::to_string(first_part) +
+                    " to " + std::to_string(first_part) + " + " + std::to_string(part_count) +
+                    ", NumberOfPoints has " + std::to_string(entries) + " entries");
+  }
+  MeshPart next;
+  next.first_node = offset_of(point_offsets_, step);
+  next.first_cell = offset_of(cell_offsets_, step);
+  next.first_offset = next.first_cell + first_part;
+  next.first_id = offset_of(id_offsets_, step);
+  std::vector<MeshPart> parts;
+  for (std::int64_t part = first_part; part < first_part + part_count; ++part) {
+    next.node_count = node_counts_[static_cast<std::size_t>(part)];
+    next.cell_count = cell_counts_[static_cast<std::size_t>(part)];
+    next.id_count = id_counts_[static_cast<std::size_t>(part)];
+    check_rows(points_, next.first_node, next.node_count);
+    check_rows(types_, next.first_cell, next.cell_count);
+    check_rows(offsets_, next.first_offset, next.cell_count + 1);
+    check_rows(connectivity_, next.first_id, next.id_count);
+    parts.push_back(next);
+    next.first_node += next.node_count;
+    next.first_cell += next.cell_count;
+    next.first_offset += next.cell_count + 1;
+    next.first_id += next.id_count;
+  }
+  return parts;
+}
+
+std::vector<Point3> MeshFile::read_rows(const h5::Dataset& dataset,
+                                        const std::vector<MeshPart>& parts,
+                                        std::int64_t shift) const {
+  std::int64_t total = 0;
+  for (const MeshPart& part : parts) {
+    check_rows(dataset, part.first_node + shift, part.node_count);
+    total += part.node_count;
+  }
+  if (total >= std::int64_t{1} << 31) dataset.fail("2^31 or more nodes in one step");
+  h5::check_memory(dataset.file, dataset.name, static_cast<double>(total) * sizeof(Point3));
+  std::vector<Point3> rows(static_cast<std::size_t>(total));
+  std::size_t row = 0;
+  for (const MeshPart& part : parts) {
+    if (part.node_count == 0) continue;
+    h5::read_block(dataset, H5T_NATIVE_DOUBLE, {{part.first_node + shift, 0}},
+                   {{part.node_count, 3}}, rows[row].data());
+    row += static_cast<std::size_t>(part.node_count);
+  }
+  for (std::size_t node = 0; node < rows.size(); ++node) {
+    for (const double coordinate : rows[node]) {
+      if (!std::isfinite(coordinate)) {
+        dataset.fail("node " + std::to_string(node) + " is not finite, mend or remove it");
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<Point3> MeshFile::read_points(std::int64_t step) const {
+  return read_rows(points_, parts_of(step), 0);
+}
+
+std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
+  // Without offsets of its own an array follows the points.
+  const std::int64_t shift =
+      displacement_offsets_.empty()
+          ? 0
+          : offset_of(displacement_offsets_, step) - offset_of(point_offsets_, step);
+  return read_rows(displacement_, parts_of(step), shift);
+}
+
+std::vector<std::array<std::int32_t, 4>> MeshFile::read_tets(std::int64_t step) const {
+  const std::vector<MeshPart> parts = parts_of(step);
+  std::int64_t node_count = 0;
+  std::int64_t cell_count = 0;
+  for (const MeshPart& part : parts) {
+    node_count += part.node_count;
+    cell_count += part.cell_count;
+  }
+  if (cell_count == 0) types_.fail("holds no tetrahedron at step " + std::to_string(step));
+  constexpr std::int64_t limit = std::int64_t{1} << 31;
+  if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or tetrahedra");
+  constexpr double bytes_per_tet = 16 + (1 + 4) * sizeof(std::int64_t);
+  h5::check_memory(file_.file.file, connectivity_.name,
+                   bytes_per_tet * static_cast<double>(cell_count));
+  std::vector<std::array<std::int32_t, 4>> tets;
+  tets.reserve(static_cast<std::size_t>(cell_count));
+  std::int64_t first_node = 0;
+  for (const MeshPart& part : parts) {
+    read_part_tets(part, first_node, tets);
+    first_node += part.node_count;
+  }
+  return tets;
+}
+
+void MeshFile::read_part_tets(const MeshPart& part,
+                              std::int64_t first_node,
+                              std::vector<std::array<std::int32_t, 4>>& tets) const {
+  const std::vector<std::int64_t> types = read_column(types_, part.first_cell, part.cell_count);
+  for (std::size_t cell = 0; cell < types.size(); ++cell) {
+    if (types[cell] != vtk_tetra) {
+      types_.fail("cell " + std::to_string(tets.size() + cell) + " has type " +
+                  cell_type_name(types[cell]) +
+                  ", expected tetrahedra (10, VTK_TETRA) only; split the cells into tetrahedra");
+    }
+  }
+  const std::vector<std::int64_t> offsets =
+      read_column(offsets_, part.first_offset, part.cell_count + 1);
+  for (std::size_t cell = 0; cell < offsets.size(); ++cell) {
+    const auto expected = static_cast<std::int64_t>(4 * cell);
+    if (offsets[cell] != expected) {
+      offsets_.fail("entry " + std::to_string(cell) + " of a part is " +
+                    std::to_string(offsets[cell]) + ", tetrahedra ask for " +
+                    std::to_string(expected) + " (steps of 4 from 0)");
+    }
+  }
+  if (part.id_count != 4 * part.cell_count) {
+    connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
+                       std::to_string(part.cell_count) + " tetrahedra, expected 4 for each");
+  }
+  const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
+  for (std::size_t cell = 0; cell < types.size(); ++cell) {
+    std::array<std::int32_t, 4> tet;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      const std::int64_t node = ids[4 * cell + corner];
+      if (node < 0 || node >= part.node_count) {
+        connectivity_.fail("tetrahedron " + std::to_string(tets.size()) + " names node " +
+                           std::to_string(node) + ", expected 0 to " +
+                           std::to_string(part.node_count - 1));
+      }
+      tet[corner] = static_cast<std::int32_t>(first_node + node);
+    }
+    tets.push_back(tet);
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,74 @@
+/// @file vtkhdf_mesh_file.hpp
+/// Where the parts of each step lie in a VTKHDF UnstructuredGrid, and their rows read into one
+/// mesh.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/volume.hpp>
+
+#include "io/h5.hpp"
+#include "io/vtkhdf_input.hpp"
+
+namespace tetwarp {
+
+/// First rows of one part of one step, and how many.
+struct MeshPart {
+  std::int64_t node_count = 0;
+  std::int64_t cell_count = 0;
+  std::int64_t id_count = 0;      ///< entries of Connectivity
+  std::int64_t first_node = 0;    ///< row of Points
+  std::int64_t first_cell = 0;    ///< row of Types
+  std::int64_t first_offset = 0;  ///< row of Offsets, which has one row more than cells per part
+  std::int64_t first_id = 0;      ///< row of Connectivity
+
+  bool operator==(const MeshPart&) const = default;
+};
+
+/// An open mesh file. Every row is checked against the datasets before anything is allocated.
+class MeshFile {
+ public:
+  explicit MeshFile(const std::string& path);
+
+  const VtkhdfInput& file() const { return file_; }
+  bool has_displacement() const { return static_cast<bool>(displacement_.handle); }
+
+  /// Parts of a step, in the file's order; static files have step 0.
+  std::vector<MeshPart> parts_of(std::int64_t step) const;
+
+  std::vector<Point3> read_points(std::int64_t step) const;
+  std::vector<Point3> read_displacement(std::int64_t step) const;
+
+  /// Tetrahedra of all parts, node indices counted through the parts.
+  std::vector<std::array<std::int32_t, 4>> read_tets(std::int64_t step) const;
+
+ private:
+  /// Steps/<name> of a step; 0 in static files and where the file says nothing.
+  std::int64_t offset_of(const std::vector<std::int64_t>& offsets, std::int64_t step) const;
+  std::vector<Point3> read_rows(const h5::Dataset& dataset,
+                                const std::vector<MeshPart>& parts,
+                                std::int64_t shift) const;
+  void read_part_tets(const MeshPart& part,
+                      std::int64_t first_node,
+                      std::vector<std::array<std::int32_t, 4>>& tets) const;
+
+  VtkhdfInput file_;
+  h5::Dataset points_;
+  h5::Dataset types_;
+  h5::Dataset offsets_;
+  h5::Dataset connectivity_;
+  h5::Dataset displacement_;
+  std::vector<std::int64_t> node_counts_;  // one entry per part
+  std::vector<std::int64_t> cell_counts_;
+  std::vector<std::int64_t> id_counts_;
+  std::vector<std::int64_t> part_counts_;  // one entry per step, empty where absent
+  std::vector<std::int64_t> part_offsets_;
+  std::vector<std::int64_t> point_offsets_;
+  std::vector<std::int64_t> cell_offsets_;
+  std::vector<std::int64_t> id_offsets_;
+  std::vector<std::int64_t> displacement_offsets_;
+};
+
+}  // namespace tetwarp

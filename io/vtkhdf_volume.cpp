@@ -1,0 +1,154 @@
+/// @file vtkhdf_volume.cpp
+/// Reading VTKHDF ImageData, static and temporal.
+#include <cmath>
+#include <stdexcept>
+#include <tetwarp/io.hpp>
+
+#include "io/h5.hpp"
+#include "io/vtkhdf_input.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+Grid read_grid(const h5::Object& root) {
+  const std::vector<std::int64_t> extent = h5::read_integer_attribute(root, "WholeExtent", 6);
+  const std::vector<double> origin = h5::read_real_attribute(root, "Origin", 3);
+  const std::vector<double> spacing = h5::read_real_attribute(root, "Spacing", 3);
+  Grid grid;
+  Point3 start;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    grid.dims[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
+    grid.origin[axis] = origin[axis];
+    grid.spacing[axis] = spacing[axis];
+    start[axis] = static_cast<double>(extent[2 * axis]);
+  }
+  if (h5::has_attribute(root, "Direction")) {
+    const std::vector<double> direction = h5::read_real_attribute(root, "Direction", 9);
+    std::copy(direction.begin(), direction.end(), grid.direction.begin());
+  }
+  try {
+    check_grid(grid, "grid");
+    grid.origin = grid.world_of(start);
+    check_grid(grid, "grid");
+  } catch (const std::invalid_argument& error) {
+    root.fail(std::string(error.what()) + "; mend WholeExtent, Origin, Spacing or Direction");
+  }
+  return grid;
+}
+
+std::string shape_text(const std::vector<std::int64_t>& dims) {
+  std::string text;
+  for (const std::int64_t dim : dims) text.append("[").append(std::to_string(dim)).append("]");
+  return text;
+}
+
+/// One point array: [z][y][x], with time before and components behind where they exist.
+struct PointArray {
+  h5::Dataset dataset;
+  ArrayHeader header;
+};
+
+PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::string& name) {
+  const h5::Object point_data = h5::open_group(file.root, "PointData");
+  PointArray array;
+  array.dataset = h5::open_dataset(point_data, name);
+  array.header.name = name;
+  array.header.type = h5::pixel_type_of(array.dataset);
+
+  std::vector<std::int64_t> shape = {grid.dims[2], grid.dims[1], grid.dims[0]};
+  if (file.is_temporal()) shape.insert(shape.begin(), array.dataset.rows());
+  std::vector<std::int64_t> found = array.dataset.dims;
+  // VTK drops the z axis of a flat image.
+  const std::size_t rank = shape.size();
+  const std::size_t z = rank - 3;
+  if (shape[z] == 1 && found.size() + 1 >= rank && (found.size() < rank || found[z] != 1)) {
+    shape.erase(shape.begin() + static_cast<std::ptrdiff_t>(z));
+  }
+  if (found.size() == shape.size() + 1) {
+    const std::int64_t components = found.back();
+    if (components < 1 || components > 9) {
+      array.dataset.fail("has " + std::to_string(components) + " components, expected 1 to 9");
+    }
+    array.header.components = static_cast<int>(components);
+    found.pop_back();
+  }
+  if (found != shape) {
+    array.dataset.fail("has shape " + shape_text(array.dataset.dims) + ", WholeExtent asks for " +
+                       shape_text(shape) +
+                       (file.is_temporal() ? " ([t][z][y][x])" : " ([z][y][x])") +
+                       " and perhaps components; mend WholeExtent or the data");
+  }
+  return array;
+}
+
+std::vector<std::string> numeric_arrays(const VtkhdfInput& file) {
+  const h5::Object point_data = h5::open_group(file.root, "PointData");
+  std::vector<std::string> names;
+  for (const std::string& name : h5::child_names(point_data)) {
+    if (h5::is_group(point_data, name)) continue;
+    if (h5::is_numeric(h5::open_dataset(point_data, name))) names.push_back(name);
+  }
+  if (names.empty()) point_data.fail("holds no array of numbers");
+  return names;
+}
+
+/// Where a step of an array lies on its time axis.
+std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int64_t step) {
+  const std::vector<std::int64_t> offsets = read_point_data_offsets(file, array.header.name);
+  const std::int64_t row = offsets.empty() ? step : offsets[static_cast<std::size_t>(step)];
+  if (row >= array.dataset.rows()) {
+    array.dataset.fail("step " + std::to_string(step) + " is row " + std::to_string(row) +
+                       ", there are " + std::to_string(array.dataset.rows()));
+  }
+  return row;
+}
+
+}  // namespace
+
+VolumeHeader read_volume_header(const std::string& path) {
+  const h5::Silence silence;
+  const VtkhdfInput file = open_vtkhdf(path, "ImageData");
+  VolumeHeader header;
+  header.grid = read_grid(file.root);
+  header.times = file.times;
+  for (const std::string& name : numeric_arrays(file)) {
+    header.arrays.push_back(open_array(file, header.grid, name).header);
+  }
+  return header;
+}
+
+Volume read_volume(const std::string& path, const std::string& array, std::int64_t step) {
+  const h5::Silence silence;
+  const VtkhdfInput file = open_vtkhdf(path, "ImageData");
+  const Grid grid = read_grid(file.root);
+  file.check_step(step);
+  const PointArray source =
+      open_array(file, grid, array.empty() ? numeric_arrays(file).front() : array);
+
+  std::vector<std::int64_t> start(source.dataset.dims.size(), 0);
+  std::vector<std::int64_t> count = source.dataset.dims;
+  if (file.is_temporal()) {
+    start[0] = time_row(file, source, step);
+    count[0] = 1;
+  }
+  double bytes = static_cast<double>(size_of(source.header.type));
+  for (const std::int64_t edge : count) bytes *= static_cast<double>(edge);
+  h5::check_memory(path, source.dataset.name, bytes);
+  Volume volume =
+      make_volume(grid, source.header.type, source.header.components, source.header.name);
+  h5::read_block(source.dataset, h5::memory_type_of(volume.type), start, count, volume.data.data());
+  return volume;
+}
+
+std::optional<std::string> read_fingerprint(const std::string& path) {
+  const h5::Silence silence;
+  try {
+    const h5::Object file = h5::open_file(path);
+    return h5::read_text_attribute(h5::open_group(file, "VTKHDF"), "tetwarp_fingerprint");
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace tetwarp

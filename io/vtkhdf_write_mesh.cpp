@@ -1,0 +1,145 @@
+/// @file vtkhdf_write_mesh.cpp
+/// Writing VTKHDF UnstructuredGrid: static topology and rest points, displacements over steps.
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <tetwarp/io.hpp>
+
+#include "io/vtkhdf_output.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+constexpr std::uint8_t vtk_tetra = 10;
+
+void check_arguments(const std::string& path,
+                     const TetMesh& mesh,
+                     const std::vector<std::vector<Point3>>& displacements,
+                     const std::vector<double>& times) {
+  try {
+    check_mesh(mesh);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "/VTKHDF", error.what());
+  }
+  if (!times.empty() && times.size() != displacements.size()) {
+    throw IoError(path, "/VTKHDF/Steps/Values",
+                  std::to_string(times.size()) + " times for " +
+                      std::to_string(displacements.size()) + " displacements, expected as many");
+  }
+  for (std::size_t step = 0; step < displacements.size(); ++step) {
+    const std::string problem = "step " + std::to_string(step);
+    if (displacements[step].size() != mesh.rest_positions.size()) {
+      throw IoError(path, "/VTKHDF/PointData/displacement",
+                    problem + " has " + std::to_string(displacements[step].size()) +
+                        " nodes, the mesh has " + std::to_string(mesh.rest_positions.size()));
+    }
+    for (std::size_t node = 0; node < displacements[step].size(); ++node) {
+      for (const double coordinate : displacements[step][node]) {
+        if (std::isfinite(coordinate)) continue;
+        throw IoError(path, "/VTKHDF/PointData/displacement",
+                      problem + ": node " + std::to_string(node) + " is not finite");
+      }
+    }
+  }
+}
+
+void write_integers(const h5::Object& parent,
+                    const std::string& name,
+                    const std::vector<std::int64_t>& values,
+                    bool is_column = false) {
+  const hsize_t dims[2] = {values.size(), 1};
+  h5::write_dataset(parent, name, H5T_STD_I64LE, H5T_NATIVE_INT64,
+                    {dims, is_column ? std::size_t{2} : std::size_t{1}}, values.data());
+}
+
+void write_topology(const h5::Object& root, const TetMesh& mesh) {
+  const auto tet_count = static_cast<std::int64_t>(mesh.tets.size());
+  write_integers(root, "NumberOfPoints", {static_cast<std::int64_t>(mesh.rest_positions.size())});
+  write_integers(root, "NumberOfCells", {tet_count});
+  write_integers(root, "NumberOfConnectivityIds", {4 * tet_count});
+  std::vector<std::int64_t> offsets(mesh.tets.size() + 1);
+  for (std::size_t t = 0; t < offsets.size(); ++t) offsets[t] = static_cast<std::int64_t>(4 * t);
+  write_integers(root, "Offsets", offsets);
+  const hsize_t id_count = 4 * mesh.tets.size();
+  h5::write_dataset(root, "Connectivity", H5T_STD_I64LE, H5T_NATIVE_INT32, {&id_count, 1},
+                    mesh.tets.front().data());
+  const std::vector<std::uint8_t> types(mesh.tets.size(), vtk_tetra);
+  const hsize_t type_count = types.size();
+  h5::write_dataset(root, "Types", H5T_STD_U8LE, H5T_NATIVE_UINT8, {&type_count, 1}, types.data());
+}
+
+/// One dataset [step * node][3], filled step by step.
+void write_displacements(const VtkhdfOutput& output,
+                         const h5::Object& point_data,
+                         const std::vector<std::vector<Point3>>& displacements) {
+  const hsize_t node_count = displacements.front().size();
+  const hsize_t dims[2] = {displacements.size() * node_count, 3};
+  const hsize_t count[2] = {node_count, 3};
+  const h5::Handle space(H5Screate_simple(2, dims, nullptr), H5Sclose);
+  const h5::Handle memory(H5Screate_simple(2, count, nullptr), H5Sclose);
+  const h5::Object dataset =
+      h5::create_dataset(point_data, "displacement", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT);
+  for (std::size_t step = 0; step < displacements.size(); ++step) {
+    const hsize_t start[2] = {step * node_count, 0};
+    if (H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start, nullptr, count, nullptr) < 0 ||
+        H5Dwrite(dataset.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT,
+                 displacements[step].front().data()) < 0) {
+      dataset.fail_with_reason("cannot be written");
+    }
+    output.check_disk(dataset);
+  }
+}
+
+void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t node_count) {
+  const h5::Object steps = h5::create_group(root, "Steps");
+  const hsize_t count = times.size();
+  h5::write_dataset(steps, "Values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {&count, 1}, times.data());
+  // Points and topology are the same rows at every step; only the displacement moves on.
+  const std::vector<std::int64_t> zeros(times.size(), 0);
+  std::vector<std::int64_t> rows(times.size());
+  for (std::size_t step = 0; step < rows.size(); ++step) {
+    rows[step] = static_cast<std::int64_t>(step) * node_count;
+  }
+  write_integers(steps, "PartOffsets", zeros);
+  write_integers(steps, "NumberOfParts", std::vector<std::int64_t>(times.size(), 1));
+  write_integers(steps, "PointOffsets", zeros);
+  write_integers(steps, "CellOffsets", zeros, true);
+  write_integers(steps, "ConnectivityIdOffsets", zeros, true);
+  write_integers(h5::create_group(steps, "PointDataOffsets"), "displacement", rows);
+  h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
+}
+
+}  // namespace
+
+void write_mesh(const std::string& path,
+                const TetMesh& mesh,
+                const std::vector<std::vector<Point3>>& displacements,
+                const std::vector<double>& times) {
+  const h5::Silence silence;
+  check_arguments(path, mesh, displacements, times);
+  const bool is_temporal = !displacements.empty();
+  VtkhdfOutput output(path, "UnstructuredGrid", is_temporal);
+  {
+    const h5::Object& root = output.root();
+    const hsize_t dims[2] = {mesh.rest_positions.size(), 3};
+    h5::write_dataset(root, "Points", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, dims,
+                      mesh.rest_positions.front().data());
+    write_topology(root, mesh);
+    h5::create_group(root, "CellData");
+    h5::create_group(root, "FieldData");
+    const h5::Object point_data = h5::create_group(root, "PointData");
+    if (is_temporal) {
+      write_displacements(output, point_data, displacements);
+      std::vector<double> values = times;
+      if (values.empty()) {
+        values.resize(displacements.size());
+        std::iota(values.begin(), values.end(), 0.0);
+      }
+      write_steps(root, values, static_cast<std::int64_t>(mesh.rest_positions.size()));
+    }
+  }
+  output.finish();
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,82 @@
+/// @file cell_pairs.hpp
+/// Stage "cull" of the warp, second half: surviving pairs in the order of cells, then tetrahedra.
+#pragma once
+#include <cstdint>
+
+#include "kernels/atomic_add.hpp"
+#include "kernels/cell_cull.hpp"
+#include "kernels/view.hpp"
+
+namespace tetwarp {
+
+/// The pairs of one cell: [begin, end) of the sorted list, cut after the first accepted one, which
+/// settles the cell against all higher tetrahedra.
+struct CellRange {
+  std::uint32_t begin;
+  std::uint32_t end;
+};
+
+/// First position in the first `count` sorted pairs whose cell is not below `cell`.
+TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs, std::int64_t count,
+                                            std::int64_t cell) {
+  std::int64_t low = 0, high = count;
+  while (low < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (cell_of(pairs[middle]) < cell) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/// One index = one cell; any order.
+struct CellRangeBody {
+  View<const CellPair> pairs;
+  View<const std::int64_t> pair_count;
+  View<CellRange> ranges;
+  View<std::int64_t> accepted_count;
+
+  TETWARP_HD void operator()(std::int64_t cell) const {
+    const std::int64_t count = min_of(pair_count[0], pairs.size);
+    const std::int64_t begin = lower_bound_of_cell(pairs, count, cell);
+    std::int64_t end = begin, accepted = 0, settled = -1;
+    for (; end < count && cell_of(pairs[end]) == cell; ++end) {
+      if (!is_accepted(pairs[end])) continue;
+      ++accepted;
+      if (settled < 0) settled = end + 1;
+    }
+    ranges[cell] = {static_cast<std::uint32_t>(begin),
+                    static_cast<std::uint32_t>(settled < 0 ? end : settled)};
+    if (accepted > 0) atomic_add(&accepted_count[0], accepted);
+  }
+};
+
+/// Compacts and sorts the pairs and finds the range of every cell.
+///
+/// @param exec            where to run
+/// @param candidates      from cell_cull
+/// @param candidate_count number of candidates, shape [1], may exceed the capacity of `candidates`
+/// @param frame           the output
+/// @param pairs           out, surviving pairs sorted by cell then tetrahedron
+/// @param pair_count      out, how many there are, shape [1]
+/// @param ranges          out, shape [cell_count]
+/// @param accepted_count  accepted pairs are added to it, shape [1]
+///
+/// Determinism: same bits for the same candidates. Cost: a stable radix sort of 8-byte words.
+/// Source: cell-centric order is ours; Gascon et al. 2013 rasterize tetrahedron by tetrahedron.
+template <class Exec>
+void cell_pairs(Exec& exec, View<const CellPair> candidates,
+                View<const std::int64_t> candidate_count, const OutputFrame& frame,
+                View<CellPair> pairs, View<std::int64_t> pair_count, View<CellRange> ranges,
+                View<std::int64_t> accepted_count) {
+  int cell_bits = 1;
+  while (frame.cell_count() >> cell_bits != 0) ++cell_bits;
+  exec.select_valid("warp/cull", candidates, candidate_count, pairs, pair_count);
+  exec.sort_pairs("warp/cull", pairs, pair_count, cell_bits);
+  exec.for_each("warp/cull", ranges.size,
+                CellRangeBody{pairs, pair_count, ranges, accepted_count});
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,189 @@
+/// @file cell_raster.hpp
+/// Stage "raster" of the warp, the body: who owns a voxel of a cell, and what it gets.
+///
+/// Two mappings call these functions: cell_raster.cuh (one block owns a cell) and
+/// host/cell_raster_cpu.cpp (one thread owns a cell, a vector owns a row of it).
+#pragma once
+#include <cstdint>
+
+#include "kernels/cell_pairs.hpp"
+#include "kernels/face_sign.hpp"
+#include "kernels/tet_setup.hpp"
+#include "kernels/view.hpp"
+#include "kernels/volume_sample.hpp"
+
+namespace tetwarp {
+
+/// What the raster stage counts.
+struct RasterCounts {
+  std::int64_t covered;
+  std::int64_t inside_tests;  ///< (voxel, tetrahedron) tests against four planes
+  std::int64_t exact_tests;   ///< of these, left open by float32
+  std::int64_t copied;        ///< voxels that were moved, not interpolated
+};
+
+/// Source index of frame voxel (i, j, k) where nothing covers it: linear * (i, j, k) + offset.
+struct OutsideMap {
+  bool use_source;  ///< false: the background
+  bool is_copy;     ///< the grids differ by whole voxels
+  double linear[3][3];
+  double offset[3];
+};
+
+/// Everything the raster stage reads and writes, for one source.
+template <class T>
+struct RasterJob {
+  View<const TetSetup> setups;
+  View<const std::int32_t> tets;
+  View<const Node> nodes;
+  View<const CellPair> pairs;
+  View<const CellRange> ranges;
+  OutputFrame frame;
+  SourceView<T> source;
+  Interpolation filter;
+  OutsideMap outside;
+  T background;
+  bool copy_whole_shifts;
+  T* volume;           ///< [k][j][i][component]
+  std::uint8_t* mask;  ///< may be null
+  std::int32_t* tet;   ///< may be null
+  RasterCounts* counts;
+};
+
+/// The four planes of a tetrahedron seen from one cell, scaled so that a value above 1 is inside
+/// for certain and one below -1 outside for certain.
+struct CellPlanes {
+  float value[4];    ///< at the cell's corner voxel
+  float step[3][4];  ///< per voxel along i, j, k
+};
+
+/// float32 planes relative to the cell's corner (cx, cy, cz) [frame].
+///
+/// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
+/// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
+/// unit of the scaled planes is u (8 |v| + 192).
+TETWARP_HD void set_cell_plane(const TetSetup& tet, int face, int cx, int cy, int cz,
+                               CellPlanes& planes) {
+  const double* p = tet.plane[face];
+  const double value = p[0] * static_cast<double>(cx - tet.anchor[0]) +
+                       p[1] * static_cast<double>(cy - tet.anchor[1]) +
+                       p[2] * static_cast<double>(cz - tet.anchor[2]) + p[3];
+  const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
+  planes.value[face] = static_cast<float>(value * scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    planes.step[axis][face] = static_cast<float>(p[axis] * scale);
+  }
+}
+
+/// +1 inside for certain, -1 outside for certain, 0 too close to a face for float32.
+TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
+  float least = 2.0f;
+  for (int face = 0; face < 4; ++face) {
+    const float line = (planes.value[face] + planes.step[1][face] * static_cast<float>(j)) +
+                       planes.step[2][face] * static_cast<float>(k);
+    least = min_of(least, line + planes.step[0][face] * static_cast<float>(i));
+  }
+  return least > 1.0f ? 1 : least < -1.0f ? -1 : 0;
+}
+
+/// True when voxel (i, j, k) [frame] lies in the rows (j, k) of the tetrahedron's box.
+TETWARP_HD bool is_in_rows(const TetSetup& tet, int j, int k) {
+  return j >= tet.begin[1] && j < tet.end[1] && k >= tet.begin[2] && k < tet.end[2];
+}
+
+/// Source position of a cell's corner under a tetrahedron's map, in float64.
+TETWARP_HD void map_start(const TetSetup& tet, int cx, int cy, int cz, double* start,
+                          double (*linear)[3]) {
+  const double from[3] = {static_cast<double>(cx - tet.anchor[0]),
+                          static_cast<double>(cy - tet.anchor[1]),
+                          static_cast<double>(cz - tet.anchor[2])};
+  for (int row = 0; row < 3; ++row) {
+    const double* m = tet.map[row];
+    start[row] = m[0] * from[0] + m[1] * from[1] + m[2] * from[2] + m[3];
+    for (int axis = 0; axis < 3; ++axis) linear[row][axis] = m[axis];
+  }
+}
+
+/// The same under the map of uncovered voxels.
+TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, double* start) {
+  for (int row = 0; row < 3; ++row) {
+    const double* m = map.linear[row];
+    start[row] = m[0] * cx + m[1] * cy + m[2] * cz + map.offset[row];
+  }
+}
+
+/// Stores one voxel's samples at a local position of the source, or the background.
+template <class T, class Real>
+TETWARP_HD void store_sample(const RasterJob<T>& job, Interpolation filter,
+                             const SourceMap<Real>& map, int i, int j, int k,
+                             std::int64_t voxel) {
+  Real x[3];
+  local_position(map, i, j, k, x);
+  const Tap<Real> tap = tap_of(job.source, filter, map.whole, x);
+  T* out = job.volume + voxel * job.source.components;
+  for (int c = 0; c < job.source.components; ++c) {
+    out[c] = tap.inside ? sample(job.source, filter, tap, c) : job.background;
+  }
+}
+
+/// A voxel that moved by whole voxels needs one sample, whatever the filter.
+template <class T>
+TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
+  return job.copy_whole_shifts && tet.kind == MapKind::copy;
+}
+
+/// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that `tet` owns; the map is made anew.
+template <class T, class Real>
+TETWARP_HD void store_owned(const RasterJob<T>& job, const TetSetup& tet, int cx, int cy, int cz,
+                            int i, int j, int k, std::int64_t voxel) {
+  double start[3], linear[3][3];
+  map_start(tet, cx, cy, cz, start, linear);
+  store_sample(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
+               make_source_map<Real>(start, linear), i, j, k, voxel);
+}
+
+/// Stores a voxel that no tetrahedron covers.
+template <class T>
+TETWARP_HD void store_outside(const RasterJob<T>& job, int cx, int cy, int cz, int i, int j,
+                              int k, std::int64_t voxel) {
+  if (job.outside.use_source) {
+    double start[3];
+    outside_start(job.outside, cx, cy, cz, start);
+    const bool copies = job.copy_whole_shifts && job.outside.is_copy;
+    store_sample(job, copies ? Interpolation::nearest : job.filter,
+                 make_source_map<double>(start, job.outside.linear), i, j, k, voxel);
+    return;
+  }
+  T* out = job.volume + voxel * job.source.components;
+  for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
+}
+
+/// One index = one voxel of the output: is it strictly inside two or more tetrahedra?
+struct VoxelFoldBody {
+  View<const std::int32_t> tets;
+  View<const Node> nodes;
+  View<const CellPair> pairs;
+  View<const std::int64_t> pair_count;
+  View<const CellRange> ranges;
+  OutputFrame frame;
+  View<std::int64_t> folded;
+
+  TETWARP_HD void operator()(std::int64_t voxel) const {
+    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
+    const std::int64_t row = voxel / nx;
+    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
+    const int j = frame.begin[1] + static_cast<int>(row % ny);
+    const int k = frame.begin[2] + static_cast<int>(row / ny);
+    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
+    // Not the cell's own end, which is cut after the first accepted pair.
+    const std::int64_t end = cell + 1 < ranges.size ? ranges[cell + 1].begin : pair_count[0];
+    int inside = 0;
+    for (std::int64_t p = ranges[cell].begin; p < end && inside < 2; ++p) {
+      const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(pairs[p]));
+      inside += is_inside_exact(tet, i, j, k, true);
+    }
+    if (inside == 2) atomic_add(&folded[0], 1);
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,253 @@
+/// @file block.hpp
+/// One thread block on one OS thread: a fiber per CUDA thread, barriers and warp exchanges between
+/// them, and reports of those that cannot complete.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "kernels/emu/fiber.hpp"
+
+namespace tetwarp::simt {
+
+constexpr unsigned warp_size = 32;
+
+/// A kernel did what a GPU leaves undefined, or what would hang it.
+class Fault : public std::runtime_error {
+ public:
+  explicit Fault(const std::string& problem) : std::runtime_error("simt: " + problem) {}
+};
+
+/// Which thread runs first where CUDA leaves it open.
+enum class Order { forward, reverse, shuffled };
+
+/// Order of threads, and the seed of the shuffled one.
+struct Schedule {
+  Order order = Order::forward;
+  unsigned seed = 1;
+};
+
+/// A block runs warp by warp, each as far as it gets alone; a warp runs lane by lane, each as far
+/// as its next synchronization. Two schedules that give different results are a race.
+///
+/// Stricter than a GPU: a thread that has left the kernel is missed at barriers and in masks.
+class Block {
+ public:
+  /// The block that this OS thread runs.
+  static Block& current() {
+    static thread_local Block block;
+    return block;
+  }
+
+  /// Runs `kernel` once per thread.
+  /// @param on_resume  told the thread's number each time before it runs
+  /// @throws Fault, or what the kernel throws
+  void run(unsigned thread_count,
+           std::size_t shared_bytes,
+           const Schedule& schedule,
+           const std::function<void()>& kernel,
+           const std::function<void(unsigned)>& on_resume) {
+    while (threads_.size() < thread_count) threads_.push_back(std::make_unique<Thread>());
+    thread_count_ = thread_count;
+    order_ = schedule.order;
+    random_.seed(schedule.seed);
+    shared_.assign(shared_bytes, std::byte{0xcd});
+    shared_.shrink_to_fit();  // so that an overrun is one for the address sanitizer, too
+    fault_ = nullptr;
+    for (unsigned t = 0; t < thread_count; ++t) {
+      threads_[t]->state = State::ready;
+      threads_[t]->fiber.start([this, t, &kernel] { run_thread(t, kernel); });
+    }
+    const unsigned warp_count = (thread_count + warp_size - 1) / warp_size;
+    while (!is_done()) {
+      for (const unsigned warp : ordered(warp_count)) run_warp(warp * warp_size, on_resume);
+      release_barrier();
+    }
+  }
+
+  /// Dynamic shared memory; every block finds it filled with 0xcd.
+  void* shared() { return shared_.data(); }
+
+  /// __syncthreads of the running thread.
+  void wait_at_barrier(int line) { wait(State::at_barrier, line); }
+
+  /// Lane of the running thread.
+  unsigned lane() const { return running_ % warp_size; }
+
+  /// Waits for the lanes of `mask`. @returns the lanes of them that gave a true predicate
+  unsigned ballot(unsigned mask, bool predicate, int line) {
+    Thread& self = *threads_[running_];
+    self.predicate = predicate;
+    self.source_lane = lane();
+    exchange(mask, line);
+    return self.ballot;
+  }
+
+  /// Waits for the lanes of `mask`. @returns the value that `source_lane` gave
+  template <class T>
+  T shuffle(unsigned mask, T value, unsigned source_lane, int line) {
+    static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Value));
+    Thread& self = *threads_[running_];
+    std::memcpy(self.sent.data(), &value, sizeof(T));
+    self.source_lane = source_lane;
+    exchange(mask, line);
+    std::memcpy(&value, self.received.data(), sizeof(T));
+    return value;
+  }
+
+ private:
+  enum class State { ready, at_barrier, at_exchange, done };
+  using Value = std::array<std::byte, 16>;
+
+  struct Thread {
+    Fiber fiber;
+    State state = State::ready;
+    int line = 0;              ///< source line of the synchronization it waits at
+    unsigned mask = 0;         ///< of an exchange
+    unsigned source_lane = 0;  ///< whose value it asks for
+    bool predicate = false;
+    Value sent{};
+    unsigned ballot = 0;  ///< results of the exchange
+    Value received{};
+  };
+
+  void run_thread(unsigned t, const std::function<void()>& kernel) {
+    try {
+      kernel();
+    } catch (...) {
+      fault_ = std::current_exception();  // leaves the fiber on the scheduler's stack
+    }
+    threads_[t]->state = State::done;
+  }
+
+  void run_warp(unsigned first, const std::function<void(unsigned)>& on_resume) {
+    const unsigned lane_count = std::min(warp_size, thread_count_ - first);
+    do {
+      for (const unsigned lane : ordered(lane_count)) {
+        running_ = first + lane;
+        if (threads_[running_]->state != State::ready) continue;
+        on_resume(running_);
+        threads_[running_]->fiber.resume();
+        if (fault_) std::rethrow_exception(fault_);
+      }
+    } while (complete_exchange(first, lane_count));
+  }
+
+  void wait(State state, int line) {
+    Thread& self = *threads_[running_];
+    self.state = state;
+    self.line = line;
+    self.fiber.suspend();
+  }
+
+  void exchange(unsigned mask, int line) {
+    Thread& self = *threads_[running_];
+    if (!(mask >> lane() & 1)) {
+      throw Fault("line " + std::to_string(line) + ": lane " + std::to_string(lane()) +
+                  " is outside its own mask");
+    }
+    const unsigned source = running_ - lane() + self.source_lane;
+    if (!(mask >> self.source_lane & 1) || source >= thread_count_) {
+      throw Fault("line " + std::to_string(line) + ": lane " + std::to_string(lane()) +
+                  " reads lane " + std::to_string(self.source_lane) + ", which takes no part");
+    }
+    self.mask = mask;
+    wait(State::at_exchange, line);
+  }
+
+  /// Completes one exchange whose lanes have all come. @returns whether there was one
+  bool complete_exchange(unsigned first, unsigned lane_count) {
+    for (unsigned lane = 0; lane < lane_count; ++lane) {
+      const Thread& asking = *threads_[first + lane];
+      if (asking.state != State::at_exchange || missing_lane(first, lane) < lane_count) continue;
+      const unsigned mask = asking.mask;
+      unsigned ballot = 0;
+      for (unsigned l = 0; l < lane_count; ++l) {
+        if (mask >> l & 1) ballot |= unsigned{threads_[first + l]->predicate} << l;
+      }
+      for (unsigned l = 0; l < lane_count; ++l) {
+        if (!(mask >> l & 1)) continue;
+        Thread& member = *threads_[first + l];
+        member.ballot = ballot;
+        member.received = threads_[first + member.source_lane]->sent;
+        member.state = State::ready;
+      }
+      return true;
+    }
+    return false;
+  }
+
+  /// First lane that the waiting `lane` of the warp still misses; warp_size when none.
+  unsigned missing_lane(unsigned first, unsigned lane) const {
+    const Thread& asking = *threads_[first + lane];
+    for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
+      const Thread& peer = *threads_[first + l];
+      const bool has_come =
+          peer.state == State::at_exchange && peer.mask == asking.mask && peer.line == asking.line;
+      if (asking.mask >> l & 1 && !has_come) return l;
+    }
+    return warp_size;
+  }
+
+  /// Lets all threads pass the barrier they wait at, or tells why they never will.
+  void release_barrier() {
+    if (is_done()) return;
+    const Thread& first = *threads_[0];
+    for (unsigned t = 0; t < thread_count_; ++t) {
+      const Thread& thread = *threads_[t];
+      if (thread.state == State::at_exchange) {
+        const unsigned lane = t % warp_size;
+        const unsigned missing = missing_lane(t - lane, lane);
+        throw Fault(where(t) + " for lane " + std::to_string(missing) + ": " +
+                    where(t - lane + missing));
+      }
+      if (thread.state != first.state ||
+          (thread.state == State::at_barrier && thread.line != first.line)) {
+        throw Fault("barrier not reached by all threads: " + where(0) + ", " + where(t));
+      }
+    }
+    for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
+  }
+
+  std::string where(unsigned t) const {
+    const Thread& thread = *threads_[t];
+    const std::string name = "thread " + std::to_string(t);
+    if (thread.state == State::done) return name + " has left the kernel";
+    return name + " waits in line " + std::to_string(thread.line);
+  }
+
+  bool is_done() const {
+    return std::all_of(threads_.begin(), threads_.begin() + thread_count_,
+                       [](const auto& thread) { return thread->state == State::done; });
+  }
+
+  /// 0 to count - 1 in the schedule's order; count is at most 32, for warps and lanes alike.
+  std::vector<unsigned> ordered(unsigned count) {
+    std::vector<unsigned> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    if (order_ == Order::reverse) std::reverse(numbers.begin(), numbers.end());
+    if (order_ == Order::shuffled) std::shuffle(numbers.begin(), numbers.end(), random_);
+    return numbers;
+  }
+
+  std::vector<std::unique_ptr<Thread>> threads_;  ///< kept from launch to launch
+  unsigned thread_count_ = 0;
+  unsigned running_ = 0;
+  Order order_ = Order::forward;
+  std::minstd_rand random_;
+  std::vector<std::byte> shared_;
+  std::exception_ptr fault_;
+};
+
+}  // namespace tetwarp::simt

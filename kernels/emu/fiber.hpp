@@ -1,0 +1,107 @@
+/// @file fiber.hpp
+/// A function that stops in the middle and goes on later, on a stack of its own.
+#pragma once
+#include <ucontext.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/asan_interface.h>
+#include <sanitizer/common_interface_defs.h>
+#endif
+
+namespace tetwarp::simt {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool has_address_sanitizer = true;
+#else
+constexpr bool has_address_sanitizer = false;
+#endif
+
+/// One suspended or running call. resume() and suspend() must happen on the same OS thread.
+class Fiber {
+ public:
+  Fiber() : stack_(new std::byte[stack_bytes]) {}
+  Fiber(const Fiber&) = delete;
+  Fiber& operator=(const Fiber&) = delete;
+
+  /// Prepares a call of `entry`, which must not throw; a call suspended before is forgotten.
+  void start(std::function<void()> entry) {
+    entry_ = std::move(entry);
+#if defined(__SANITIZE_ADDRESS__)
+    __asan_unpoison_memory_region(stack_.get(), stack_bytes);
+#endif
+    getcontext(&own_);
+    own_.uc_stack.ss_sp = stack_.get();
+    own_.uc_stack.ss_size = stack_bytes;
+    own_.uc_link = nullptr;
+    makecontext(&own_, &Fiber::run, 0);
+  }
+
+  /// Runs the call until it suspends itself or returns.
+  void resume() {
+    resumed = this;
+    const Switch to_fiber(stack_.get(), stack_bytes);
+    swapcontext(&owner_, &own_);
+    to_fiber.came_back();
+  }
+
+  /// From inside the call: goes back to the owner; returns at the next resume().
+  void suspend() {
+    const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
+    swapcontext(&own_, &owner_);
+    to_owner.came_back(&owner_stack_);
+  }
+
+ private:
+  static constexpr std::size_t stack_bytes = std::size_t{128} * 1024;
+
+  struct StackRange {
+    const void* bottom = nullptr;
+    std::size_t size = 0;
+  };
+
+  /// Tells the address sanitizer, where there is one, which stack comes next.
+  class Switch {
+   public:
+#if defined(__SANITIZE_ADDRESS__)
+    Switch(const void* bottom, std::size_t size) {
+      __sanitizer_start_switch_fiber(&saved_, bottom, size);
+    }
+    void came_back(StackRange* left = nullptr) const {
+      arrived(saved_, left);
+    }
+    static void arrived(void* saved, StackRange* left) {
+      __sanitizer_finish_switch_fiber(saved, left ? &left->bottom : nullptr,
+                                      left ? &left->size : nullptr);
+    }
+
+   private:
+    void* saved_ = nullptr;
+#else
+    Switch(const void*, std::size_t) {}
+    void came_back(StackRange* = nullptr) const {}
+    static void arrived(void*, StackRange*) {}
+#endif
+  };
+
+  static void run() {
+    Fiber& self = *resumed;
+    Switch::arrived(nullptr, &self.owner_stack_);
+    self.entry_();
+    self.suspend();  // for good: start() makes a fresh call
+  }
+
+  static inline thread_local Fiber* resumed = nullptr;  ///< hands `this` to run()
+
+  std::unique_ptr<std::byte[]> stack_;
+  std::function<void()> entry_;
+  ucontext_t own_{};
+  ucontext_t owner_{};
+  StackRange owner_stack_;
+};
+
+}  // namespace tetwarp::simt

@@ -1,0 +1,193 @@
+/// @file simt.hpp
+/// Runs CUDA kernels on the CPU, unchanged, to test them where there is no GPU.
+///
+/// Gives a C++ compiler the CUDA names that kernels here use: indices, shared memory, barriers,
+/// shuffles, votes and integer atomics. Finds wrong results under three thread orders, barriers
+/// that not all threads reach, warp operations that miss a lane and, with the address sanitizer,
+/// accesses out of bounds, shared memory included. Kernels may not spin on other threads.
+#pragma once
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <type_traits>
+
+#include "kernels/emu/block.hpp"
+
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): CUDA's own names
+#define __host__
+#define __device__
+#define __global__ [[maybe_unused]] static  // inline functions' statics have no redzones
+#define __forceinline__ inline
+#define __launch_bounds__(...)
+#if defined(__SANITIZE_ADDRESS__)
+#define __shared__ static  // thread-local storage has no redzones; blocks run one after another
+#else
+#define __shared__ static thread_local  // an OS thread runs one block at a time
+#endif
+
+using cudaStream_t = void*;
+
+struct uint3 {
+  unsigned x = 0, y = 0, z = 0;
+};
+
+struct dim3 {
+  unsigned x = 1, y = 1, z = 1;
+  constexpr dim3(unsigned nx = 1, unsigned ny = 1, unsigned nz = 1) : x(nx), y(ny), z(nz) {}
+};
+
+constinit inline thread_local uint3 threadIdx{};
+constinit inline thread_local uint3 blockIdx{};
+constinit inline thread_local dim3 blockDim{};
+constinit inline thread_local dim3 gridDim{};
+
+inline void __syncthreads(int line = __builtin_LINE()) {
+  tetwarp::simt::Block::current().wait_at_barrier(line);
+}
+
+inline unsigned __ballot_sync(unsigned mask, int predicate, int line = __builtin_LINE()) {
+  return tetwarp::simt::Block::current().ballot(mask, predicate != 0, line);
+}
+
+inline void __syncwarp(unsigned mask = ~0u, int line = __builtin_LINE()) {
+  tetwarp::simt::Block::current().ballot(mask, false, line);
+}
+
+inline int __any_sync(unsigned mask, int predicate, int line = __builtin_LINE()) {
+  return __ballot_sync(mask, predicate, line) != 0;
+}
+
+inline int __all_sync(unsigned mask, int predicate, int line = __builtin_LINE()) {
+  return __ballot_sync(mask, !predicate, line) == 0;
+}
+
+template <class T>
+T __shfl_sync(unsigned mask, T value, int source, int width = 32, int line = __builtin_LINE()) {
+  auto& block = tetwarp::simt::Block::current();
+  const unsigned within = static_cast<unsigned>(width) - 1;
+  const unsigned lane = (block.lane() & ~within) | (static_cast<unsigned>(source) & within);
+  return block.shuffle(mask, value, lane, line);
+}
+
+template <class T>
+T __shfl_up_sync(
+    unsigned mask, T value, unsigned delta, int width = 32, int line = __builtin_LINE()) {
+  auto& block = tetwarp::simt::Block::current();
+  const unsigned within = block.lane() & (static_cast<unsigned>(width) - 1);
+  return block.shuffle(mask, value, block.lane() - (delta <= within ? delta : 0), line);
+}
+
+template <class T>
+T __shfl_down_sync(
+    unsigned mask, T value, unsigned delta, int width = 32, int line = __builtin_LINE()) {
+  auto& block = tetwarp::simt::Block::current();
+  const unsigned left = ~block.lane() & (static_cast<unsigned>(width) - 1);
+  return block.shuffle(mask, value, block.lane() + (delta <= left ? delta : 0), line);
+}
+
+template <class T>
+T __shfl_xor_sync(unsigned mask, T value, int bits, int width = 32, int line = __builtin_LINE()) {
+  auto& block = tetwarp::simt::Block::current();
+  const unsigned last = block.lane() | (static_cast<unsigned>(width) - 1);
+  const unsigned lane = block.lane() ^ static_cast<unsigned>(bits);
+  return block.shuffle(mask, value, lane <= last ? lane : block.lane(), line);
+}
+
+inline int __popc(unsigned bits) {
+  return __builtin_popcount(bits);
+}
+
+/// Lowest set bit, counted from 1; 0 when none is set.
+inline int __ffs(int bits) {
+  return __builtin_ffs(bits);
+}
+
+template <std::integral T>
+T atomicAdd(T* address, std::type_identity_t<T> value) {
+  return __atomic_fetch_add(address, value, __ATOMIC_RELAXED);
+}
+
+template <std::integral T>
+T atomicMin(T* address, std::type_identity_t<T> value) {
+  T old = __atomic_load_n(address, __ATOMIC_RELAXED);
+  while (value < old && !__atomic_compare_exchange_n(address, &old, value, true, __ATOMIC_RELAXED,
+                                                     __ATOMIC_RELAXED)) {
+  }
+  return old;
+}
+
+template <std::integral T>
+T atomicMax(T* address, std::type_identity_t<T> value) {
+  T old = __atomic_load_n(address, __ATOMIC_RELAXED);
+  while (old < value && !__atomic_compare_exchange_n(address, &old, value, true, __ATOMIC_RELAXED,
+                                                     __ATOMIC_RELAXED)) {
+  }
+  return old;
+}
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
+
+namespace tetwarp::simt {
+
+/// The schedule of the launches that follow.
+inline Schedule& schedule() {
+  static Schedule current;
+  return current;
+}
+
+/// Calls `check(schedule)` with launches running forward, in reverse, and shuffled by three seeds.
+template <class Check>
+void for_each_schedule(Check check) {
+  for (const Schedule next :
+       {Schedule{Order::forward}, Schedule{Order::reverse}, Schedule{Order::shuffled, 1},
+        Schedule{Order::shuffled, 2}, Schedule{Order::shuffled, 3}}) {
+    schedule() = next;
+    check(next);
+  }
+  schedule() = Schedule{};
+}
+
+/// Throws Fault on a configuration that no GPU takes without being asked specially.
+inline void check_launch(dim3 grid, dim3 block, std::size_t shared_bytes) {
+  const std::uint64_t threads = std::uint64_t{block.x} * block.y * block.z;
+  if (threads == 0 || threads > 1024 || block.z > 64) throw Fault("block size");
+  if (grid.x == 0 || grid.y == 0 || grid.z == 0 || grid.x > 0x7fffffffu || grid.y > 65535 ||
+      grid.z > 65535) {
+    throw Fault("grid size");
+  }
+  if (shared_bytes > std::size_t{48} * 1024) throw Fault("shared memory");
+}
+
+/// Runs a kernel to its end: blocks in parallel, the threads of a block as schedule() says.
+/// @throws Fault on the first block that breaks a rule
+template <class Kernel, class... Args>
+void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, const Args&... args) {
+  check_launch(grid, block, shared_bytes);
+  const std::int64_t slice = std::int64_t{grid.x} * grid.y;
+  const std::int64_t block_count = slice * grid.z;
+  std::exception_ptr fault;
+#pragma omp parallel for schedule(dynamic) if (!has_address_sanitizer)
+  for (std::int64_t b = 0; b < block_count; ++b) {
+    blockIdx = {static_cast<unsigned>(b % grid.x), static_cast<unsigned>(b % slice / grid.x),
+                static_cast<unsigned>(b / slice)};
+    blockDim = block;
+    gridDim = grid;
+    const auto set_thread = [&block](unsigned t) {
+      threadIdx = {t % block.x, t / block.x % block.y, t / (block.x * block.y)};
+    };
+    Schedule own = schedule();
+    own.seed += static_cast<unsigned>(b);  // the same for any number of OS threads
+    try {
+      Block::current().run(
+          block.x * block.y * block.z, shared_bytes, own, [&] { kernel(args...); }, set_thread);
+    } catch (...) {
+#pragma omp critical
+      fault = std::current_exception();
+    }
+  }
+  if (fault) std::rethrow_exception(fault);
+}
+
+}  // namespace tetwarp::simt

@@ -1,0 +1,54 @@
+/// @file launch.hpp
+/// Launches hand-mapped kernels: on a GPU when nvcc compiles, else on the CPU by emulation. What a
+/// `.cuh` file includes, and all it needs of CUDA.
+#pragma once
+#include <cstddef>
+
+#if defined(__CUDACC__)
+#include <cuda_runtime.h>
+
+#include <string>
+#include <tetwarp/error.hpp>
+#else
+#include "kernels/emu/simt.hpp"
+#endif
+
+namespace tetwarp {
+
+/// Dynamic shared memory of the running block, aligned to 16 bytes.
+template <class T>
+__device__ __forceinline__ T* dynamic_shared() {
+#if defined(__CUDACC__)
+  extern __shared__ __align__(16) unsigned char tetwarp_dynamic_shared[];
+  return reinterpret_cast<T*>(tetwarp_dynamic_shared);
+#else
+  return static_cast<T*>(simt::Block::current().shared());
+#endif
+}
+
+/// Launches `kernel(args...)`.
+///
+/// @param stream        orders the work; the emulation runs at once
+/// @param grid          blocks, none of its extents zero
+/// @param block         threads of a block
+/// @param shared_bytes  dynamic shared memory of a block, at most 48 KiB
+/// @throws CudaError if the launch fails, simt::Fault where the emulation finds a broken rule
+template <class... Parameters, class... Args>
+void launch(cudaStream_t stream,
+            void (*kernel)(Parameters...),
+            dim3 grid,
+            dim3 block,
+            std::size_t shared_bytes,
+            const Args&... args) {
+#if defined(__CUDACC__)
+  kernel<<<grid, block, shared_bytes, stream>>>(args...);
+  if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess) {
+    throw CudaError(std::string("kernel launch: ") + cudaGetErrorString(status));
+  }
+#else
+  static_cast<void>(stream);
+  simt::launch(kernel, grid, block, shared_bytes, args...);
+#endif
+}
+
+}  // namespace tetwarp

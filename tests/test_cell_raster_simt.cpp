@@ -1,0 +1,219 @@
+/// @file test_cell_raster_simt.cpp
+/// The hand-mapped raster kernel, run by emulation in several thread orders, gives the bits of the
+/// row-by-row raster of the host. A program of its own: the emulation defines CUDA's names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host/cell_raster_cpu.hpp"
+#include "host/pixel_dispatch.hpp"
+#include "tests/stages.hpp"
+
+#include "kernels/cell_raster.cuh"
+
+namespace tetwarp::test {
+namespace {
+
+/// What a raster job varies in.
+struct RasterCase {
+  std::string scene = "waved";
+  PixelType type = PixelType::float32;
+  int components = 1;
+  Interpolation filter = Interpolation::linear;
+  OutsideMap outside = {};
+  bool copy_whole_shifts = true;
+  std::optional<Region> region = {};
+};
+
+/// Everything that a raster writes.
+template <class T>
+struct Rastered {
+  std::vector<T> volume;
+  std::vector<std::uint8_t> mask;
+  std::vector<std::int32_t> tet;
+  RasterCounts counts = {0, 0, 0, 0};
+};
+
+template <class T>
+bool is_same(const Rastered<T>& a, const Rastered<T>& b) {
+  return std::memcmp(a.volume.data(), b.volume.data(), a.volume.size() * sizeof(T)) == 0 &&
+         a.mask == b.mask && a.tet == b.tet && a.counts.covered == b.counts.covered &&
+         a.counts.copied == b.counts.copied;
+}
+
+scenes::Scene scene_named(const std::string& name) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(20)) {
+    if (scene.name == name) return scene;
+  }
+  throw std::invalid_argument("no scene " + name);
+}
+
+template <class T>
+class RasterBench {
+ public:
+  explicit RasterBench(const RasterCase& what)
+      : scene_(scene_named(what.scene)),
+        source_(scenes::wavy_volume(scene_.source_grid, what.type, what.components)),
+        input_(input_of(scene_, what.region)),
+        exec_(2),
+        arrays_(exec_),
+        stages_(arrays_, input_) {
+    job_.setups = stages_.setups;
+    job_.tets = stages_.tets;
+    job_.nodes = stages_.nodes;
+    job_.pairs = stages_.pairs;
+    job_.ranges = stages_.ranges;
+    job_.frame = input_.frame;
+    job_.source = source_view<T>(source_, source_.data.data());
+    job_.filter = what.filter;
+    job_.outside = what.outside;
+    job_.background = T{77};
+    job_.copy_whole_shifts = what.copy_whole_shifts;
+  }
+
+  std::uint32_t most_pairs_in_a_cell() {
+    std::uint32_t most = 0;
+    for (const CellRange& range : arrays_.download(stages_.ranges)) {
+      most = std::max(most, range.end - range.begin);
+    }
+    return most;
+  }
+
+  Rastered<T> by_rows() {
+    return filled([&](const RasterJob<T>& job) {
+      const Progress silent;
+      cell_raster(exec_, job, ProgressPart{silent, 0, 1});
+    });
+  }
+
+  Rastered<T> by_blocks() {
+    return filled([](const RasterJob<T>& job) {
+      const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
+      launch(nullptr, cell_raster_kernel<T>, cells, raster_threads, 0, job);
+    });
+  }
+
+ private:
+  template <class Raster>
+  Rastered<T> filled(Raster&& raster) {
+    const auto voxels = static_cast<std::size_t>(input_.frame.voxel_count());
+    Rastered<T> result;
+    result.volume.assign(voxels * static_cast<std::size_t>(source_.components), T{55});
+    result.mask.assign(voxels, 0xee);
+    result.tet.assign(voxels, -99);
+    job_.volume = result.volume.data();
+    job_.mask = result.mask.data();
+    job_.tet = result.tet.data();
+    job_.counts = &result.counts;
+    raster(job_);
+    return result;
+  }
+
+  scenes::Scene scene_;
+  Volume source_;
+  StageInput input_;
+  CpuExec exec_;
+  ExecArrays<CpuExec> arrays_;
+  Stages<CpuExec> stages_;
+  RasterJob<T> job_;
+};
+
+void expect_equal_bits(const RasterCase& what) {
+  with_pixel_type(what.type, [&]<class T>(T) {
+    RasterBench<T> bench(what);
+    const Rastered<T> rows = bench.by_rows();
+    EXPECT_GT(rows.counts.covered, 0) << what.scene;
+    simt::for_each_schedule([&](const simt::Schedule&) {
+      EXPECT_TRUE(is_same(bench.by_blocks(), rows)) << what.scene << ' ' << name_of(what.type);
+    });
+  });
+}
+
+/// Half as fast along x, somewhat shifted: uncovered voxels are interpolated.
+OutsideMap stretched() {
+  return {true, false, {{0.5, 0, 0.01}, {0, 1, 0}, {0.02, 0, 0.9}}, {0.3, -0.2, 1.7}};
+}
+
+OutsideMap same_place(double i, double j, double k) {
+  return {true, true, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {i, j, k}};
+}
+
+TEST(CellRasterSimt, EveryPixelTypeHasTheSameBits) {
+  for (const PixelType type :
+       {PixelType::float32, PixelType::int16, PixelType::uint8, PixelType::uint16, PixelType::int8,
+        PixelType::float64, PixelType::int32}) {
+    expect_equal_bits({.type = type});
+  }
+  for (const PixelType type : {PixelType::uint64, PixelType::int16, PixelType::float32}) {
+    expect_equal_bits({.type = type, .filter = Interpolation::nearest});
+  }
+}
+
+TEST(CellRasterSimt, EverySceneHasTheSameBits) {
+  for (const char* scene : {"identity", "aligned", "rotated", "outside", "oblique", "slivers",
+                            "thin_aligned", "soup", "overlapping", "folded", "far", "other_grid"}) {
+    expect_equal_bits({.scene = scene, .type = PixelType::int16});
+    expect_equal_bits({.scene = scene, .type = PixelType::float32});
+  }
+}
+
+TEST(CellRasterSimt, SeveralComponentsHaveTheSameBits) {
+  for (const int components : {2, 3, 9}) {
+    expect_equal_bits({.type = PixelType::uint8, .components = components});
+    expect_equal_bits({.type = PixelType::float32, .components = components});
+    expect_equal_bits({.type = PixelType::float64, .components = components});
+  }
+}
+
+TEST(CellRasterSimt, CopyingAndInterpolatingHaveTheSameBits) {
+  expect_equal_bits({.scene = "aligned", .copy_whole_shifts = false});
+  const Rastered<float> copied = RasterBench<float>({.scene = "aligned"}).by_blocks();
+  const Rastered<float> blended =
+      RasterBench<float>({.scene = "aligned", .copy_whole_shifts = false}).by_blocks();
+  EXPECT_EQ(copied.volume, blended.volume);
+  EXPECT_EQ(copied.counts.copied, copied.counts.covered);
+  EXPECT_EQ(blended.counts.copied, 0);
+}
+
+TEST(CellRasterSimt, UncoveredVoxelsHaveTheSameBits) {
+  for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::float64}) {
+    expect_equal_bits({.scene = "rotated", .type = type, .outside = same_place(0, 0, 0)});
+    expect_equal_bits({.scene = "rotated", .type = type, .outside = stretched()});
+  }
+}
+
+TEST(CellRasterSimt, WindowsThatStartInsideACellHaveTheSameBits) {
+  for (const Region& region : {Region{{3, 5, 1}, {20, 16, 19}}, Region{{9, 0, 7}, {10, 17, 8}},
+                               Region{{15, 15, 15}, {20, 17, 22}}}) {
+    for (const char* scene : {"identity", "waved"}) {
+      expect_equal_bits({.scene = scene, .region = region});
+      expect_equal_bits(
+          {.scene = scene, .type = PixelType::int16, .outside = stretched(), .region = region});
+    }
+  }
+}
+
+/// A block takes 16 tetrahedra at a time; "tiny" has thousands in a cell.
+TEST(CellRasterSimt, CellsOfManyTetrahedraHaveTheSameBits) {
+  EXPECT_GT(RasterBench<float>({.scene = "tiny"}).most_pairs_in_a_cell(), 1000u);
+  EXPECT_GT(RasterBench<float>({.scene = "soup"}).most_pairs_in_a_cell(), raster_chunk + 0u);
+  expect_equal_bits({.scene = "tiny"});
+  expect_equal_bits({.scene = "tiny", .type = PixelType::int16});
+}
+
+TEST(CellRasterSimt, EveryVoxelIsWritten) {
+  const Rastered<float> blocks = RasterBench<float>({.scene = "waved"}).by_blocks();
+
+  EXPECT_EQ(std::ranges::count(blocks.volume, 55.0f), 0);
+  EXPECT_EQ(std::ranges::count(blocks.tet, -99), 0);
+  EXPECT_EQ(std::ranges::count(blocks.mask, 0xee), 0);
+}
+
+}  // namespace
+}  // namespace tetwarp::test
