@@ -84,7 +84,11 @@ Check check(const WarpCase& c, Backend backend) {
   return result;
 }
 
-void run(benchmark::State& state, const WarpCase& c, Backend backend, int threads) {
+void run(benchmark::State& state,
+         const WarpCase& c,
+         Backend backend,
+         int threads,
+         const SkipOptions& skip = {}) {
   const Check checked = check(c, backend);
   if (!checked.owners_agree || checked.max_error > 1e-5) {
     state.SkipWithError("wrong result: not timed");
@@ -94,8 +98,9 @@ void run(benchmark::State& state, const WarpCase& c, Backend backend, int thread
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float32);
   Volume output = make_volume(scene.output_grid, source.type);
   void* const out = output.data.data();
-  Warper warper(source, scene.mesh,
-                {.output_grid = scene.output_grid, .backend = backend, .threads = threads});
+  Warper warper(
+      source, scene.mesh,
+      {.output_grid = scene.output_grid, .backend = backend, .threads = threads, .skip = skip});
   const WarpTarget target{.volumes = std::span(&out, 1)};
   warper.step(scene.deformed, target);  // first touch, buffers
   StepReport step;
@@ -129,14 +134,24 @@ int main(int argc, char** argv) {
     const std::string name = std::string(c.name) + "/" + std::to_string(tets);
     for (const int threads : {1, 2}) {
       const std::string row = name + "/cpu/" + std::to_string(threads);
-      benchmark::RegisterBenchmark(row.c_str(), [&c, threads](benchmark::State& state) {
-        run(state, c, Backend::cpu, threads);
-      })->UseManualTime()->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(
+          row.c_str(),
+          [&c, threads](benchmark::State& state) { run(state, c, Backend::cpu, threads); })
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
     }
+    benchmark::RegisterBenchmark((name + "/cpu/2/no_culling").c_str(),
+                                 [&c](benchmark::State& state) {
+                                   run(state, c, Backend::cpu, 2,
+                                       {.rejected_cells = false, .accepted_cells = false});
+                                 })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
     if (!cuda.usable) continue;
-    benchmark::RegisterBenchmark((name + "/cuda").c_str(), [&c](benchmark::State& state) {
-      run(state, c, Backend::cuda, 0);
-    })->UseManualTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark((name + "/cuda").c_str(),
+                                 [&c](benchmark::State& state) { run(state, c, Backend::cuda, 0); })
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
   }
   if (!cuda.usable) std::fprintf(stderr, "cuda: not measured: %s\n", cuda.reason.c_str());
   benchmark::Initialize(&argc, argv);
