@@ -56,8 +56,8 @@ struct SliceSides {
 };
 
 /// certain_side() over the slices [k_begin, k_end) of a cell, rows [j_begin, j_end).
-inline void cell_sides(const CellPlanes& planes, int j_begin, int j_end, int k_begin, int k_end,
-                       SliceSides* sides) {
+inline void cell_sides(
+    const CellPlanes& planes, int j_begin, int j_end, int k_begin, int k_end, SliceSides* sides) {
   const hn::CappedTag<float, 16> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int first = 8 * j_begin / lanes * lanes;
@@ -101,8 +101,12 @@ inline void cell_sides(const CellPlanes& planes, int j_begin, int j_end, int k_b
 /// @param own     own(pair, k, bits) is told of every slice in which a pair owns voxels, pairs
 ///                ascending
 template <class T, class Own>
-inline void find_owners(const RasterJob<T>& job, const CellBox& box, const CellRange& range,
-                        SliceBits* open, RasterCounts& counts, Own&& own) {
+inline void find_owners(const RasterJob<T>& job,
+                        const CellBox& box,
+                        const CellRange& range,
+                        SliceBits* open,
+                        RasterCounts& counts,
+                        Own&& own) {
   for (std::uint32_t p = range.begin; p < range.end; ++p) {
     if (is_accepted(job.pairs[p])) {
       for (int k = box.begin[2]; k < box.end[2]; ++k) {

@@ -117,10 +117,10 @@ class CellRows {
   RasterCounts& counts_;
   CellBox box_;
   unsigned whole_row_ = 0;
-  SliceBits open_[cell_edge] = {};          ///< per slice: voxels without an owner
-  std::vector<RowSource<T>> sources_;       ///< of the pairs that own voxels of this cell
-  std::uint32_t last_pair_ = 0;             ///< the pair behind the last source
-  RowRuns runs_[cell_edge][cell_edge] = {}; ///< [k][j]
+  SliceBits open_[cell_edge] = {};           ///< per slice: voxels without an owner
+  std::vector<RowSource<T>> sources_;        ///< of the pairs that own voxels of this cell
+  std::uint32_t last_pair_ = 0;              ///< the pair behind the last source
+  RowRuns runs_[cell_edge][cell_edge] = {};  ///< [k][j]
 };
 
 }  // namespace HWY_NAMESPACE

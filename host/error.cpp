@@ -6,7 +6,8 @@ namespace tetwarp {
 
 namespace {
 
-std::string line_of(const std::string& file, const std::string& dataset,
+std::string line_of(const std::string& file,
+                    const std::string& dataset,
                     const std::string& problem) {
   return file + ": " + (dataset.empty() ? "" : dataset + ": ") + problem;
 }

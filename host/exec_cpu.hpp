@@ -85,7 +85,9 @@ class CpuExec {
   /// body(segment, local, item) for every item of every segment: offsets[s] + local = item.
   /// Items from `capacity` on are left out.
   template <class Body>
-  void for_each_item(const char* label, View<const std::int64_t> offsets, std::int64_t capacity,
+  void for_each_item(const char* label,
+                     View<const std::int64_t> offsets,
+                     std::int64_t capacity,
                      const Body& body) {
     const Clock clock(*this, label);
     const std::int64_t segments = offsets.size - 1;
@@ -104,7 +106,8 @@ class CpuExec {
     }
   }
 
-  /// values[i] becomes the sum of the values before it; the last entry, whatever it held, the total.
+  /// values[i] becomes the sum of the values before it; the last entry, whatever it held, the
+  /// total.
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     const Clock clock(*this, label);
     std::int64_t sum = 0;
@@ -119,8 +122,10 @@ class CpuExec {
   void reject_all(const char*, View<CellPair>) {}
 
   /// Copies the pairs that are not rejected, in their order, and counts them.
-  void select_valid(const char* label, View<const CellPair> candidates,
-                    View<const std::int64_t> candidate_count, View<CellPair> pairs,
+  void select_valid(const char* label,
+                    View<const CellPair> candidates,
+                    View<const std::int64_t> candidate_count,
+                    View<CellPair> pairs,
                     View<std::int64_t> pair_count) {
     const Clock clock(*this, label);
     std::int64_t kept = 0;
@@ -133,7 +138,9 @@ class CpuExec {
   }
 
   /// Stable radix sort by cell of the first pair_count[0] pairs.
-  void sort_pairs(const char* label, View<CellPair> pairs, View<const std::int64_t> pair_count,
+  void sort_pairs(const char* label,
+                  View<CellPair> pairs,
+                  View<const std::int64_t> pair_count,
                   int cell_bits) {
     const Clock clock(*this, label);
     const std::int64_t count = pair_count[0];

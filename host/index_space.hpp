@@ -13,7 +13,8 @@ namespace tetwarp {
 /// matrix has exactly the reciprocals. @pre the grid passed check_grid().
 IndexFromWorld index_from_world(const Grid& grid);
 
-/// The map output index -> source index of one world position: x_source = linear * x_output + offset.
+/// The map output index -> source index of one world position: x_source = linear * x_output +
+/// offset.
 struct IndexMap {
   std::array<double, 9> linear;
   std::array<double, 3> offset;

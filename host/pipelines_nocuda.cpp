@@ -10,8 +10,12 @@ namespace {
 constexpr const char* reason = "this build has no CUDA; build with the CUDA toolkit installed";
 }
 
-BackendStatus cuda_status(int) { return {Backend::cuda, false, "", reason}; }
+BackendStatus cuda_status(int) {
+  return {Backend::cuda, false, "", reason};
+}
 
-std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan&) { throw CudaError(reason); }
+std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan&) {
+  throw CudaError(reason);
+}
 
 }  // namespace tetwarp

@@ -9,8 +9,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const Timings& t) {
-  return {{"read", t.read},     {"upload", t.upload}, {"setup", t.setup},
-          {"mask", t.mask},     {"cull", t.cull},     {"raster", t.raster},
+  return {{"read", t.read},         {"upload", t.upload}, {"setup", t.setup},
+          {"mask", t.mask},         {"cull", t.cull},     {"raster", t.raster},
           {"download", t.download}, {"write", t.write},   {"total", t.total}};
 }
 

@@ -16,8 +16,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "host/row_vector-inl.hpp"
 #include "host/row_source-inl.hpp"
+#include "host/row_vector-inl.hpp"
 #include "kernels/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -58,8 +58,12 @@ inline void store_values(const float* values, unsigned bits, T* out) {
 
 /// The voxels `bits` of a row moved by whole voxels: copied where the source has them.
 template <class T>
-inline void copy_run(const RasterJob<T>& job, const RowSource<T>& source, unsigned bits, int j,
-                     int k, std::int64_t row) {
+inline void copy_run(const RasterJob<T>& job,
+                     const RowSource<T>& source,
+                     unsigned bits,
+                     int j,
+                     int k,
+                     std::int64_t row) {
   const SourceView<T>& view = job.source;
   const int* whole = source.map().whole;
   const int y = whole[1] + j, z = whole[2] + k;
@@ -79,8 +83,12 @@ inline void copy_run(const RasterJob<T>& job, const RowSource<T>& source, unsign
 
 /// The voxels `bits` of a row one by one, in the pixel type's own arithmetic where the map allows.
 template <class T>
-inline void sample_alone(const RasterJob<T>& job, const RowSource<T>& source, unsigned bits, int j,
-                         int k, std::int64_t row) {
+inline void sample_alone(const RasterJob<T>& job,
+                         const RowSource<T>& source,
+                         unsigned bits,
+                         int j,
+                         int k,
+                         std::int64_t row) {
   const int* corner = source.corner();
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
@@ -95,8 +103,12 @@ inline void sample_alone(const RasterJob<T>& job, const RowSource<T>& source, un
 
 /// Writes the covered voxels of row (j, k) of a cell; its voxel 0 is at `row` of the output.
 template <class T>
-inline void write_row(const RasterJob<T>& job, const RowSource<T>* sources, const RowRuns& runs,
-                      int j, int k, std::int64_t row) {
+inline void write_row(const RasterJob<T>& job,
+                      const RowSource<T>* sources,
+                      const RowRuns& runs,
+                      int j,
+                      int k,
+                      std::int64_t row) {
   RowRuns vectored;
   unsigned bits_vectored = 0;
   bool meets_rim = false;

@@ -85,7 +85,8 @@ class RowSource {
 
  private:
   /// The kind by the box of all positions over the cell.
-  static RowKind kind_over_cell(const SourceView<T>& source, const double* start,
+  static RowKind kind_over_cell(const SourceView<T>& source,
+                                const double* start,
                                 const double (*linear)[3]) {
     const double samples = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
     if (source.components != 1 || samples > std::numeric_limits<std::int32_t>::max()) {

@@ -27,17 +27,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Positions of some voxels of a row.
 struct RowTaps {
-  hn::Vec<RowIntTag> offset;      ///< of the lower neighbours [sample]
-  hn::Vec<RowIntTag> step[2];     ///< from there to the upper neighbour along y and z [sample]
+  hn::Vec<RowIntTag> offset;   ///< of the lower neighbours [sample]
+  hn::Vec<RowIntTag> step[2];  ///< from there to the upper neighbour along y and z [sample]
   hn::Vec<RowTag> fraction[3];
-  hn::Mask<RowTag> inside;        ///< of the source
+  hn::Mask<RowTag> inside;  ///< of the source
 };
 
 /// Positions of the vector of row (j, k) that starts at `lane` under one source. Without Rim, all
 /// lie between the source's outermost centres.
 template <bool Rim, class T>
-inline RowTaps row_taps(const SourceView<T>& view, bool nearest, const RowSource<T>& source,
-                        std::size_t lane, int j, int k) {
+inline RowTaps row_taps(const SourceView<T>& view,
+                        bool nearest,
+                        const RowSource<T>& source,
+                        std::size_t lane,
+                        int j,
+                        int k) {
   const RowTag d;
   const RowIntTag di;
   RowTaps taps;
@@ -56,8 +60,8 @@ inline RowTaps row_taps(const SourceView<T>& view, bool nearest, const RowSource
       const auto low = hn::Set(d, -0.5f - static_cast<float>(whole) - rim_slack);
       const auto high = hn::Set(d, static_cast<float>(last - whole) + 0.5f + rim_slack);
       taps.inside = hn::And(taps.inside, hn::And(hn::Ge(x, low), hn::Le(x, high)));
-      const auto blends = hn::And(hn::Gt(voxel[axis], hn::Set(di, -1)),
-                                  hn::Lt(voxel[axis], hn::Set(di, last)));
+      const auto blends =
+          hn::And(hn::Gt(voxel[axis], hn::Set(di, -1)), hn::Lt(voxel[axis], hn::Set(di, last)));
       taps.fraction[axis] = hn::IfThenElseZero(hn::RebindMask(d, blends), taps.fraction[axis]);
       voxel[axis] = hn::Min(hn::Max(voxel[axis], hn::Zero(di)), hn::Set(di, last));
       if (axis > 0) taps.step[axis - 1] = hn::IfThenElseZero(blends, hn::Set(di, stride[axis]));
@@ -86,7 +90,7 @@ inline hn::Vec<PairFloatTag> read_pairs(const T* samples,
     const hn::RebindToUnsigned<decltype(dhi)> dhu;
     const hn::RebindToSigned<PairFloatTag> di;
     const auto* words = reinterpret_cast<const std::int32_t*>(samples);
-    auto word = hn::GatherOffset(dhi, words, hn::ShiftLeft<sizeof(T) == 2 ? 1 : 0>(offset));
+    auto word = hn::GatherOffset(dhi, words, hn::ShiftLeft < sizeof(T) == 2 ? 1 : 0 > (offset));
     if constexpr (sizeof(T) == 1) {
       const auto low = hn::And(word, hn::Set(dhi, 0xff));
       const auto high = hn::ShiftLeft<8>(hn::And(word, hn::Set(dhi, 0xff00)));
@@ -103,7 +107,8 @@ inline hn::Vec<PairFloatTag> read_pairs(const T* samples,
 }
 
 /// a + f (b - a), and a alone where f is zero.
-inline hn::Vec<PairFloatTag> lerp_pairs(hn::Vec<PairFloatTag> f, hn::Vec<PairFloatTag> a,
+inline hn::Vec<PairFloatTag> lerp_pairs(hn::Vec<PairFloatTag> f,
+                                        hn::Vec<PairFloatTag> a,
                                         hn::Vec<PairFloatTag> b) {
   const auto between = hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
   return hn::IfThenElse(hn::Gt(f, hn::Zero(PairFloatTag())), between, a);
@@ -118,7 +123,8 @@ inline hn::Vec<PairFloatTag> both(const float* from) {
 }
 
 /// Blends pairs along x into one value per 64-bit lane and stores the values densely.
-inline void store_blended(hn::Vec<PairFloatTag> pairs, hn::Vec<PairFloatTag> fraction,
+inline void store_blended(hn::Vec<PairFloatTag> pairs,
+                          hn::Vec<PairFloatTag> fraction,
                           float* values) {
   const PairTag d;
   const auto right = hn::BitCast(PairFloatTag(), hn::ShiftRight<32>(hn::BitCast(d, pairs)));
@@ -131,8 +137,12 @@ inline void store_blended(hn::Vec<PairFloatTag> pairs, hn::Vec<PairFloatTag> fra
 /// Eight samples of row (j, k) from sources that are RowKind::inner, or with Rim inner or rim.
 /// @returns the voxels that lie inside the source
 template <bool Rim, class T>
-inline unsigned sample_row(const RasterJob<T>& job, const RowSource<T>* sources,
-                           const RowRuns& runs, int j, int k, float* values) {
+inline unsigned sample_row(const RasterJob<T>& job,
+                           const RowSource<T>* sources,
+                           const RowRuns& runs,
+                           int j,
+                           int k,
+                           float* values) {
   const RowTag d;
   const RowIntTag di;
   const PairTag dp;
@@ -148,8 +158,7 @@ inline unsigned sample_row(const RasterJob<T>& job, const RowSource<T>* sources,
     for (int r = 1; r < runs.count; ++r) {
       const auto mine = lanes_of(runs.run[r].bits, lane);
       const auto mine_int = hn::RebindMask(di, mine);
-      const RowTaps more =
-          row_taps<Rim>(view, nearest, sources[runs.run[r].source], lane, j, k);
+      const RowTaps more = row_taps<Rim>(view, nearest, sources[runs.run[r].source], lane, j, k);
       taps.offset = hn::IfThenElse(mine_int, more.offset, taps.offset);
       for (int axis = 0; axis < 3; ++axis) {
         taps.fraction[axis] = hn::IfThenElse(mine, more.fraction[axis], taps.fraction[axis]);

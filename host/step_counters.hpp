@@ -22,8 +22,10 @@ struct StepCounters {
 };
 
 /// The report of a step: stage times by label, counters, sizes.
-inline StepReport make_step_report(const StepCounters& counters, const StageTimes& times,
-                                   const OutputFrame& frame, std::int64_t tet_count,
+inline StepReport make_step_report(const StepCounters& counters,
+                                   const StageTimes& times,
+                                   const OutputFrame& frame,
+                                   std::int64_t tet_count,
                                    std::int64_t candidate_pairs) {
   StepReport report;
   report.timings.upload = times.of("warp/upload");

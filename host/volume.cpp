@@ -34,20 +34,14 @@ std::size_t size_of(PixelType type) {
 }
 
 const char* name_of(PixelType type) {
-  static constexpr const char* names[] = {"uint8",
-                                          "int8",
-                                          "uint16",
-                                          "int16",
-                                          "uint32",
-                                          "int32",
-                                          "uint64",
-                                          "int64",
-                                          "float32",
-                                          "float64"};
+  static constexpr const char* names[] = {"uint8", "int8",   "uint16", "int16",   "uint32",
+                                          "int32", "uint64", "int64",  "float32", "float64"};
   return names[static_cast<int>(type)];
 }
 
-bool is_integer(PixelType type) { return type < PixelType::float32; }
+bool is_integer(PixelType type) {
+  return type < PixelType::float32;
+}
 
 Point3 Grid::world_of(const Point3& index) const {
   Point3 world = origin;
@@ -131,8 +125,8 @@ VolumeView::VolumeView(const Volume& volume)
   }
 }
 
-VolumeView::VolumeView(const Grid& grid_, PixelType type_, int components_, const void* data_,
-                       Memory memory_)
+VolumeView::VolumeView(
+    const Grid& grid_, PixelType type_, int components_, const void* data_, Memory memory_)
     : grid(grid_), type(type_), components(components_), data(data_), memory(memory_) {}
 
 IndexFromWorld index_from_world(const Grid& grid) {

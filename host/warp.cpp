@@ -45,10 +45,9 @@ Region checked_region(const Grid& grid, const WarpOptions& options) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::int64_t begin = options.region->begin[axis], end = options.region->end[axis];
     if (begin < 0 || begin >= end || end > grid.dims[axis]) {
-      throw std::invalid_argument("region: " + std::to_string(begin) + " to " +
-                                  std::to_string(end) + " on axis " + std::to_string(axis) +
-                                  " is empty or not within 0 to " +
-                                  std::to_string(grid.dims[axis]));
+      throw std::invalid_argument(
+          "region: " + std::to_string(begin) + " to " + std::to_string(end) + " on axis " +
+          std::to_string(axis) + " is empty or not within 0 to " + std::to_string(grid.dims[axis]));
     }
   }
   return *options.region;
@@ -60,14 +59,15 @@ Grid grid_of_region(const Grid& grid, const Region& region) {
     part.dims[axis] = region.end[axis] - region.begin[axis];
   }
   if (region.begin != std::array<std::int64_t, 3>{0, 0, 0}) {
-    part.origin = grid.world_of({static_cast<double>(region.begin[0]),
-                                 static_cast<double>(region.begin[1]),
-                                 static_cast<double>(region.begin[2])});
+    part.origin =
+        grid.world_of({static_cast<double>(region.begin[0]), static_cast<double>(region.begin[1]),
+                       static_cast<double>(region.begin[2])});
   }
   return part;
 }
 
-WarpPlan make_plan(std::span<const VolumeView> sources, const TetMesh& mesh,
+WarpPlan make_plan(std::span<const VolumeView> sources,
+                   const TetMesh& mesh,
                    const WarpOptions& options) {
   WarpPlan plan;
   plan.sources.assign(sources.begin(), sources.end());
@@ -90,7 +90,8 @@ std::pair<Backend, std::string> choose_backend(const WarpOptions& options) {
   }
   const BackendStatus cuda = cuda_status(options.device);
   if (cuda.usable) {
-    return {Backend::cuda, options.backend == Backend::cuda ? "asked for" : "a CUDA device answers"};
+    return {Backend::cuda,
+            options.backend == Backend::cuda ? "asked for" : "a CUDA device answers"};
   }
   if (options.backend == Backend::cuda) {
     throw CudaError("back end cuda: " + cuda.reason + "; use cpu or auto");
@@ -106,7 +107,9 @@ void check_memory_space(const WarpPlan& plan, Backend backend) {
   }
 }
 
-void check_step(const WarpPlan& plan, Backend backend, const PositionsView& deformed,
+void check_step(const WarpPlan& plan,
+                Backend backend,
+                const PositionsView& deformed,
                 const WarpTarget& target) {
   const std::size_t nodes = plan.mesh.rest_positions.size();
   if (deformed.node_count != static_cast<std::int64_t>(nodes) || deformed.xyz == nullptr) {
@@ -146,8 +149,7 @@ struct Warper::State {
   Report report;
 };
 
-Warper::Warper(std::span<const VolumeView> sources, const TetMesh& mesh,
-               const WarpOptions& options)
+Warper::Warper(std::span<const VolumeView> sources, const TetMesh& mesh, const WarpOptions& options)
     : state_(std::make_unique<State>()) {
   state_->plan = make_plan(sources, mesh, options);
   Report& report = state_->report;
@@ -176,11 +178,16 @@ Warper::Warper(Warper&&) noexcept = default;
 Warper& Warper::operator=(Warper&&) noexcept = default;
 Warper::~Warper() = default;
 
-const Grid& Warper::output_grid() const { return state_->plan.target_grid; }
+const Grid& Warper::output_grid() const {
+  return state_->plan.target_grid;
+}
 
-const Report& Warper::report() const { return state_->report; }
+const Report& Warper::report() const {
+  return state_->report;
+}
 
-StepReport Warper::step(const PositionsView& deformed, const WarpTarget& target,
+StepReport Warper::step(const PositionsView& deformed,
+                        const WarpTarget& target,
                         const Progress& progress) {
   Report& report = state_->report;
   check_step(state_->plan, report.backend, deformed, target);
@@ -203,7 +210,9 @@ Volume Warper::step(const PositionsView& deformed) {
   return volume;
 }
 
-WarpResult warp(const Volume& source, const TetMesh& mesh, const std::vector<Point3>& deformed,
+WarpResult warp(const Volume& source,
+                const TetMesh& mesh,
+                const std::vector<Point3>& deformed,
                 const WarpOptions& options) {
   Warper warper(source, mesh, options);
   Volume volume = warper.step(deformed);

@@ -1,5 +1,6 @@
 /// @file warp_backend.hpp
-/// What Warper asks of a back end, and what it hands over: checked arguments, nothing to check again.
+/// What Warper asks of a back end, and what it hands over: checked arguments, nothing to check
+/// again.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -26,7 +27,8 @@ class WarpBackend {
   virtual ~WarpBackend() = default;
 
   /// As Warper::step(), arguments checked.
-  virtual StepReport step(const PositionsView& deformed, const WarpTarget& target,
+  virtual StepReport step(const PositionsView& deformed,
+                          const WarpTarget& target,
                           const Progress& progress) = 0;
   /// Device or processor name.
   virtual std::string device() const = 0;

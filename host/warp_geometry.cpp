@@ -34,8 +34,7 @@ OutsideMap make_outside_map(const WarpPlan& plan, const OutputFrame& frame) {
     outside.offset[row] = map.offset[row];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       outside.linear[row][axis] = map.linear[3 * row + axis];
-      outside.offset[row] +=
-          map.linear[3 * row + axis] * static_cast<double>(frame.origin[axis]);
+      outside.offset[row] += map.linear[3 * row + axis] * static_cast<double>(frame.origin[axis]);
     }
   }
   return outside;
@@ -71,8 +70,7 @@ WarpGeometry make_geometry(const WarpPlan& plan) {
   const IndexFromWorld source_index = index_from_world(plan.sources.front().grid);
   const std::int64_t no_shift[3] = {0, 0, 0};
   for (std::size_t n = 0; n < plan.mesh.rest_positions.size(); ++n) {
-    geometry.rest.push_back(
-        quantized(source_index, plan.mesh.rest_positions[n].data(), no_shift));
+    geometry.rest.push_back(quantized(source_index, plan.mesh.rest_positions[n].data(), no_shift));
     if (geometry.rest.back().x[0] == bad_node) {
       throw std::invalid_argument("mesh: rest position of node " + std::to_string(n) +
                                   " is over 2^40 voxels from the source grid");

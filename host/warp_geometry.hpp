@@ -1,5 +1,6 @@
 /// @file warp_geometry.hpp
-/// What a plan means in index space: the frame, the quantized rest mesh, the map of uncovered voxels.
+/// What a plan means in index space: the frame, the quantized rest mesh, the map of uncovered
+/// voxels.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -13,8 +14,8 @@ namespace tetwarp {
 struct WarpGeometry {
   OutputFrame frame;
   IndexFromWorld output_index;
-  std::vector<Node> rest;                    ///< in the source's index space [quantum]
-  std::vector<std::int8_t> rest_orientation; ///< sign of the rest volume in the output's sense
+  std::vector<Node> rest;                     ///< in the source's index space [quantum]
+  std::vector<std::int8_t> rest_orientation;  ///< sign of the rest volume in the output's sense
   OutsideMap outside;
 };
 

@@ -28,8 +28,8 @@ class WarpPipeline : public WarpBackend {
       : plan_(plan), geometry_(make_geometry(plan)), exec_(std::move(exec)) {
     const std::int64_t tet_count = static_cast<std::int64_t>(plan_.mesh.tets.size());
     const std::int64_t node_count = static_cast<std::int64_t>(geometry_.rest.size());
-    tets_ = exec_.resident("warp/upload", plan_.mesh.tets.front().data(), 4 * tet_count,
-                           tet_buffer_);
+    tets_ =
+        exec_.resident("warp/upload", plan_.mesh.tets.front().data(), 4 * tet_count, tet_buffer_);
     rest_ = exec_.resident("warp/upload", geometry_.rest.data(), node_count, rest_buffer_);
     orientation_ = exec_.resident("warp/upload", geometry_.rest_orientation.data(), tet_count,
                                   orientation_buffer_);
@@ -45,7 +45,8 @@ class WarpPipeline : public WarpBackend {
     counters_.reserve(1);
   }
 
-  StepReport step(const PositionsView& deformed, const WarpTarget& target,
+  StepReport step(const PositionsView& deformed,
+                  const WarpTarget& target,
                   const Progress& progress) override {
     const auto start = std::chrono::steady_clock::now();
     exec_.use_stream(target.stream);
@@ -92,8 +93,8 @@ class WarpPipeline : public WarpBackend {
     StepCounters* counters = counters_.view(1).data;
     cell_pairs(exec_, candidates_.const_view(pair_capacity_),
                {pair_offsets_.const_view(tets + 1).data + tets, 1}, frame,
-               pairs_.view(pair_capacity_), {&counters->pairs, 1},
-               ranges_.view(frame.cell_count()), {&counters->accepted, 1});
+               pairs_.view(pair_capacity_), {&counters->pairs, 1}, ranges_.view(frame.cell_count()),
+               {&counters->accepted, 1});
     if (plan_.options.count_folded) count_folded();
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) raster(s, target, progress);
   }
@@ -170,10 +171,13 @@ class WarpPipeline : public WarpBackend {
   void count_folded() {
     StepCounters* counters = counters_.view(1).data;
     exec_.for_each("warp/fold", geometry_.frame.voxel_count(),
-                   VoxelFoldBody{tets_, nodes_.const_view(rest_.size),
-                                 pairs_.const_view(pair_capacity_), {&counters->pairs, 1},
+                   VoxelFoldBody{tets_,
+                                 nodes_.const_view(rest_.size),
+                                 pairs_.const_view(pair_capacity_),
+                                 {&counters->pairs, 1},
                                  ranges_.const_view(geometry_.frame.cell_count()),
-                                 geometry_.frame, {&counters->folded, 1}});
+                                 geometry_.frame,
+                                 {&counters->folded, 1}});
   }
 
   void raster(std::size_t s, const WarpTarget& target, const Progress& progress) {
@@ -188,8 +192,8 @@ class WarpPipeline : public WarpBackend {
       job.ranges = ranges_.const_view(frame.cell_count());
       job.frame = frame;
       job.source = source_view<T>(source, sources_[s]);
-      job.filter = plan_.options.filter == Filter::nearest ? Interpolation::nearest
-                                                           : Interpolation::linear;
+      job.filter =
+          plan_.options.filter == Filter::nearest ? Interpolation::nearest : Interpolation::linear;
       job.outside = geometry_.outside;
       job.background = rounded_to<T>(plan_.options.background);
       job.copy_whole_shifts = plan_.options.skip.copied_voxels;

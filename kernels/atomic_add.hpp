@@ -9,8 +9,7 @@ namespace tetwarp {
 
 TETWARP_HD void atomic_add(std::int64_t* counter, std::int64_t value) {
 #if defined(__CUDA_ARCH__)
-  atomicAdd(reinterpret_cast<unsigned long long*>(counter),
-            static_cast<unsigned long long>(value));
+  atomicAdd(reinterpret_cast<unsigned long long*>(counter), static_cast<unsigned long long>(value));
 #else
   __atomic_fetch_add(counter, value, __ATOMIC_RELAXED);
 #endif

@@ -22,11 +22,15 @@ TETWARP_HD CellPair make_pair(std::int64_t cell, std::int64_t tet, bool accepted
   return static_cast<CellPair>(cell) << 32 | (accepted ? accepted_bit : 0u) |
          static_cast<CellPair>(tet);
 }
-TETWARP_HD std::int64_t cell_of(CellPair pair) { return static_cast<std::int64_t>(pair >> 32); }
+TETWARP_HD std::int64_t cell_of(CellPair pair) {
+  return static_cast<std::int64_t>(pair >> 32);
+}
 TETWARP_HD int tet_of(CellPair pair) {
   return static_cast<int>(static_cast<std::uint32_t>(pair) & ~accepted_bit);
 }
-TETWARP_HD bool is_accepted(CellPair pair) { return (pair & accepted_bit) != 0; }
+TETWARP_HD bool is_accepted(CellPair pair) {
+  return (pair & accepted_bit) != 0;
+}
 
 /// Which verdicts may be given; switched off, a pair is kept and its voxels are tested.
 struct CullSwitches {
@@ -82,9 +86,14 @@ struct CellCullBody {
 /// Determinism: as corner_mask. Cost: 16 bytes read, 8 written per pair.
 /// Source: Gascon et al. 2013, section 4 (rejection); acceptance is ours.
 template <class Exec>
-void cell_cull(Exec& exec, View<const TetSetup> setups, View<const std::int64_t> corner_offsets,
-               View<const std::uint16_t> masks, View<const std::int64_t> pair_offsets,
-               CullSwitches switches, const OutputFrame& frame, View<CellPair> pairs) {
+void cell_cull(Exec& exec,
+               View<const TetSetup> setups,
+               View<const std::int64_t> corner_offsets,
+               View<const std::uint16_t> masks,
+               View<const std::int64_t> pair_offsets,
+               CullSwitches switches,
+               const OutputFrame& frame,
+               View<CellPair> pairs) {
   exec.reject_all("warp/cull", pairs);
   exec.for_each_item("warp/cull", pair_offsets, pairs.size,
                      CellCullBody{setups, corner_offsets, masks, switches, frame, pairs});

@@ -17,7 +17,8 @@ struct CellRange {
 };
 
 /// First position in the first `count` sorted pairs whose cell is not below `cell`.
-TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs, std::int64_t count,
+TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs,
+                                            std::int64_t count,
                                             std::int64_t cell) {
   std::int64_t low = 0, high = count;
   while (low < high) {
@@ -67,16 +68,19 @@ struct CellRangeBody {
 /// Determinism: same bits for the same candidates. Cost: a stable radix sort of 8-byte words.
 /// Source: cell-centric order is ours; Gascon et al. 2013 rasterize tetrahedron by tetrahedron.
 template <class Exec>
-void cell_pairs(Exec& exec, View<const CellPair> candidates,
-                View<const std::int64_t> candidate_count, const OutputFrame& frame,
-                View<CellPair> pairs, View<std::int64_t> pair_count, View<CellRange> ranges,
+void cell_pairs(Exec& exec,
+                View<const CellPair> candidates,
+                View<const std::int64_t> candidate_count,
+                const OutputFrame& frame,
+                View<CellPair> pairs,
+                View<std::int64_t> pair_count,
+                View<CellRange> ranges,
                 View<std::int64_t> accepted_count) {
   int cell_bits = 1;
   while (frame.cell_count() >> cell_bits != 0) ++cell_bits;
   exec.select_valid("warp/cull", candidates, candidate_count, pairs, pair_count);
   exec.sort_pairs("warp/cull", pairs, pair_count, cell_bits);
-  exec.for_each("warp/cull", ranges.size,
-                CellRangeBody{pairs, pair_count, ranges, accepted_count});
+  exec.for_each("warp/cull", ranges.size, CellRangeBody{pairs, pair_count, ranges, accepted_count});
 }
 
 }  // namespace tetwarp

@@ -3,8 +3,8 @@
 /// its voxels once, background included. No race on shared faces, no separate clear.
 ///
 /// 128 threads, two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
-/// float32), four voxels along k per thread. The planes and maps of `chunk` tetrahedra at a time are
-/// made once per cell by the first threads and read by all from shared memory.
+/// float32), four voxels along k per thread. The planes and maps of `chunk` tetrahedra at a time
+/// are made once per cell by the first threads and read by all from shared memory.
 #pragma once
 #include "kernels/cell_raster.hpp"
 #include "kernels/launch.hpp"
@@ -12,6 +12,7 @@
 namespace tetwarp {
 
 constexpr int raster_threads = 128;
+constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
@@ -25,7 +26,9 @@ struct RasterChunk {
 };
 
 template <class T>
-__device__ __forceinline__ void load_chunk(const RasterJob<T>& job, std::uint32_t first, int count,
+__device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
+                                           std::uint32_t first,
+                                           int count,
                                            const int* corner,
                                            RasterChunk<ArithmeticOf<T>>& chunk) {
   const int thread = static_cast<int>(threadIdx.x);
@@ -47,8 +50,12 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job, std::uint32_
 /// Slot of the voxel's owner in the chunk, or -1.
 template <class T>
 __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
-                                          const RasterChunk<ArithmeticOf<T>>& chunk, int count,
-                                          const int* corner, int i, int j, int k,
+                                          const RasterChunk<ArithmeticOf<T>>& chunk,
+                                          int count,
+                                          const int* corner,
+                                          int i,
+                                          int j,
+                                          int k,
                                           RasterCounts& mine) {
   for (int slot = 0; slot < count; ++slot) {
     if (chunk.accepted[slot]) return slot;
@@ -67,7 +74,8 @@ __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
 /// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
 /// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
 template <class T>
-__global__ void __launch_bounds__(raster_threads) cell_raster_kernel(RasterJob<T> job) {
+__global__ void __launch_bounds__(raster_threads, raster_blocks)
+    cell_raster_kernel(RasterJob<T> job) {
   using Real = ArithmeticOf<T>;
   __shared__ RasterChunk<Real> chunk;
   __shared__ int block_counts[4];

@@ -62,8 +62,8 @@ struct CellPlanes {
 /// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
 /// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
 /// unit of the scaled planes is u (8 |v| + 192).
-TETWARP_HD void set_cell_plane(const TetSetup& tet, int face, int cx, int cy, int cz,
-                               CellPlanes& planes) {
+TETWARP_HD void set_cell_plane(
+    const TetSetup& tet, int face, int cx, int cy, int cz, CellPlanes& planes) {
   const double* p = tet.plane[face];
   const double value = p[0] * static_cast<double>(cx - tet.anchor[0]) +
                        p[1] * static_cast<double>(cy - tet.anchor[1]) +
@@ -92,8 +92,8 @@ TETWARP_HD bool is_in_rows(const TetSetup& tet, int j, int k) {
 }
 
 /// Source position of a cell's corner under a tetrahedron's map, in float64.
-TETWARP_HD void map_start(const TetSetup& tet, int cx, int cy, int cz, double* start,
-                          double (*linear)[3]) {
+TETWARP_HD void map_start(
+    const TetSetup& tet, int cx, int cy, int cz, double* start, double (*linear)[3]) {
   const double from[3] = {static_cast<double>(cx - tet.anchor[0]),
                           static_cast<double>(cy - tet.anchor[1]),
                           static_cast<double>(cz - tet.anchor[2])};
@@ -114,8 +114,12 @@ TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, dou
 
 /// Stores one voxel's samples at a local position of the source, or the background.
 template <class T, class Real>
-TETWARP_HD void store_sample(const RasterJob<T>& job, Interpolation filter,
-                             const SourceMap<Real>& map, int i, int j, int k,
+TETWARP_HD void store_sample(const RasterJob<T>& job,
+                             Interpolation filter,
+                             const SourceMap<Real>& map,
+                             int i,
+                             int j,
+                             int k,
                              std::int64_t voxel) {
   Real x[3];
   local_position(map, i, j, k, x);
@@ -134,8 +138,15 @@ TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
 
 /// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that `tet` owns; the map is made anew.
 template <class T, class Real>
-TETWARP_HD void store_owned(const RasterJob<T>& job, const TetSetup& tet, int cx, int cy, int cz,
-                            int i, int j, int k, std::int64_t voxel) {
+TETWARP_HD void store_owned(const RasterJob<T>& job,
+                            const TetSetup& tet,
+                            int cx,
+                            int cy,
+                            int cz,
+                            int i,
+                            int j,
+                            int k,
+                            std::int64_t voxel) {
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
   store_sample(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
@@ -144,8 +155,8 @@ TETWARP_HD void store_owned(const RasterJob<T>& job, const TetSetup& tet, int cx
 
 /// Stores a voxel that no tetrahedron covers.
 template <class T>
-TETWARP_HD void store_outside(const RasterJob<T>& job, int cx, int cy, int cz, int i, int j,
-                              int k, std::int64_t voxel) {
+TETWARP_HD void store_outside(
+    const RasterJob<T>& job, int cx, int cy, int cz, int i, int j, int k, std::int64_t voxel) {
   if (job.outside.use_source) {
     double start[3];
     outside_start(job.outside, cx, cy, cz, start);

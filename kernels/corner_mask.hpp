@@ -12,7 +12,9 @@ constexpr unsigned outside_bits = 0x0ff;  ///< bit 2f: b_f < 0 for certain, bit 
 constexpr unsigned inside_bits = 0xf00;   ///< bit 8+f: b_f > 0 for certain
 
 /// Mask of one corner at voxel (x, y, z) [frame].
-TETWARP_HD std::uint16_t corner_mask_of(const TetSetup& tet, std::int64_t x, std::int64_t y,
+TETWARP_HD std::uint16_t corner_mask_of(const TetSetup& tet,
+                                        std::int64_t x,
+                                        std::int64_t y,
                                         std::int64_t z) {
   const double dx = static_cast<double>(x - tet.anchor[0]);
   const double dy = static_cast<double>(y - tet.anchor[1]);
@@ -60,7 +62,9 @@ struct CornerMaskBody {
 /// Cost: 4 plane values, 2 bytes written per corner.
 /// Source: Gascon et al. 2013, section 4; the margin and the inside bits are ours.
 template <class Exec>
-void corner_mask(Exec& exec, View<const TetSetup> setups, View<const std::int64_t> corner_offsets,
+void corner_mask(Exec& exec,
+                 View<const TetSetup> setups,
+                 View<const std::int64_t> corner_offsets,
                  View<std::uint16_t> masks) {
   exec.for_each_item("warp/mask", corner_offsets, masks.size, CornerMaskBody{setups, masks});
 }

@@ -52,13 +52,19 @@ class DeviceBuffer {
 };
 
 // primitives_cuda.cu: CUB behind plain functions; `scratch` grows on first use.
-void cuda_exclusive_scan(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
+void cuda_exclusive_scan(cudaStream_t stream,
+                         DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values);
-void cuda_select_valid(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
-                       View<const CellPair> candidates, View<CellPair> pairs,
+void cuda_select_valid(cudaStream_t stream,
+                       DeviceBuffer<std::byte>& scratch,
+                       View<const CellPair> candidates,
+                       View<CellPair> pairs,
                        std::int64_t* pair_count);
-void cuda_sort_pairs(cudaStream_t stream, DeviceBuffer<std::byte>& scratch, View<CellPair> pairs,
-                     View<CellPair> other, int cell_bits);
+void cuda_sort_pairs(cudaStream_t stream,
+                     DeviceBuffer<std::byte>& scratch,
+                     View<CellPair> pairs,
+                     View<CellPair> other,
+                     int cell_bits);
 
 constexpr int each_threads = 256;  ///< of the kernels below: one index per thread
 
@@ -120,8 +126,7 @@ class CudaExec {
     for (std::size_t i = 0; i < state_->used; ++i) {
       float milliseconds = 0;
       const Span& span = state_->spans[i];
-      check_cuda(cudaEventElapsedTime(&milliseconds, span.begin, span.end),
-                 "cudaEventElapsedTime");
+      check_cuda(cudaEventElapsedTime(&milliseconds, span.begin, span.end), "cudaEventElapsedTime");
       state_->times.add(span.label, milliseconds * 1e-3);
     }
     state_->used = 0;
@@ -146,16 +151,16 @@ class CudaExec {
   template <class T>
   void deliver(const char* label, View<const T> from, T* to) {
     timed(label, [&] {
-      check_cuda(cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost,
-                                 stream()),
-                 "cudaMemcpyAsync to host");
+      check_cuda(
+          cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
+          "cudaMemcpyAsync to host");
     });
   }
   template <class T>
   void read(View<const T> from, T* to) {
-    check_cuda(cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost,
-                               stream()),
-               "cudaMemcpyAsync to host");
+    check_cuda(
+        cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
+        "cudaMemcpyAsync to host");
     check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
   }
   template <class T>
@@ -169,15 +174,20 @@ class CudaExec {
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     if (count == 0) return;
-    timed(label, [&] { launch(stream(), each_kernel<Body>, blocks_for(count), each_threads, 0,
-                              count, body); });
+    timed(label, [&] {
+      launch(stream(), each_kernel<Body>, blocks_for(count), each_threads, 0, count, body);
+    });
   }
   template <class Body>
-  void for_each_item(const char* label, View<const std::int64_t> offsets, std::int64_t capacity,
+  void for_each_item(const char* label,
+                     View<const std::int64_t> offsets,
+                     std::int64_t capacity,
                      const Body& body) {
     if (capacity == 0) return;
-    timed(label, [&] { launch(stream(), each_item_kernel<Body>, blocks_for(capacity),
-                              each_threads, 0, offsets, capacity, body); });
+    timed(label, [&] {
+      launch(stream(), each_item_kernel<Body>, blocks_for(capacity), each_threads, 0, offsets,
+             capacity, body);
+    });
   }
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     timed(label, [&] { cuda_exclusive_scan(stream(), state_->scratch, values); });
@@ -190,15 +200,20 @@ class CudaExec {
                  "cudaMemsetAsync");
     });
   }
-  void select_valid(const char* label, View<const CellPair> candidates, View<const std::int64_t>,
-                    View<CellPair> pairs, View<std::int64_t> pair_count) {
+  void select_valid(const char* label,
+                    View<const CellPair> candidates,
+                    View<const std::int64_t>,
+                    View<CellPair> pairs,
+                    View<std::int64_t> pair_count) {
     reject_all(label, pairs);
     if (candidates.size == 0) return;
     timed(label, [&] {
       cuda_select_valid(stream(), state_->scratch, candidates, pairs, pair_count.data);
     });
   }
-  void sort_pairs(const char* label, View<CellPair> pairs, View<const std::int64_t>,
+  void sort_pairs(const char* label,
+                  View<CellPair> pairs,
+                  View<const std::int64_t>,
                   int cell_bits) {
     if (pairs.size == 0) return;
     state_->other_pairs.reserve(pairs.size);

@@ -70,8 +70,8 @@ TETWARP_HD Int128 turn_inward(ExactPlane& plane, const TetNodes& tet, int face) 
 
 /// True when voxel centre (i, j, k) [frame] is on or inside every face; false for flat tetrahedra.
 /// With `strictly`, on a face does not count.
-TETWARP_HD_RARE bool is_inside_exact(const TetNodes& tet, int i, int j, int k,
-                                     bool strictly = false) {
+TETWARP_HD_RARE bool is_inside_exact(
+    const TetNodes& tet, int i, int j, int k, bool strictly = false) {
   const std::int64_t point[3] = {i * quanta_per_voxel, j * quanta_per_voxel, k * quanta_per_voxel};
   for (int face = 0; face < 4; ++face) {
     ExactPlane plane = exact_plane(tet, face);

@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-constexpr int quantum_bits = 20;                                   ///< 2^-20 voxel
+constexpr int quantum_bits = 20;  ///< 2^-20 voxel
 constexpr std::int64_t quanta_per_voxel = std::int64_t{1} << quantum_bits;
 constexpr double farthest_index = 0x1p40;  ///< nodes further from the grid than this are refused
 
@@ -28,7 +28,8 @@ constexpr std::int64_t bad_node = INT64_MIN;
 
 /// The node of a world position, relative to `frame` (whole voxels). Rounds half to even; every
 /// product and sum is rounded on its own, so the result is the same on every machine.
-TETWARP_HD Node quantized(const IndexFromWorld& map, const double* world,
+TETWARP_HD Node quantized(const IndexFromWorld& map,
+                          const double* world,
                           const std::int64_t* frame) {
   double from_origin[3];
   for (int axis = 0; axis < 3; ++axis) from_origin[axis] = world[axis] - map.origin[axis];
@@ -69,8 +70,11 @@ struct NodeQuantizeBody {
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes and 15 operations per node.
 template <class Exec>
-void node_quantize(Exec& exec, const IndexFromWorld& map, const std::int64_t* frame,
-                   View<const double> positions, View<Node> nodes) {
+void node_quantize(Exec& exec,
+                   const IndexFromWorld& map,
+                   const std::int64_t* frame,
+                   View<const double> positions,
+                   View<Node> nodes) {
   NodeQuantizeBody body{map, {frame[0], frame[1], frame[2]}, positions, nodes};
   exec.for_each("warp/setup", nodes.size, body);
 }

@@ -25,7 +25,8 @@ struct IsValid {
 
 }  // namespace
 
-void cuda_exclusive_scan(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
+void cuda_exclusive_scan(cudaStream_t stream,
+                         DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values) {
   with_scratch(scratch, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(memory, bytes, values.data, values.data, values.size,
@@ -33,8 +34,10 @@ void cuda_exclusive_scan(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
   });
 }
 
-void cuda_select_valid(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
-                       View<const CellPair> candidates, View<CellPair> pairs,
+void cuda_select_valid(cudaStream_t stream,
+                       DeviceBuffer<std::byte>& scratch,
+                       View<const CellPair> candidates,
+                       View<CellPair> pairs,
                        std::int64_t* pair_count) {
   with_scratch(scratch, "cub::DeviceSelect::If", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceSelect::If(memory, bytes, candidates.data, pairs.data, pair_count,
@@ -42,8 +45,11 @@ void cuda_select_valid(cudaStream_t stream, DeviceBuffer<std::byte>& scratch,
   });
 }
 
-void cuda_sort_pairs(cudaStream_t stream, DeviceBuffer<std::byte>& scratch, View<CellPair> pairs,
-                     View<CellPair> other, int cell_bits) {
+void cuda_sort_pairs(cudaStream_t stream,
+                     DeviceBuffer<std::byte>& scratch,
+                     View<CellPair> pairs,
+                     View<CellPair> other,
+                     int cell_bits) {
   cub::DoubleBuffer<CellPair> keys(pairs.data, other.data);
   with_scratch(scratch, "cub::DeviceRadixSort::SortKeys", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceRadixSort::SortKeys(memory, bytes, keys, pairs.size, 32, 32 + cell_bits,

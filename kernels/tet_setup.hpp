@@ -35,7 +35,9 @@ struct TetSetup {
 constexpr double steep_threshold = 4.0;  ///< largest map entry that float32 may evaluate
 
 /// Cells along `axis` that the tetrahedron's box touches: [first, last].
-TETWARP_HD int first_cell(const TetSetup& tet, int axis) { return tet.begin[axis] >> cell_shift; }
+TETWARP_HD int first_cell(const TetSetup& tet, int axis) {
+  return tet.begin[axis] >> cell_shift;
+}
 TETWARP_HD int last_cell(const TetSetup& tet, int axis) {
   return (tet.end[axis] - 1) >> cell_shift;
 }
@@ -64,12 +66,12 @@ TETWARP_HD bool set_box(const TetNodes& tet, const OutputFrame& frame, TetSetup&
 }
 
 /// Whole-voxel shift from output to source, when every node moves by it to within a quantum.
-TETWARP_HD bool is_whole_shift(const TetNodes& output, const TetNodes& source,
+TETWARP_HD bool is_whole_shift(const TetNodes& output,
+                               const TetNodes& source,
                                std::int64_t* shift) {
   bool whole = true;
   for (int axis = 0; axis < 3; ++axis) {
-    shift[axis] =
-        (source.x[0][axis] - output.x[0][axis] + quanta_per_voxel / 2) >> quantum_bits;
+    shift[axis] = (source.x[0][axis] - output.x[0][axis] + quanta_per_voxel / 2) >> quantum_bits;
     for (int a = 0; a < 4; ++a) {
       const std::int64_t rest =
           source.x[a][axis] - output.x[a][axis] - shift[axis] * quanta_per_voxel;
@@ -82,7 +84,9 @@ TETWARP_HD bool is_whole_shift(const TetNodes& output, const TetNodes& source,
 /// Planes of the four faces and gradients of the barycentric coordinates [1/voxel]; barycentric
 /// coordinates at the anchor. From exact integers: no cancellation, however thin the tetrahedron.
 /// @returns false when flat
-TETWARP_HD bool set_planes(const TetNodes& tet, TetSetup& setup, double (*gradient)[3],
+TETWARP_HD bool set_planes(const TetNodes& tet,
+                           TetSetup& setup,
+                           double (*gradient)[3],
                            double* at_anchor) {
   std::int64_t anchor[3];
   for (int axis = 0; axis < 3; ++axis) anchor[axis] = setup.anchor[axis] * quanta_per_voxel;
@@ -109,8 +113,10 @@ TETWARP_HD bool set_planes(const TetNodes& tet, TetSetup& setup, double (*gradie
 }
 
 /// Map of the deformed onto the rest tetrahedron: x0 = R0 + sum_f (R_f - R0) b_f(x).
-TETWARP_HD void set_map(const TetNodes& source, const double (*gradient)[3],
-                        const double* at_anchor, TetSetup& setup) {
+TETWARP_HD void set_map(const TetNodes& source,
+                        const double (*gradient)[3],
+                        const double* at_anchor,
+                        TetSetup& setup) {
   const double voxel = 1.0 / static_cast<double>(quanta_per_voxel);
   double steepest = 0;
   for (int row = 0; row < 3; ++row) {
@@ -163,8 +169,8 @@ struct TetSetupBody {
       setup.end[0] = setup.begin[0];
       return setup;
     }
-    setup.tet_class = orientation(output) * rest_orientation[t] < 0 ? TetClass::inverted
-                                                                    : TetClass::regular;
+    setup.tet_class =
+        orientation(output) * rest_orientation[t] < 0 ? TetClass::inverted : TetClass::regular;
     std::int64_t shift[3];
     if (is_whole_shift(output, source, shift)) {
       for (int row = 0; row < 3; ++row) {
@@ -218,10 +224,16 @@ struct TetSetupBody {
 /// back ends. Cost: about 200 integer multiplications, 330 bytes written per tetrahedron.
 /// Source: Gascon et al. 2013, section 3; the integer setup is ours.
 template <class Exec>
-void tet_setup(Exec& exec, View<const std::int32_t> tets, View<const Node> deformed,
-               View<const Node> rest, View<const std::int8_t> rest_orientation,
-               const OutputFrame& frame, View<TetSetup> setups, View<std::int64_t> corner_counts,
-               View<std::int64_t> pair_counts, View<std::int64_t> class_counts) {
+void tet_setup(Exec& exec,
+               View<const std::int32_t> tets,
+               View<const Node> deformed,
+               View<const Node> rest,
+               View<const std::int8_t> rest_orientation,
+               const OutputFrame& frame,
+               View<TetSetup> setups,
+               View<std::int64_t> corner_counts,
+               View<std::int64_t> pair_counts,
+               View<std::int64_t> class_counts) {
   exec.for_each("warp/setup", setups.size,
                 TetSetupBody{tets, deformed, rest, rest_orientation, frame, setups, corner_counts,
                              pair_counts, class_counts});

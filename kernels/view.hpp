@@ -16,8 +16,7 @@ struct View {
 
   TETWARP_HD T& operator[](std::int64_t i) const { return data[i]; }
   template <class Const>
-    requires std::is_same_v<Const, const T>
-  TETWARP_HD operator View<Const>() const {
+  requires std::is_same_v<Const, const T> TETWARP_HD operator View<Const>() const {
     return {data, size};
   }
 };

@@ -33,7 +33,8 @@ struct SourceView {
   int components;
 };
 
-/// Map from voxels of a cell to source positions: whole + (base + axis[0] i + axis[1] j + axis[2] k).
+/// Map from voxels of a cell to source positions: whole + (base + axis[0] i + axis[1] j + axis[2]
+/// k).
 template <class Real>
 struct SourceMap {
   Real base[3];
@@ -74,7 +75,9 @@ struct Tap {
 };
 
 template <class T, class Real>
-TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source, Interpolation filter, const int* whole,
+TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
+                            Interpolation filter,
+                            const int* whole,
                             const Real* x) {
   Tap<Real> tap;
   tap.inside = true;
@@ -126,8 +129,8 @@ TETWARP_HD T rounded_to(Real value) {
 
 /// One component of the source at a tap that is inside.
 template <class T, class Real>
-TETWARP_HD T sample(const SourceView<T>& source, Interpolation filter, const Tap<Real>& tap,
-                    int component) {
+TETWARP_HD T
+sample(const SourceView<T>& source, Interpolation filter, const Tap<Real>& tap, int component) {
   const T* s = source.data + component;
   if (filter == Interpolation::nearest) {
     return s[tap.offset[0][0] + tap.offset[1][0] + tap.offset[2][0]];
@@ -137,9 +140,9 @@ TETWARP_HD T sample(const SourceView<T>& source, Interpolation filter, const Tap
     const T* at = s + tap.offset[0][x];
     Real slice[2];
     for (int z = 0; z < 2; ++z) {
-      slice[z] = lerp_of(tap.fraction[1],
-                         static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][0]]),
-                         static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][1]]));
+      slice[z] =
+          lerp_of(tap.fraction[1], static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][0]]),
+                  static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][1]]));
     }
     column[x] = lerp_of(tap.fraction[2], slice[0], slice[1]);
   }

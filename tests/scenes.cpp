@@ -19,7 +19,9 @@ std::vector<Point3> to_world(const Grid& grid, std::vector<Point3> points) {
 }
 
 /// Scene whose mesh is given in index space of one grid, used for source and output alike.
-Scene on_grid(std::string name, const Grid& grid, TetMesh mesh,
+Scene on_grid(std::string name,
+              const Grid& grid,
+              TetMesh mesh,
               const std::vector<Point3>& deformed) {
   Scene scene{std::move(name), std::move(mesh), to_world(grid, deformed), grid, grid};
   scene.mesh.rest_positions = to_world(grid, scene.mesh.rest_positions);
@@ -29,8 +31,8 @@ Scene on_grid(std::string name, const Grid& grid, TetMesh mesh,
 /// Lattice whose inner layers along x are as thin as `thickness`.
 TetMesh sliver_lattice(double n, double thickness) {
   TetMesh mesh = lattice({6, 3, 3}, {0, 0, 0}, {6, n, n});
-  const double planes[7] = {1.3, n / 2, n / 2 + thickness, n / 2 + 2 * thickness,
-                            n / 2 + 3 * thickness, n - 4, n - 2};
+  const double planes[7] = {
+      1.3, n / 2, n / 2 + thickness, n / 2 + 2 * thickness, n / 2 + 3 * thickness, n - 4, n - 2};
   for (Point3& p : mesh.rest_positions) p[0] = planes[static_cast<int>(p[0])];
   return mesh;
 }
@@ -66,8 +68,8 @@ double uniform(std::uint64_t seed, std::uint64_t index) {
 }
 
 TetMesh lattice(const std::array<int, 3>& cells, const Point3& low, const Point3& high) {
-  static constexpr int even[5][4] = {{0, 1, 2, 4}, {3, 1, 7, 2}, {5, 1, 4, 7}, {6, 2, 7, 4},
-                                     {1, 2, 4, 7}};
+  static constexpr int even[5][4] = {
+      {0, 1, 2, 4}, {3, 1, 7, 2}, {5, 1, 4, 7}, {6, 2, 7, 4}, {1, 2, 4, 7}};
   TetMesh mesh;
   for (int k = 0; k <= cells[2]; ++k) {
     for (int j = 0; j <= cells[1]; ++j) {
@@ -90,8 +92,8 @@ TetMesh lattice(const std::array<int, 3>& cells, const Point3& low, const Point3
           std::array<std::int32_t, 4> tet;
           for (std::size_t a = 0; a < 4; ++a) {
             const int c = corners[a] ^ mirror;
-            tet[a] = ((k + (c >> 2)) * (cells[1] + 1) + j + (c >> 1 & 1)) * (cells[0] + 1) + i +
-                     (c & 1);
+            tet[a] =
+                ((k + (c >> 2)) * (cells[1] + 1) + j + (c >> 1 & 1)) * (cells[0] + 1) + i + (c & 1);
           }
           if (mirror != 0) std::swap(tet[2], tet[3]);
           mesh.tets.push_back(tet);
@@ -111,9 +113,15 @@ Grid unit_grid(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
 Grid oblique_grid(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
   Grid grid = unit_grid(nx, ny, nz);
   const double a = 0.4, b = -0.7;
-  grid.direction = {std::cos(a), -std::sin(a) * std::cos(b), std::sin(a) * std::sin(b),
-                    std::sin(a), std::cos(a) * std::cos(b),  -std::cos(a) * std::sin(b),
-                    0,           std::sin(b),                std::cos(b)};
+  grid.direction = {std::cos(a),
+                    -std::sin(a) * std::cos(b),
+                    std::sin(a) * std::sin(b),
+                    std::sin(a),
+                    std::cos(a) * std::cos(b),
+                    -std::cos(a) * std::sin(b),
+                    0,
+                    std::sin(b),
+                    std::cos(b)};
   grid.spacing = {0.7, 1.3, 2.1};
   grid.origin = {-120.5, 33.25, 410.125};
   return grid;
@@ -121,9 +129,7 @@ Grid oblique_grid(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
 
 Volume wavy_volume(const Grid& grid, PixelType type, int components) {
   Volume volume = make_volume(grid, type, components);
-  const double range = !is_integer(type)        ? 1.0
-                       : size_of(type) == 1     ? 120.0
-                                                : 4000.0;
+  const double range = !is_integer(type) ? 1.0 : size_of(type) == 1 ? 120.0 : 4000.0;
   with_pixel_type(type, [&]<class T>(T) {
     const std::span<T> samples = volume.samples<T>();
     std::size_t at = 0;
@@ -134,8 +140,7 @@ Volume wavy_volume(const Grid& grid, PixelType type, int components) {
             const double x = static_cast<double>(i), y = static_cast<double>(j),
                          z = static_cast<double>(k);
             const double wave = 0.5 + 0.2 * std::sin(0.11 * x + c) * std::cos(0.13 * y) +
-                                0.2 * std::sin(0.17 * z + 0.3 * c) +
-                                0.1 * (uniform(7, at) - 0.5);
+                                0.2 * std::sin(0.17 * z + 0.3 * c) + 0.1 * (uniform(7, at) - 0.5);
             samples[at] = static_cast<T>(range * wave);
           }
         }
@@ -166,14 +171,13 @@ std::vector<Point3> rotated_45_45(const std::vector<Point3>& points, const Point
   for (const Point3& p : points) {
     const double x = p[0] - centre[0], y = p[1] - centre[1], z = p[2] - centre[2];
     const double turned = h * (x + y);
-    result.push_back({centre[0] + h * (x - y), centre[1] + h * (turned - z),
-                      centre[2] + h * (turned + z)});
+    result.push_back(
+        {centre[0] + h * (x - y), centre[1] + h * (turned - z), centre[2] + h * (turned + z)});
   }
   return result;
 }
 
-std::vector<Point3> waved(const std::vector<Point3>& points, double amplitude,
-                          std::uint64_t seed) {
+std::vector<Point3> waved(const std::vector<Point3>& points, double amplitude, std::uint64_t seed) {
   Point3 low = points.front(), high = low;
   for (const Point3& p : points) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -214,8 +218,8 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   const Grid grid = unit_grid(n, n - 3, n + 2);
   const TetMesh box = lattice({4, 4, 4}, {2, 2, 2}, {e - 6, e - 6, e - 6});
   const TetMesh loose = lattice({4, 3, 5}, {-0.5, -0.5, -0.5}, {e - 0.5, e - 3.5, e + 1.5});
-  const TetMesh tiny = lattice({24, 24, 24}, {e / 3, e / 3, e / 3},
-                               {e / 3 + 7.3, e / 3 + 7.1, e / 3 + 6.7});
+  const TetMesh tiny =
+      lattice({24, 24, 24}, {e / 3, e / 3, e / 3}, {e / 3 + 7.3, e / 3 + 7.1, e / 3 + 6.7});
   const Point3 centre{e / 2, e / 2, e / 2};
   std::vector<Scene> scenes;
   const auto add = [&](const char* name, const Grid& on, const TetMesh& mesh,

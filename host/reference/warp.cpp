@@ -43,8 +43,8 @@ T stored(double value) {
 
 /// Writes the source's samples at an index position, or the background outside of it.
 template <class T>
-void store_sample(const VolumeView& source, Filter filter, const Eigen::Vector3d& x, T background,
-                  T* out) {
+void store_sample(
+    const VolumeView& source, Filter filter, const Eigen::Vector3d& x, T background, T* out) {
   const T* data = static_cast<const T*>(source.data);
   const std::array<std::int64_t, 3>& n = source.grid.dims;
   std::array<std::int64_t, 3> low;
@@ -92,7 +92,8 @@ class ReferenceBackend : public WarpBackend {
   std::string device() const override { return processor_name(); }
   int threads() const override { return 1; }
 
-  StepReport step(const PositionsView& deformed, const WarpTarget& target,
+  StepReport step(const PositionsView& deformed,
+                  const WarpTarget& target,
                   const Progress& progress) override {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
@@ -170,10 +171,12 @@ class ReferenceBackend : public WarpBackend {
           }
           if (owner_[v] >= 0) continue;
           owner_[v] = t;
-          source_position_[v] = shift ? Eigen::Vector3d(Eigen::Vector3d(
-                                            static_cast<double>(i), static_cast<double>(j),
-                                            static_cast<double>(k)) + *shift)
-                                      : combined(rest, b->weight);
+          source_position_[v] =
+              shift
+                  ? Eigen::Vector3d(Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
+                                                    static_cast<double>(k)) +
+                                    *shift)
+                  : combined(rest, b->weight);
         }
       }
     }
@@ -223,7 +226,8 @@ class ReferenceBackend : public WarpBackend {
   Eigen::Vector3d same_place(std::int64_t i, std::int64_t j, std::int64_t k) const {
     const Eigen::Vector3d index(static_cast<double>(i), static_cast<double>(j),
                                 static_cast<double>(k));
-    const Eigen::Vector3d world_offset = output_.to_world * index + (output_.origin - source_.origin);
+    const Eigen::Vector3d world_offset =
+        output_.to_world * index + (output_.origin - source_.origin);
     Eigen::Vector3d x = source_.from_world * world_offset;
     for (double& entry : x) {
       if (std::abs(entry - std::nearbyint(entry)) < 0x1p-40) entry = std::nearbyint(entry);

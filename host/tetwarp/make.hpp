@@ -15,8 +15,9 @@ namespace tetwarp {
 
 /// Choices of make_lattice_mesh().
 struct LatticeOptions {
-  int cells = 8;                    ///< cubic cells along the longest side of the foreground's box, >= 1
-  std::optional<double> threshold = {};  ///< foreground: any component > threshold; nothing: every voxel
+  int cells = 8;  ///< cubic cells along the longest side of the foreground's box, >= 1
+  std::optional<double> threshold =
+      {};  ///< foreground: any component > threshold; nothing: every voxel
 };
 
 /// Lattice of cubic cells around the foreground's bounding box (half a voxel beyond its outermost
@@ -35,15 +36,18 @@ Deformation parse_deformation(const std::string& word);
 /// Choices of deform_positions().
 struct DeformOptions {
   Deformation kind = Deformation::twist;
-  double amount = 1.0;       ///< strength: turns/4 for twist, bend, rotate; share of the box for the others
-  int axis = 2;              ///< 0, 1, 2: axis of twist, bend, swim and rotate, [world]
-  std::uint64_t seed = 1;    ///< of random
-  Point3 offset{0, 0, 0};    ///< of translate [world]
+  double amount =
+      1.0;       ///< strength: turns/4 for twist, bend, rotate; share of the box for the others
+  int axis = 2;  ///< 0, 1, 2: axis of twist, bend, swim and rotate, [world]
+  std::uint64_t seed = 1;  ///< of random
+  Point3 offset{0, 0, 0};  ///< of translate [world]
 };
 
 /// Node positions at phase `time` in [0, 1] of a smooth deformation about the box of the rest
 /// positions; time 0 is rest, time 1 the full amount. Deterministic.
-std::vector<Point3> deform_positions(const TetMesh& mesh, const DeformOptions& options, double time);
+std::vector<Point3> deform_positions(const TetMesh& mesh,
+                                     const DeformOptions& options,
+                                     double time);
 
 /// A torso with ribs, spine, lungs, heart and vessels: analytic, deterministic, float32 in [0, 1].
 /// x points to the left of the body, y to its back, z to its head; the box is 384 x 240 x 366 mm
@@ -62,7 +66,7 @@ struct Image {
 struct RenderOptions {
   std::optional<double> low = {};   ///< shown black; nothing: 1st percentile
   std::optional<double> high = {};  ///< shown white; nothing: 99.5th percentile
-  int height = 360;            ///< of each panel [pixel]
+  int height = 360;                 ///< of each panel [pixel]
 };
 
 /// Three orthogonal middle slices and a maximum-intensity projection side by side, one row per

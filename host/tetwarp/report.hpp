@@ -26,7 +26,7 @@ struct Timings {
 
 /// What was done and what was skipped, summed over steps (per-step values in StepReport).
 struct Counts {
-  std::int64_t voxels = 0;           ///< output voxels = covered + outside
+  std::int64_t voxels = 0;  ///< output voxels = covered + outside
   std::int64_t covered = 0;
   std::int64_t outside = 0;
   std::int64_t tetrahedra = 0;

@@ -1,5 +1,6 @@
 /// @file volume.hpp
-/// Dense volumes: a regular grid of voxel centres in world space, and samples of any numeric type on it.
+/// Dense volumes: a regular grid of voxel centres in world space, and samples of any numeric type
+/// on it.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -49,11 +50,12 @@ constexpr PixelType pixel_type_of() {
   }
 }
 
-/// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k)) [world].
+/// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k))
+/// [world].
 struct Grid {
-  std::array<std::int64_t, 3> dims{0, 0, 0};               ///< voxels along i, j, k
-  Point3 origin{0, 0, 0};                                  ///< centre of voxel (0, 0, 0) [world]
-  Point3 spacing{1, 1, 1};                                 ///< distance of centres [world], > 0
+  std::array<std::int64_t, 3> dims{0, 0, 0};  ///< voxels along i, j, k
+  Point3 origin{0, 0, 0};                     ///< centre of voxel (0, 0, 0) [world]
+  Point3 spacing{1, 1, 1};                    ///< distance of centres [world], > 0
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row major, invertible
 
   /// Product of dims.
@@ -66,16 +68,17 @@ struct Grid {
 };
 
 /// Throws std::invalid_argument, naming `what`, unless dims are positive and at most 2^30 each,
-/// their product fits 64 bits, spacing is positive and finite, origin is finite and direction invertible.
+/// their product fits 64 bits, spacing is positive and finite, origin is finite and direction
+/// invertible.
 void check_grid(const Grid& grid, const std::string& what);
 
 /// Samples of one array on a grid, stored [k][j][i][component].
 struct Volume {
   Grid grid;
-  std::string name = "values";              ///< array name; no '/' and no '.'
+  std::string name = "values";  ///< array name; no '/' and no '.'
   PixelType type = PixelType::float32;
-  int components = 1;                       ///< samples per voxel, 1 to 9
-  std::vector<std::byte> data;              ///< voxel_count * components * size_of(type) bytes
+  int components = 1;           ///< samples per voxel, 1 to 9
+  std::vector<std::byte> data;  ///< voxel_count * components * size_of(type) bytes
 
   /// Bytes that `data` must hold.
   std::size_t byte_count() const;
@@ -97,7 +100,10 @@ struct Volume {
 };
 
 /// A zero-filled volume. Throws std::invalid_argument on a bad grid or component count.
-Volume make_volume(const Grid& grid, PixelType type, int components = 1, std::string name = "values");
+Volume make_volume(const Grid& grid,
+                   PixelType type,
+                   int components = 1,
+                   std::string name = "values");
 
 /// Where memory lives.
 enum class Memory { host, device };

@@ -49,15 +49,15 @@ struct SkipOptions {
 
 /// Choices of a warp. Defaults give what most people want.
 struct WarpOptions {
-  Filter filter = Filter::linear;          ///< 64-bit integers: nearest only
+  Filter filter = Filter::linear;  ///< 64-bit integers: nearest only
   Outside outside = Outside::background;
-  double background = 0.0;                 ///< rounded and saturated to the pixel type
-  std::optional<Grid> output_grid = {};         ///< nothing: the source's grid
-  std::optional<Region> region = {};            ///< part of the output grid to compute; nothing: all
+  double background = 0.0;               ///< rounded and saturated to the pixel type
+  std::optional<Grid> output_grid = {};  ///< nothing: the source's grid
+  std::optional<Region> region = {};     ///< part of the output grid to compute; nothing: all
   Backend backend = Backend::automatic;
-  int device = 0;                          ///< CUDA device number
-  int threads = 0;                         ///< of the cpu back end; 0: all cores
-  bool count_folded = false;               ///< also count voxels strictly inside several tetrahedra
+  int device = 0;             ///< CUDA device number
+  int threads = 0;            ///< of the cpu back end; 0: all cores
+  bool count_folded = false;  ///< also count voxels strictly inside several tetrahedra
   SkipOptions skip = {};
 };
 
@@ -72,7 +72,7 @@ struct WarpTarget {
   std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
   std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
   Memory memory = Memory::host;
-  void* stream = nullptr;        ///< cudaStream_t that orders work on device memory; cuda only
+  void* stream = nullptr;  ///< cudaStream_t that orders work on device memory; cuda only
 };
 
 /// Results of warp().
@@ -83,7 +83,8 @@ struct WarpResult {
 
 class WarpBackend;
 
-/// Warps volumes step by step, keeping every buffer between steps; on CUDA the sources stay resident.
+/// Warps volumes step by step, keeping every buffer between steps; on CUDA the sources stay
+/// resident.
 ///
 /// The owner of a voxel is the lowest-indexed tetrahedron whose closed deformed shape contains its
 /// centre, decided in exact integers after node positions have been rounded once to 2^-20 voxel:
@@ -111,7 +112,8 @@ class Warper {
   /// @param progress  may be empty
   /// @returns timings and counts of this step
   /// @throws std::invalid_argument, CudaError, Cancelled
-  StepReport step(const PositionsView& deformed, const WarpTarget& target,
+  StepReport step(const PositionsView& deformed,
+                  const WarpTarget& target,
                   const Progress& progress = {});
 
   /// The same for a single source, into a new volume.
@@ -126,7 +128,9 @@ class Warper {
 };
 
 /// One volume, one step. For several steps keep a Warper.
-WarpResult warp(const Volume& source, const TetMesh& mesh, const std::vector<Point3>& deformed,
+WarpResult warp(const Volume& source,
+                const TetMesh& mesh,
+                const std::vector<Point3>& deformed,
                 const WarpOptions& options = {});
 
 }  // namespace tetwarp

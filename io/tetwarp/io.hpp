@@ -50,8 +50,9 @@ struct MeshHeader {
 
 /// Choices of MeshReader.
 struct MeshReadOptions {
-  std::int64_t rest_step = 0;          ///< for points that move: the step that is rest
-  std::optional<std::string> rest_file = {};  ///< rest positions from another mesh file with as many nodes
+  std::int64_t rest_step = 0;  ///< for points that move: the step that is rest
+  std::optional<std::string> rest_file =
+      {};  ///< rest positions from another mesh file with as many nodes
 };
 
 /// A VTKHDF UnstructuredGrid of tetrahedra with its deformation, in this order of preference:
@@ -76,16 +77,17 @@ class MeshReader {
 
 /// How a volume file is stored.
 struct VolumeWriteOptions {
-  int compress = 0;          ///< deflate level 0 to 9 with shuffle; 0: none
-  double background = 0;     ///< fill value: chunks that hold nothing else are not stored
+  int compress = 0;                    ///< deflate level 0 to 9 with shuffle; 0: none
+  double background = 0;               ///< fill value: chunks that hold nothing else are not stored
   bool skip_background_chunks = true;  ///< false: every chunk is stored
-  std::string fingerprint = {};   ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
+  std::string fingerprint = {};  ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
 };
 
 /// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
 /// Throws IoError on an axis of one sample (VTK crashes on those) and on any write failure.
 /// @returns bytes of the file
-std::int64_t write_volumes(const std::string& path, const std::vector<const Volume*>& volumes,
+std::int64_t write_volumes(const std::string& path,
+                           const std::vector<const Volume*>& volumes,
                            const VolumeWriteOptions& options = {});
 
 /// Writes one temporal VTKHDF ImageData file, Version [2,0], step by step.
@@ -110,7 +112,8 @@ class TemporalVolumeWriter {
 };
 
 /// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
-void write_mesh(const std::string& path, const TetMesh& mesh,
+void write_mesh(const std::string& path,
+                const TetMesh& mesh,
                 const std::vector<std::vector<Point3>>& displacements = {},
                 const std::vector<double>& times = {});
 
@@ -123,7 +126,8 @@ std::optional<std::string> read_fingerprint(const std::string& path);
 /// Axis `dim[4]` (time) must be 1; `dim[5]` becomes components.
 Volume read_nifti(const std::string& path);
 
-/// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a rotation).
+/// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a
+/// rotation).
 void write_nifti(const std::string& path, const Volume& volume);
 
 /// Writes an 8-bit RGB PNG.
