@@ -1,5 +1,5 @@
 /// @file cell_owners-inl.hpp
-/// Who owns the voxels of a cell, 16 voxels a vector. Included once per vector instruction set (the
+/// Who owns the voxels of a cell. Included once per vector instruction set (the
 /// name and the toggled guard are Highway's convention).
 #if defined(TETWARP_CELL_OWNERS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_OWNERS_INL
@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "host/cell_sides-inl.hpp"
 #include "kernels/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,57 +40,11 @@ inline CellBox make_cell_box(const OutputFrame& frame, int ci, int cj, int ck) {
   return box;
 }
 
-/// Bit 8 j + i of a slice is voxel (i, j).
-using SliceBits = std::uint64_t;
-
 /// Bits of rows [begin, end) with the bits `row` in each.
 inline SliceBits rows_between(int begin, int end, unsigned row) {
   if (begin >= end) return 0;
   const SliceBits all = ~SliceBits{0} >> (64 - 8 * (end - begin)) << (8 * begin);
   return all & (0x0101010101010101u * SliceBits{row});
-}
-
-/// Voxels of one slice that lie inside for certain, or too close to a face for float32.
-struct SliceSides {
-  SliceBits inside = 0;
-  SliceBits unsure = 0;
-};
-
-/// certain_side() over the slices [k_begin, k_end) of a cell, rows [j_begin, j_end).
-inline void cell_sides(
-    const CellPlanes& planes, int j_begin, int j_end, int k_begin, int k_end, SliceSides* sides) {
-  const hn::CappedTag<float, 16> d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const int first = 8 * j_begin / lanes * lanes;
-  const auto one = hn::Set(d, 1.0f), minus_one = hn::Set(d, -1.0f);
-  for (int k = k_begin; k < k_end; ++k) sides[k] = {};
-  for (int at = first; at < 8 * j_end; at += lanes) {
-    const auto voxel = hn::Iota(d, static_cast<float>(at));
-    const auto j = hn::Floor(hn::Mul(voxel, hn::Set(d, 0.125f)));
-    const auto i = hn::Sub(voxel, hn::Mul(j, hn::Set(d, 8.0f)));
-    const auto value_of = [&](int face) {
-      const auto along_j = hn::Mul(j, hn::Set(d, planes.step[1][face]));
-      const auto along_i = hn::Mul(i, hn::Set(d, planes.step[0][face]));
-      return hn::Add(hn::Add(hn::Set(d, planes.value[face]), along_j), along_i);
-    };
-    const auto value0 = value_of(0), value1 = value_of(1), value2 = value_of(2),
-               value3 = value_of(3);
-    for (int k = k_begin; k < k_end; ++k) {
-      const auto above = [&](int face) {
-        return hn::Set(d, planes.step[2][face] * static_cast<float>(k));
-      };
-      const auto least = hn::Min(hn::Min(hn::Add(value0, above(0)), hn::Add(value1, above(1))),
-                                 hn::Min(hn::Add(value2, above(2)), hn::Add(value3, above(3))));
-      std::uint8_t inside[8] = {}, possible[8] = {};
-      hn::StoreMaskBits(d, hn::Gt(least, one), inside);
-      hn::StoreMaskBits(d, hn::Ge(least, minus_one), possible);
-      const auto word = [](const std::uint8_t* bytes) {
-        return SliceBits{bytes[0]} | SliceBits{bytes[1]} << 8;
-      };
-      sides[k].inside |= word(inside) << at;
-      sides[k].unsure |= (word(possible) & ~word(inside)) << at;
-    }
-  }
 }
 
 /// Gives every voxel of a cell to its lowest tetrahedron.
@@ -131,7 +86,7 @@ inline void find_owners(const RasterJob<T>& job,
       set_cell_plane(tet, face, box.corner[0], box.corner[1], box.corner[2], planes);
     }
     SliceSides sides[cell_edge];
-    cell_sides(planes, begin[1], end[1], begin[2], end[2], sides);
+    cell_sides(planes, begin[2], end[2], sides);
     SliceBits left = 0;
     for (int k = begin[2]; k < end[2]; ++k) {
       const SliceBits tested = open[k] & rows;
@@ -139,6 +94,9 @@ inline void find_owners(const RasterJob<T>& job,
       SliceBits mine = sides[k].inside & tested;
       for (SliceBits unsure = sides[k].unsure & tested; unsure != 0; unsure &= unsure - 1) {
         const int bit = std::countr_zero(unsure);
+        const int side = certain_side(planes, bit % 8, bit / 8, k);
+        if (side > 0) mine |= SliceBits{1} << bit;
+        if (side != 0) continue;
         ++counts.exact_tests;
         const TetNodes nodes = tet_nodes(job.nodes, job.tets.data + std::int64_t{4} * t);
         if (is_inside_exact(nodes, box.corner[0] + bit % 8, box.corner[1] + bit / 8,

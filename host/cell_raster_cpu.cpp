@@ -9,21 +9,25 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "host/brick_grid.hpp"
-#include "host/cell_rows-inl.hpp"
+#include "host/cell_line-inl.hpp"
+#include "host/line_grid.hpp"
 #include "host/pixel_dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Rasters the cells of one brick.
-void raster_brick(PixelType type, const void* job, std::int64_t brick, RasterCounts& counts) {
+/// Rasters lines [begin, end) of cells.
+void raster_lines(
+    PixelType type, const void* job, std::int64_t begin, std::int64_t end, RasterCounts& counts) {
   with_pixel_type(type, [&]<class T>(T) {
     const RasterJob<T>& typed = *static_cast<const RasterJob<T>*>(job);
-    const BrickGrid bricks(typed.frame);
-    CellRows<T> rows(typed, counts);
-    bricks.for_each_cell(brick, [&](int ci, int cj, int ck) { rows.raster(ci, cj, ck); });
+    const LineGrid lines(typed.frame);
+    CellLine<T> line(typed, lines.longest(), counts);
+    for (std::int64_t l = begin; l < end; ++l) {
+      const LineGrid::Line at = lines.line(l);
+      line.raster(at.ci_begin, at.ci_end, at.cj, at.ck);
+    }
   });
 }
 
@@ -34,22 +38,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tetwarp {
 
-HWY_EXPORT(raster_brick);
+HWY_EXPORT(raster_lines);
 
 template <class T>
 void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
   const CpuExec::Clock clock(exec, "warp/raster");
-  const std::int64_t bricks = BrickGrid(job.frame).count();
+  const std::int64_t pieces = LineGrid(job.frame).piece_count();
   const std::int64_t batches = progress.is_wanted() ? 32 : 1;
   RasterCounts sum = {0, 0, 0, 0};
   for (std::int64_t batch = 0; batch < batches; ++batch) {
-    const std::int64_t begin = bricks * batch / batches, end = bricks * (batch + 1) / batches;
+    const std::int64_t begin = pieces * batch / batches, end = pieces * (batch + 1) / batches;
     std::int64_t covered = 0, inside_tests = 0, exact_tests = 0, copied = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(exec.threads()) \
     reduction(+ : covered, inside_tests, exact_tests, copied)
-    for (std::int64_t brick = begin; brick < end; ++brick) {
+    for (std::int64_t piece = begin; piece < end; ++piece) {
       RasterCounts counts = {0, 0, 0, 0};
-      HWY_DYNAMIC_DISPATCH(raster_brick)(pixel_type_of<T>(), &job, brick, counts);
+      const auto [first, past] = LineGrid(job.frame).piece(piece);
+      HWY_DYNAMIC_DISPATCH(raster_lines)(pixel_type_of<T>(), &job, first, past, counts);
       covered += counts.covered;
       inside_tests += counts.inside_tests;
       exact_tests += counts.exact_tests;

@@ -128,13 +128,23 @@ class CpuExec {
                     View<CellPair> pairs,
                     View<std::int64_t> pair_count) {
     const Clock clock(*this, label);
-    std::int64_t kept = 0;
     const std::int64_t count = std::min(candidate_count[0], candidates.size);
-    for (std::int64_t i = 0; i < count; ++i) {
-      pairs[kept] = candidates[i];
-      kept += candidates[i] != rejected_pair;
-    }
-    pair_count[0] = kept;
+    std::vector<std::int64_t> kept(static_cast<std::size_t>(threads_ + 1));
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t sum = 0;
+      for (std::int64_t i = begin; i < end; ++i) sum += candidates[i] != rejected_pair;
+      kept[static_cast<std::size_t>(part + 1)] = sum;
+    });
+    for (std::size_t p = 1; p < kept.size(); ++p) kept[p] += kept[p - 1];
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t to = kept[static_cast<std::size_t>(part)];
+      const std::int64_t past = kept[static_cast<std::size_t>(part + 1)];
+      for (std::int64_t i = begin; i < end && to < past; ++i) {
+        pairs[to] = candidates[i];
+        to += candidates[i] != rejected_pair;
+      }
+    });
+    pair_count[0] = kept.back();
   }
 
   /// Stable radix sort by cell of the first pair_count[0] pairs.
@@ -144,19 +154,15 @@ class CpuExec {
                   int cell_bits) {
     const Clock clock(*this, label);
     const std::int64_t count = pair_count[0];
-    scratch_.resize(static_cast<std::size_t>(count));
+    scratch_.reserve(count);
     CellPair* from = pairs.data;
-    CellPair* to = scratch_.data();
-    for (int shift = 32; shift < 32 + cell_bits; shift += radix_bits) {
-      std::int64_t begin[1 << radix_bits] = {};
-      for (std::int64_t i = 0; i < count; ++i) ++begin[from[i] >> shift & radix_mask];
-      std::int64_t sum = 0;
-      for (std::int64_t& entry : begin) {
-        const std::int64_t size = entry;
-        entry = sum;
-        sum += size;
-      }
-      for (std::int64_t i = 0; i < count; ++i) to[begin[from[i] >> shift & radix_mask]++] = from[i];
+    CellPair* to = scratch_.view(count).data;
+    // Digits as even as the bits allow: fewer passes over the pairs count most.
+    const int passes = (cell_bits + radix_bits - 1) / radix_bits;
+    for (int pass = 0; pass < passes; ++pass) {
+      const int shift = 32 + cell_bits * pass / passes;
+      const int bits = 32 + cell_bits * (pass + 1) / passes - shift;
+      sort_digit(from, to, count, shift, bits);
       std::swap(from, to);
     }
     if (from != pairs.data) std::copy_n(from, count, pairs.data);
@@ -184,14 +190,47 @@ class CpuExec {
   };
 
  private:
+  /// work(part, begin, end) for every thread's part of [0, count); parts ascend.
+  template <class Work>
+  void for_each_part(std::int64_t count, const Work& work) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads_) if (count > serial_below)
+    for (int part = 0; part < threads_; ++part) {
+      work(part, count * part / threads_, count * (part + 1) / threads_);
+    }
+  }
+
+  /// One pass of the sort: stable by `bits` bits from `shift` on.
+  void sort_digit(const CellPair* from, CellPair* to, std::int64_t count, int shift, int bits) {
+    const std::int64_t digits = std::int64_t{1} << bits;
+    const CellPair mask = static_cast<CellPair>(digits - 1);
+    places_.assign(static_cast<std::size_t>(digits * threads_), 0);
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t* place = places_.data() + digits * part;
+      for (std::int64_t i = begin; i < end; ++i) ++place[from[i] >> shift & mask];
+    });
+    std::int64_t sum = 0;
+    for (std::int64_t digit = 0; digit < digits; ++digit) {
+      for (int part = 0; part < threads_; ++part) {
+        std::int64_t& place = places_[static_cast<std::size_t>(digits * part + digit)];
+        const std::int64_t size = place;
+        place = sum;
+        sum += size;
+      }
+    }
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t* place = places_.data() + digits * part;
+      for (std::int64_t i = begin; i < end; ++i) to[place[from[i] >> shift & mask]++] = from[i];
+    });
+  }
+
   static constexpr std::int64_t serial_below = 2048;  ///< starting threads costs more than that
   static constexpr std::int64_t chunk_ = 4096;
   static constexpr int radix_bits = 11;
-  static constexpr CellPair radix_mask = (1 << radix_bits) - 1;
 
   int threads_;
   StageTimes times_;
-  std::vector<CellPair> scratch_;
+  HostBuffer<CellPair> scratch_;
+  std::vector<std::int64_t> places_;  ///< of the sort, [thread][digit]
 };
 
 }  // namespace tetwarp

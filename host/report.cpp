@@ -30,7 +30,11 @@ Json json_of(const Counts& c) {
           {"inside_tests", c.inside_tests},
           {"exact_tests", c.exact_tests},
           {"steps_unchanged", c.steps_unchanged},
+          {"tets_unchanged", c.tets_unchanged},
+          {"cells_unchanged", c.cells_unchanged},
+          {"cells_constant", c.cells_constant},
           {"voxels_copied", c.voxels_copied},
+          {"chunks_background", c.chunks_background},
           {"bytes_read", c.bytes_read},
           {"bytes_written", c.bytes_written}};
 }
@@ -66,7 +70,11 @@ Counts& Counts::operator+=(const Counts& other) {
   inside_tests += other.inside_tests;
   exact_tests += other.exact_tests;
   steps_unchanged += other.steps_unchanged;
+  tets_unchanged += other.tets_unchanged;
+  cells_unchanged += other.cells_unchanged;
+  cells_constant += other.cells_constant;
   voxels_copied += other.voxels_copied;
+  chunks_background += other.chunks_background;
   bytes_read += other.bytes_read;
   bytes_written += other.bytes_written;
   return *this;

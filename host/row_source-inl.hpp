@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -18,26 +19,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using RowTag = hn::CappedTag<float, cell_edge>;  ///< positions of a row, eight at most
-using RowIntTag = hn::RebindToSigned<RowTag>;
-using PairTag = hn::CappedTag<std::uint64_t, cell_edge>;  ///< one x-pair of samples per lane
-using PairIntTag = hn::RebindToSigned<PairTag>;
-using PairFloatTag = hn::Repartition<float, PairTag>;
-using PairHalfTag = hn::Rebind<std::uint32_t, PairTag>;
-
-/// Mask of the vector that starts at voxel `lane` of a row.
-inline hn::Mask<RowTag> lanes_of(unsigned bits, std::size_t lane) {
-  const std::uint8_t part[8] = {static_cast<std::uint8_t>(bits >> lane)};
-  return hn::LoadMaskBits(RowTag(), part);
-}
-
-inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
-  std::uint8_t part[8] = {};
-  hn::StoreMaskBits(RowTag(), mask, part);
-  return unsigned{part[0]} << lane;
-}
 
 /// How the voxels that a tetrahedron owns in a cell are sampled.
 enum class RowKind {
@@ -60,8 +41,8 @@ class RowSource {
     }
     for (int axis = 0; axis < 3; ++axis) corner_[axis] = corner[axis];
     for (int axis = 2; axis >= 0; --axis) {
-      const auto step = static_cast<std::int64_t>(cell_edge * map_.axis[0][axis]);
-      ahead_ = ahead_ * job.source.dims[axis] + step;
+      const double step = kind_ == RowKind::alone ? 0 : std::rint(linear[axis][2]);
+      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + static_cast<std::int64_t>(step);
     }
   }
 
@@ -71,17 +52,8 @@ class RowSource {
   const SourceMap<float>& map() const { return map_; }
   const int* corner() const { return corner_; }
 
-  /// From a sample to the one eight voxels further along the row, about [sample].
-  std::int64_t ahead() const { return ahead_; }
-
-  /// local_position() along axis `axis` of the vector of row (j, k) that starts at `lane`.
-  hn::Vec<RowTag> position(int axis, std::size_t lane, int j, int k) const {
-    const RowTag d;
-    const float line = (map_.base[axis] + map_.axis[1][axis] * static_cast<float>(j)) +
-                       map_.axis[2][axis] * static_cast<float>(k);
-    const auto i = hn::Iota(d, static_cast<float>(lane));
-    return hn::Add(hn::Set(d, line), hn::Mul(hn::Set(d, map_.axis[0][axis]), i));
-  }
+  /// From a sample to the one of the next slice, about [sample].
+  std::int64_t slice_ahead() const { return slice_ahead_; }
 
  private:
   /// The kind by the box of all positions over the cell.
@@ -92,8 +64,8 @@ class RowSource {
     if (source.components != 1 || samples > std::numeric_limits<std::int32_t>::max()) {
       return RowKind::alone;
     }
-    // A read of two neighbours along x takes four bytes at least: it may touch `spare` more.
-    const int spare = sizeof(T) == 1 ? 3 : 1;
+    // Eight bytes are read where two neighbours along x are wanted: up to `spare` samples more.
+    constexpr int spare = 8 / sizeof(T) - 1;
     bool is_inner = true, meets_end = true;
     for (int axis = 0; axis < 3; ++axis) {
       double low = start[axis], high = start[axis];
@@ -117,19 +89,14 @@ class RowSource {
   RowKind kind_;
   SourceMap<float> map_;
   int corner_[3];
-  std::int64_t ahead_ = 0;
+  std::int64_t slice_ahead_ = 0;
 };
 
-/// Voxels of a row that one source serves.
+/// Voxels of one row of a cell that one source serves.
 struct RowRun {
-  int source;     ///< position in the cell's sources
-  unsigned bits;  ///< voxels
-};
-
-/// All covered voxels of a row.
-struct RowRuns {
-  int count = 0;
-  RowRun run[cell_edge];
+  std::int32_t source;  ///< position in the line's sources
+  std::uint16_t cell;   ///< of the line
+  std::uint16_t bits;   ///< voxels, 8 at most
 };
 
 }  // namespace HWY_NAMESPACE

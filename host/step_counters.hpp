@@ -12,21 +12,42 @@
 
 namespace tetwarp {
 
-/// Counters of one step, zeroed at its start.
-struct StepCounters {
+/// Counters that describe the mesh as it stands: a step that updates the one before keeps them up
+/// to date, any other starts them anew.
+struct MeshCounters {
   std::int64_t classes[tet_class_count];
-  std::int64_t pairs;
-  std::int64_t accepted;
   std::int64_t folded;
+};
+
+/// Counters of the work of one step, zeroed at its start.
+struct WorkCounters {
+  std::int64_t pairs;         ///< that were not rejected
+  std::int64_t merged_pairs;  ///< all pairs after an update
+  std::int64_t accepted;
+  std::int64_t touched_cells;
+  std::int64_t constant_cells;
+  std::int64_t covered;  ///< of the whole output, kept cells included
   RasterCounts raster;
+};
+
+struct StepCounters {
+  MeshCounters mesh;
+  WorkCounters work;
+};
+
+/// How much of the mesh and of the output a step had to do with.
+struct StepSizes {
+  std::int64_t tets;
+  std::int64_t tets_unchanged;
+  std::int64_t cells_unchanged;
+  std::int64_t candidate_pairs;
 };
 
 /// The report of a step: stage times by label, counters, sizes.
 inline StepReport make_step_report(const StepCounters& counters,
                                    const StageTimes& times,
                                    const OutputFrame& frame,
-                                   std::int64_t tet_count,
-                                   std::int64_t candidate_pairs) {
+                                   const StepSizes& sizes) {
   StepReport report;
   report.timings.upload = times.of("warp/upload");
   report.timings.setup = times.of("warp/setup");
@@ -35,21 +56,25 @@ inline StepReport make_step_report(const StepCounters& counters,
   report.timings.raster = times.of("warp/raster") + times.of("warp/fold");
   report.timings.download = times.of("warp/download");
   Counts& counts = report.counts;
+  const WorkCounters& work = counters.work;
   counts.voxels = frame.voxel_count();
-  counts.covered = counters.raster.covered;
+  counts.covered = work.covered;
   counts.outside = counts.voxels - counts.covered;
-  counts.tetrahedra = tet_count;
-  counts.inverted = counters.classes[static_cast<int>(TetClass::inverted)];
-  counts.flat = counters.classes[static_cast<int>(TetClass::flat)];
-  counts.folded = counters.folded;
+  counts.tetrahedra = sizes.tets;
+  counts.inverted = counters.mesh.classes[static_cast<int>(TetClass::inverted)];
+  counts.flat = counters.mesh.classes[static_cast<int>(TetClass::flat)];
+  counts.folded = counters.mesh.folded;
   counts.cells = frame.cell_count();
-  counts.candidate_pairs = candidate_pairs;
-  counts.pairs_rejected = candidate_pairs - counters.pairs;
-  counts.pairs_accepted = counters.accepted;
-  counts.pairs_partial = counters.pairs - counters.accepted;
-  counts.inside_tests = counters.raster.inside_tests;
-  counts.exact_tests = counters.raster.exact_tests;
-  counts.voxels_copied = counters.raster.copied;
+  counts.candidate_pairs = sizes.candidate_pairs;
+  counts.pairs_rejected = sizes.candidate_pairs - work.pairs;
+  counts.pairs_accepted = work.accepted;
+  counts.pairs_partial = work.pairs - work.accepted;
+  counts.inside_tests = work.raster.inside_tests;
+  counts.exact_tests = work.raster.exact_tests;
+  counts.tets_unchanged = sizes.tets_unchanged;
+  counts.cells_unchanged = sizes.cells_unchanged;
+  counts.cells_constant = work.constant_cells;
+  counts.voxels_copied = work.raster.copied;
   return report;
 }
 

@@ -122,7 +122,7 @@ bool ArrayWriter::fits(const Volume& volume) const {
          volume.components == components_;
 }
 
-void ArrayWriter::write(const Volume& volume, std::int64_t row) const {
+void ArrayWriter::write(const Volume& volume, std::int64_t row, WrittenFile& written) const {
   if (is_temporal_) {
     const std::vector<hsize_t> shape = file_shape(dims_, components_, true, row + 1);
     if (H5Dset_extent(dataset_.id(), shape.data()) < 0) dataset_.fail_with_reason("cannot grow");
@@ -135,7 +135,12 @@ void ArrayWriter::write(const Volume& volume, std::int64_t row) const {
         for (std::size_t axis = 0; axis < 3; ++axis) {
           end[axis] = std::min(begin[axis] + chunk_[axis], dims_[axis]);
         }
-        if (!skips_background_ || !is_background(volume, begin, end)) write_chunk(volume, row, begin, end);
+        ++written.chunks;
+        if (skips_background_ && is_background(volume, begin, end)) {
+          ++written.chunks_background;
+        } else {
+          write_chunk(volume, row, begin, end);
+        }
       }
     }
   }

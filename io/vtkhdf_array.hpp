@@ -33,8 +33,8 @@ class ArrayWriter {
               const VolumeWriteOptions& options,
               bool is_temporal);
 
-  /// Writes `volume`, in temporal files as row `row` of the time axis.
-  void write(const Volume& volume, std::int64_t row) const;
+  /// Writes `volume`, in temporal files as row `row` of the time axis, and counts its chunks.
+  void write(const Volume& volume, std::int64_t row, WrittenFile& written) const;
 
   /// False unless `volume` has the name, type and shape the dataset was made for.
   bool fits(const Volume& volume) const;

@@ -60,6 +60,7 @@ struct ImageFile {
   VtkhdfOutput output;
   h5::Object point_data;
   std::vector<ArrayWriter> arrays;
+  WrittenFile written;
 
   ImageFile(const std::string& path,
             const std::vector<const Volume*>& volumes,
@@ -85,24 +86,25 @@ struct ImageFile {
     }
   }
 
-  std::int64_t finish() {
+  WrittenFile finish() {
     arrays.clear();
     point_data.handle.close();
-    return output.finish();
+    written.bytes = output.finish();
+    return written;
   }
 };
 
 }  // namespace
 
-std::int64_t write_volumes(const std::string& path,
-                           const std::vector<const Volume*>& volumes,
-                           const VolumeWriteOptions& options) {
+WrittenFile write_volumes(const std::string& path,
+                          const std::vector<const Volume*>& volumes,
+                          const VolumeWriteOptions& options) {
   const h5::Silence silence;
   check_volumes(path, volumes);
   check_options(path, options);
   ImageFile file(path, volumes, options, false);
   for (std::size_t array = 0; array < volumes.size(); ++array) {
-    file.arrays[array].write(*volumes[array], 0);
+    file.arrays[array].write(*volumes[array], 0, file.written);
   }
   return file.finish();
 }
@@ -153,7 +155,7 @@ void TemporalVolumeWriter::append(double time, const std::vector<const Volume*>&
     }
   }
   for (std::size_t array = 0; array < arrays.size(); ++array) {
-    arrays[array].write(*volumes[array], row);
+    arrays[array].write(*volumes[array], row, state.file->written);
   }
   state.rows.push_back(row);
   state.times.push_back(time);
@@ -165,7 +167,7 @@ void TemporalVolumeWriter::repeat(double time) {
   state_->times.push_back(time);
 }
 
-std::int64_t TemporalVolumeWriter::finish() {
+WrittenFile TemporalVolumeWriter::finish() {
   const h5::Silence silence;
   State& state = *state_;
   if (state.rows.empty()) throw IoError(state.path, "", "no step was written");

@@ -56,8 +56,10 @@ struct CellCullBody {
     const std::int64_t slice = line * (ny + 1);
     const std::int64_t first =
         corner_offsets[t] + local % nx + (row % ny) * line + (row / ny) * slice;
-    unsigned all = 0;  // nothing is known where capacity ran out; the step is then repeated
-    if (first + slice + line + 1 < masks.size) {
+    // Nothing is known of small tetrahedra, nor where capacity ran out: the step is then repeated.
+    unsigned all = 0;
+    const bool has_masks = corner_offsets[t] < corner_offsets[t + 1];
+    if (has_masks && first + slice + line + 1 < masks.size) {
       all = ~0u;
       for (int corner = 0; corner < 8; ++corner) {
         all &= masks[first + (corner & 1) + (corner >> 1 & 1) * line + (corner >> 2) * slice];

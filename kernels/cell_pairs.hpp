@@ -16,6 +16,18 @@ struct CellRange {
   std::uint32_t end;
 };
 
+/// Sorted pairs with the range of every cell and, behind the last cell, the empty one that starts
+/// at the end.
+struct PairList {
+  View<const CellPair> pairs;
+  View<const CellRange> ranges;  ///< shape [cell_count + 1]
+};
+
+/// One past the last pair of a cell, those behind an accepted one included.
+TETWARP_HD std::int64_t end_of_cell(const PairList& list, std::int64_t cell) {
+  return list.ranges[cell + 1].begin;
+}
+
 /// First position in the first `count` sorted pairs whose cell is not below `cell`.
 TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs,
                                             std::int64_t count,
@@ -62,7 +74,7 @@ struct CellRangeBody {
 /// @param frame           the output
 /// @param pairs           out, surviving pairs sorted by cell then tetrahedron
 /// @param pair_count      out, how many there are, shape [1]
-/// @param ranges          out, shape [cell_count]
+/// @param ranges          out, shape [cell_count], or one more for a PairList
 /// @param accepted_count  accepted pairs are added to it, shape [1]
 ///
 /// Determinism: same bits for the same candidates. Cost: a stable radix sort of 8-byte words.

@@ -89,6 +89,8 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
   const int i = thread % cell_edge;
   const int j = thread / cell_edge % cell_edge;
   const int k_first = thread / (cell_edge * cell_edge);
+  const std::int64_t work = work_of(job, cell);
+  if (work == keep_cell) return;
   const CellRange range = job.ranges[cell];
   RasterCounts mine = {0, 0, 0, 0};
   unsigned open = 0;  // bit d: voxel d of this thread is in the output and has no owner yet
@@ -119,7 +121,9 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
       const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
       const bool copies = is_copied(job, tet);
       mine.copied += copies;
-      if (sizeof(Real) == 4 && tet.kind == MapKind::steep) {
+      if (work >= 0) {
+        store_filled(job, work, voxel);
+      } else if (sizeof(Real) == 4 && tet.kind == MapKind::steep) {
         store_owned<T, double>(job, tet, corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
         store_sample(job, copies ? Interpolation::nearest : job.filter, chunk.maps[slot], i, j, k,
@@ -144,6 +148,9 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
   atomicAdd(&block_counts[2], static_cast<int>(mine.exact_tests));
   atomicAdd(&block_counts[3], static_cast<int>(mine.copied));
   __syncthreads();
+  if (job.cell_covered.size > 0 && thread == 0) {
+    job.cell_covered[cell] = static_cast<std::uint16_t>(block_counts[0]);
+  }
   if (job.counts != nullptr && thread < 4 && block_counts[thread] != 0) {
     atomic_add(reinterpret_cast<std::int64_t*>(job.counts) + thread, block_counts[thread]);
   }

@@ -2,7 +2,7 @@
 /// Stage "raster" of the warp, the body: who owns a voxel of a cell, and what it gets.
 ///
 /// Two mappings call these functions: cell_raster.cuh (one block owns a cell) and
-/// host/cell_raster_cpu.cpp (one thread owns a cell, a vector owns a row of it).
+/// host/cell_raster_cpu.cpp (one thread owns a line of cells, row after row).
 #pragma once
 #include <cstdint>
 
@@ -30,6 +30,9 @@ struct OutsideMap {
   double offset[3];
 };
 
+constexpr std::int64_t keep_cell = -2;    ///< the output holds this cell already
+constexpr std::int64_t sample_cell = -1;  ///< every covered voxel is sampled
+
 /// Everything the raster stage reads and writes, for one source.
 template <class T>
 struct RasterJob {
@@ -48,7 +51,18 @@ struct RasterJob {
   std::uint8_t* mask;  ///< may be null
   std::int32_t* tet;   ///< may be null
   RasterCounts* counts;
+
+  /// Per cell: keep_cell, sample_cell, or the source voxel whose samples every covered voxel gets.
+  /// Size 0: sample_cell.
+  View<const std::int64_t> cell_work;
+  /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
+  View<std::uint16_t> cell_covered;
 };
+
+template <class T>
+TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {
+  return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
+}
 
 /// The four planes of a tetrahedron seen from one cell, scaled so that a value above 1 is inside
 /// for certain and one below -1 outside for certain.
@@ -64,14 +78,14 @@ struct CellPlanes {
 /// unit of the scaled planes is u (8 |v| + 192).
 TETWARP_HD void set_cell_plane(
     const TetSetup& tet, int face, int cx, int cy, int cz, CellPlanes& planes) {
-  const double* p = tet.plane[face];
-  const double value = p[0] * static_cast<double>(cx - tet.anchor[0]) +
-                       p[1] * static_cast<double>(cy - tet.anchor[1]) +
-                       p[2] * static_cast<double>(cz - tet.anchor[2]) + p[3];
+  const double value = tet.plane[0][face] * static_cast<double>(cx - tet.anchor[0]) +
+                       tet.plane[1][face] * static_cast<double>(cy - tet.anchor[1]) +
+                       tet.plane[2][face] * static_cast<double>(cz - tet.anchor[2]) +
+                       tet.plane[3][face];
   const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
   planes.value[face] = static_cast<float>(value * scale);
   for (int axis = 0; axis < 3; ++axis) {
-    planes.step[axis][face] = static_cast<float>(p[axis] * scale);
+    planes.step[axis][face] = static_cast<float>(tet.plane[axis][face] * scale);
   }
 }
 
@@ -153,6 +167,15 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
                make_source_map<Real>(start, linear), i, j, k, voxel);
 }
 
+/// Stores a voxel that gets the samples of voxel `from` of the source.
+template <class T>
+TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::int64_t voxel) {
+  const int components = job.source.components;
+  for (int c = 0; c < components; ++c) {
+    job.volume[voxel * components + c] = job.source.data[from * components + c];
+  }
+}
+
 /// Stores a voxel that no tetrahedron covers.
 template <class T>
 TETWARP_HD void store_outside(
@@ -173,11 +196,11 @@ TETWARP_HD void store_outside(
 struct VoxelFoldBody {
   View<const std::int32_t> tets;
   View<const Node> nodes;
-  View<const CellPair> pairs;
-  View<const std::int64_t> pair_count;
-  View<const CellRange> ranges;
+  PairList list;
+  View<const std::uint8_t> touched;  ///< cells to look at; size 0: all
   OutputFrame frame;
   View<std::int64_t> folded;
+  std::int64_t weight;  ///< of a folded voxel: 1 counts it, -1 takes it back
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
     const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
@@ -186,14 +209,28 @@ struct VoxelFoldBody {
     const int j = frame.begin[1] + static_cast<int>(row % ny);
     const int k = frame.begin[2] + static_cast<int>(row / ny);
     const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
-    // Not the cell's own end, which is cut after the first accepted pair.
-    const std::int64_t end = cell + 1 < ranges.size ? ranges[cell + 1].begin : pair_count[0];
+    if (touched.size > 0 && touched[cell] == 0) return;
+    const std::int64_t end = end_of_cell(list, cell);
     int inside = 0;
-    for (std::int64_t p = ranges[cell].begin; p < end && inside < 2; ++p) {
-      const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(pairs[p]));
+    for (std::int64_t p = list.ranges[cell].begin; p < end && inside < 2; ++p) {
+      const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(list.pairs[p]));
       inside += is_inside_exact(tet, i, j, k, true);
     }
-    if (inside == 2) atomic_add(&folded[0], 1);
+    if (inside == 2) atomic_add(&folded[0], weight);
+  }
+};
+
+/// One index = a thousand cells: their covered voxels, summed.
+struct CoveredSumBody {
+  static constexpr std::int64_t cells = 1024;
+  View<const std::uint16_t> cell_covered;
+  View<std::int64_t> covered;
+
+  TETWARP_HD void operator()(std::int64_t part) const {
+    const std::int64_t end = min_of((part + 1) * cells, cell_covered.size);
+    std::int64_t sum = 0;
+    for (std::int64_t cell = part * cells; cell < end; ++cell) sum += cell_covered[cell];
+    atomic_add(&covered[0], sum);
   }
 };
 

@@ -21,10 +21,11 @@ TETWARP_HD std::uint16_t corner_mask_of(const TetSetup& tet,
   const double dz = static_cast<double>(z - tet.anchor[2]);
   unsigned mask = 0;
   for (int face = 0; face < 4; ++face) {
-    const double* p = tet.plane[face];
-    const double value = p[0] * dx + p[1] * dy + p[2] * dz + p[3];
+    const double offset = tet.plane[3][face];
+    const double value =
+        tet.plane[0][face] * dx + tet.plane[1][face] * dy + tet.plane[2][face] * dz + offset;
     // A thousand times the rounding error of the line above, fused or not.
-    const double margin = (fabs(dx) + fabs(dy) + fabs(dz) + fabs(p[3]) + 1) * 0x1p-40;
+    const double margin = (fabs(dx) + fabs(dy) + fabs(dz) + fabs(offset) + 1) * 0x1p-40;
     mask |= unsigned(value < -margin) << (2 * face);
     mask |= unsigned(value > tet.height[face] + margin) << (2 * face + 1);
     mask |= unsigned(value > margin) << (8 + face);

@@ -73,6 +73,11 @@ TETWARP_HD Int128 turn_inward(ExactPlane& plane, const TetNodes& tet, int face) 
 TETWARP_HD_RARE bool is_inside_exact(
     const TetNodes& tet, int i, int j, int k, bool strictly = false) {
   const std::int64_t point[3] = {i * quanta_per_voxel, j * quanta_per_voxel, k * quanta_per_voxel};
+  for (int axis = 0; axis < 3; ++axis) {  // cheap, and enough for most of a cell's tiny tetrahedra
+    const std::int64_t x[4] = {tet.x[0][axis], tet.x[1][axis], tet.x[2][axis], tet.x[3][axis]};
+    if (point[axis] < min_of(min_of(x[0], x[1]), min_of(x[2], x[3]))) return false;
+    if (point[axis] > max_of(max_of(x[0], x[1]), max_of(x[2], x[3]))) return false;
+  }
   for (int face = 0; face < 4; ++face) {
     ExactPlane plane = exact_plane(tet, face);
     if (turn_inward(plane, tet, face) == 0) return false;

@@ -23,7 +23,7 @@ constexpr int tet_class_count = 5;
 /// One tetrahedron. Distances in voxels, positions relative to `anchor`.
 struct TetSetup {
   std::int64_t anchor[3];  ///< integer voxel at the low corner of the box [frame]
-  double plane[4][4];      ///< unit inward normal and value at the anchor, per face [voxel]
+  double plane[4][4];      ///< unit inward normal (3) and value at the anchor, each for four faces
   double height[4];        ///< distance of the node opposite each face [voxel]
   double map[3][4];        ///< source index = map[:, :3] * (voxel - anchor) + map[:, 3]
   int begin[3];            ///< voxels of the frame within the box; empty when begin >= end
@@ -31,6 +31,10 @@ struct TetSetup {
   MapKind kind;
   TetClass tet_class;
 };
+
+/// Tetrahedra whose box touches at most so many cells go without masks: most of their cells would
+/// be kept anyway, and testing the few others costs less than masks for all.
+constexpr std::int64_t fewest_masked_cells = 9;
 
 constexpr double steep_threshold = 4.0;  ///< largest map entry that float32 may evaluate
 
@@ -81,6 +85,14 @@ TETWARP_HD bool is_whole_shift(const TetNodes& output,
   return whole;
 }
 
+/// Within an ulp of the integer; the compiler's own conversion costs ten times as much.
+TETWARP_HD double as_double(Int128 value) {
+  const auto high = static_cast<std::int64_t>(value >> 64);
+  const auto low = static_cast<std::int64_t>(value);
+  if (high == low >> 63) return static_cast<double>(low);
+  return static_cast<double>(high) * 0x1p64 + static_cast<double>(static_cast<std::uint64_t>(low));
+}
+
 /// Planes of the four faces and gradients of the barycentric coordinates [1/voxel]; barycentric
 /// coordinates at the anchor. From exact integers: no cancellation, however thin the tetrahedron.
 /// @returns false when flat
@@ -94,19 +106,19 @@ TETWARP_HD bool set_planes(const TetNodes& tet,
     ExactPlane exact = exact_plane(tet, face);
     const Int128 volume = turn_inward(exact, tet, face);
     if (volume == 0) return false;
-    const double volume6 = static_cast<double>(volume);
-    const double value = static_cast<double>(plane_value(exact, anchor));
+    const double volume6 = as_double(volume), per_volume = 1.0 / volume6;
+    const double value = as_double(plane_value(exact, anchor));
     double normal[3], square = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      normal[axis] = static_cast<double>(exact.normal[axis]);
+      normal[axis] = as_double(exact.normal[axis]);
       square += normal[axis] * normal[axis];
-      gradient[face][axis] = normal[axis] * (static_cast<double>(quanta_per_voxel) / volume6);
+      gradient[face][axis] = normal[axis] * (static_cast<double>(quanta_per_voxel) * per_volume);
     }
-    at_anchor[face] = value / volume6;
-    const double length = sqrt(square);
-    const double per_voxel = 1.0 / (length * static_cast<double>(quanta_per_voxel));
-    for (int axis = 0; axis < 3; ++axis) setup.plane[face][axis] = normal[axis] / length;
-    setup.plane[face][3] = value * per_voxel;
+    at_anchor[face] = value * per_volume;
+    const double per_length = 1.0 / sqrt(square);
+    const double per_voxel = per_length * (1.0 / static_cast<double>(quanta_per_voxel));
+    for (int axis = 0; axis < 3; ++axis) setup.plane[axis][face] = normal[axis] * per_length;
+    setup.plane[3][face] = value * per_voxel;
     setup.height[face] = volume6 * per_voxel;
   }
   return true;
@@ -196,6 +208,7 @@ struct TetSetupBody {
         pairs *= cells;
       }
     }
+    if (pairs < fewest_masked_cells) corners = 0;
     corner_counts[t] = corners;
     pair_counts[t] = pairs;
     if (setup.tet_class != TetClass::regular) {
@@ -215,7 +228,8 @@ struct TetSetupBody {
 /// @param rest_orientation  sign of the rest volume, shape [tet_count]
 /// @param frame             the output
 /// @param setups            out, shape [tet_count]
-/// @param corner_counts     out, coarse corners of the box, shape [tet_count + 1]
+/// @param corner_counts     out, coarse corners of the box, none where it touches fewer than
+///                          fewest_masked_cells cells, shape [tet_count + 1]
 /// @param pair_counts       out, cells of the box, shape [tet_count + 1]
 /// @param class_counts      irregular tetrahedra are added to it, shape [tet_class_count]
 /// @pre  indices in tets are in range; the pipeline checks them

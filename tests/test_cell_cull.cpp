@@ -19,11 +19,11 @@ class CellCull : public EachExec<Exec> {
 };
 TYPED_TEST_SUITE(CellCull, Execs, ExecNames);
 
-/// Holds cell 0 of a frame of 2 x 2 x 2 cells and cuts, touches or misses the others.
+/// Holds cell 0 of a frame of 3 x 3 x 3 cells and cuts, touches or misses the others.
 StageInput corner_tet() {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(27.5, -1, -1),
                                    node_at(-1, 27.5, -1), node_at(-1, -1, 27.5)};
-  return one_tet(nodes, nodes, frame_of(16, 16, 16));
+  return one_tet(nodes, nodes, frame_of(24, 24, 24));
 }
 
 /// Voxels of cell and frame, as a box.
@@ -81,16 +81,17 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(23, -1, -1), node_at(-1, 23, -1),
                                    node_at(-1, -1, 23)};
   const StageInput wide = corner_tet();
-  const StageInput narrow = one_tet(nodes, nodes, frame_of(16, 16, 16));
+  const StageInput narrow = one_tet(nodes, nodes, frame_of(24, 24, 24));
 
   const auto near = this->download(this->run(wide).candidates);
   const auto far = this->download(this->run(narrow).candidates);
 
   EXPECT_EQ(near.front(), make_pair(0, 0, true));
   EXPECT_EQ(near[1], make_pair(1, 0, false));
-  EXPECT_EQ(near.back(), make_pair(7, 0, false));
+  EXPECT_EQ(near[13], make_pair(13, 0, false));
+  EXPECT_EQ(near.back(), rejected_pair);
   EXPECT_EQ(far.front(), make_pair(0, 0, false));  // x + y + z <= 20 cuts its far corner
-  EXPECT_EQ(far.back(), rejected_pair);
+  EXPECT_EQ(far[13], rejected_pair);
 }
 
 TYPED_TEST(CellCull, NeverChangesWhoIsInside) {
@@ -165,11 +166,25 @@ TYPED_TEST(CellCull, HasAPairPerCellForAnyNumberOfTetrahedra) {
   }
 }
 
+/// Eight cells at most: no masks, and every pair is kept, inside or outside as it may be.
+TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedra) {
+  const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(11, -1, -1), node_at(-1, 11, -1),
+                                   node_at(-1, -1, 11)};
+  const Stages<TypeParam> stages = this->run(one_tet(nodes, nodes, frame_of(16, 16, 16)));
+
+  EXPECT_EQ(stages.masks.size, 0);
+  const auto pairs = this->download(stages.candidates);
+  ASSERT_EQ(pairs.size(), 8u);
+  for (std::size_t c = 0; c < 8; ++c) {
+    EXPECT_EQ(pairs[c], make_pair(static_cast<std::int64_t>(c), 0, false));
+  }
+}
+
 /// Where masks ran out of room nothing is known: the pair is kept, the step comes again.
 TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
   const StageInput input = corner_tet();
   const Stages<TypeParam> stages = this->run(input);
-  const auto pairs = this->template zeros<CellPair>(8);
+  const auto pairs = this->template zeros<CellPair>(27);
 
   cell_cull(this->exec(), View<const TetSetup>(stages.setups),
             View<const std::int64_t>(stages.corner_offsets),
@@ -177,7 +192,7 @@ TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
             View<const std::int64_t>(stages.pair_offsets), CullSwitches{}, input.frame, pairs);
 
   const auto found = this->download(pairs);
-  for (std::size_t c = 0; c < 8; ++c) {
+  for (std::size_t c = 0; c < 27; ++c) {
     EXPECT_EQ(found[c], make_pair(static_cast<std::int64_t>(c), 0, false));
   }
 }

@@ -37,14 +37,15 @@ struct Rastered {
   std::vector<T> volume;
   std::vector<std::uint8_t> mask;
   std::vector<std::int32_t> tet;
+  std::vector<std::uint16_t> cell_covered;
   RasterCounts counts = {0, 0, 0, 0};
 };
 
 template <class T>
 bool is_same(const Rastered<T>& a, const Rastered<T>& b) {
   return std::memcmp(a.volume.data(), b.volume.data(), a.volume.size() * sizeof(T)) == 0 &&
-         a.mask == b.mask && a.tet == b.tet && a.counts.covered == b.counts.covered &&
-         a.counts.copied == b.counts.copied;
+         a.mask == b.mask && a.tet == b.tet && a.cell_covered == b.cell_covered &&
+         a.counts.covered == b.counts.covered && a.counts.copied == b.counts.copied;
 }
 
 scenes::Scene scene_named(const std::string& name) {
@@ -85,6 +86,17 @@ class RasterBench {
     return most;
   }
 
+  /// A third of the cells each: left alone, sampled, filled with the value of a voxel.
+  void mix_work() {
+    const auto samples = static_cast<double>(source_.grid.voxel_count());
+    for (std::int64_t cell = 0; cell < input_.frame.cell_count(); ++cell) {
+      const double u = scenes::uniform(83, static_cast<std::uint64_t>(cell));
+      const auto voxel = static_cast<std::int64_t>((u - 2.0 / 3) * 3 * samples);
+      work_.push_back(u < 1.0 / 3 ? keep_cell : u < 2.0 / 3 ? sample_cell : voxel);
+    }
+    job_.cell_work = {work_.data(), input_.frame.cell_count()};
+  }
+
   Rastered<T> by_rows() {
     return filled([&](const RasterJob<T>& job) {
       const Progress silent;
@@ -107,10 +119,12 @@ class RasterBench {
     result.volume.assign(voxels * static_cast<std::size_t>(source_.components), T{55});
     result.mask.assign(voxels, 0xee);
     result.tet.assign(voxels, -99);
+    result.cell_covered.assign(static_cast<std::size_t>(input_.frame.cell_count()), 999);
     job_.volume = result.volume.data();
     job_.mask = result.mask.data();
     job_.tet = result.tet.data();
     job_.counts = &result.counts;
+    job_.cell_covered = {result.cell_covered.data(), input_.frame.cell_count()};
     raster(job_);
     return result;
   }
@@ -122,6 +136,7 @@ class RasterBench {
   ExecArrays<CpuExec> arrays_;
   Stages<CpuExec> stages_;
   RasterJob<T> job_;
+  std::vector<std::int64_t> work_;
 };
 
 void expect_equal_bits(const RasterCase& what) {
@@ -205,6 +220,47 @@ TEST(CellRasterSimt, CellsOfManyTetrahedraHaveTheSameBits) {
   EXPECT_GT(RasterBench<float>({.scene = "soup"}).most_pairs_in_a_cell(), raster_chunk + 0u);
   expect_equal_bits({.scene = "tiny"});
   expect_equal_bits({.scene = "tiny", .type = PixelType::int16});
+}
+
+/// Kept cells are not written, filled ones hold their voxel's samples where they are covered.
+template <class T>
+void expect_equal_work(const RasterCase& what) {
+  RasterBench<T> bench(what);
+  const Rastered<T> all = bench.by_rows();
+  bench.mix_work();
+  const Rastered<T> rows = bench.by_rows();
+  simt::for_each_schedule([&](const simt::Schedule&) {
+    EXPECT_TRUE(is_same(bench.by_blocks(), rows)) << what.scene << ' ' << name_of(what.type);
+  });
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < rows.tet.size(); ++v) {
+    if (rows.tet[v] == -99) ++kept;
+    EXPECT_EQ(rows.tet[v] == -99, rows.mask[v] == 0xee);
+    EXPECT_TRUE(rows.tet[v] == -99 || rows.tet[v] == all.tet[v]);
+  }
+  EXPECT_GT(kept, rows.tet.size() / 8);
+  EXPECT_LT(kept, rows.tet.size());
+  EXPECT_LT(rows.counts.covered, all.counts.covered);
+  EXPECT_NE(rows.volume, all.volume);
+}
+
+TEST(CellRasterSimt, CellsThatAreKeptOrFilledHaveTheSameBits) {
+  expect_equal_work<float>({});
+  expect_equal_work<float>({.components = 3, .filter = Interpolation::nearest});
+  expect_equal_work<std::int16_t>({.scene = "soup", .type = PixelType::int16});
+  expect_equal_work<double>({.scene = "rotated",
+                             .type = PixelType::float64,
+                             .outside = stretched(),
+                             .region = Region{{3, 5, 1}, {20, 16, 19}}});
+}
+
+TEST(CellRasterSimt, CoveredVoxelsAreCountedPerCell) {
+  const Rastered<float> blocks = RasterBench<float>({.scene = "waved"}).by_blocks();
+
+  std::int64_t sum = 0;
+  for (const std::uint16_t covered : blocks.cell_covered) sum += covered;
+  EXPECT_EQ(sum, blocks.counts.covered);
+  EXPECT_GT(sum, 0);
 }
 
 TEST(CellRasterSimt, EveryVoxelIsWritten) {

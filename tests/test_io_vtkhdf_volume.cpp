@@ -205,7 +205,7 @@ TEST(VtkhdfVolume, RoundTripsATemporalFileAndStoresRepeatedStepsOnce) {
   writer.repeat(0.75);
   writer.append(1.5, {&later, &b});
   EXPECT_FALSE(std::filesystem::exists(folder / "t.vtkhdf"));
-  const std::int64_t bytes = writer.finish();
+  const std::int64_t bytes = writer.finish().bytes;
 
   EXPECT_EQ(bytes, static_cast<std::int64_t>(std::filesystem::file_size(folder / "t.vtkhdf")));
   EXPECT_EQ(read_volume_header(folder / "t.vtkhdf").times, (std::vector<double>{0.5, 0.75, 1.5}));

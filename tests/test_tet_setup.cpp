@@ -56,7 +56,7 @@ TYPED_TEST(TetSetupStage, HasUnitInwardNormalsAndHeights) {
   for (int face = 0; face < 4; ++face) {
     EXPECT_NEAR(tet.height[face], face == 0 ? 8 * third : 8, 1e-14);
     for (int axis = 0; axis < 4; ++axis) {
-      EXPECT_NEAR(tet.plane[face][axis], expected[face][axis], 1e-14);
+      EXPECT_NEAR(tet.plane[axis][face], expected[face][axis], 1e-14);
     }
   }
 }
@@ -71,7 +71,19 @@ TYPED_TEST(TetSetupStage, BoxesTheVoxelsWithinAndTheirCells) {
   EXPECT_EQ(std::vector(tet.begin, tet.begin + 3), (std::vector{2, 2, 8}));
   EXPECT_EQ(std::vector(tet.end, tet.end + 3), (std::vector{11, 11, 16}));
   EXPECT_EQ(this->download(stages.pair_offsets), (std::vector<std::int64_t>{0, 2 * 2 * 1}));
-  EXPECT_EQ(this->download(stages.corner_offsets), (std::vector<std::int64_t>{0, 3 * 3 * 2}));
+  EXPECT_EQ(this->download(stages.corner_offsets), (std::vector<std::int64_t>{0, 0}));
+}
+
+TYPED_TEST(TetSetupStage, HasCoarseCornersFromNineCellsOn) {
+  const auto corners = [&](double size) {
+    const Stages<TypeParam> stages =
+        this->run(one_tet(corner_nodes(size), corner_nodes(8), frame_of(32, 32, 32)));
+    return this->download(stages.corner_offsets).back();
+  };
+
+  EXPECT_EQ(corners(15.5), 0);        // 2x2x2 cells
+  EXPECT_EQ(corners(16), 4 * 4 * 4);  // 3x3x3 cells
+  EXPECT_EQ(corners(31.5), 5 * 5 * 5);
 }
 
 TYPED_TEST(TetSetupStage, ClipsTheBoxToTheFrame) {
@@ -129,9 +141,9 @@ TYPED_TEST(TetSetupStage, PlanesVanishOnTheirNodesAndReachTheirHeight) {
       for (int face = 0; face < 4; ++face) {
         for (std::size_t a = 0; a < 4; ++a) {
           const Point3 from = from_anchor(tet, node_of(input, input.deformed, t, a));
-          double value = tet.plane[face][3], terms = std::abs(value);
+          double value = tet.plane[3][face], terms = std::abs(value);
           for (int axis = 0; axis < 3; ++axis) {
-            value += tet.plane[face][axis] * from[static_cast<std::size_t>(axis)];
+            value += tet.plane[axis][face] * from[static_cast<std::size_t>(axis)];
             terms += std::abs(from[static_cast<std::size_t>(axis)]);
           }
           const bool opposite = static_cast<int>(a) == face;

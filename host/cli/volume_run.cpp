@@ -15,6 +15,11 @@ std::int64_t bytes_of(const std::vector<Point3>& positions) {
   return static_cast<std::int64_t>(positions.size() * sizeof(Point3));
 }
 
+void add_written(const WrittenFile& file, Counts& counts) {
+  counts.bytes_written += file.bytes;
+  counts.chunks_background += file.chunks_background;
+}
+
 }  // namespace
 
 VolumeRun::VolumeRun(const WarpArguments& arguments,
@@ -59,7 +64,7 @@ void VolumeRun::write_each_step() {
       compute(std::move(positions), report);
       stop_if_interrupted();
       const Stopwatch watch;
-      report.counts.bytes_written = write_volumes(output, targets(), write_options(fingerprint));
+      add_written(write_volumes(output, targets(), write_options(fingerprint)), report.counts);
       report.timings.write = watch.seconds();
       ++result_.written;
     }
@@ -86,8 +91,10 @@ void VolumeRun::write_temporal() {
     StepReport report;
     report.step = step;
     std::vector<Point3> positions = read_positions(step, report);
-    const bool repeats = equals_last_step(positions);
     compute(std::move(positions), report);
+    const Counts& counts = report.counts;
+    const bool repeats =
+        counts.steps_unchanged > 0 || (counts.cells > 0 && counts.cells_unchanged == counts.cells);
     stop_if_interrupted();
     const Stopwatch watch;
     const double time = times[static_cast<std::size_t>(step)];
@@ -100,7 +107,7 @@ void VolumeRun::write_temporal() {
     finish_step(report);
   }
   const Stopwatch watch;
-  result_.report.counts.bytes_written += writer.finish();
+  add_written(writer.finish(), result_.report.counts);
   result_.report.timings.write += watch.seconds();
   ++result_.written;
 }
@@ -142,6 +149,7 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport& report) {
   for (Volume& volume : warped_) pointers.push_back(volume.data.data());
   WarpTarget target;
   target.volumes = pointers;
+  target.holds_previous = true;
   if (mask_) target.mask = mask_->samples<std::uint8_t>().data();
   if (tet_) target.tet = tet_->samples<std::int32_t>().data();
   const auto step_voxels = static_cast<double>(volume_.written_grid.voxel_count());

@@ -41,7 +41,11 @@ struct Counts {
   std::int64_t inside_tests = 0;     ///< (voxel, tetrahedron) tests against four planes
   std::int64_t exact_tests = 0;      ///< of these, decided in exact integers
   std::int64_t steps_unchanged = 0;  ///< steps equal to the one before, not computed again
+  std::int64_t tets_unchanged = 0;   ///< tetrahedra that have not moved: their setup was kept
+  std::int64_t cells_unchanged = 0;  ///< cells that no moved tetrahedron touches: left as they were
+  std::int64_t cells_constant = 0;   ///< cells of one value: filled, not sampled (first source)
   std::int64_t voxels_copied = 0;    ///< voxels moved by whole voxels: copied, not interpolated
+  std::int64_t chunks_background = 0;  ///< chunks of files that hold only background: not stored
   std::int64_t bytes_read = 0;
   std::int64_t bytes_written = 0;
 

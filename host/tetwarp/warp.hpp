@@ -44,6 +44,10 @@ struct SkipOptions {
   bool copied_voxels = true;    ///< tetrahedra moved by whole voxels are copied, not interpolated
   bool unchanged_steps = true;  ///< a step equal to the one before is not computed again (series
                                 ///< of files; a single Warper::step() always computes)
+  bool unchanged_tets = true;   ///< what has not moved since the step before is not set up again,
+                                ///< and cells it alone touches are left as they are where the
+                                ///< target holds that step (WarpTarget::holds_previous)
+  bool constant_cells = true;   ///< cells that see one value of the source are filled, not sampled
   bool background_chunks = true;  ///< chunks of a file that hold only background are not stored
 };
 
@@ -72,6 +76,10 @@ struct WarpTarget {
   std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
   std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
   Memory memory = Memory::host;
+  /// The buffers hold what the previous step wrote to them, untouched: a step then leaves alone
+  /// what it would write again. Has no effect on the first step, after one that threw, and on other
+  /// buffers than those of the previous step.
+  bool holds_previous = false;
   void* stream = nullptr;  ///< cudaStream_t that orders work on device memory; cuda only
 };
 
@@ -91,8 +99,8 @@ class WarpBackend;
 /// the same on every back end and for every thread count. Not safe for concurrent calls.
 class Warper {
  public:
-  /// @param sources  volumes on one common grid, host or (cuda) device memory, kept by the caller
-  ///                 for the life of the Warper; at least one
+  /// @param sources  volumes on one common grid, host or (cuda) device memory, kept by the caller,
+  ///                 unchanged, for the life of the Warper; at least one
   /// @param mesh     copied
   /// @param options  see WarpOptions
   /// @throws std::invalid_argument  on any bad argument, naming it

@@ -1,0 +1,210 @@
+/// @file cell_line-inl.hpp
+/// A line of cells along x: who owns its voxels, then what they get, row by row over the whole
+/// line, so that the source is read in long streaks. Included once per vector instruction set (the
+/// name and the toggled guard are Highway's convention).
+#if defined(TETWARP_CELL_LINE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_CELL_LINE_INL
+#undef TETWARP_CELL_LINE_INL
+#else
+#define TETWARP_CELL_LINE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "host/cell_owners-inl.hpp"
+#include "host/row_sample-inl.hpp"
+#include "kernels/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+
+/// Rasters lines of cells of one job. Keeps its scratch from line to line.
+template <class T>
+class CellLine {
+ public:
+  CellLine(const RasterJob<T>& job, int longest, RasterCounts& counts)
+      : job_(job),
+        counts_(counts),
+        sampler_(job),
+        open_(static_cast<std::size_t>(longest)),
+        runs_(static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge)),
+        row_capacity_(longest * cell_edge) {}
+
+  /// Cells [ci_begin, ci_end) of line (cj, ck).
+  void raster(int ci_begin, int ci_end, int cj, int ck) {
+    sources_.clear();
+    for (auto& slice : run_counts_) std::fill_n(slice, cell_edge, 0);
+    first_ = ci_begin;
+    bool is_empty = true, is_kept = true;
+    for (int ci = ci_begin; ci < ci_end; ++ci) {
+      const std::int64_t cell = job_.frame.cell_index(ci, cj, ck);
+      const bool keeps = work_of(job_, cell) == keep_cell;
+      const CellRange range = job_.ranges[cell];
+      is_kept = is_kept && keeps;
+      is_empty = is_empty && !keeps && range.begin >= range.end;
+      if (keeps) {
+        std::fill_n(open_[static_cast<std::size_t>(ci - first_)].slice, cell_edge, SliceBits{0});
+      } else {
+        find(make_cell_box(job_.frame, ci, cj, ck), range, cell);
+      }
+    }
+    if (is_kept) return;
+    const CellBox first = make_cell_box(job_.frame, ci_begin, cj, ck);
+    const CellBox last = make_cell_box(job_.frame, ci_end - 1, cj, ck);
+    line_begin_ = first.begin[0];
+    line_end_ = cell_edge * (ci_end - 1 - ci_begin) + last.end[0];
+    for (int k = first.begin[2]; k < first.end[2]; ++k) {
+      for (int j = first.begin[1]; j < first.end[1]; ++j) {
+        const std::int64_t row =
+            job_.frame.offset_of(first.corner[0], first.corner[1] + j, first.corner[2] + k);
+        RowRun* runs = row_runs(j, k);
+        const int count = run_counts_[k][j];
+        write_extra(runs, count, row);
+        if (count > 0) sampler_.write(sources_.data(), runs, count, j, k, row);
+        if (is_empty) {
+          write_outside(line_begin_, line_end_, first, j, k, row);
+        } else {
+          write_open(ci_end - ci_begin, first, j, k, row);
+        }
+      }
+    }
+  }
+
+ private:
+  RowRun* row_runs(int j, int k) {
+    return runs_.data() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
+  }
+
+  /// Owners of one cell, the runs that they serve, and at once what needs no sample.
+  void find(const CellBox& box, const CellRange& range, std::int64_t cell_index) {
+    const int cell = box.corner[0] / cell_edge - first_;
+    const std::int64_t work = work_of(job_, cell_index);
+    const std::int64_t covered_before = counts_.covered;
+    SliceBits* open = open_[static_cast<std::size_t>(cell)].slice;
+    const SliceBits whole =
+        rows_between(box.begin[1], box.end[1], (1u << box.end[0]) - (1u << box.begin[0]));
+    for (int k = box.begin[2]; k < box.end[2]; ++k) open[k] = whole;
+    std::uint32_t last_pair = ~std::uint32_t{0};
+    find_owners(job_, box, range, open, counts_, [&](std::uint32_t p, int k, SliceBits bits) {
+      const int t = tet_of(job_.pairs[p]);
+      const int voxels = std::popcount(bits);
+      counts_.covered += voxels;
+      if (is_copied(job_, job_.setups[t])) counts_.copied += voxels;
+      if (work >= 0) return fill(box, k, bits, t, work);
+      if (p != last_pair) sources_.emplace_back(job_, job_.setups[t], box.corner, t);
+      last_pair = p;
+      const auto source = static_cast<std::int32_t>(sources_.size() - 1);
+      while (bits != 0) {
+        const int j = std::countr_zero(bits) / cell_edge;
+        const auto row = static_cast<std::uint16_t>(bits >> (cell_edge * j) & 0xff);
+        row_runs(j, k)[run_counts_[k][j]++] = {source, static_cast<std::uint16_t>(cell), row};
+        bits &= ~(SliceBits{0xff} << (cell_edge * j));
+      }
+    });
+    if (job_.cell_covered.size > 0) {
+      job_.cell_covered[cell_index] = static_cast<std::uint16_t>(counts_.covered - covered_before);
+    }
+  }
+
+  /// Voxels of slice k whose samples all equal source voxel `constant`.
+  void fill(const CellBox& box, int k, SliceBits bits, int tet, std::int64_t constant) {
+    const int components = job_.source.components;
+    const T* value = job_.source.data + constant * components;
+    for (int j = 0; j < cell_edge; ++j) {
+      unsigned row = static_cast<unsigned>(bits >> (cell_edge * j) & 0xff);
+      if (row == 0) continue;
+      const std::int64_t voxel =
+          job_.frame.offset_of(box.corner[0], box.corner[1] + j, box.corner[2] + k);
+      if (job_.mask != nullptr || job_.tet != nullptr) write_extra(row, voxel, tet);
+      if (row == 0xff && components == 1) {
+        std::fill_n(job_.volume + voxel, cell_edge, *value);
+        continue;
+      }
+      for (; row != 0; row &= row - 1) {
+        std::copy_n(value, components, job_.volume + (voxel + std::countr_zero(row)) * components);
+      }
+    }
+  }
+
+  /// Writes what no tetrahedron covers in row (j, k), run by run.
+  void write_open(int cells, const CellBox& first, int j, int k, std::int64_t row) {
+    int begin = -1;
+    for (int cell = 0; cell < cells; ++cell) {
+      const auto bits = static_cast<unsigned>(
+          open_[static_cast<std::size_t>(cell)].slice[k] >> (cell_edge * j) & 0xff);
+      if (bits == 0xff && begin >= 0) continue;
+      for (int i = 0; i < cell_edge; ++i) {
+        const int voxel = cell_edge * cell + i;
+        const bool is_open = bits >> i & 1;
+        if (is_open && begin < 0) begin = voxel;
+        if (!is_open && begin >= 0) {
+          write_outside(begin, voxel, first, j, k, row);
+          begin = -1;
+        }
+      }
+    }
+    if (begin >= 0) write_outside(begin, line_end_, first, j, k, row);
+  }
+
+  /// Voxels [begin, end) of the line's row (j, k): the background, or the source in place.
+  void write_outside(int begin, int end, const CellBox& first, int j, int k, std::int64_t row) {
+    if (job_.mask != nullptr) std::fill_n(job_.mask + row + begin, end - begin, std::uint8_t{0});
+    if (job_.tet != nullptr) std::fill_n(job_.tet + row + begin, end - begin, -1);
+    if (!job_.outside.use_source) {
+      const int components = job_.source.components;
+      fill_run(job_.background, job_.volume + (row + begin) * components,
+               std::int64_t{end - begin} * components);
+      return;
+    }
+    for (int voxel = begin; voxel < end; ++voxel) {
+      const int cell = voxel / cell_edge * cell_edge;
+      store_outside(job_, first.corner[0] + cell, first.corner[1], first.corner[2], voxel - cell, j,
+                    k, row + voxel);
+    }
+  }
+
+  void write_extra(const RowRun* runs, int count, std::int64_t row) {
+    if (job_.mask == nullptr && job_.tet == nullptr) return;
+    for (int r = 0; r < count; ++r) {
+      const int tet = sources_[static_cast<std::size_t>(runs[r].source)].tet();
+      write_extra(runs[r].bits, row + cell_edge * runs[r].cell, tet);
+    }
+  }
+
+  /// The outputs beside the volume of the voxels `bits`, of which `tet` is the owner.
+  void write_extra(unsigned bits, std::int64_t row, int tet) {
+    for (; bits != 0; bits &= bits - 1) {
+      const std::int64_t voxel = row + std::countr_zero(bits);
+      if (job_.mask != nullptr) job_.mask[voxel] = 1;
+      if (job_.tet != nullptr) job_.tet[voxel] = tet;
+    }
+  }
+
+  struct OpenCell {
+    SliceBits slice[cell_edge];  ///< voxels without an owner
+  };
+
+  const RasterJob<T>& job_;
+  RasterCounts& counts_;
+  RowSampler<T> sampler_;
+  std::vector<RowSource<T>> sources_;  ///< of the pairs that own voxels of this line
+  std::vector<OpenCell> open_;         ///< [cell]
+  std::vector<RowRun> runs_;           ///< [k][j][run]
+  int run_counts_[cell_edge][cell_edge] = {};
+  int row_capacity_;
+  int first_ = 0;       ///< first cell of the line
+  int line_begin_ = 0;  ///< voxels of the line in the output
+  int line_end_ = 0;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,137 @@
+/// @file row_store-inl.hpp
+/// Puts values into a row of the output: samples rounded to the pixel type, copies, the background.
+/// Included once per vector instruction set (the name and the toggled guard are Highway's
+/// convention).
+#if defined(TETWARP_ROW_STORE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_STORE_INL
+#undef TETWARP_ROW_STORE_INL
+#else
+#define TETWARP_ROW_STORE_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "host/row_source-inl.hpp"
+#include "host/row_taps-inl.hpp"
+#include "kernels/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Rounds eight values to T and stores those of `bits`.
+template <class T>
+inline void store_values(const float* values, unsigned bits, T* out) {
+  const RowTag d;
+  alignas(64) T rounded[cell_edge];
+  if constexpr (std::is_same_v<T, float>) {
+    if (bits != 0xff) {
+      for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+        hn::BlendedStore(hn::Load(d, values + lane), lanes_of(bits, lane), d, out + lane);
+      }
+      return;
+    }
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      hn::StoreU(hn::Load(d, values + lane), d, out + lane);
+    }
+  } else {
+    const auto low = hn::Set(d, static_cast<float>(std::numeric_limits<T>::min()));
+    const auto high = hn::Set(d, static_cast<float>(std::numeric_limits<T>::max()));
+    const hn::Rebind<T, RowTag> dt;
+    T* to = bits == 0xff ? out : rounded;
+    for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+      const auto value = hn::Min(hn::Max(hn::Round(hn::Load(d, values + lane)), low), high);
+      hn::StoreU(hn::DemoteTo(dt, hn::ConvertTo(RowIntTag(), value)), dt, to + lane);
+    }
+    if (bits == 0xff) return;
+    for (; bits != 0; bits &= bits - 1) {
+      out[std::countr_zero(bits)] = rounded[std::countr_zero(bits)];
+    }
+  }
+}
+
+/// Fills `count` entries with a value. Long runs bypass the caches: nobody reads them soon, and
+/// their lines need not be fetched first.
+template <class T>
+inline void fill_run(T value, T* out, std::int64_t count) {
+  constexpr std::int64_t long_run = 1024;  // bytes
+  const hn::ScalableTag<T> d;
+  const std::int64_t lanes = static_cast<std::int64_t>(hn::Lanes(d));
+  const std::int64_t vector_bytes = lanes * static_cast<std::int64_t>(sizeof(T));
+  if (count * static_cast<std::int64_t>(sizeof(T)) < long_run) {
+    std::fill_n(out, count, value);
+    return;
+  }
+  const std::int64_t line = std::max<std::int64_t>(vector_bytes, 64);
+  const auto address = reinterpret_cast<std::uintptr_t>(out);
+  const std::int64_t head =
+      static_cast<std::int64_t>(-address % static_cast<std::uintptr_t>(line)) /
+      static_cast<std::int64_t>(sizeof(T));
+  std::fill_n(out, head, value);
+  const auto vector = hn::Set(d, value);
+  const std::int64_t per_line = line / static_cast<std::int64_t>(sizeof(T));
+  std::int64_t i = head;
+  for (; i + per_line <= count; i += per_line) {
+    for (std::int64_t v = 0; v < per_line; v += lanes) hn::Stream(vector, d, out + i + v);
+  }
+  std::fill_n(out + i, count - i, value);
+}
+
+/// The voxels `bits` of a row moved by whole voxels: copied where the source has them.
+template <class T>
+inline void copy_run(const RasterJob<T>& job,
+                     const RowSource<T>& source,
+                     unsigned bits,
+                     int j,
+                     int k,
+                     std::int64_t row) {
+  const SourceView<T>& view = job.source;
+  const int* whole = source.map().whole;
+  const int y = whole[1] + j, z = whole[2] + k;
+  const bool has_row = y >= 0 && y < view.dims[1] && z >= 0 && z < view.dims[2];
+  const std::int64_t from = (std::int64_t{z} * view.dims[1] + y) * view.dims[0] + whole[0];
+  for (; bits != 0; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    const int x = whole[0] + i;
+    T* out = job.volume + (row + i) * view.components;
+    if (has_row && x >= 0 && x < view.dims[0]) {
+      std::copy_n(view.data + (from + i) * view.components, view.components, out);
+    } else {
+      std::fill_n(out, view.components, job.background);
+    }
+  }
+}
+
+/// The voxels `bits` of a row one by one, in the pixel type's own arithmetic where the map allows.
+template <class T>
+inline void sample_alone(const RasterJob<T>& job,
+                         const RowSource<T>& source,
+                         unsigned bits,
+                         int j,
+                         int k,
+                         std::int64_t row) {
+  const int* corner = source.corner();
+  for (; bits != 0; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
+      store_sample(job, job.filter, source.map(), i, j, k, row + i);
+    } else {
+      store_owned<T, double>(job, source.setup(), corner[0], corner[1], corner[2], i, j, k,
+                             row + i);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,156 @@
+/// @file row_taps-inl.hpp
+/// Where the voxels of a row are sampled: offsets and weights, eight voxels a unit. Included once
+/// per vector instruction set (the name and the toggled guard are Highway's convention).
+///
+/// A row is done in two passes, so that neither waits for the other's results: this one fills a
+/// buffer of taps, row_vector-inl.hpp reads the source and blends.
+#if defined(TETWARP_ROW_TAPS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_TAPS_INL
+#undef TETWARP_ROW_TAPS_INL
+#else
+#define TETWARP_ROW_TAPS_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "host/row_source-inl.hpp"
+#include "kernels/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using RowTag = hn::CappedTag<float, cell_edge>;  ///< voxels of a row, eight at most
+using RowIntTag = hn::RebindToSigned<RowTag>;
+
+/// Eight voxels of a row: one row of one cell.
+struct RowUnit {
+  std::uint16_t cell;   ///< of the line
+  std::uint8_t bits;    ///< voxels to write
+  std::uint8_t inside;  ///< of these, inside the source
+};
+
+/// Taps of up to `row_units` units. Without Rim all lines of a voxel are at the same distances.
+template <bool Rim>
+struct RowTaps {
+  static constexpr int row_units = 16;
+
+  int count = 0;
+  RowUnit unit[row_units];
+  /// Of the lower neighbour along x [sample], on lines (y, z) or with Rim (y, z), (y+1, z),
+  /// (y, z+1), (y+1, z+1).
+  alignas(64) std::int32_t offset[Rim ? 4 : 1][cell_edge * row_units];
+  alignas(64) float fraction[3][cell_edge * row_units];
+};
+
+/// Mask of the vector that starts at voxel `lane` of a unit.
+inline hn::Mask<RowTag> lanes_of(unsigned bits, std::size_t lane) {
+  const std::uint8_t part[8] = {static_cast<std::uint8_t>(bits >> lane)};
+  return hn::LoadMaskBits(RowTag(), part);
+}
+
+inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
+  std::uint8_t part[8] = {};
+  hn::StoreMaskBits(RowTag(), mask, part);
+  return unsigned{part[0]} << lane;
+}
+
+/// Positions of some voxels of a row, in two parts as in SourceMap.
+struct RowPositions {
+  hn::Vec<RowTag> local[3];
+  hn::Vec<RowIntTag> whole[3];
+};
+
+/// local_position() of the voxels of row (j, k) from `lane` on.
+inline RowPositions row_positions(const SourceMap<float>& map, std::size_t lane, int j, int k) {
+  const RowTag d;
+  const auto i = hn::Iota(d, static_cast<float>(lane));
+  RowPositions positions;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float line = (map.base[axis] + map.axis[1][axis] * static_cast<float>(j)) +
+                       map.axis[2][axis] * static_cast<float>(k);
+    positions.local[axis] = hn::Add(hn::Set(d, line), hn::Mul(hn::Set(d, map.axis[0][axis]), i));
+    positions.whole[axis] = hn::Set(RowIntTag(), map.whole[axis]);
+  }
+  return positions;
+}
+
+/// Adds one unit: row (j, k) of one cell, served by `runs`, of which none is RowKind::alone.
+template <bool Rim, class T>
+inline void add_unit(const SourceView<T>& view,
+                     bool nearest,
+                     const RowSource<T>* sources,
+                     const RowRun* runs,
+                     int run_count,
+                     int j,
+                     int k,
+                     RowTaps<Rim>& taps) {
+  const RowTag d;
+  const RowIntTag di;
+  const int stride[3] = {1, view.dims[0], view.dims[0] * view.dims[1]};
+  const int at = cell_edge * taps.count;
+  unsigned bits = 0, inside = 0xff;
+  for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
+  if constexpr (Rim) inside = 0;
+  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+    // Voxels that no run describes follow the first one: readable, their values are not used.
+    RowPositions x = row_positions(sources[runs[0].source].map(), lane, j, k);
+    for (int r = 1; r < run_count; ++r) {
+      const RowPositions more = row_positions(sources[runs[r].source].map(), lane, j, k);
+      const auto mine = lanes_of(runs[r].bits, lane);
+      for (int axis = 0; axis < 3; ++axis) {
+        x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
+        x.whole[axis] = hn::IfThenElse(hn::RebindMask(di, mine), more.whole[axis], x.whole[axis]);
+      }
+    }
+    hn::Vec<RowIntTag> voxel[3], step[3];
+    auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
+      const auto floor = hn::Floor(near);
+      auto fraction = hn::Sub(near, floor);
+      voxel[axis] = hn::Add(hn::ConvertTo(di, floor), x.whole[axis]);
+      if constexpr (Rim) {
+        const int last = view.dims[axis] - 1;
+        const auto whole = hn::ConvertTo(d, x.whole[axis]);
+        const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
+        const auto beyond = hn::ConvertTo(d, hn::Sub(hn::Set(di, last), x.whole[axis]));
+        const auto high = hn::Add(hn::Add(beyond, hn::Set(d, 0.5f)), hn::Set(d, rim_slack));
+        in_source =
+            hn::And(in_source, hn::And(hn::Ge(x.local[axis], low), hn::Le(x.local[axis], high)));
+        const auto blends =
+            hn::And(hn::Gt(voxel[axis], hn::Set(di, -1)), hn::Lt(voxel[axis], hn::Set(di, last)));
+        fraction = hn::IfThenElseZero(hn::RebindMask(d, blends), fraction);
+        voxel[axis] = hn::Min(hn::Max(voxel[axis], hn::Zero(di)), hn::Set(di, last));
+        step[axis] = hn::IfThenElseZero(blends, hn::Set(di, stride[axis]));
+      }
+      hn::Store(fraction, d, taps.fraction[axis] + at + lane);
+    }
+    const auto row = hn::Add(hn::Mul(voxel[2], hn::Set(di, view.dims[1])), voxel[1]);
+    const auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), voxel[0]);
+    hn::Store(offset, di, taps.offset[0] + at + lane);
+    if constexpr (Rim) {
+      const auto above = hn::Add(offset, step[2]);
+      hn::Store(hn::Add(offset, step[1]), di, taps.offset[1] + at + lane);
+      hn::Store(above, di, taps.offset[2] + at + lane);
+      hn::Store(hn::Add(above, step[1]), di, taps.offset[3] + at + lane);
+      inside |= bits_of(in_source, lane);
+    }
+  }
+  // What this row will need one slice further up: rows jump too much for the hardware to guess.
+  const std::int64_t ahead = sources[runs[0].source].slice_ahead() + stride[2];
+  hwy::Prefetch(view.data + taps.offset[0][at] + ahead);
+  hwy::Prefetch(view.data + taps.offset[0][at + cell_edge / 2] + ahead);
+  taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
+                             static_cast<std::uint8_t>(bits & inside)};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

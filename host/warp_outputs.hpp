@@ -1,0 +1,134 @@
+/// @file warp_outputs.hpp
+/// The memory that a step writes: the target's own, or an executor's that is brought home to it.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "host/warp_backend.hpp"
+#include "kernels/view.hpp"
+
+namespace tetwarp {
+
+/// Cells along j and k, half-open.
+struct CellWindow {
+  int begin[2];
+  int end[2];
+};
+
+template <class Exec>
+class WarpOutputs {
+ public:
+  /// The arguments must outlive it.
+  WarpOutputs(Exec& exec, const WarpPlan& plan, const OutputFrame& frame)
+      : exec_(exec), frame_(frame) {
+    for (const VolumeView& source : plan.sources) {
+      voxel_bytes_.push_back(source.components * static_cast<std::int64_t>(size_of(source.type)));
+    }
+    volumes_.resize(voxel_bytes_.size());
+  }
+
+  /// Where an executor writes volume s, the mask and the owners; null where nobody asked.
+  void* volume(std::size_t s, const WarpTarget& target) {
+    return writable(static_cast<std::byte*>(target.volumes[s]), voxel_bytes_[s], target,
+                    volumes_[s]);
+  }
+  std::uint8_t* mask(const WarpTarget& target) { return writable(target.mask, 1, target, mask_); }
+  std::int32_t* tet(const WarpTarget& target) { return writable(target.tet, 1, target, tet_); }
+
+  /// Brings home what was written in these cells.
+  void deliver(const WarpTarget& target, const CellWindow& window) {
+    if (target.memory == Memory::device) return;
+    for (std::size_t s = 0; s < volumes_.size(); ++s) {
+      deliver(volumes_[s], voxel_bytes_[s], static_cast<std::byte*>(target.volumes[s]), window);
+    }
+    if (target.mask != nullptr) deliver(mask_, 1, target.mask, window);
+    if (target.tet != nullptr) deliver(tet_, 1, target.tet, window);
+  }
+
+  /// All cells.
+  CellWindow whole() const { return {{0, 0}, {frame_.cells[1], frame_.cells[2]}}; }
+
+  /// The least window with all marked cells.
+  CellWindow window_of(View<const std::uint8_t> marks) {
+    std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
+    exec_.read(marks, marked.data());
+    CellWindow window{{frame_.cells[1], frame_.cells[2]}, {0, 0}};
+    std::size_t line = 0;
+    for (int ck = 0; ck < frame_.cells[2]; ++ck) {
+      for (int cj = 0; cj < frame_.cells[1];
+           ++cj, line += static_cast<std::size_t>(frame_.cells[0])) {
+        const auto first = marked.begin() + static_cast<std::ptrdiff_t>(line);
+        if (std::find(first, first + frame_.cells[0], 1) == first + frame_.cells[0]) continue;
+        window.begin[0] = std::min(window.begin[0], cj);
+        window.begin[1] = std::min(window.begin[1], ck);
+        window.end[0] = std::max(window.end[0], cj + 1);
+        window.end[1] = std::max(window.end[1], ck + 1);
+      }
+    }
+    return window;
+  }
+
+  /// The step is complete: the target holds its result.
+  void finish(const WarpTarget& target) {
+    held_ = Held{
+        {target.volumes.begin(), target.volumes.end()}, target.mask, target.tet, target.memory};
+  }
+  /// True when the target holds, by its word and by what finish() was told last, the result of the
+  /// step before. What it holds is unknown from now on.
+  bool take_held(const WarpTarget& target) {
+    const std::optional<Held> held = std::exchange(held_, std::nullopt);
+    return target.holds_previous && held && held->mask == target.mask && held->tet == target.tet &&
+           held->memory == target.memory && std::ranges::equal(held->volumes, target.volumes);
+  }
+
+ private:
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  /// A target, by its pointers.
+  struct Held {
+    std::vector<void*> volumes;
+    const std::uint8_t* mask;
+    const std::int32_t* tet;
+    Memory memory;
+  };
+
+  template <class T>
+  T* writable(T* wanted, std::int64_t per_voxel, const WarpTarget& target, Buffer<T>& buffer) {
+    if (wanted == nullptr || target.memory == Memory::device) return wanted;
+    return exec_.writable(wanted, per_voxel * frame_.voxel_count(), buffer);
+  }
+
+  /// Slices as long as they are whole, else slice by slice.
+  template <class T>
+  void deliver(const Buffer<T>& from, std::int64_t per_voxel, T* to, const CellWindow& window) {
+    int begin[2], end[2];
+    for (int axis = 0; axis < 2; ++axis) {
+      begin[axis] = std::max(window.begin[axis] * cell_edge, frame_.begin[axis + 1]);
+      end[axis] = std::min(window.end[axis] * cell_edge, frame_.end[axis + 1]);
+    }
+    const bool is_whole = begin[0] == frame_.begin[1] && end[0] == frame_.end[1];
+    const int slices = is_whole ? end[1] - begin[1] : 1;
+    for (int k = begin[1]; k < end[1]; k += slices) {
+      const std::int64_t first = frame_.offset_of(frame_.begin[0], begin[0], k) * per_voxel;
+      const std::int64_t past =
+          frame_.offset_of(frame_.end[0], end[0] - 1, k + slices - 1) * per_voxel;
+      const View<const T> all = from.const_view(frame_.voxel_count() * per_voxel);
+      exec_.deliver("warp/download", View<const T>{all.data + first, past - first}, to + first);
+    }
+  }
+
+  Exec& exec_;
+  const OutputFrame& frame_;
+  std::vector<std::int64_t> voxel_bytes_;
+  std::vector<Buffer<std::byte>> volumes_;
+  Buffer<std::uint8_t> mask_;
+  Buffer<std::int32_t> tet_;
+  std::optional<Held> held_;
+};
+
+}  // namespace tetwarp
