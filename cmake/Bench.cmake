@@ -1,6 +1,33 @@
-# tetwarp_bench: the measured cases, one program for all back ends.
+# tetwarp_bench: the measured rows, one program for all back ends.
 find_package(benchmark REQUIRED)
-add_executable(tetwarp_bench bench/bench_warp.cpp tests/scenes.cpp)
-target_include_directories(tetwarp_bench PRIVATE ${PROJECT_SOURCE_DIR})
+find_package(fmt REQUIRED)
+
+# What results are worth nothing without: the commit and the flags that change code.
+execute_process(COMMAND git describe --always --dirty --abbrev=12 --exclude=*
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE TETWARP_COMMIT
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+get_target_property(tetwarp_own_flags tetwarp_options INTERFACE_COMPILE_OPTIONS)
+string(REGEX MATCHALL "-(march|ffp-contract)=[a-z0-9-]+" tetwarp_own_flags "${tetwarp_own_flags}")
+list(REMOVE_DUPLICATES tetwarp_own_flags)
+list(JOIN tetwarp_own_flags " " tetwarp_own_flags)
+string(TOUPPER "${CMAKE_BUILD_TYPE}" tetwarp_build_type)
+string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${tetwarp_build_type}} ${tetwarp_own_flags}"
+  TETWARP_FLAGS)
+configure_file(bench/build_info.hpp.in bench_info/bench/build_info.hpp @ONLY)
+
+add_executable(tetwarp_bench
+  bench/analytic.cpp
+  bench/bench_warp.cpp
+  bench/floors.cpp
+  bench/measure.cpp
+  bench/series.cpp
+  bench/timing.cpp
+  bench/truth.cpp
+  bench/warp_cases.cpp
+  bench/workloads.cpp
+  tests/scenes.cpp)
+target_include_directories(tetwarp_bench PRIVATE
+  ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
 target_link_libraries(tetwarp_bench PRIVATE
-  tetwarp benchmark::benchmark tetwarp_options)
+  tetwarp tetwarp_hwy tetwarp_openmp tetwarp_options
+  benchmark::benchmark Eigen3::Eigen fmt::fmt)

@@ -1,0 +1,39 @@
+/// @file measure.hpp
+/// Rows of Google Benchmark from cases: checked, timed, counted.
+#pragma once
+#include <benchmark/benchmark.h>
+
+#include <string>
+
+#include "bench/timing.hpp"
+#include "bench/warp_cases.hpp"
+
+namespace tetwarp::bench {
+
+/// Registers a row. Run, it makes the input, checks a first result against the truth and refuses to
+/// time a wrong one; then it times steps in turn with the sampling floor where the back end is cpu.
+/// The row's time is the median of at least nine repetitions. Its counters [ms where not said]:
+///
+///   low, high, min, kept, discarded, busy, contended       see Timing
+///   construct, first_step    making a Warper (upload); the first step (first touch, buffers)
+///   mean, upload, setup, mask, cull, raster, download      mean of all steps, and of their stages
+///   kernel                   the step without upload and download
+///   floor, floor_ratio       the sampling floor, and time / floor
+///   copy_ratio               time / (bytes in and out at copy bandwidth)
+///   ns_per_covered, ns_per_voxel [ns]
+///   max_error, rms_error     of the values, as a share of the image's range
+///   compared, holes, painted, doubles                      see Accuracy
+///   tets, voxels, covered, tests_per_covered, exact_tests, copied [voxels]
+///   rejected_share, accepted_share [of pairs], constant_share [of cells]
+void register_row(const WarpCase& row);
+
+/// Makes a Timing the time of a row, and its counters.
+void count_timing(benchmark::State& state, const Timing& timing);
+
+/// Ends a row without a time.
+void refuse(benchmark::State& state, const std::string& fault);
+
+/// Rows so far whose result was wrong.
+int refused_rows();
+
+}  // namespace tetwarp::bench

@@ -1,0 +1,128 @@
+/// @file series.cpp
+#include "bench/series.hpp"
+
+#include <array>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/inputs.hpp"
+#include "bench/measure.hpp"
+#include "bench/timing.hpp"
+#include "bench/truth.hpp"
+
+namespace tetwarp::bench {
+
+namespace {
+
+struct SeriesCase {
+  Workload workload;
+  int moved_percent;
+  Backend backend;
+  int threads;
+};
+
+/// A warper that goes to and fro between two poses of the mesh.
+class Swing {
+ public:
+  Swing(const SeriesCase& row, const VolumeView& source, bool is_update)
+      : scene_(inputs().scene(row.workload)),
+        poses_{scene_.deformed, nudged_centre(scene_.deformed, 0.01 * row.moved_percent)},
+        bytes_(static_cast<std::size_t>(scene_.output_grid.voxel_count()) * size_of(source.type)),
+        output_(bytes_),
+        is_update_(is_update),
+        warper_(std::span(&source, 1),
+                scene_.mesh,
+                {.output_grid = scene_.output_grid,
+                 .backend = row.backend,
+                 .threads = row.threads,
+                 .skip = {.unchanged_tets = is_update}}) {}
+
+  /// On to the other pose.
+  void step(std::int32_t* tet = nullptr) {
+    void* const out = output_.data();
+    last_ = warper_.step(poses_[pose_],
+                         {.volumes = std::span(&out, 1), .tet = tet, .holds_previous = is_update_});
+    pose_ = 1 - pose_;
+  }
+
+  const Counts& counts() const { return last_.counts; }
+  const std::byte* output() const { return output_.data(); }
+  bool equals(const Swing& other) const {
+    return std::memcmp(output_.data(), other.output_.data(), bytes_) == 0;
+  }
+
+ private:
+  const scenes::Scene& scene_;
+  std::array<std::vector<Point3>, 2> poses_;
+  std::size_t bytes_;
+  Buffer output_;
+  bool is_update_;
+  Warper warper_;
+  std::size_t pose_ = 0;
+  StepReport last_;
+};
+
+void run(benchmark::State& state, const SeriesCase& row) {
+  const scenes::Scene& scene = inputs().scene(row.workload);
+  const VolumeView source = inputs().image(row.workload, PixelType::float32, Image::textured);
+  Swing update(row, source, true), whole(row, source, false);
+  update.step();
+  const auto voxels = static_cast<std::size_t>(scene.output_grid.voxel_count());
+  auto tet = std::make_unique_for_overwrite<std::int32_t[]>(voxels);
+  whole.step(tet.get());  // the first pose is the workload's own, whose truth is known
+  const Accuracy accuracy =
+      compare(inputs().truth(row.workload), source, Filter::linear, whole.output(), tet.get());
+  const auto fault = fault_of(accuracy, error_bound(source.type, Filter::linear), whole.counts(),
+                              scene, tet.get());
+  if (fault) return refuse(state, *fault);
+  tet.reset();
+
+  const std::function<void()> jobs[] = {[&] { update.step(); }, [&] { whole.step(); }};
+  for (int warm_up = 0; warm_up < 2; ++warm_up) {
+    for (const auto& job : jobs) job();
+  }
+  // Small updates are not work for all threads: one processor at least must have been there.
+  const std::vector<Timing> timings =
+      time_in_turn(jobs, {.busy_threads = row.backend == Backend::cpu ? 1.0 : 0.0});
+  const Counts counts = update.counts();
+  for (int pose = 0; pose < 2; ++pose) {
+    if (!update.equals(whole)) return refuse(state, "an update differs from a whole step");
+    for (const auto& job : jobs) job();
+  }
+  count_timing(state, timings[0]);
+  const auto share = [](std::int64_t kept, std::int64_t all) {
+    return 1 - static_cast<double>(kept) / static_cast<double>(all);
+  };
+  state.counters["whole"] = 1e3 * timings[1].median;
+  state.counters["cost_share"] = timings[0].median / timings[1].median;
+  state.counters["tets_moved"] = share(counts.tets_unchanged, counts.tetrahedra);
+  state.counters["cells_touched"] = share(counts.cells_unchanged, counts.cells);
+  state.counters["max_error"] = accuracy.max_error;
+}
+
+}  // namespace
+
+void register_series_rows(Extent extent, int threads, bool with_cuda) {
+  std::vector<int> percents = {5};
+  if (extent == Extent::full) percents = {0, 1, 5, 20, 60, 100};
+  std::vector<Backend> backends = {Backend::cpu};
+  if (with_cuda) backends.push_back(Backend::cuda);
+  for (const Backend backend : backends) {
+    for (const int percent : percents) {
+      const SeriesCase row{waved(384, 50000), percent, backend, threads};
+      std::string name = "series/" + row.workload.name + "/moved:" + std::to_string(percent) +
+                         "/linear/float32/" + name_of(backend);
+      if (backend == Backend::cpu) name += "/threads:" + std::to_string(threads);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [row](benchmark::State& state) { run(state, row); })
+          ->UseManualTime()
+          ->Iterations(1)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+
+}  // namespace tetwarp::bench

@@ -1,0 +1,68 @@
+/// @file truth.hpp
+/// What some voxels of a warp must be, from the definition, and how far a result is from it.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/warp.hpp>
+
+#include "tests/scenes.hpp"
+
+namespace tetwarp::bench {
+
+/// Owners and source positions of some output voxels: signs of determinants in exact integers,
+/// positions in float64, both by the pieces of the reference back end.
+struct Truth {
+  std::vector<std::int64_t> voxels;  ///< indices into the output volume
+  std::vector<std::int32_t> owners;  ///< -1: no tetrahedron covers the voxel
+  std::vector<Point3> positions;     ///< in the source [voxel], where there is an owner
+
+  /// All voxels were looked at.
+  bool is_complete = false;
+};
+
+/// All voxels for sources of up to 128^3, else 100,000 seeded ones.
+Truth make_truth(const scenes::Scene& scene);
+
+/// The float64 value at a source position.
+/// @returns the value, or nothing outside of the source, and for the nearest filter within 1e-4
+///          voxel of a place where the nearest sample changes
+std::optional<double> sample_truth(const VolumeView& source, Filter filter, const Point3& position);
+
+/// Their distance; infinite for a NaN, which must not pass as no error.
+double error_between(double value, double expected);
+
+/// A result's distance from the truth.
+struct Accuracy {
+  std::int64_t compared = 0;  ///< voxels
+  std::int64_t holes = 0;     ///< covered, but without an owner
+  std::int64_t painted = 0;   ///< not covered, but with an owner or another value than zero
+  std::int64_t doubles = 0;   ///< covered by several, and not the one that owns the voxel won
+  double max_error = 0;       ///< of the values of covered voxels, as a share of the image's range
+  double rms_error = 0;
+};
+
+/// @param source  one component; what was warped
+/// @param output  samples of the source's type, background zero
+/// @param tet     owners, as WarpTarget::tet
+Accuracy compare(const Truth& truth,
+                 const VolumeView& source,
+                 Filter filter,
+                 const void* output,
+                 const std::int32_t* tet);
+
+/// The largest error a correct result can have: rounding of the arithmetic, and for integers of the
+/// result, as a share of the image's range.
+double error_bound(PixelType type, Filter filter);
+
+/// Why a result must not be timed, or nothing: wrong owners, too large errors, or counters that
+/// contradict each other or `tet`.
+std::optional<std::string> fault_of(const Accuracy& accuracy,
+                                    double bound,
+                                    const Counts& counts,
+                                    const scenes::Scene& scene,
+                                    const std::int32_t* tet);
+
+}  // namespace tetwarp::bench
