@@ -26,7 +26,11 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_tet_setup.cpp
     tests/test_corner_mask.cpp
     tests/test_cell_cull.cpp
-    tests/test_cell_pairs.cpp)
+    tests/test_cell_pairs.cpp
+    tests/test_cell_merge.cpp
+    tests/test_cell_work.cpp
+    tests/test_tet_moved.cpp
+    tests/test_volume_uniform.cpp)
   if(TETWARP_HAS_CUDA)
     set_source_files_properties(${tetwarp_stage_tests} PROPERTIES LANGUAGE CUDA)
   endif()
@@ -40,6 +44,14 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_phantom.cpp
     tests/test_render_volume.cpp
     tests/test_report.cpp
+    tests/test_contact_problem.cpp
+    tests/test_contact_reference.cpp
+    tests/test_contact_reference_limits.cpp
+    tests/test_contact_report.cpp
+    tests/test_contact_residual.cpp
+    tests/test_skip_constant.cpp
+    tests/test_skip_far_memory.cpp
+    tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
     tests/test_warp_invariance.cpp
@@ -55,16 +67,37 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_tests parity FILTER "*Parity*" PROPERTIES RESOURCE_LOCK gpu)
   tetwarp_discover(tetwarp_tests reference FILTER "*Coverage*")
 
+  tetwarp_add_tests(tetwarp_stress_tests SOURCES
+    tests/scenes.cpp
+    tests/test_warp_error.cpp
+    tests/test_warp_stress.cpp
+    tests/test_warp_stress_data.cpp
+    tests/test_warp_stress_grids.cpp
+    tests/test_warp_stress_size.cpp)
+  tetwarp_discover(tetwarp_stress_tests stress FILTER "-*/cuda")
+  tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
+
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
     tests/scenes.cpp
     tests/test_simt.cpp
     tests/test_cell_raster_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
+
+  # What benchmarks rest on: floors, the truth they check against, the judgement of times.
+  find_package(fmt REQUIRED)
+  tetwarp_add_tests(tetwarp_bench_tests LIBRARIES tetwarp_hwy fmt::fmt SOURCES
+    bench/floors.cpp
+    bench/timing.cpp
+    bench/truth.cpp
+    bench/workloads.cpp
+    tests/scenes.cpp
+    tests/test_bench.cpp)
+  tetwarp_discover(tetwarp_bench_tests unit)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend error make mesh report tetwarp version volume warp)
+set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh report tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers io)
 endif()
@@ -86,11 +119,16 @@ if(TETWARP_IO)
       tests/test_io_vtkhdf_mesh.cpp
       tests/test_io_nifti.cpp
       tests/test_io_png.cpp
-      tests/test_io_bad_files.cpp)
+      tests/test_io_bad_files.cpp
+      tests/test_contact_reference_certified.cpp
+      tests/test_io_fclib.cpp
+      tests/test_io_fclib_bad.cpp
+      tests/test_io_fclib_solution.cpp
+      tests/test_skip_chunks.cpp)
     tetwarp_discover(tetwarp_io_tests io)
   endif()
 
-  add_executable(fuzz_io tests/fuzz_io.cpp)
+  add_executable(fuzz_io tests/fuzz_io.cpp tests/fuzz_memory.cpp)
   target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
   add_test(NAME fuzz_io COMMAND fuzz_io 5 1)
@@ -103,14 +141,21 @@ if(TETWARP_IO)
     add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
       ${PROJECT_SOURCE_DIR}/tests/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
     set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+    add_test(NAME bench_compare COMMAND ${TETWARP_PYTHON}
+      ${PROJECT_SOURCE_DIR}/bench/compare.py --self-test)
+    set_tests_properties(bench_compare PROPERTIES
+      LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
   endif()
 
   # ---- the command and the example in the README ---------------------------------------------
-  tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io nlohmann_json::nlohmann_json SOURCES
+  tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json
+    SOURCES
     tests/test_cli.cpp
     tests/test_cli_bad_input.cpp
     tests/test_cli_batch.cpp
-    tests/test_cli_resume.cpp)
+    tests/test_cli_resume.cpp
+    tests/test_cli_skip.cpp
+    tests/scenes.cpp)
   target_compile_definitions(tetwarp_cli_tests PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
   add_dependencies(tetwarp_cli_tests tetwarp_command)

@@ -11,6 +11,9 @@ namespace {
 FileKind hdf5_kind(const std::string& path) {
   try {
     const h5::Object file = h5::open_file(path);
+    if (h5::is_group(file, "fclib_local") || h5::is_group(file, "fclib_global")) {
+      return FileKind::contact_problem;
+    }
     if (!h5::is_group(file, "VTKHDF")) return FileKind::hdf5;
     const h5::Object root = h5::open_group(file, "VTKHDF");
     if (!h5::has_attribute(root, "Type")) return FileKind::other_vtkhdf;

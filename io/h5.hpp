@@ -53,6 +53,9 @@ class Handle {
   Close close_ = nullptr;
 };
 
+/// Throws IoError unless this machine can hold `bytes` more.
+void check_memory(const std::string& file, const std::string& name, double bytes);
+
 /// The innermost reason of HDF5's last failure in this thread, in one line; empty: none known.
 std::string last_reason();
 
@@ -82,6 +85,10 @@ struct Dataset : Object {
 
 // ---- reading: h5_read.cpp
 // ------------------------------------------------------------------------
+
+/// False for a type of numbers with bits outside their bytes: HDF5 would convert them on the stack,
+/// unchecked.
+bool is_sound(const Handle& type);
 
 /// Opens a file for reading. Throws IoError when it is missing, no HDF5 or damaged.
 Object open_file(const std::string& path);
@@ -121,6 +128,9 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset);
 /// Reads a dataset of numbers of shape [n] or [n][1].
 std::vector<double> read_reals(const Dataset& dataset);
 
+// ---- attributes: h5_attribute.cpp
+// -------------------------------------------------------------------
+
 bool has_attribute(const Object& object, const std::string& name);
 
 /// Reads an attribute of `count` numbers. Throws IoError when it is missing or of another length.
@@ -135,9 +145,6 @@ std::vector<std::int64_t> read_integer_attribute(const Object& object,
 
 /// Reads a string attribute of fixed or variable length. Throws IoError when there is none.
 std::string read_text_attribute(const Object& object, const std::string& name);
-
-/// Throws IoError unless this machine can hold `bytes` more.
-void check_memory(const std::string& file, const std::string& name, double bytes);
 
 // ---- writing: h5_write.cpp
 // -----------------------------------------------------------------------
@@ -164,8 +171,9 @@ void write_attribute(const Object& object,
                      const std::string& name,
                      std::span<const std::int32_t> values);
 
-/// Writes one integer as a scalar attribute.
+/// Writes one number as a scalar attribute.
 void write_scalar_attribute(const Object& object, const std::string& name, std::int64_t value);
+void write_scalar_attribute(const Object& object, const std::string& name, double value);
 
 /// Writes a scalar ASCII string of exactly its length: ParaView refuses any other kind.
 void write_text_attribute(const Object& object, const std::string& name, const std::string& text);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <tetwarp/error.hpp>
 
@@ -61,46 +60,6 @@ void check_storage(const Dataset& dataset) {
   }
 }
 
-struct Attribute {
-  Handle handle;
-  Handle type;
-  H5T_class_t type_class = H5T_NO_CLASS;
-  std::size_t count = 0;
-};
-
-Attribute open_attribute(const Object& object, const std::string& name) {
-  if (!has_attribute(object, name)) object.fail("missing attribute " + name);
-  Attribute attribute;
-  attribute.handle = Handle(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (!attribute.handle) object.fail_with_reason("damaged attribute " + name);
-  attribute.type = Handle(H5Aget_type(attribute.handle.id()), H5Tclose);
-  const Handle space(H5Aget_space(attribute.handle.id()), H5Sclose);
-  const hssize_t count = space ? H5Sget_simple_extent_npoints(space.id()) : -1;
-  if (!attribute.type || count < 0) object.fail_with_reason("damaged attribute " + name);
-  attribute.type_class = H5Tget_class(attribute.type.id());
-  attribute.count = static_cast<std::size_t>(count);
-  return attribute;
-}
-
-template <class T>
-std::vector<T> read_attribute(const Object& object,
-                              const std::string& name,
-                              std::size_t count,
-                              hid_t memory_type) {
-  const Attribute attribute = open_attribute(object, name);
-  const bool is_number = attribute.type_class == H5T_INTEGER || attribute.type_class == H5T_FLOAT;
-  if (!is_number || attribute.count != count) {
-    object.fail("attribute " + name + " holds " + std::to_string(attribute.count) +
-                (is_number ? " numbers" : " values that are no numbers") + ", expected " +
-                std::to_string(count) + (count == 1 ? " number" : " numbers"));
-  }
-  std::vector<T> values(count);
-  if (H5Aread(attribute.handle.id(), memory_type, values.data()) < 0) {
-    object.fail_with_reason("attribute " + name + " cannot be read");
-  }
-  return values;
-}
-
 template <class T>
 std::vector<T> read_column(const Dataset& dataset, hid_t memory_type) {
   if (!is_numeric(dataset)) dataset.fail("holds no numbers");
@@ -116,6 +75,23 @@ std::vector<T> read_column(const Dataset& dataset, hid_t memory_type) {
 
 }  // namespace
 
+bool is_sound(const Handle& type) {
+  const std::size_t bits = 8 * H5Tget_size(type.id());
+  const H5T_class_t type_class = H5Tget_class(type.id());
+  if (type_class != H5T_INTEGER && type_class != H5T_FLOAT) return true;
+  const std::size_t precision = H5Tget_precision(type.id());
+  const int offset = H5Tget_offset(type.id());
+  if (offset < 0 || precision > bits || static_cast<std::size_t>(offset) > bits - precision) {
+    return false;
+  }
+  if (type_class == H5T_INTEGER) return true;
+  std::size_t sign = 0, exponent = 0, exponent_bits = 0, mantissa = 0, mantissa_bits = 0;
+  if (H5Tget_fields(type.id(), &sign, &exponent, &exponent_bits, &mantissa, &mantissa_bits) < 0) {
+    return false;
+  }
+  return sign < bits && exponent + exponent_bits <= bits && mantissa + mantissa_bits <= bits;
+}
+
 Object open_file(const std::string& path) {
   Object file{path, "", {}};
   struct stat status {};
@@ -125,7 +101,7 @@ Object open_file(const std::string& path) {
   if (!S_ISREG(status.st_mode)) file.fail("is not a plain file");
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
   if (is_hdf5 < 0) file.fail_with_reason("cannot be opened");
-  if (is_hdf5 == 0) file.fail("is not an HDF5 file, expected VTKHDF");
+  if (is_hdf5 == 0) file.fail("is not an HDF5 file");
   const Handle access = disk_access(nullptr);
   file.handle = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!file.handle) {
@@ -185,6 +161,7 @@ Dataset open_dataset(const Object& parent, const std::string& name) {
     if (dim > hsize_t{1} << 60) dataset.fail("absurd size " + std::to_string(dim));
     dataset.dims.push_back(static_cast<std::int64_t>(dim));
   }
+  if (!is_sound(type)) dataset.fail("damaged type of its elements");
   dataset.type_class = H5Tget_class(type.id());
   dataset.type_size = H5Tget_size(type.id());
   dataset.is_signed = dataset.type_class == H5T_INTEGER && H5Tget_sign(type.id()) == H5T_SGN_2;
@@ -246,55 +223,6 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset) {
 
 std::vector<double> read_reals(const Dataset& dataset) {
   return read_column<double>(dataset, H5T_NATIVE_DOUBLE);
-}
-
-bool has_attribute(const Object& object, const std::string& name) {
-  return H5Aexists(object.id(), name.c_str()) > 0;
-}
-
-std::vector<double> read_real_attribute(const Object& object,
-                                        const std::string& name,
-                                        std::size_t count) {
-  return read_attribute<double>(object, name, count, H5T_NATIVE_DOUBLE);
-}
-
-std::vector<std::int64_t> read_integer_attribute(const Object& object,
-                                                 const std::string& name,
-                                                 std::size_t count) {
-  std::vector<std::int64_t> whole;
-  for (const double value : read_real_attribute(object, name, count)) {
-    if (!(std::abs(value) <= 0x1p53) || value != std::trunc(value)) {
-      object.fail("attribute " + name + " holds " + std::to_string(value) +
-                  ", expected whole numbers up to 2^53");
-    }
-    whole.push_back(static_cast<std::int64_t>(value));
-  }
-  return whole;
-}
-
-std::string read_text_attribute(const Object& object, const std::string& name) {
-  const Attribute attribute = open_attribute(object, name);
-  if (attribute.type_class != H5T_STRING || attribute.count != 1) {
-    object.fail("attribute " + name + " is not one string");
-  }
-  if (H5Tis_variable_str(attribute.type.id()) > 0) {
-    char* text = nullptr;
-    if (H5Aread(attribute.handle.id(), attribute.type.id(), &text) < 0) {
-      object.fail_with_reason("attribute " + name + " cannot be read");
-    }
-    std::string copy = text == nullptr ? "" : text;
-    H5free_memory(text);
-    return copy;
-  }
-  const std::size_t size = H5Tget_size(attribute.type.id());
-  if (size > 65536) object.fail("attribute " + name + " claims " + std::to_string(size) + " bytes");
-  std::string text(size, '\0');
-  if (H5Aread(attribute.handle.id(), attribute.type.id(), text.data()) < 0) {
-    object.fail_with_reason("attribute " + name + " cannot be read");
-  }
-  text.resize(std::min(text.size(), text.find('\0')));
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
 }
 
 }  // namespace tetwarp::h5

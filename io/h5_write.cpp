@@ -94,6 +94,11 @@ void write_scalar_attribute(const Object& object, const std::string& name, std::
   write_values(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, space, &value);
 }
 
+void write_scalar_attribute(const Object& object, const std::string& name, double value) {
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  write_values(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, &value);
+}
+
 void write_text_attribute(const Object& object, const std::string& name, const std::string& text) {
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -24,6 +24,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/fuzz_contact.hpp"
+#include "tests/fuzz_memory.hpp"
 #include "tests/fuzz_values.hpp"
 #include "tests/io_files.hpp"
 
@@ -32,12 +34,11 @@ namespace {
 using namespace tetwarp;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t largest_allocation = std::size_t{64} << 20;  // files here hold a few KiB
 constexpr unsigned seconds_per_file = 5;
 constexpr std::int64_t files_per_child = 64;
 
 /// How a child ends when it is not by the last file.
-enum ExitCode { crash_in_hdf5 = 40, crash, wrong_exception, large_allocation };
+enum ExitCode { crash_in_hdf5 = 40, crash, wrong_exception };
 
 /// Written by the children, read by the parent.
 struct Counts {
@@ -78,10 +79,15 @@ void write_seeds(const test::ScratchFolder& folder) {
   write_mesh(folder / "moving", test::two_tets(), test::slides({0, 1, 2}));
   write_nifti(folder / "v.nii", b);
   write_nifti(folder / "v.nii.gz", a);
+  test::write_contact_seeds(folder);
 }
 
-constexpr std::array seeds = {"volume", "packed", "temporal", "mesh",
-                              "moving", "v.nii",  "v.nii.gz"};
+std::vector<std::string> seed_names() {
+  std::vector<std::string> names = {"volume", "packed", "temporal", "mesh",
+                                    "moving", "v.nii",  "v.nii.gz"};
+  names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
+  return names;
+}
 
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -146,13 +152,15 @@ bool read_all(const std::string& path) {
       reader.read_step(static_cast<std::int64_t>(step));
     }
   });
-  return is_volume || is_mesh || reads([&] { read_nifti(path); });
+  const bool is_contact = reads([&] { test::read_contact_file(path, path + "-solved"); });
+  return is_volume || is_mesh || is_contact || reads([&] { read_nifti(path); });
 }
 
 /// The file number `index` of this seed: the same in every run.
 void make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64_t index) {
   test::Random random(seed, static_cast<std::uint64_t>(index));
-  const std::string name = seeds[random.below(seeds.size())];
+  static const std::vector<std::string> seeds = seed_names();
+  const std::string& name = seeds[random.below(seeds.size())];
   std::filesystem::copy_file(folder / name, folder / "damaged",
                              std::filesystem::copy_options::overwrite_existing);
   const bool is_hdf5 = name.find(".nii") == std::string::npos;
@@ -195,7 +203,7 @@ const char* text_of(int status) {
       return "crash";
     case wrong_exception:
       return "exception that is no IoError";
-    case large_allocation:
+    case test::large_allocation_exit_code:
       return "allocation out of all proportion";
     default:
       return "sanitizer report";
@@ -247,22 +255,6 @@ extern "C" const char* __ubsan_default_options() {
   return "halt_on_error=1:abort_on_error=1";
 }
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
-
-// Sizes that files ask for all pass through here.
-void* operator new(std::size_t bytes) {
-  if (bytes > largest_allocation) _exit(large_allocation);
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
-  throw std::bad_alloc();
-}
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  return std::malloc(bytes);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 int main(int argc, char** argv) {
   if (argc != 3) {

@@ -91,6 +91,43 @@ Json nifti_json(const InfoArguments& arguments) {
   return json;
 }
 
+Json adhesion_json(const ContactProblem& problem) {
+  const AdhesionState& adhesion = problem.adhesion;
+  const auto [low, high] =
+      std::minmax_element(adhesion.intensity.begin(), adhesion.intensity.end());
+  const auto bonded = std::count_if(adhesion.intensity.begin(), adhesion.intensity.end(),
+                                    [](double intensity) { return intensity > 0; });
+  Json json{{"time_step", adhesion.time_step}, {"bonded", bonded}};
+  if (low != high) json["intensity"] = {*low, *high};
+  return json;
+}
+
+Json contact_json(const InfoArguments& arguments) {
+  const ContactFileHeader header = read_contact_header(arguments.file);
+  const ContactProblem problem = read_contact_problem(arguments.file);
+  Json json{{"kind", "contact problem"}};
+  if (!header.title.empty()) json["title"] = header.title;
+  if (!header.description.empty()) json["description"] = one_line(header.description);
+  json["form"] = problem.is_local() ? "local" : "global";
+  json["contacts"] = problem.contact_count();
+  if (problem.is_local()) {
+    json["entries"] = {{"W", problem.delassus.value.size()}};
+  } else {
+    json["dofs"] = problem.dof_count();
+    json["entries"] = {{"M", problem.system.value.size()}, {"H", problem.jacobian.value.size()}};
+  }
+  if (!problem.block_start.empty()) json["blocks"] = problem.block_start.size() - 1;
+  if (!problem.friction.empty()) {
+    const auto [low, high] = std::minmax_element(problem.friction.begin(), problem.friction.end());
+    json["friction"] = {*low, *high};
+  }
+  if (!problem.adhesion.empty()) json["adhesion"] = adhesion_json(problem);
+  json["guesses"] = header.guesses;
+  json["solution"] = header.status.value_or(header.has_solution ? "of unknown quality" : "none");
+  if (header.residual) json["residual"] = *header.residual;
+  return json;
+}
+
 /// One "key: value" per line, nested objects indented.
 void print_lines(const Json& json, int indent) {
   for (const auto& [key, value] : json.items()) {
@@ -117,10 +154,14 @@ int run_info(const InfoArguments& arguments) {
     case FileKind::nifti:
       json = nifti_json(arguments);
       break;
+    case FileKind::contact_problem:
+      json = contact_json(arguments);
+      break;
     default:
       throw IoError(arguments.file, "",
                     std::string("is ") + name_of(kind) +
-                        "; info reads VTKHDF volumes, VTKHDF meshes and NIfTI images");
+                        "; info reads VTKHDF volumes, VTKHDF meshes, NIfTI images and FCLIB "
+                        "contact problems");
   }
   if (arguments.json) {
     fmt::print("{}\n", json.dump(2));
@@ -136,7 +177,7 @@ void add_info_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = add_subcommand(app, "info", "Show what a file holds", "FILE [options]",
                                      "  tetwarp info warped.vtkhdf --stats\n");
-  command->add_option("FILE", arguments->file, "volume, mesh or NIfTI image")
+  command->add_option("FILE", arguments->file, "volume, mesh, NIfTI image or contact problem")
       ->required()
       ->type_name("");
   command->add_flag("--stats", arguments->stats, "read the samples and show their range");

@@ -69,4 +69,21 @@ CLI::Validator at_least_zero() {
   return CLI::Validator(CLI::NonNegativeNumber).description("");
 }
 
+CLI::Validator above_zero() {
+  const auto check = [](const std::string& text) -> std::string {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && number > 0) return {};
+    return "'" + text + "' is no number above 0";
+  };
+  return {check, ""};
+}
+
+const Choices<Backend>& backend_choices() {
+  static const Choices<Backend> choices{{"auto", Backend::automatic},
+                                        {"cuda", Backend::cuda},
+                                        {"cpu", Backend::cpu},
+                                        {"reference", Backend::reference}};
+  return choices;
+}
+
 }  // namespace tetwarp::cli

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
+#include <tetwarp/backend.hpp>
 #include <utility>
 #include <vector>
 
@@ -27,10 +28,14 @@ std::string listed(const std::vector<std::string>& words);
 /// Checks of numbers whose help shows no range.
 CLI::Validator between(int low, int high);
 CLI::Validator at_least_zero();
+CLI::Validator above_zero();  // infinity is
 
 /// Words with their meaning, in the order in which help shows them.
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
+
+/// What --backend takes.
+const Choices<Backend>& backend_choices();
 
 /// The words alone.
 template <class T>
@@ -66,6 +71,24 @@ CLI::Option* add_choice(CLI::App& app,
           },
           description)
       ->type_name(CLI::detail::join(words_of(choices), "|"));
+}
+
+/// Declares an option that takes a comma list of words, each of which is handed to `apply`.
+template <class T, class Apply>
+void add_word_list(CLI::App& app,
+                   const std::string& option,
+                   const Choices<T>& choices,
+                   Apply apply,
+                   const std::string& description) {
+  app.add_option_function<std::vector<std::string>>(
+         option,
+         [option, choices, apply](const std::vector<std::string>& words) {
+           for (const std::string& word : words) apply(meaning_of(option, word, choices));
+         },
+         description)
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name(CLI::detail::join(words_of(choices), ","));
 }
 
 }  // namespace tetwarp::cli

@@ -65,6 +65,8 @@ const char* name_of(FileKind kind) {
       return "a mesh";
     case FileKind::other_vtkhdf:
       return "another kind of VTKHDF file";
+    case FileKind::contact_problem:
+      return "a contact problem";
     case FileKind::hdf5:
       return "another kind of HDF5 file";
     case FileKind::nifti:

@@ -64,7 +64,9 @@ int handle_parse_error(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int run_main(int argument_count, const char* const* arguments) {
-  CLI::App app("Warps dense volumes by deforming tetrahedral meshes", "tetwarp");
+  CLI::App app(
+      "Warps dense volumes by deforming tetrahedral meshes and solves adhesive frictional contact",
+      "tetwarp");
   Run run;
   declare(app, run);
   try {
@@ -84,7 +86,8 @@ int guarded_main(int argument_count, const char* const* arguments) {
   } catch (const Cancelled&) {
     return complain("interrupted", interrupted_exit_code);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory; use a smaller volume, --roi or --dims", failed_exit_code);
+    return complain("out of memory; use a smaller problem or, for volumes, --roi or --dims",
+                    failed_exit_code);
   } catch (const std::exception& error) {
     return complain(error.what(), failed_exit_code);
   }

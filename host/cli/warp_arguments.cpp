@@ -14,30 +14,8 @@ namespace {
 const Choices<Filter> filters{{"linear", Filter::linear}, {"nearest", Filter::nearest}};
 const Choices<Outside> outsides{{"background", Outside::background},
                                 {"identity", Outside::identity}};
-const Choices<Backend> backends{{"auto", Backend::automatic},
-                                {"cuda", Backend::cuda},
-                                {"cpu", Backend::cpu},
-                                {"reference", Backend::reference}};
 const Choices<bool ExtraOutputs::*> extra_outputs{{"mask", &ExtraOutputs::mask},
                                                   {"tet", &ExtraOutputs::tet}};
-
-/// Declares an option that takes a comma list of words, each of which is handed to `apply`.
-template <class T, class Apply>
-void add_word_list(CLI::App& app,
-                   const std::string& option,
-                   const Choices<T>& choices,
-                   Apply apply,
-                   const std::string& description) {
-  app.add_option_function<std::vector<std::string>>(
-         option,
-         [option, choices, apply](const std::vector<std::string>& words) {
-           for (const std::string& word : words) apply(meaning_of(option, word, choices));
-         },
-         description)
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name(CLI::detail::join(words_of(choices), ","));
-}
 
 /// Declares an option whose text a function turns into a value; its std::invalid_argument is a
 /// usage error.
@@ -128,7 +106,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
 
 void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
-  add_choice(app, "--backend", warp.backend, backends, "where to compute [auto]");
+  add_choice(app, "--backend", warp.backend, backend_choices(), "where to compute [auto]");
   app.add_option("--device", warp.device, "CUDA device number [0]")
       ->check(at_least_zero())
       ->type_name("N");
@@ -136,15 +114,18 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
       ->check(at_least_zero())
       ->type_name("N");
   using Switch = std::vector<bool SkipOptions::*>;
-  const Choices<Switch> skips{{"rejected-cells", {&SkipOptions::rejected_cells}},
-                              {"accepted-cells", {&SkipOptions::accepted_cells}},
-                              {"copied-voxels", {&SkipOptions::copied_voxels}},
-                              {"unchanged-steps", {&SkipOptions::unchanged_steps}},
-                              {"background-chunks", {&SkipOptions::background_chunks}},
-                              {"all",
-                               {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells,
-                                &SkipOptions::copied_voxels, &SkipOptions::unchanged_steps,
-                                &SkipOptions::background_chunks}}};
+  const Choices<Switch> skips{
+      {"rejected-cells", {&SkipOptions::rejected_cells}},
+      {"accepted-cells", {&SkipOptions::accepted_cells}},
+      {"copied-voxels", {&SkipOptions::copied_voxels}},
+      {"unchanged-steps", {&SkipOptions::unchanged_steps}},
+      {"unchanged-tets", {&SkipOptions::unchanged_tets}},
+      {"constant-cells", {&SkipOptions::constant_cells}},
+      {"background-chunks", {&SkipOptions::background_chunks}},
+      {"all",
+       {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells, &SkipOptions::copied_voxels,
+        &SkipOptions::unchanged_steps, &SkipOptions::unchanged_tets, &SkipOptions::constant_cells,
+        &SkipOptions::background_chunks}}};
   SkipOptions& skip = warp.skip;
   add_word_list(
       app, "--no-skip", skips,

@@ -1,5 +1,6 @@
 /// @file io.hpp
-/// Files: VTKHDF volumes and meshes (ParaView, VTK, PyVista), NIfTI volumes, PNG pictures.
+/// Files: VTKHDF volumes and meshes (ParaView, VTK, PyVista), NIfTI volumes, PNG pictures, FCLIB
+/// contact problems.
 ///
 /// Every failure is an IoError whose one line names file, dataset and remedy. Sizes are checked
 /// against the file and the machine's memory before anything is allocated. Writers write to a
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
@@ -83,12 +85,18 @@ struct VolumeWriteOptions {
   std::string fingerprint = {};  ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
 };
 
+/// A volume file that was written.
+struct WrittenFile {
+  std::int64_t bytes = 0;
+  std::int64_t chunks = 0;             ///< of all arrays and steps
+  std::int64_t chunks_background = 0;  ///< of these, not stored: they hold only the background
+};
+
 /// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
 /// Throws IoError on an axis of one sample (VTK crashes on those) and on any write failure.
-/// @returns bytes of the file
-std::int64_t write_volumes(const std::string& path,
-                           const std::vector<const Volume*>& volumes,
-                           const VolumeWriteOptions& options = {});
+WrittenFile write_volumes(const std::string& path,
+                          const std::vector<const Volume*>& volumes,
+                          const VolumeWriteOptions& options = {});
 
 /// Writes one temporal VTKHDF ImageData file, Version [2,0], step by step.
 class TemporalVolumeWriter {
@@ -103,8 +111,8 @@ class TemporalVolumeWriter {
   /// Appends a step equal to the last one: its offset is repeated, its data are not stored twice.
   void repeat(double time);
 
-  /// Flushes and moves the file to its name. @returns bytes of the file
-  std::int64_t finish();
+  /// Flushes and moves the file to its name.
+  WrittenFile finish();
 
  private:
   struct State;
@@ -133,8 +141,55 @@ void write_nifti(const std::string& path, const Volume& volume);
 /// Writes an 8-bit RGB PNG.
 void write_png(const std::string& path, const Image& image);
 
+/// What an FCLIB file says around its problem.
+struct ContactFileHeader {
+  std::string title;
+  std::string description;
+  std::int64_t guesses = 0;           ///< starting points, /guesses/1 and so on
+  bool has_solution = false;          ///< /solution/r is there; whose, and how good, is not said
+  std::optional<std::string> status;  ///< of a solution of ours, as name_of(ContactStatus)
+  std::optional<double> residual;     ///< eta of a solution of ours
+};
+
+/// Reads what an FCLIB file says around its problem.
+ContactFileHeader read_contact_header(const std::string& path);
+
+/// Where the iterations start.
+enum class ContactStart {
+  zero,   ///< `impulse_guess` stays empty
+  stored  ///< the impulses of /solution or, when there are none or all are zero, of /guesses/1
+};
+
+/// Reads a contact problem in FCLIB's HDF5 format, checked by check(): /fclib_local (W, q, mu) or
+/// /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets, and, where they
+/// are there, /adhesion and /blocks. Numbers may be stored in any width, vectors in any shape.
+///
+/// Three dimensions, no equality constraints (G, or V and R) and no rolling friction.
+/// In /adhesion a missing `intensity` is 0; other vectors that are missing stay empty.
+ContactProblem read_contact_problem(const std::string& path,
+                                    ContactStart start = ContactStart::zero);
+
+/// Writes a problem that check() accepts as an FCLIB file; matrices by rows, H by columns.
+/// @returns bytes of the file
+std::int64_t write_contact_problem(const std::string& path,
+                                   const ContactProblem& problem,
+                                   const std::string& title = {},
+                                   const std::string& description = {});
+
+/// Writes a complete FCLIB file: everything the problem's file holds, with this solution in place
+/// of its own and, when given, the adhesion of the next step.
+///
+/// /solution/{r, u, v, residual_history} (no v in local form) has the attributes `converged` (1 or
+/// 0), `status`, `residual` (eta), `fclib_error` and `method`; /adhesion_next holds `intensity` and
+/// `gap`. Throws IoError when the solution is that of another problem.
+/// @returns bytes of the file
+std::int64_t write_contact_solution(const std::string& path,
+                                    const std::string& problem_path,
+                                    const ContactSolution& solution,
+                                    const AdhesionStep* adhesion_next = nullptr);
+
 /// Kinds of files that info and the checks of swapped arguments tell apart.
-enum class FileKind { volume, mesh, other_vtkhdf, hdf5, nifti, unknown };
+enum class FileKind { volume, mesh, other_vtkhdf, contact_problem, hdf5, nifti, unknown };
 
 /// What a file is, by content. Throws IoError only when it cannot be opened.
 FileKind kind_of(const std::string& path);

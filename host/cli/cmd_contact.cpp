@@ -1,0 +1,136 @@
+/// @file cmd_contact.cpp
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <tetwarp/contact.hpp>
+#include <tetwarp/io.hpp>
+
+#include "host/cli/commands.hpp"
+#include "host/cli/contact_arguments.hpp"
+#include "host/cli/declare.hpp"
+#include "host/cli/file_checks.hpp"
+#include "host/cli/stopwatch.hpp"
+#include "io/finished_file.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+constexpr int infeasible_exit_code = 1;
+constexpr int not_converged_exit_code = 3;
+
+/// Seconds outside the solver.
+struct FileSeconds {
+  double read = 0;
+  double write = 0;
+};
+
+void check_files(const ContactArguments& arguments) {
+  check_kind(arguments.problem, FileKind::contact_problem,
+             "usage: tetwarp contact PROBLEM -o SOLUTION");
+  check_output_file(arguments.output, {arguments.problem});
+  if (!arguments.report.empty()) {
+    check_output_file(arguments.report, {arguments.problem, arguments.output});
+  }
+}
+
+ContactProblem read_problem(const ContactArguments& arguments) {
+  ContactProblem problem = read_contact_problem(arguments.problem, arguments.start);
+  if (arguments.evolve && problem.adhesion.empty()) {
+    throw IoError(arguments.problem, "/adhesion", "is missing, there is nothing to evolve");
+  }
+  return problem;
+}
+
+/// A problem that passed the reader's checks can still turn out unsolvable when it is factorized.
+ContactSolution solve(const ContactProblem& problem, const ContactArguments& arguments) {
+  try {
+    return solve_contacts(problem, arguments.options);
+  } catch (const ContactProblemError& error) {
+    throw IoError(arguments.problem, "", error.what());
+  }
+}
+
+void write_report(const std::string& path,
+                  const ContactReport& report,
+                  const FileSeconds& seconds) {
+  auto json = nlohmann::ordered_json::parse(to_json(report));
+  json["timings"]["read"] = seconds.read;
+  json["timings"]["write"] = seconds.write;
+  json["timings"]["total"] = seconds.read + report.total_seconds + seconds.write;
+  write_finished_file(path, json.dump(2) + "\n");
+}
+
+/// "residual 1.2e-07 after 40 sweeps".
+std::string progress_of(const ContactReport& report, ContactMeasure measure) {
+  const ContactResidual& residual = report.residual;
+  const bool is_eta = measure == ContactMeasure::eta;
+  return fmt::format("{} {:.2g} after {} sweeps", is_eta ? "residual" : "FCLIB error",
+                     is_eta ? residual.eta : residual.fclib, report.sweeps);
+}
+
+void print_summary(const ContactArguments& arguments, const ContactReport& report) {
+  fmt::print("{}, {}\n", name_of(report.backend), report.method);
+  fmt::print("{} contact{}, {}, {}, {:.3g} s: {}\n", report.contacts,
+             report.contacts == 1 ? "" : "s", name_of(report.status),
+             progress_of(report, arguments.options.measure), report.total_seconds,
+             arguments.output);
+}
+
+/// The line on standard error and the exit code of a solve that did not end well.
+int complain(const ContactArguments& arguments, const ContactReport& report) {
+  if (report.status == ContactStatus::converged) return 0;
+  const bool is_infeasible = report.status == ContactStatus::infeasible;
+  const std::string reason = report.status_reason.empty() ? "" : " (" + report.status_reason + ")";
+  const std::string line =
+      fmt::format("{}: {}: {}, tolerance {:g}{}; the best iterate is in {}", arguments.problem,
+                  name_of(report.status), progress_of(report, arguments.options.measure),
+                  arguments.options.tolerance, reason, arguments.output);
+  fmt::print(stderr, "tetwarp: {}\n", one_line(line));
+  return is_infeasible ? infeasible_exit_code : not_converged_exit_code;
+}
+
+int run_contact(const ContactArguments& arguments) {
+  check_files(arguments);
+  FileSeconds seconds;
+  const Stopwatch reading;
+  const ContactProblem problem = read_problem(arguments);
+  seconds.read = reading.seconds();
+  const ContactSolution solution = solve(problem, arguments);
+  const Stopwatch writing;
+  std::optional<AdhesionStep> next;
+  if (arguments.evolve) next = evolve_adhesion(problem, solution);
+  write_contact_solution(arguments.output, arguments.problem, solution, next ? &*next : nullptr);
+  seconds.write = writing.seconds();
+  if (!arguments.report.empty()) write_report(arguments.report, solution.report, seconds);
+  if (!arguments.quiet) print_summary(arguments, solution.report);
+  return complain(arguments, solution.report);
+}
+
+}  // namespace
+
+void add_contact_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<ContactArguments>();
+  CLI::App* command = add_subcommand(
+      app, "contact", "Solve one step of adhesive frictional contact",
+      "PROBLEM -o SOLUTION [options]",
+      "  tetwarp contact stack.hdf5 -o solved.hdf5\n"
+      "  tetwarp contact stack.hdf5 -o solved.hdf5 --measure fclib --tolerance 1e-8 "
+      "--report report.json\n"
+      "  tetwarp contact glued.hdf5 -o next.hdf5 --rule restrictive --evolve\n"
+      "Exit status: 0 converged; 3 not converged, the best iterate is written and marked; "
+      "2 bad usage; 1 any other failure\n");
+  declare_contact_options(*command, *arguments);
+  command->callback([arguments, &run] {
+    if (arguments->options.relaxation >= 2) {
+      throw CLI::ValidationError("--relaxation", "expected a number below 2");
+    }
+    run = [arguments] { return run_contact(*arguments); };
+  });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,112 @@
+/// @file contact_arguments.cpp
+#include "host/cli/contact_arguments.hpp"
+
+#include <vector>
+
+#include "host/cli/declare.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+const Choices<FrictionLaw> laws{{"cone", FrictionLaw::cone}, {"pyramid", FrictionLaw::pyramid}};
+const Choices<AdhesionRule> rules{{"parallel", AdhesionRule::parallel},
+                                  {"restrictive", AdhesionRule::restrictive}};
+const Choices<ContactMeasure> measures{{"eta", ContactMeasure::eta},
+                                       {"fclib", ContactMeasure::fclib}};
+const Choices<ContactMethod> solvers{{"auto", ContactMethod::automatic},
+                                     {"gs", ContactMethod::gauss_seidel},
+                                     {"nncg", ContactMethod::nonlinear_cg},
+                                     {"anderson", ContactMethod::anderson},
+                                     {"mass-splitting", ContactMethod::mass_splitting},
+                                     {"newton", ContactMethod::newton}};
+const Choices<ContactPrecision> precisions{{"double", ContactPrecision::float64},
+                                           {"single", ContactPrecision::float32}};
+
+void declare_model(CLI::App& app, ContactArguments& arguments) {
+  ContactOptions& options = arguments.options;
+  app.add_option("PROBLEM", arguments.problem,
+                 "FCLIB file, local or global, with or without "
+                 "an adhesion group")
+      ->required()
+      ->type_name("");
+  app.add_option("-o,--output", arguments.output,
+                 "file to write: the problem with its solution, also when it did not converge")
+      ->required()
+      ->type_name("SOLUTION");
+  add_choice(app, "--law", options.law, laws, "friction law [cone]");
+  add_choice(app, "--rule", options.rule, rules,
+             "friction beside the adhesive spring, or topping it up [parallel]");
+  app.add_option("--recovery-speed", options.recovery_speed,
+                 "penetration is undone at most this fast, in m/s [any speed]")
+      ->check(above_zero())
+      ->type_name("V");
+  app.add_flag("--evolve", arguments.evolve,
+               "also write the adhesion of the next step, /adhesion_next");
+}
+
+void declare_solver(CLI::App& app, ContactArguments& arguments) {
+  ContactOptions& options = arguments.options;
+  app.add_option("--tolerance", options.tolerance, "residual to reach [1e-6]")
+      ->check(above_zero())
+      ->type_name("E");
+  add_choice(app, "--measure", options.measure, measures,
+             "what the tolerance bounds: energy-weighted residual or FCLIB's error [eta]");
+  app.add_option("--max-sweeps", options.max_sweeps, "passes over all contacts [20000]")
+      ->check(above_zero())
+      ->type_name("N");
+  add_choice(app, "--solver", options.method, solvers, "method [auto]");
+  app.add_option("--relaxation", options.relaxation,
+                 "of the outer iteration over bodies, above 0 and below 2 [0.5]")
+      ->check(above_zero())
+      ->type_name("W");
+  app.add_flag_callback(
+      "--warm-start", [&arguments] { arguments.start = ContactStart::stored; },
+      "start from the impulses of the file: its solution, else its first guess");
+}
+
+void declare_skips(CLI::App& app, ContactSkipOptions& skip) {
+  using Switches = std::vector<bool ContactSkipOptions::*>;
+  using Skip = ContactSkipOptions;
+  const Choices<Switches> skips{
+      {"frictionless-rows", {&Skip::frictionless_rows}},
+      {"debonded-springs", {&Skip::debonded_springs}},
+      {"contactless-bodies", {&Skip::contactless_bodies}},
+      {"converged-islands", {&Skip::converged_islands}},
+      {"frozen-contacts", {&Skip::frozen_contacts}},
+      {"all",
+       {&Skip::frictionless_rows, &Skip::debonded_springs, &Skip::contactless_bodies,
+        &Skip::converged_islands, &Skip::frozen_contacts}}};
+  add_word_list(
+      app, "--no-skip", skips,
+      [&skip](const Switches& members) {
+        for (bool Skip::*member : members) skip.*member = false;
+      },
+      "do work that changes the result by no more than the tolerance");
+}
+
+void declare_running(CLI::App& app, ContactArguments& arguments) {
+  ContactOptions& options = arguments.options;
+  add_choice(app, "--backend", options.backend, backend_choices(), "where to compute [auto]");
+  add_choice(app, "--precision", options.precision, precisions, "of the iterations [double]");
+  app.add_option("--device", options.device, "CUDA device number [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  app.add_option("--threads", options.threads, "of the cpu back end, 0 is all cores [0]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  declare_skips(app, options.skip);
+  app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
+      ->type_name("FILE");
+  app.add_flag("--quiet", arguments.quiet, "no summary");
+}
+
+}  // namespace
+
+void declare_contact_options(CLI::App& app, ContactArguments& arguments) {
+  declare_model(app, arguments);
+  declare_solver(app, arguments);
+  declare_running(app, arguments);
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,26 @@
+/// @file contact_arguments.hpp
+/// Everything a user can say to `tetwarp contact`.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include <tetwarp/contact.hpp>
+#include <tetwarp/io.hpp>
+
+namespace tetwarp::cli {
+
+/// Syntax is checked, files are not looked at.
+struct ContactArguments {
+  std::string problem;
+  std::string output;
+  ContactOptions options;
+  ContactStart start = ContactStart::zero;
+  bool evolve = false;
+  std::string report;
+  bool quiet = false;
+};
+
+/// Declares every option and binds it to `arguments`, which must outlive `app`.
+void declare_contact_options(CLI::App& app, ContactArguments& arguments);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,207 @@
+/// @file contact.cpp
+/// The public calls of the contact solver: options, back end, structure, run, report.
+#include <tetwarp/contact.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <tetwarp/version.hpp>
+
+#include "host/contact_engine.hpp"
+#include "host/reference/contact.hpp"
+#include "host/warp_backend.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check_options(const ContactOptions& options) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) {
+    fail("tolerance: expected a finite number above 0");
+  }
+  if (options.max_sweeps < 1) fail("max_sweeps: expected 1 or more");
+  if (!(options.relaxation > 0 && options.relaxation < 2)) {
+    fail("relaxation: expected a number above 0 and below 2");
+  }
+  if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
+  if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
+  if (options.threads < 0) fail("threads: expected 0 (all cores) or more");
+}
+
+/// Sums of all islands; the largest contact by its index in the problem.
+struct WholeResidual {
+  ContactSums sums, free;
+  double free_square = 0;
+
+  double eta() const {
+    const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
+    return sums.eta > 0 ? std::sqrt(sums.eta) / std::max(scale, 1e-300) : 0;
+  }
+  double fclib() const {
+    return sums.fclib > 0 ? std::sqrt(sums.fclib / std::max(free_square, 1e-300)) : 0;
+  }
+};
+
+WholeResidual whole_residual(const std::vector<IslandOutcome>& outcomes) {
+  WholeResidual whole;
+  for (const IslandOutcome& outcome : outcomes) {
+    whole.sums += outcome.sums;
+    whole.free += outcome.free;
+    whole.free_square += outcome.free_square;
+  }
+  return whole;
+}
+
+/// The residual of the whole whenever that of an island was measured: each island counts with the
+/// last error it had by then.
+std::vector<double> merged_history(const std::vector<IslandOutcome>& outcomes, double scale) {
+  struct Step {
+    std::int64_t sweep;
+    double change;
+  };
+  std::vector<Step> steps;
+  for (const IslandOutcome& outcome : outcomes) {
+    double last = 0;
+    for (const ContactEvent& event : outcome.events) {
+      const double square = event.error * event.error;
+      steps.push_back({event.sweep, square - last});
+      last = square;
+    }
+  }
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.sweep < b.sweep; });
+  std::vector<double> history;
+  double sum = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    sum += steps[k].change;
+    if (k + 1 < steps.size() && steps[k + 1].sweep == steps[k].sweep) continue;
+    history.push_back(std::sqrt(std::max(sum, 0.0)) / std::max(scale, 1e-300));
+  }
+  return history;
+}
+
+void count_outcomes(const std::vector<IslandOutcome>& outcomes, ContactReport& report) {
+  std::vector<std::string> methods;
+  for (const IslandOutcome& outcome : outcomes) {
+    report.sweeps = std::max(report.sweeps, outcome.sweeps);
+    report.outer_iterations = std::max(report.outer_iterations, outcome.outer_iterations);
+    report.newton_iterations += outcome.newton_iterations;
+    report.contact_updates += outcome.contact_updates;
+    for (const char* method : outcome.methods) {
+      if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
+        methods.emplace_back(method);
+      }
+    }
+  }
+  for (const IslandOutcome& outcome : outcomes) {
+    if (outcome.sweeps < report.sweeps) ++report.islands_stopped;
+  }
+  for (const std::string& method : methods) {
+    report.method += (report.method.empty() ? "" : ", ") + method;
+  }
+}
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << std::setprecision(2) << value;
+  return text.str();
+}
+
+void set_status(const EngineResult& result, const ContactOptions& options, ContactReport& report) {
+  const bool by_eta = options.measure == ContactMeasure::eta;
+  const double residual = by_eta ? report.residual.eta : report.residual.fclib;
+  const bool is_within = residual <= options.tolerance;
+  report.status = is_within ? ContactStatus::converged : ContactStatus::not_converged;
+  if (!is_within) {
+    report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
+                           text_of(residual) + " after " + std::to_string(report.sweeps) +
+                           " sweeps, asked for " + text_of(options.tolerance);
+  }
+  if (result.clamped.empty()) return;
+  report.status = ContactStatus::infeasible;
+  report.status_reason =
+      "no velocity satisfies contact " + std::to_string(result.clamped.front()) + " and " +
+      std::to_string(result.clamped.size() - 1) +
+      " others together; their normal offsets were raised to 0, which the residual refers to";
+}
+
+}  // namespace
+
+struct ContactSolver::State {
+  ContactOptions options;
+  int threads = 1;
+  std::string device;
+  ContactEngine engine;
+};
+
+ContactSolver::ContactSolver(const ContactOptions& options) {
+  check_options(options);
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
+  state_ = std::make_unique<State>(
+      State{options, threads, processor_name(), ContactEngine(options, threads)});
+}
+
+ContactSolver::ContactSolver(ContactSolver&&) noexcept = default;
+ContactSolver& ContactSolver::operator=(ContactSolver&&) noexcept = default;
+ContactSolver::~ContactSolver() = default;
+
+ContactSolution ContactSolver::solve(const ContactProblem& problem) {
+  State& s = *state_;
+  if (s.options.backend == Backend::reference) {
+    return solve_contacts_reference(problem, s.options);
+  }
+  const auto start = Clock::now();
+  check(problem);
+  EngineResult result = s.engine.solve(problem);
+  ContactSolution solution;
+  ContactReport& report = solution.report;
+  report.version = TETWARP_VERSION;
+  report.device = s.device;
+  report.threads = s.threads;
+  report.contacts = problem.contact_count();
+  report.colors = result.colors;
+  report.islands = static_cast<std::int64_t>(result.outcomes.size());
+  report.rows_skipped = result.savings.rows;
+  report.springs_skipped = result.savings.springs;
+  report.bodies_skipped = result.bodies_skipped;
+  report.updates_skipped = result.updates_skipped;
+  count_outcomes(result.outcomes, report);
+  report.contact_updates -= result.updates_skipped;
+
+  const WholeResidual whole = whole_residual(result.outcomes);
+  report.residual.eta = whole.eta();
+  report.residual.fclib = whole.fclib();
+  report.residual.penetration = whole.sums.deepest;
+  const double error = s.options.measure == ContactMeasure::eta ? std::sqrt(whole.sums.eta)
+                                                                : std::sqrt(whole.sums.fclib);
+  const double residual = s.options.measure == ContactMeasure::eta ? whole.eta() : whole.fclib();
+  report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
+  set_status(result, s.options, report);
+  solution.impulse = std::move(result.impulse);
+  solution.body_velocity = std::move(result.body_velocity);
+  report.setup_seconds = result.setup_seconds;
+  report.total_seconds = seconds_since(start);
+  report.solve_seconds = report.total_seconds - report.setup_seconds;
+  return solution;
+}
+
+ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
+  return ContactSolver(options).solve(problem);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,51 @@
+/// @file contact_condense.cpp
+#include "host/contact_condense.hpp"
+
+#include "host/contact_matrix.hpp"
+
+namespace tetwarp {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+CondensedProblem::CondensedProblem(const ContactProblem& problem)
+    : factor_(make_eigen(problem.system)),
+      jacobian_(make_eigen(problem.jacobian)),
+      load_(Eigen::Map<const VectorXd>(problem.load.data(),
+                                       static_cast<Index>(problem.load.size()))) {
+  if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0)) {
+    throw ContactProblemError("system",
+                              ": not positive definite although its diagonal blocks are; give mass "
+                              "to every dof");
+  }
+  const Index rows = jacobian_.rows();
+  local_.friction = problem.friction;
+  local_.adhesion = problem.adhesion;
+  local_.impulse_guess = problem.impulse_guess;
+  if (rows == 0) return;
+  const Eigen::MatrixXd answers = factor_.solve(Eigen::MatrixXd(jacobian_.transpose()));
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus =
+      jacobian_ * answers;
+  local_.delassus.rows = local_.delassus.columns = rows;
+  for (Index row = 0; row <= rows; ++row) local_.delassus.row_start.push_back(row * rows);
+  for (Index row = 0; row < rows; ++row) {
+    for (Index column = 0; column < rows; ++column) {
+      local_.delassus.column.push_back(static_cast<std::int32_t>(column));
+    }
+  }
+  local_.delassus.value.assign(delassus.data(), delassus.data() + delassus.size());
+  const VectorXd free = jacobian_ * factor_.solve(load_);
+  for (Index row = 0; row < rows; ++row) {
+    local_.free_velocity.push_back(free(row) +
+                                   problem.velocity_offset[static_cast<std::size_t>(row)]);
+  }
+}
+
+std::vector<double> CondensedProblem::body_velocity(const std::vector<double>& impulse) const {
+  const Eigen::Map<const VectorXd> r(impulse.data(), static_cast<Index>(impulse.size()));
+  const VectorXd push = load_ + jacobian_.transpose() * r;
+  const VectorXd v = factor_.solve(push);
+  return {v.data(), v.data() + v.size()};
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,195 @@
+/// @file contact_engine.cpp
+#include "host/contact_engine.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "host/contact_condense.hpp"
+#include "host/contact_extract.hpp"
+#include "host/contact_feasibility.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::size_t index_of(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Numbers per contact from slots to contacts, of one island.
+void scatter_impulses(const ContactStructure& structure,
+                      const ContactIsland& island,
+                      const double* from,
+                      std::vector<double>& to) {
+  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
+    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
+  }
+}
+
+void scatter_velocities(const ContactStructure& structure,
+                        const ContactIsland& island,
+                        const double* from,
+                        std::vector<double>& to) {
+  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
+    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
+  }
+}
+
+/// Offsets that ask for more than a recovery speed are lowered to it.
+void clamp_offsets(ContactProblem& problem, double speed) {
+  for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+    problem.velocity_offset[row] = std::max(problem.velocity_offset[row], -speed);
+  }
+}
+
+bool exceeds(const ContactProblem& problem, double speed) {
+  for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+    if (problem.velocity_offset[row] < -speed) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+ContactEngine::ContactEngine(const ContactOptions& options, int threads)
+    : options_(options), threads_(threads) {}
+
+ContactSystem<double> ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
+  ContactSystem<double> system;
+  if (pattern_ && has_pattern(problem, *pattern_) &&
+      fill_system(problem, options_, structure_, system, result.savings)) {
+    return system;
+  }
+  structure_ = make_structure(problem, options_.skip.converged_islands);
+  pattern_ = pattern_of(problem);
+  fill_system(problem, options_, structure_, system, result.savings);
+  return system;
+}
+
+EngineResult ContactEngine::solve(const ContactProblem& given) {
+  const auto start = Clock::now();
+  std::optional<ContactProblem> changed;
+  if (exceeds(given, options_.recovery_speed)) {
+    changed = given;
+    clamp_offsets(*changed, options_.recovery_speed);
+  }
+  std::vector<std::int32_t> clamped;
+  // Each round frees at least one more contact; in practice one or two are enough.
+  for (;;) {
+    const ContactProblem& problem = changed ? *changed : given;
+    EngineResult result;
+    const ContactSystem<double> system = prepare(problem, result);
+    result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    result.impulse.assign(3 * problem.friction.size(), 0.0);
+    result.body_velocity.assign(index_of(problem.dof_count()), 0.0);
+    result.outcomes.resize(index_of(structure_.contact_islands));
+    solve_uncoupled(problem, system, result);
+    for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, i, result);
+    }
+    solve_contactless(problem, system, result);
+    if (result.clamped.empty()) {
+      result.clamped = std::move(clamped);
+      return result;
+    }
+    if (!changed) changed = given;
+    for (const std::int32_t c : result.clamped) {
+      std::vector<double>& offsets =
+          structure_.is_local ? changed->free_velocity : changed->velocity_offset;
+      offsets[3 * index_of(c)] = std::max(offsets[3 * index_of(c)], 0.0);
+    }
+    clamped.insert(clamped.end(), result.clamped.begin(), result.clamped.end());
+    changed->impulse_guess.clear();
+  }
+}
+
+void ContactEngine::solve_uncoupled(const ContactProblem& problem,
+                                    const ContactSystem<double>& system,
+                                    EngineResult& result) {
+  std::vector<double> start = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
+                                       problem.contact_count());
+  if (options_.precision == ContactPrecision::float32) {
+    const ContactSystem<float> rounded = make_float32(system);
+    ContactRun<float> run(options_, threads_, structure_, rounded, result.outcomes);
+    run.start_from({start.begin(), start.end()});
+    run.solve();
+    start.assign(run.state().impulse.begin(), run.state().impulse.end());
+    result.updates_skipped = run.updates_skipped();
+  }
+  ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
+  run.start_from(start);
+  if (options_.precision == ContactPrecision::float64) {
+    run.solve();
+    result.updates_skipped = run.updates_skipped();
+  }
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    const ContactIsland& island = structure_.islands[index_of(i)];
+    result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
+    if (island.is_coupled) continue;
+    IslandOutcome& outcome = result.outcomes[index_of(i)];
+    outcome.sums = run.measure(i);
+    outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
+    if (!run.is_done(i, outcome.sums)) fall_back(problem, i, run, result);
+    scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
+                     result.impulse);
+    if (structure_.is_local) continue;
+    scatter_velocities(structure_, island, run.state().body_velocity.data() + island.dof_begin,
+                       result.body_velocity);
+  }
+}
+
+void ContactEngine::fall_back(const ContactProblem& problem,
+                              std::int64_t island,
+                              ContactRun<double>& run,
+                              EngineResult& result) {
+  IslandOutcome& outcome = result.outcomes[index_of(island)];
+  for (const std::int64_t slot :
+       contradicting_slots(structure_, run.system(), structure_.islands[index_of(island)])) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
+  }
+  (void)problem;
+  if (!result.clamped.empty()) return;
+  if (options_.method == ContactMethod::automatic) run.insist(island);
+  outcome.sums = run.measure(island);
+}
+
+void ContactEngine::solve_coupled(const ContactProblem& problem,
+                                  std::int64_t i,
+                                  EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  const ContactProblem part = make_island_problem(problem, structure_, island);
+  const CondensedProblem condensed(part);
+  ContactEngine engine(options_, threads_);
+  const EngineResult inner = engine.solve(condensed.local());
+  const std::vector<double> v = condensed.body_velocity(inner.impulse);
+  scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
+  scatter_velocities(structure_, island, v.data(), result.body_velocity);
+  result.outcomes[index_of(i)] = inner.outcomes[0];
+  result.updates_skipped += inner.updates_skipped;
+  result.colors = std::max(result.colors, inner.colors);
+  for (const std::int32_t c : inner.clamped) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(island.slot_begin + c)]);
+  }
+}
+
+void ContactEngine::solve_contactless(const ContactProblem& problem,
+                                      const ContactSystem<double>& system,
+                                      EngineResult& result) {
+  for (std::size_t i = index_of(structure_.contact_islands); i < structure_.islands.size(); ++i) {
+    const ContactIsland& island = structure_.islands[i];
+    result.bodies_skipped += island.block_end - island.block_begin;
+    if (!island.is_coupled) {
+      scatter_velocities(structure_, island, system.body_free.data() + island.dof_begin,
+                         result.body_velocity);
+      continue;
+    }
+    const CondensedProblem condensed(make_island_problem(problem, structure_, island));
+    scatter_velocities(structure_, island, condensed.body_velocity({}).data(),
+                       result.body_velocity);
+  }
+}
+
+}  // namespace tetwarp

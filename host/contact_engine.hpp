@@ -1,0 +1,58 @@
+/// @file contact_engine.hpp
+/// From a checked problem to impulses and velocities: structure, islands, methods, fallbacks.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact_run.hpp"
+#include "host/contact_structure.hpp"
+#include "host/contact_system.hpp"
+
+namespace tetwarp {
+
+/// What comes out of an engine, in the order of the problem.
+struct EngineResult {
+  std::vector<double> impulse;        ///< [3 contacts]
+  std::vector<double> body_velocity;  ///< [dofs]; empty in local form
+  std::vector<IslandOutcome> outcomes;
+  ContactSavings savings;
+  std::int64_t colors = 0;
+  std::int64_t updates_skipped = 0;
+  std::int64_t bodies_skipped = 0;
+  std::vector<std::int32_t> clamped;  ///< contacts whose offsets no velocity could meet
+  double setup_seconds = 0;
+};
+
+class ContactEngine {
+ public:
+  ContactEngine(const ContactOptions& options, int threads);
+
+  /// @pre check(problem) has passed
+  /// @throws ContactProblemError  A as a whole is not positive definite
+  EngineResult solve(const ContactProblem& problem);
+
+ private:
+  ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
+  void solve_coupled(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+  void solve_uncoupled(const ContactProblem& problem,
+                       const ContactSystem<double>& system,
+                       EngineResult& result);
+  void fall_back(const ContactProblem& problem,
+                 std::int64_t island,
+                 ContactRun<double>& run,
+                 EngineResult& result);
+  void solve_contactless(const ContactProblem& problem,
+                         const ContactSystem<double>& system,
+                         EngineResult& result);
+
+  ContactOptions options_;
+  int threads_;
+  std::optional<ContactPattern> pattern_;
+  ContactStructure structure_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,59 @@
+/// @file contact_exec_cpu.hpp
+/// CpuContactExec: what the contact pipeline asks of an executor, on host threads. Sums have one
+/// fixed tree, so nothing depends on how many threads there are.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tetwarp {
+
+class CpuContactExec {
+ public:
+  explicit CpuContactExec(int threads) : threads_(threads) {}
+
+  int threads() const { return threads_; }
+
+  /// body(i) for i in [0, count), any order.
+  template <class Body>
+  void for_each(const char*, std::int64_t count, const Body& body) const {
+    if (threads_ == 1 || count < serial_below) {
+      for (std::int64_t i = 0; i < count; ++i) body(i);
+      return;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t i = 0; i < count; ++i) body(i);
+  }
+
+  /// Sum of body(i) for i in [first, last): runs of 256 in sequence, then their sums in sequence.
+  template <class Sum, class Body>
+  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    const std::int64_t runs = (last - first + run_length - 1) / run_length;
+    const auto run_sum = [&](std::int64_t run) {
+      Sum sum{};
+      const std::int64_t end = std::min(first + (run + 1) * run_length, last);
+      for (std::int64_t i = first + run * run_length; i < end; ++i) sum += body(i);
+      return sum;
+    };
+    Sum total{};
+    if (threads_ == 1 || last - first < serial_below) {
+      for (std::int64_t run = 0; run < runs; ++run) total += run_sum(run);
+      return total;
+    }
+    std::vector<Sum> sums(static_cast<std::size_t>(runs));
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t run = 0; run < runs; ++run)
+      sums[static_cast<std::size_t>(run)] = run_sum(run);
+    for (const Sum& sum : sums) total += sum;
+    return total;
+  }
+
+ private:
+  static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
+  static constexpr std::int64_t run_length = 256;
+
+  int threads_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,102 @@
+/// @file contact_structure.hpp
+/// All that follows from the pattern of a contact problem alone: islands, order of contacts, blocks
+/// and where each stored number goes. Kept as long as the pattern stays.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+#include "host/contact_islands.hpp"
+#include "kernels/body_relax.hpp"
+#include "kernels/contact_setup.hpp"
+
+namespace tetwarp {
+
+/// Contacts that influence each other, with the blocks of dofs they move.
+struct ContactIsland {
+  std::int64_t slot_begin = 0, slot_end = 0;    ///< its contacts
+  std::int64_t color_begin = 0, color_end = 0;  ///< its entries of color_start
+  std::int64_t block_begin = 0, block_end = 0;
+  std::int64_t dof_begin = 0, dof_end = 0;
+  bool is_coupled = false;  ///< A couples its blocks
+
+  std::int64_t contact_count() const { return slot_end - slot_begin; }
+};
+
+/// Contacts are kept in slots sorted by (island, color, index), blocks and dofs by island; the dofs
+/// of blocks that no contact reaches come last, in islands without contacts.
+struct ContactStructure {
+  bool is_local = false;
+  std::vector<std::int32_t> contact_of_slot;
+  std::vector<std::int64_t> color_start;
+  std::vector<ContactIsland> islands;
+  std::int64_t contact_islands = 0;  ///< the first so many have contacts
+
+  // Global form.
+  std::vector<std::int32_t> dof_of_place;  ///< dof of the problem at each place here
+  std::vector<std::int64_t> dof_start;     ///< [blocks + 1]
+  std::vector<std::int64_t> pair_start;    ///< [slots + 1]
+  std::vector<std::int32_t> pair_block;
+  std::vector<std::int64_t> pair_value;
+  std::vector<std::int64_t> block_start;  ///< [blocks + 1]: the pairs of each block
+  std::vector<std::int32_t> block_contact;
+  std::vector<std::int64_t> block_value;
+  std::int64_t jacobian_size = 0;
+  std::vector<std::int64_t> jacobian_target;  ///< place of each stored number of J
+  std::vector<std::int64_t> inverse_start;    ///< [blocks + 1]: dense diagonal blocks
+  std::vector<std::int64_t> system_row;       ///< [blocks + 1]: entries of each block row of A
+  std::vector<std::int32_t> system_column;
+  std::vector<std::int64_t> system_value;
+  std::int64_t system_size = 0;
+  std::vector<std::int64_t> system_target;   ///< place of each stored number of A, -1: a zero
+  std::vector<std::int64_t> diagonal_value;  ///< [blocks]: place of the diagonal block
+
+  // Local form.
+  std::vector<std::int64_t> delassus_row;  ///< [slots + 1]
+  std::vector<std::int32_t> delassus_column;
+  std::vector<std::int64_t> delassus_target;
+  std::vector<std::int64_t> delassus_diagonal;  ///< [slots]: entry of the diagonal block
+
+  PairView pairs() const;
+  BlockContacts block_contacts() const;
+  /// A as the kernels read it.
+  template <class T>
+  SystemView<T> system(View<const T> values) const;
+};
+
+template <class T>
+View<const T> view_of(const std::vector<T>& values) {
+  return {values.data(), static_cast<std::int64_t>(values.size())};
+}
+template <class T>
+View<T> view_of(std::vector<T>& values) {
+  return {values.data(), static_cast<std::int64_t>(values.size())};
+}
+
+template <class T>
+SystemView<T> ContactStructure::system(View<const T> values) const {
+  return {view_of(system_row), view_of(system_column), view_of(system_value), values,
+          view_of(dof_start)};
+}
+
+/// @param separates_islands  false: all contacts are one island
+/// @pre check(problem) has passed
+ContactStructure make_structure(const ContactProblem& problem, bool separates_islands);
+
+/// The index arrays of a problem. Problems of one pattern share a structure, as long as no number
+/// that was a stored zero between blocks becomes another one.
+struct ContactPattern {
+  std::vector<std::int64_t> delassus_row;
+  std::vector<std::int32_t> delassus_column;
+  std::vector<std::int64_t> system_row;
+  std::vector<std::int32_t> system_column;
+  std::vector<std::int64_t> jacobian_row;
+  std::vector<std::int32_t> jacobian_column;
+  std::vector<std::int32_t> block_start;
+};
+
+ContactPattern pattern_of(const ContactProblem& problem);
+bool has_pattern(const ContactProblem& problem, const ContactPattern& pattern);
+
+}  // namespace tetwarp

@@ -1,0 +1,65 @@
+/// @file contact_system.hpp
+/// The numbers of a contact problem in the order of its structure, as the stages read them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact_structure.hpp"
+#include "kernels/contact_law.hpp"
+#include "kernels/contact_sweep.hpp"
+
+namespace tetwarp {
+
+template <class T>
+struct ContactSystem {
+  std::vector<ContactConstants<T>> constants;  ///< [slots]
+  std::vector<T> free_velocity;                ///< q, [3 slots]
+
+  // Global form.
+  std::vector<T> offset;     ///< w, [3 slots]
+  std::vector<T> load;       ///< b, [dofs]
+  std::vector<T> jacobian;   ///< by pairs
+  std::vector<T> response;   ///< A^-1 J^T by pairs; of coupled islands omega D^-1 J^T
+  std::vector<T> inverse;    ///< D^-1: inverses of the diagonal blocks
+  std::vector<T> system;     ///< A by blocks
+  std::vector<T> body_free;  ///< A^-1 b, [dofs]; of coupled islands not set
+
+  // Local form.
+  std::vector<T> delassus;  ///< W by blocks
+
+  DelassusView<T> delassus_view(const ContactStructure& structure) const;
+  BodiesView<T> bodies_view(const ContactStructure& structure) const;
+};
+
+/// What was left out of a system because it cannot matter.
+struct ContactSavings {
+  std::int64_t rows = 0;
+  std::int64_t springs = 0;
+};
+
+/// The system of a problem, in float64.
+/// @param savings  out
+/// @return false  when a stored zero that the structure left out has become another number
+bool fill_system(const ContactProblem& problem,
+                 const ContactOptions& options,
+                 const ContactStructure& structure,
+                 ContactSystem<double>& system,
+                 ContactSavings& savings);
+
+/// The same numbers, rounded.
+ContactSystem<float> make_float32(const ContactSystem<double>& system);
+
+template <class T>
+DelassusView<T> ContactSystem<T>::delassus_view(const ContactStructure& structure) const {
+  return {view_of(structure.delassus_row), view_of(structure.delassus_column), view_of(delassus),
+          view_of(free_velocity)};
+}
+
+template <class T>
+BodiesView<T> ContactSystem<T>::bodies_view(const ContactStructure& structure) const {
+  return {structure.pairs(), view_of(jacobian), view_of(response), view_of(offset)};
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,198 @@
+/// @file fclib_write.cpp
+/// Writing FCLIB files that FCLIB's own readers open, problems and solutions.
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <tetwarp/io.hpp>
+
+#include "io/fclib.hpp"
+#include "io/finished_file.hpp"
+#include "io/h5_disk.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+using fclib::Orientation;
+using fclib::write_integers;
+using fclib::write_reals;
+using fclib::write_text;
+
+void copy_bytes(const std::string& from, const FinishedFile& to) {
+  std::ifstream in(from, std::ios::binary);
+  std::ofstream out(to.temporary(), std::ios::binary);
+  if (!(out << in.rdbuf()) || !out.flush()) {
+    throw IoError(to.path(), "", std::string("cannot be written: ") + std::strerror(errno));
+  }
+}
+
+/// A file in the making, removed unless finish() is reached.
+class FclibOutput {
+ public:
+  explicit FclibOutput(const std::string& path)
+      : finished_(path), file_(h5::create_file(path, finished_.temporary(), disk_)) {}
+
+  /// Begins with all that the file `original` holds. Copied byte by byte: H5Ocopy would walk, and
+  /// crash in, damaged parts that nobody has asked for.
+  FclibOutput(const std::string& path, const std::string& original)
+      : finished_(path), file_{path, "", {}} {
+    copy_bytes(original, finished_);
+    const h5::Handle access = h5::disk_access(&disk_);
+    file_.handle =
+        h5::Handle(H5Fopen(finished_.temporary().c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);
+    if (!file_.handle) file_.fail_with_reason("cannot be opened for writing");
+  }
+
+  const h5::Object& file() const { return file_; }
+
+  void remove(const std::string& name) {
+    if (H5Lexists(file_.id(), name.c_str(), H5P_DEFAULT) <= 0) return;
+    if (H5Ldelete(file_.id(), name.c_str(), H5P_DEFAULT) < 0) {
+      throw IoError(file_.file, "/" + name, "cannot be replaced: " + h5::last_reason());
+    }
+  }
+
+  /// Closes, flushes and renames. Everything else that is open in the file must be closed before.
+  std::int64_t finish() {
+    if (!file_.handle.close()) file_.fail_with_reason("cannot be closed");
+    disk_.check(file_);
+    return finished_.finish();
+  }
+
+ private:
+  FinishedFile finished_;
+  h5::Disk disk_;
+  h5::Object file_;
+};
+
+void write_problem(const h5::Object& root, const ContactProblem& problem) {
+  write_integers(root, "spacedim", {3});
+  const h5::Object vectors = h5::create_group(root, "vectors");
+  write_reals(vectors, "mu", problem.friction);
+  if (problem.is_local()) {
+    fclib::write_matrix(root, "W", problem.delassus, Orientation::plain);
+    write_reals(vectors, "q", problem.free_velocity);
+  } else {
+    fclib::write_matrix(root, "M", problem.system, Orientation::plain);
+    // A problem without contacts may come without a Jacobian; FCLIB wants its edges all the same.
+    const bool is_touched = problem.contact_count() > 0;
+    const SparseMatrix untouched{0, problem.dof_count(), {0}, {}, {}};
+    fclib::write_matrix(root, "H", is_touched ? problem.jacobian : untouched,
+                        Orientation::transposed);
+    write_reals(vectors, "f", problem.load);
+    write_reals(vectors, "w", problem.velocity_offset);
+  }
+}
+
+void write_info(const h5::Object& root, const std::string& title, const std::string& description) {
+  const h5::Object info = h5::create_group(root, "info");
+  write_text(info, "title", title);
+  write_text(info, "description", description);
+  write_text(info, "math_info", "");
+}
+
+void write_adhesion(const h5::Object& file, const AdhesionState& adhesion) {
+  const h5::Object group = h5::create_group(file, "adhesion");
+  h5::write_scalar_attribute(group, "time_step", adhesion.time_step);
+  for (const fclib::AdhesionVector& vector : fclib::adhesion_vectors) {
+    const std::vector<double>& values = adhesion.*vector.member;
+    if (!values.empty()) write_reals(group, vector.name, values);
+  }
+}
+
+/// FCLIB's reader of guesses wants the velocities too; a start from impulses has none.
+void write_guess(const h5::Object& file, const ContactProblem& problem) {
+  const h5::Object guesses = h5::create_group(file, "guesses");
+  write_integers(guesses, "number_of_guesses", {1});
+  const h5::Object guess = h5::create_group(guesses, "1");
+  write_reals(guess, "r", problem.impulse_guess);
+  write_reals(guess, "u", std::vector<double>(problem.impulse_guess.size()));
+  if (!problem.is_local()) write_reals(guess, "v", std::vector<double>(problem.load.size()));
+}
+
+/// Throws unless `values` is as long as the vector of the problem that it belongs to.
+void check_length(const h5::Object& file,
+                  const std::string& vector,
+                  const std::string& name,
+                  const std::vector<double>& values) {
+  const h5::Dataset dataset = h5::open_dataset(file, vector);
+  const std::int64_t expected = fclib::element_count(dataset);
+  if (static_cast<std::int64_t>(values.size()) == expected) return;
+  dataset.fail("holds " + std::to_string(expected) + " numbers, but " + name + " of the solution " +
+               std::to_string(values.size()) + ": it belongs to another problem");
+}
+
+void check_lengths(const std::string& problem, const ContactSolution& solution) {
+  const h5::Object file = h5::open_file(problem);
+  const bool is_local = h5::is_group(file, "fclib_local");
+  const std::string offset = is_local ? "fclib_local/vectors/q" : "fclib_global/vectors/w";
+  check_length(file, offset, "impulse", solution.impulse);
+  check_length(file, offset, "velocity", solution.velocity);
+  if (!is_local) {
+    check_length(file, "fclib_global/vectors/f", "body_velocity", solution.body_velocity);
+  }
+}
+
+void write_solution(const h5::Object& file, const ContactSolution& solution) {
+  const ContactReport& report = solution.report;
+  const h5::Object group = h5::create_group(file, "solution");
+  write_reals(group, "r", solution.impulse);
+  write_reals(group, "u", solution.velocity);
+  if (!solution.body_velocity.empty()) write_reals(group, "v", solution.body_velocity);
+  write_reals(group, "residual_history", report.residual_history);
+  h5::write_scalar_attribute(group, "converged", std::int64_t{solution.converged()});
+  h5::write_text_attribute(group, "status", name_of(report.status));
+  h5::write_scalar_attribute(group, "residual", report.residual.eta);
+  h5::write_scalar_attribute(group, "fclib_error", report.residual.fclib);
+  if (!report.method.empty()) h5::write_text_attribute(group, "method", report.method);
+}
+
+}  // namespace
+
+std::int64_t write_contact_problem(const std::string& path,
+                                   const ContactProblem& problem,
+                                   const std::string& title,
+                                   const std::string& description) {
+  const h5::Silence silence;
+  try {
+    check(problem);
+  } catch (const ContactProblemError& error) {
+    throw IoError(path, fclib::path_of(error.field(), problem.is_local()), error.what());
+  }
+  FclibOutput output(path);
+  {
+    const h5::Object root =
+        h5::create_group(output.file(), problem.is_local() ? "fclib_local" : "fclib_global");
+    write_problem(root, problem);
+    write_info(root, title, description);
+    if (!problem.adhesion.empty()) write_adhesion(output.file(), problem.adhesion);
+    if (!problem.block_start.empty()) {
+      write_integers(h5::create_group(output.file(), "blocks"), "block_ptr",
+                     {problem.block_start.begin(), problem.block_start.end()});
+    }
+    if (!problem.impulse_guess.empty()) write_guess(output.file(), problem);
+  }
+  return output.finish();
+}
+
+std::int64_t write_contact_solution(const std::string& path,
+                                    const std::string& problem_path,
+                                    const ContactSolution& solution,
+                                    const AdhesionStep* adhesion_next) {
+  const h5::Silence silence;
+  check_lengths(problem_path, solution);
+  FclibOutput output(path, problem_path);
+  output.remove("solution");
+  output.remove("adhesion_next");
+  write_solution(output.file(), solution);
+  if (adhesion_next != nullptr) {
+    const h5::Object group = h5::create_group(output.file(), "adhesion_next");
+    write_reals(group, "intensity", adhesion_next->intensity);
+    write_reals(group, "gap", adhesion_next->gap);
+  }
+  return output.finish();
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,141 @@
+/// @file body_relax.hpp
+/// Stage "relax" of the contact solver: velocities of bodies from the impulses on them, and the
+/// block-Jacobi step of A v = b + J^T r for bodies that A couples.
+#pragma once
+#include <cstdint>
+
+#include "kernels/contact_setup.hpp"
+#include "kernels/view.hpp"
+
+namespace tetwarp {
+
+/// The contacts of each block, rising.
+struct BlockContacts {
+  View<const std::int64_t> start;    ///< [blocks + 1]
+  View<const std::int32_t> contact;  ///< a contact that pushes the block
+  View<const std::int64_t> value;    ///< where the Jacobian and the response of that pair start
+};
+
+/// One index = one block: v = v_free + A^-1 J^T r, contacts in order.
+template <class T>
+struct BodyVelocityBody {
+  BlockContacts contacts;
+  View<const std::int64_t> dof_start;
+  View<const T> response;
+  View<const T> impulse;
+  View<const T> free;
+  View<T> body_velocity;
+
+  TETWARP_HD void operator()(std::int64_t b) const {
+    const std::int64_t first = dof_start[b];
+    const int size = static_cast<int>(dof_start[b + 1] - first);
+    for (int k = 0; k < size; ++k) body_velocity[first + k] = free[first + k];
+    for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+      const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+      const T* answer = response.data + contacts.value[p];
+      for (int k = 0; k < size; ++k) {
+        body_velocity[first + k] +=
+            answer[3 * k] * r[0] + answer[3 * k + 1] * r[1] + answer[3 * k + 2] * r[2];
+      }
+    }
+  }
+};
+
+/// A by rows of dense blocks.
+template <class T>
+struct SystemView {
+  View<const std::int64_t> row_start;    ///< [blocks + 1], first block of each row
+  View<const std::int32_t> column;       ///< [entries], block column
+  View<const std::int64_t> value_start;  ///< [entries], first number of each entry
+  View<const T> values;                  ///< row by row within an entry
+  View<const std::int64_t> dof_start;    ///< [blocks + 1]
+};
+
+/// out += A x, one block row.
+template <class T>
+TETWARP_HD void add_block_row(const SystemView<T>& a, std::int64_t b, const T* x, T* out) {
+  const int rows = static_cast<int>(a.dof_start[b + 1] - a.dof_start[b]);
+  for (std::int64_t k = a.row_start[b]; k < a.row_start[b + 1]; ++k) {
+    const T* m = a.values.data + a.value_start[k];
+    const std::int64_t from = a.dof_start[a.column[k]];
+    const T* y = x + from;
+    const int columns = static_cast<int>(a.dof_start[a.column[k] + 1] - from);
+    if (rows == 3 && columns == 3) {
+      out[0] += m[0] * y[0] + m[1] * y[1] + m[2] * y[2];
+      out[1] += m[3] * y[0] + m[4] * y[1] + m[5] * y[2];
+      out[2] += m[6] * y[0] + m[7] * y[1] + m[8] * y[2];
+      continue;
+    }
+    for (int i = 0; i < rows; ++i) {
+      for (int j = 0; j < columns; ++j) out[i] += m[i * columns + j] * y[j];
+    }
+  }
+}
+
+/// One index = one block: the defect d = b + J^T r - A v.
+template <class T>
+struct BodyDefectBody {
+  SystemView<T> system;
+  BlockContacts contacts;
+  View<const T> jacobian;
+  View<const T> load;
+  View<const T> impulse;
+  View<const T> body_velocity;
+  View<T> defect;
+
+  TETWARP_HD void operator()(std::int64_t b) const {
+    const std::int64_t first = system.dof_start[b];
+    const int size = static_cast<int>(system.dof_start[b + 1] - first);
+    T* d = defect.data + first;
+    for (int k = 0; k < size; ++k) d[k] = 0;
+    add_block_row(system, b, body_velocity.data, d);
+    for (int k = 0; k < size; ++k) d[k] = load[first + k] - d[k];
+    for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+      const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+      const T* j = jacobian.data + contacts.value[p];
+      for (int k = 0; k < size; ++k) {
+        d[k] += j[k] * r[0] + j[size + k] * r[1] + j[2 * size + k] * r[2];
+      }
+    }
+  }
+};
+
+/// One index = one block: v += omega D^-1 d.
+template <class T>
+struct BodyRelaxBody {
+  View<const std::int64_t> dof_start;
+  View<const std::int64_t> inverse_start;
+  View<const T> inverse;
+  T relaxation;
+  View<const T> defect;
+  View<T> body_velocity;
+
+  TETWARP_HD void operator()(std::int64_t b) const {
+    const std::int64_t first = dof_start[b];
+    const int size = static_cast<int>(dof_start[b + 1] - first);
+    const T* m = inverse.data + inverse_start[b];
+    for (int i = 0; i < size; ++i) {
+      T sum = 0;
+      for (int k = 0; k < size; ++k) sum += m[i * size + k] * defect[first + k];
+      body_velocity[first + i] += relaxation * sum;
+    }
+  }
+};
+
+/// A run of blocks, shifted: index 0 is block `first`.
+template <class Body>
+struct FromBlock {
+  Body body;
+  std::int64_t first;
+
+  TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
+};
+
+/// Any of the bodies above for blocks [first, last).
+/// Determinism: same bits on every back end with contraction off; contacts are gathered in order.
+template <class Exec, class Body>
+void body_relax(Exec& exec, std::int64_t first, std::int64_t last, const Body& body) {
+  exec.for_each("contact/relax", last - first, FromBlock<Body>{body, first});
+}
+
+}  // namespace tetwarp

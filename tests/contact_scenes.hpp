@@ -1,0 +1,84 @@
+/// @file contact_scenes.hpp
+/// Seeded contact problems for tests, stress and benchmarks. Units: m, kg, s.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+namespace tetwarp::scenes {
+
+/// Adhesion that contacts of a scene get, one and all; stiffness 0: none.
+struct Glue {
+  double stiffness = 0;  ///< C [N/m^3]
+  double intensity = 1;  ///< beta
+};
+
+/// A number of a sparse matrix.
+struct Entry {
+  std::int64_t row;
+  std::int64_t column;
+  double value;
+};
+
+/// The matrix of such numbers; repeated ones add up.
+SparseMatrix sparse_matrix(std::int64_t rows, std::int64_t columns, std::vector<Entry> entries);
+
+/// Gives every contact an area and adhesion; normal gaps follow the offsets, tangential ones are
+/// seeded, within 0.1 mm.
+void add_glue(
+    ContactProblem& problem, const Glue& glue, double time_step, double area, std::uint32_t seed);
+
+/// A Delassus matrix without bodies behind it.
+struct RandomLocal {
+  std::uint32_t seed = 1;
+  std::int64_t contacts = 20;
+  std::int64_t neighbors = 4;  ///< couplings per contact, about
+  double friction = 0.5;
+  double asymmetry = 0;  ///< relative, as recorded files have it
+  Glue glue = {};
+};
+ContactProblem random_local(const RandomLocal& choice);
+
+/// Equal boxes, four contacts between any two and under the lowest, pushed sideways.
+struct BoxStack {
+  std::int64_t boxes = 10;
+  double mass_ratio = 1;  ///< highest box over lowest
+  double friction = 0.5;
+  double time_step = 0.01;
+  Glue glue = {};
+};
+ContactProblem box_stack(const BoxStack& choice);
+
+/// Spheres on a jittered lattice, as wide as high, pressed down; each in contact with its neighbors
+/// and with the floor.
+struct SpherePacking {
+  std::uint32_t seed = 1;
+  std::int64_t edge = 6;  ///< spheres along each edge of the lattice
+  double friction = 0.3;
+  double kept = 1;  ///< share of the possible contacts
+  double time_step = 0.01;
+  Glue glue = {};
+};
+ContactProblem sphere_packing(const SpherePacking& choice);
+
+/// A linear elastic slab of five tetrahedra per cube, lifted at one end from the plane it sticks
+/// to.
+struct ElasticSlab {
+  std::uint32_t seed = 1;
+  std::int64_t cubes[3] = {25, 20, 4};  ///< 10,000 tetrahedra
+  std::int64_t contacts = 151;          ///< of the nodes of the lower face
+  double edge = 0.01;
+  double young = 1e5;  ///< Pa
+  double poisson = 0.4;
+  double density = 1000;
+  double friction = 0.3;
+  double time_step = 0.008;
+  Glue glue = {4e7, 1};
+};
+ContactProblem elastic_slab(const ElasticSlab& choice);
+
+/// Two walls that leave a sphere less room than it has: no velocity satisfies both.
+ContactProblem squeezed_sphere();
+
+}  // namespace tetwarp::scenes

@@ -1,0 +1,30 @@
+/// @file contact_transforms.hpp
+/// The same contact problem said differently: in other orders, in a mirror, in other units.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+namespace tetwarp::test {
+
+/// A problem in global form with blocks, and any impulses and velocities, solution or not.
+struct ContactCase {
+  ContactProblem problem;
+  std::vector<double> impulse;
+  std::vector<double> body_velocity;
+};
+
+/// Contacts and bodies in another, random order.
+ContactCase permuted(const ContactCase& original, std::uint64_t seed);
+
+/// Seen in a mirror across x: vectors lose the sign of x, spins that of y and z; frames stay
+/// right-handed, so tangent 2 is turned round.
+/// @pre every block is a rigid body: velocity, then spin
+ContactCase mirrored(const ContactCase& original);
+
+/// Units of mass, length and time that many times smaller, so that numbers are larger.
+/// @pre every block is a rigid body
+ContactCase rescaled(const ContactCase& original, double mass, double length, double time);
+
+}  // namespace tetwarp::test

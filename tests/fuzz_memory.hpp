@@ -1,0 +1,10 @@
+/// @file fuzz_memory.hpp
+#pragma once
+
+namespace tetwarp::test {
+
+/// Exit code of a program with fuzz_memory.cpp in it that asks for far more memory than its files
+/// hold.
+constexpr int large_allocation_exit_code = 43;
+
+}  // namespace tetwarp::test
