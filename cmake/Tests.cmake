@@ -77,6 +77,29 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_stress_tests stress FILTER "-*/cuda")
   tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
 
+  tetwarp_add_tests(tetwarp_contact_tests SOURCES
+    tests/contact_transforms.cpp
+    tests/rigid_bodies.cpp
+    tests/test_contact_acceptance.cpp
+    tests/test_contact_adhesion.cpp
+    tests/test_contact_limits.cpp
+    tests/test_contact_tracker.cpp)
+  tetwarp_discover(tetwarp_contact_tests unit)
+
+  tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
+    tests/contact_transforms.cpp
+    tests/rigid_bodies.cpp
+    tests/test_contact_stress.cpp
+    tests/test_contact_stress_invariance.cpp
+    tests/test_contact_stress_stacks.cpp)
+  tetwarp_discover(tetwarp_contact_stress_tests stress)
+
+  add_executable(example_contact tests/example_contact.cpp tests/rigid_bodies.cpp)
+  target_include_directories(example_contact PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(example_contact PRIVATE tetwarp tetwarp_options Eigen3::Eigen)
+  add_test(NAME example_contact COMMAND example_contact)
+  set_tests_properties(example_contact PROPERTIES LABELS unit)
+
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
     tests/scenes.cpp
@@ -120,7 +143,11 @@ if(TETWARP_IO)
       tests/test_io_nifti.cpp
       tests/test_io_png.cpp
       tests/test_io_bad_files.cpp
+      tests/elastic_block.cpp
+      tests/rigid_bodies.cpp
+      tests/test_contact_certified.cpp
       tests/test_contact_reference_certified.cpp
+      tests/test_io_checkpoint.cpp
       tests/test_io_fclib.cpp
       tests/test_io_fclib_bad.cpp
       tests/test_io_fclib_solution.cpp
@@ -153,6 +180,8 @@ if(TETWARP_IO)
     tests/test_cli.cpp
     tests/test_cli_bad_input.cpp
     tests/test_cli_batch.cpp
+    tests/test_cli_contact.cpp
+    tests/test_cli_contact_usage.cpp
     tests/test_cli_resume.cpp
     tests/test_cli_skip.cpp
     tests/scenes.cpp)

@@ -139,6 +139,30 @@ void set_status(const EngineResult& result, const ContactOptions& options, Conta
       " others together; their normal offsets were raised to 0, which the residual refers to";
 }
 
+/// row + matrix x, added in the order of the entries.
+void add_product(const SparseMatrix& matrix,
+                 const std::vector<double>& x,
+                 std::vector<double>& row) {
+  for (std::size_t r = 0; r < row.size(); ++r) {
+    const auto end = static_cast<std::size_t>(matrix.row_start[r + 1]);
+    for (auto e = static_cast<std::size_t>(matrix.row_start[r]); e < end; ++e) {
+      row[r] += matrix.value[e] * x[static_cast<std::size_t>(matrix.column[e])];
+    }
+  }
+}
+
+/// u = W r + q, or u = J v + w.
+std::vector<double> contact_velocity(const ContactProblem& problem,
+                                     const ContactSolution& solution) {
+  std::vector<double> u = problem.is_local() ? problem.free_velocity : problem.velocity_offset;
+  if (problem.is_local()) {
+    add_product(problem.delassus, solution.impulse, u);
+  } else {
+    add_product(problem.jacobian, solution.body_velocity, u);
+  }
+  return u;
+}
+
 }  // namespace
 
 struct ContactSolver::State {
@@ -194,6 +218,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   set_status(result, s.options, report);
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
+  solution.velocity = contact_velocity(problem, solution);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;

@@ -8,6 +8,7 @@
 #include "host/contact_condense.hpp"
 #include "host/contact_extract.hpp"
 #include "host/contact_feasibility.hpp"
+#include "host/contact_newton.hpp"
 
 namespace tetwarp {
 
@@ -96,10 +97,16 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
       return result;
     }
     if (!changed) changed = given;
+    bool is_new = false;
     for (const std::int32_t c : result.clamped) {
-      std::vector<double>& offsets =
-          structure_.is_local ? changed->free_velocity : changed->velocity_offset;
-      offsets[3 * index_of(c)] = std::max(offsets[3 * index_of(c)], 0.0);
+      double& offset = (structure_.is_local ? changed->free_velocity
+                                            : changed->velocity_offset)[3 * index_of(c)];
+      is_new = is_new || offset < 0;
+      offset = std::max(offset, 0.0);
+    }
+    if (!is_new) {
+      result.clamped.insert(result.clamped.end(), clamped.begin(), clamped.end());
+      return result;
     }
     clamped.insert(clamped.end(), result.clamped.begin(), result.clamped.end());
     changed->impulse_guess.clear();
@@ -146,14 +153,38 @@ void ContactEngine::fall_back(const ContactProblem& problem,
                               ContactRun<double>& run,
                               EngineResult& result) {
   IslandOutcome& outcome = result.outcomes[index_of(island)];
-  for (const std::int64_t slot :
-       contradicting_slots(structure_, run.system(), structure_.islands[index_of(island)])) {
+  for (const std::int64_t slot : contradicting_slots(
+           structure_, run.system(), structure_.islands[index_of(island)], options_.max_sweeps)) {
     result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
   }
-  (void)problem;
   if (!result.clamped.empty()) return;
-  if (options_.method == ContactMethod::automatic) run.insist(island);
+  if (options_.method == ContactMethod::automatic || options_.method == ContactMethod::newton) {
+    polish(problem, island, run, outcome);
+  }
   outcome.sums = run.measure(island);
+  if (options_.method != ContactMethod::automatic || run.is_done(island, outcome.sums)) return;
+  run.insist(island);
+  outcome.sums = run.measure(island);
+}
+
+/// Newton from where the sweeps ended; what it finds is kept where it is better.
+void ContactEngine::polish(const ContactProblem& problem,
+                           std::int64_t i,
+                           ContactRun<double>& run,
+                           IslandOutcome& outcome) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  ContactOptions options = options_;
+  options.tolerance /= 2;  // of the island, whose share in the error of the whole is smaller
+  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
+  std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
+  const std::vector<double> swept = polished;
+  const NewtonResult newton = newton_polish(make_island_problem(problem, structure_, island),
+                                            options, polished, body_velocity);
+  outcome.newton_iterations += newton.iterations;
+  outcome.methods.push_back("newton");
+  const double before = run.excess(i, outcome.sums);
+  std::copy(polished.begin(), polished.end(), impulse);
+  if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
 }
 
 void ContactEngine::solve_coupled(const ContactProblem& problem,

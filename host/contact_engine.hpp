@@ -45,6 +45,10 @@ class ContactEngine {
                  std::int64_t island,
                  ContactRun<double>& run,
                  EngineResult& result);
+  void polish(const ContactProblem& problem,
+              std::int64_t island,
+              ContactRun<double>& run,
+              IslandOutcome& outcome);
   void solve_contactless(const ContactProblem& problem,
                          const ContactSystem<double>& system,
                          EngineResult& result);

@@ -25,8 +25,9 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
-                                              const ContactIsland& island) {
-  constexpr int sweeps = 4096;
+                                              const ContactIsland& island,
+                                              std::int64_t budget) {
+  const std::int64_t sweeps = std::min<std::int64_t>(budget, 4096);
   constexpr double far = 1e7;  // times the distance that the contacts ask for one by one
   const ContactSystem<double> bare = make_bare(system);
   ContactState<double> state;
@@ -43,14 +44,18 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   }
   const View<double> y = pipeline.impulse();
   std::vector<double> before(static_cast<std::size_t>(y.size));
-  for (int sweep = 1; sweep <= sweeps; ++sweep) {
+  for (std::int64_t sweep = 1; sweep <= sweeps; ++sweep) {
     std::copy_n(y.data, y.size, before.data());
     pipeline.sweep({});
     if ((sweep & (sweep - 1)) != 0) continue;  // powers of two are often enough
     // The last growth as y: what it does to velocities is B y.
     std::vector<double> growth(before.size());
-    for (std::size_t i = 0; i < growth.size(); ++i)
+    for (std::size_t i = 0; i < growth.size(); ++i) {
       growth[i] = std::max(y.data[i] - before[i], 0.0);
+    }
+    const double most = *std::max_element(growth.begin(), growth.end());
+    if (!(most > 0)) return {};
+    for (double& entry : growth) entry /= most;  // squares of tiny growths would vanish
     const std::vector<double> impulse(y.data, y.data + y.size);
     std::copy(growth.begin(), growth.end(), y.data);
     pipeline.follow_impulses();
@@ -62,11 +67,10 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     std::copy(impulse.begin(), impulse.end(), y.data);
     pipeline.follow_impulses();
     if (!(gain > 0 && gain > far * std::sqrt(energy * wanted))) continue;
-    const double most = *std::max_element(growth.begin(), growth.end());
     std::vector<std::int64_t> slots;
     for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
       const auto own = static_cast<std::size_t>(3 * (s - island.slot_begin));
-      if (growth[own] > 1e-6 * most) slots.push_back(s);
+      if (growth[own] > 1e-6) slots.push_back(s);
     }
     return slots;
   }

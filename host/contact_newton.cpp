@@ -143,7 +143,7 @@ void NewtonPolish::run(const VectorXd& start) {
     }
     // What is left is rounding.
     idle = error_of(best_) < 0.9 * best_before ? 0 : idle + 1;
-    if (best_.eta < 1e-11 && idle > 5) return;
+    if (best_.eta < 1e-13 && idle > 5) return;
   }
 }
 

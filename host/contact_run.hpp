@@ -99,9 +99,11 @@ class ContactRun {
     pipeline.follow_impulses();
     return pipeline.measure();
   }
-  bool is_done(std::int64_t i, const ContactSums& sums) const {
-    return rules_[static_cast<std::size_t>(i)].excess_of(sums) <= 1;
+  /// The error of an island over what it may leave.
+  double excess(std::int64_t i, const ContactSums& sums) const {
+    return rules_[static_cast<std::size_t>(i)].excess_of(sums);
   }
+  bool is_done(std::int64_t i, const ContactSums& sums) const { return excess(i, sums) <= 1; }
 
  private:
   static constexpr std::int64_t shared_from = 4096;  ///< contacts of an island worth all threads

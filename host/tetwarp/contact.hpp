@@ -31,12 +31,12 @@ enum class AdhesionRule {
 };
 
 enum class ContactMethod {
-  automatic,         ///< chosen from the problem; falls back when the residual stops dropping
-  gauss_seidel,      ///< projected Gauss-Seidel over colors
-  nonlinear_cg,      ///< nonsmooth nonlinear conjugate gradients over sweeps
-  anderson,          ///< Anderson acceleration of sweeps, window 8
-  mass_splitting,    ///< no colors: split masses, Nesterov with restart
-  newton             ///< sweeps, then semismooth Newton on the natural map (host, per island)
+  automatic,       ///< chosen from the problem; falls back when the residual stops dropping
+  gauss_seidel,    ///< projected Gauss-Seidel over colors
+  nonlinear_cg,    ///< nonsmooth nonlinear conjugate gradients over sweeps
+  anderson,        ///< Anderson acceleration of sweeps, window 8
+  mass_splitting,  ///< no colors: split masses, Nesterov with restart
+  newton           ///< sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
 /// What `tolerance` bounds.
@@ -88,10 +88,10 @@ const char* name_of(ContactStatus status);
 struct ContactResidual {
   double eta = 0;
   double fclib = 0;
-  double largest = 0;         ///< largest share of one contact in eta
+  double largest = 0;  ///< largest share of one contact in eta
   std::int64_t largest_contact = -1;
-  double penetration = 0;     ///< max(-u_n), m/s
-  double balance = 0;         ///< |A v - J^T r - b| / |b|; 0 in local form
+  double penetration = 0;  ///< max(-u_n), m/s
+  double balance = 0;      ///< |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form
 };
 
 /// What a solve did. Field names of the JSON are an interface.
@@ -109,7 +109,7 @@ struct ContactReport {
   std::int64_t outer_iterations = 0;  ///< of the island that took most
   std::int64_t sweeps = 0;            ///< of the island that took most
   std::int64_t newton_iterations = 0;
-  std::int64_t contact_updates = 0;   ///< local solves in all
+  std::int64_t contact_updates = 0;      ///< local solves in all
   std::vector<double> residual_history;  ///< measured residual, whenever it was evaluated
   ContactResidual residual;              ///< of what is returned
   std::int64_t rows_skipped = 0;         ///< rows of contacts without friction and springs
@@ -173,14 +173,14 @@ enum class AdhesionIntegrator {
 
 struct EvolutionOptions {
   AdhesionIntegrator integrator = AdhesionIntegrator::exact;
-  double debond_gap_factor = 10;  ///< a contact lets go beyond this multiple of sqrt(W / C)
+  double debond_gap_factor = 10;   ///< a contact lets go beyond this multiple of sqrt(W / C)
   double debond_intensity = 1e-3;  ///< or below this in traction
 };
 
 /// Adhesion at the start of the next step.
 struct AdhesionStep {
-  std::vector<double> intensity;      ///< beta, [contacts]
-  std::vector<double> gap;            ///< [contacts][3], m, anchors rescaled where beta grew
+  std::vector<double> intensity;       ///< beta, [contacts]
+  std::vector<double> gap;             ///< [contacts][3], m, anchors rescaled where beta grew
   std::vector<std::uint8_t> debonded;  ///< 1 where the contact let go in this step
 };
 
