@@ -98,6 +98,11 @@ inline void copy_run(const RasterJob<T>& job,
   const int y = whole[1] + j, z = whole[2] + k;
   const bool has_row = y >= 0 && y < view.dims[1] && z >= 0 && z < view.dims[2];
   const std::int64_t from = (std::int64_t{z} * view.dims[1] + y) * view.dims[0] + whole[0];
+  const bool is_whole = bits == 0xff && view.components == 1;
+  if (is_whole && has_row && whole[0] >= 0 && whole[0] <= view.dims[0] - cell_edge) {
+    std::copy_n(view.data + from, cell_edge, job.volume + row);
+    return;
+  }
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
     const int x = whole[0] + i;
