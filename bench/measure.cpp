@@ -20,8 +20,6 @@ namespace tetwarp::bench {
 
 namespace {
 
-int refused = 0;
-
 /// A warper, its output, and what its first steps cost.
 struct Subject {
   const scenes::Scene& scene;
@@ -200,32 +198,12 @@ void run(benchmark::State& state, const WarpCase& row) {
 
 }  // namespace
 
-void count_timing(benchmark::State& state, const Timing& timing) {
-  for (auto _ : state) state.SetIterationTime(timing.median);
-  state.counters["low"] = 1e3 * timing.low;
-  state.counters["high"] = 1e3 * timing.high;
-  state.counters["min"] = 1e3 * timing.min;
-  state.counters["kept"] = timing.kept;
-  state.counters["discarded"] = timing.discarded;
-  state.counters["busy"] = timing.busy;
-  state.counters["contended"] = timing.contended;
-}
-
 void register_row(const WarpCase& row) {
   benchmark::RegisterBenchmark(name_of(row).c_str(),
                                [row](benchmark::State& state) { run(state, row); })
       ->UseManualTime()
       ->Iterations(1)
       ->Unit(benchmark::kMillisecond);
-}
-
-void refuse(benchmark::State& state, const std::string& fault) {
-  ++refused;
-  state.SkipWithError(("wrong result: " + fault).c_str());
-}
-
-int refused_rows() {
-  return refused;
 }
 
 }  // namespace tetwarp::bench

@@ -1,11 +1,7 @@
 /// @file measure.hpp
 /// Rows of Google Benchmark from cases: checked, timed, counted.
 #pragma once
-#include <benchmark/benchmark.h>
-
-#include <string>
-
-#include "bench/timing.hpp"
+#include "bench/timed_row.hpp"
 #include "bench/warp_cases.hpp"
 
 namespace tetwarp::bench {
@@ -26,14 +22,5 @@ namespace tetwarp::bench {
 ///   tets, voxels, covered, tests_per_covered, exact_tests, copied [voxels]
 ///   rejected_share, accepted_share [of pairs], constant_share [of cells]
 void register_row(const WarpCase& row);
-
-/// Makes a Timing the time of a row, and its counters.
-void count_timing(benchmark::State& state, const Timing& timing);
-
-/// Ends a row without a time.
-void refuse(benchmark::State& state, const std::string& fault);
-
-/// Rows so far whose result was wrong.
-int refused_rows();
 
 }  // namespace tetwarp::bench

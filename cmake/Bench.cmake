@@ -21,6 +21,7 @@ add_executable(tetwarp_bench
   bench/floors.cpp
   bench/measure.cpp
   bench/series.cpp
+  bench/timed_row.cpp
   bench/timing.cpp
   bench/truth.cpp
   bench/warp_cases.cpp
@@ -31,3 +32,21 @@ target_include_directories(tetwarp_bench PRIVATE
 target_link_libraries(tetwarp_bench PRIVATE
   tetwarp tetwarp_hwy tetwarp_openmp tetwarp_options
   benchmark::benchmark Eigen3::Eigen fmt::fmt)
+
+# tetwarp_bench_contact: the contact solver's; it reads recorded problems.
+if(TETWARP_IO)
+  add_executable(tetwarp_bench_contact
+    bench/bench_contact.cpp
+    bench/contact_cases.cpp
+    bench/contact_judge.cpp
+    bench/contact_measure.cpp
+    bench/timed_row.cpp
+    bench/timing.cpp
+    tests/contact_scenes.cpp
+    tests/contact_scenes_slab.cpp
+    tests/scenes.cpp)
+  target_include_directories(tetwarp_bench_contact PRIVATE
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
+  target_link_libraries(tetwarp_bench_contact PRIVATE
+    tetwarp_io tetwarp_options benchmark::benchmark fmt::fmt)
+endif()

@@ -80,11 +80,23 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_contact_tests SOURCES
     tests/contact_transforms.cpp
     tests/rigid_bodies.cpp
+    tests/scenes.cpp
+    tests/contact_scenes.cpp
+    tests/contact_scenes_slab.cpp
+    tests/test_body_relax.cpp
+    tests/test_contact.cpp
     tests/test_contact_acceptance.cpp
     tests/test_contact_adhesion.cpp
+    tests/test_contact_bad_options.cpp
+    tests/test_contact_color.cpp
+    tests/test_contact_device.cpp
+    tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
+    tests/test_contact_skip.cpp
+    tests/test_contact_sweep.cpp
     tests/test_contact_tracker.cpp)
-  tetwarp_discover(tetwarp_contact_tests unit)
+  tetwarp_discover(tetwarp_contact_tests unit FILTER "-*Cuda*")
+  tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
     tests/contact_transforms.cpp
@@ -104,7 +116,10 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
     tests/scenes.cpp
     tests/test_simt.cpp
-    tests/test_cell_raster_simt.cpp)
+    tests/contact_scenes.cpp
+    tests/contact_scenes_slab.cpp
+    tests/test_cell_raster_simt.cpp
+    tests/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.

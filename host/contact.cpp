@@ -168,7 +168,7 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
 struct ContactSolver::State {
   ContactOptions options;
   int threads = 1;
-  std::string device;
+  std::unique_ptr<ContactDevice> device;  ///< null: the host sweeps
   ContactEngine engine;
 };
 
@@ -176,8 +176,10 @@ ContactSolver::ContactSolver(const ContactOptions& options) {
   check_options(options);
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
-  state_ = std::make_unique<State>(
-      State{options, threads, processor_name(), ContactEngine(options, threads)});
+  std::unique_ptr<ContactDevice> device;
+  if (options.backend == Backend::cuda) device = make_contact_device(options.device);
+  ContactEngine engine(options, threads, device.get());
+  state_ = std::make_unique<State>(State{options, threads, std::move(device), std::move(engine)});
 }
 
 ContactSolver::ContactSolver(ContactSolver&&) noexcept = default;
@@ -195,7 +197,8 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   ContactSolution solution;
   ContactReport& report = solution.report;
   report.version = TETWARP_VERSION;
-  report.device = s.device;
+  report.backend = s.device != nullptr ? Backend::cuda : Backend::cpu;
+  report.device = s.device != nullptr ? s.device->name() : processor_name();
   report.threads = s.threads;
   report.contacts = problem.contact_count();
   report.colors = result.colors;

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <utility>
 
-#include "host/contact_condense.hpp"
 #include "host/contact_extract.hpp"
 #include "host/contact_feasibility.hpp"
 #include "host/contact_newton.hpp"
@@ -18,25 +17,6 @@ using Clock = std::chrono::steady_clock;
 
 std::size_t index_of(std::int64_t i) {
   return static_cast<std::size_t>(i);
-}
-
-/// Numbers per contact from slots to contacts, of one island.
-void scatter_impulses(const ContactStructure& structure,
-                      const ContactIsland& island,
-                      const double* from,
-                      std::vector<double>& to) {
-  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
-    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
-  }
-}
-
-void scatter_velocities(const ContactStructure& structure,
-                        const ContactIsland& island,
-                        const double* from,
-                        std::vector<double>& to) {
-  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
-    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
-  }
 }
 
 /// Offsets that ask for more than a recovery speed are lowered to it.
@@ -55,8 +35,8 @@ bool exceeds(const ContactProblem& problem, double speed) {
 
 }  // namespace
 
-ContactEngine::ContactEngine(const ContactOptions& options, int threads)
-    : options_(options), threads_(threads) {}
+ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)
+    : options_(options), threads_(threads), device_(device) {}
 
 ContactSystem<double> ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
   ContactSystem<double> system;
@@ -89,7 +69,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
     result.outcomes.resize(index_of(structure_.contact_islands));
     solve_uncoupled(problem, system, result);
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
-      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, i, result);
+      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, system, i, result);
     }
     solve_contactless(problem, system, result);
     if (result.clamped.empty()) {
@@ -118,15 +98,18 @@ void ContactEngine::solve_uncoupled(const ContactProblem& problem,
                                     EngineResult& result) {
   std::vector<double> start = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
                                        problem.contact_count());
-  if (options_.precision == ContactPrecision::float32) {
-    const ContactSystem<float> rounded = make_float32(system);
-    ContactRun<float> run(options_, threads_, structure_, rounded, result.outcomes);
-    run.start_from({start.begin(), start.end()});
-    run.solve();
-    start.assign(run.state().impulse.begin(), run.state().impulse.end());
-    result.updates_skipped = run.updates_skipped();
-  }
   ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
+  if (device_ != nullptr && starts_with_sweeps(options_.method)) {
+    start = sweep_on_device(*device_, options_, structure_, system, run.rules(), std::move(start),
+                            result.outcomes);
+  } else if (options_.precision == ContactPrecision::float32) {
+    const ContactSystem<float> rounded = make_float32(system);
+    ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes);
+    coarse.start_from({start.begin(), start.end()});
+    coarse.solve();
+    start.assign(coarse.state().impulse.begin(), coarse.state().impulse.end());
+    result.updates_skipped = coarse.updates_skipped();
+  }
   run.start_from(start);
   if (options_.precision == ContactPrecision::float64) {
     run.solve();
@@ -185,42 +168,6 @@ void ContactEngine::polish(const ContactProblem& problem,
   const double before = run.excess(i, outcome.sums);
   std::copy(polished.begin(), polished.end(), impulse);
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
-}
-
-void ContactEngine::solve_coupled(const ContactProblem& problem,
-                                  std::int64_t i,
-                                  EngineResult& result) {
-  const ContactIsland& island = structure_.islands[index_of(i)];
-  const ContactProblem part = make_island_problem(problem, structure_, island);
-  const CondensedProblem condensed(part);
-  ContactEngine engine(options_, threads_);
-  const EngineResult inner = engine.solve(condensed.local());
-  const std::vector<double> v = condensed.body_velocity(inner.impulse);
-  scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
-  scatter_velocities(structure_, island, v.data(), result.body_velocity);
-  result.outcomes[index_of(i)] = inner.outcomes[0];
-  result.updates_skipped += inner.updates_skipped;
-  result.colors = std::max(result.colors, inner.colors);
-  for (const std::int32_t c : inner.clamped) {
-    result.clamped.push_back(structure_.contact_of_slot[index_of(island.slot_begin + c)]);
-  }
-}
-
-void ContactEngine::solve_contactless(const ContactProblem& problem,
-                                      const ContactSystem<double>& system,
-                                      EngineResult& result) {
-  for (std::size_t i = index_of(structure_.contact_islands); i < structure_.islands.size(); ++i) {
-    const ContactIsland& island = structure_.islands[i];
-    result.bodies_skipped += island.block_end - island.block_begin;
-    if (!island.is_coupled) {
-      scatter_velocities(structure_, island, system.body_free.data() + island.dof_begin,
-                         result.body_velocity);
-      continue;
-    }
-    const CondensedProblem condensed(make_island_problem(problem, structure_, island));
-    scatter_velocities(structure_, island, condensed.body_velocity({}).data(),
-                       result.body_velocity);
-  }
 }
 
 }  // namespace tetwarp

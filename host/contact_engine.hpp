@@ -8,6 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact_device.hpp"
 #include "host/contact_run.hpp"
 #include "host/contact_structure.hpp"
 #include "host/contact_system.hpp"
@@ -29,7 +30,8 @@ struct EngineResult {
 
 class ContactEngine {
  public:
-  ContactEngine(const ContactOptions& options, int threads);
+  /// @param device  runs the sweeps, kept by the caller; null: the host does
+  ContactEngine(const ContactOptions& options, int threads, ContactDevice* device = nullptr);
 
   /// @pre check(problem) has passed
   /// @throws ContactProblemError  A as a whole is not positive definite
@@ -37,7 +39,15 @@ class ContactEngine {
 
  private:
   ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
-  void solve_coupled(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+  void solve_coupled(const ContactProblem& problem,
+                     const ContactSystem<double>& system,
+                     std::int64_t island,
+                     EngineResult& result);
+  IslandOutcome iterate_coupled(const ContactProblem& problem,
+                                const ContactSystem<double>& system,
+                                const ContactIsland& island,
+                                bool is_outer,
+                                EngineResult& result);
   void solve_uncoupled(const ContactProblem& problem,
                        const ContactSystem<double>& system,
                        EngineResult& result);
@@ -55,6 +65,7 @@ class ContactEngine {
 
   ContactOptions options_;
   int threads_;
+  ContactDevice* device_;
   std::optional<ContactPattern> pattern_;
   ContactStructure structure_;
 };

@@ -132,31 +132,19 @@ TEST(Certified, EveryFileIsSolvedToItsVelocities) {
 // ---- elastic blocks
 // -----------------------------------------------------------------------------------
 
-ContactOptions plain_sweeps(double relaxation) {
-  return {.method = ContactMethod::gauss_seidel,
-          .tolerance = 1e-10,
-          .max_sweeps = 5000,
-          .relaxation = relaxation,
-          .inner_sweeps = 1};
+ContactOptions plain_sweeps() {
+  return {.method = ContactMethod::gauss_seidel, .tolerance = 1e-10, .max_sweeps = 5000};
 }
 
-/// The outer iteration contracts where the relaxed lambda_max(D^-1 A) < 2. A mass term keeps half
-/// of it below that for tetrahedra, whose elements touch four blocks; the whole of it exceeds 2
-/// once dt^2 E outgrows density h^2.
-TEST(ElasticBlock, ThePlainOuterIterationDivergesWhereHalfOfItConverges) {
-  const ContactProblem problem = make_elastic_problem({.young = 1e5, .time_step = 5e-3});
+/// Sweeps work on the condensed contacts, so stiffness and time step do not slow them.
+TEST(ElasticBlock, IsSolvedByPlainSweepsWhateverItsStiffness) {
+  for (const double young : {1e4, 1e5, 1e6}) {
+    const ContactProblem problem = make_elastic_problem({.young = young, .time_step = 5e-3});
 
-  const ContactSolution whole = solve_contacts(problem, plain_sweeps(1));
-  const ContactSolution half = solve_contacts(problem, plain_sweeps(0.5));
+    const ContactSolution solution = solve_contacts(problem, plain_sweeps());
 
-  EXPECT_FALSE(whole.converged());
-  EXPECT_TRUE(half.converged()) << half.report.status_reason;
-}
-
-TEST(ElasticBlock, ThePlainOuterIterationConvergesWhereTheMassDominates) {
-  const ContactProblem problem = make_elastic_problem({.young = 1e4, .time_step = 1e-3});
-
-  EXPECT_TRUE(solve_contacts(problem, plain_sweeps(1)).converged());
+    EXPECT_TRUE(solution.converged()) << young << ": " << solution.report.status_reason;
+  }
 }
 
 /// Rows in traction and in compression at once, both laws and rules.

@@ -1,0 +1,242 @@
+/// @file contact_cases.cpp
+#include "bench/contact_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include <tetwarp/io.hpp>
+
+#include "tests/contact_scenes.hpp"
+
+namespace tetwarp::bench {
+
+namespace {
+
+/// A packing has four to five contacts per sphere, fewer when small.
+ContactInput packing(const std::string& name, const scenes::SpherePacking& choice) {
+  return {name, [choice] { return scenes::sphere_packing(choice); }};
+}
+
+ContactInput stack(const std::string& name, const scenes::BoxStack& choice) {
+  return {name, [choice] { return scenes::box_stack(choice); }};
+}
+
+/// 10,000 tetrahedra on glue, lifted at one end.
+ContactInput slab(std::int64_t contacts) {
+  return {fmt::format("slab_{}", contacts),
+          [contacts] { return scenes::elastic_slab({.contacts = contacts}); }};
+}
+
+ContactInput small_slab() {
+  return {"slab_small", [] { return scenes::elastic_slab({.cubes = {8, 6, 3}, .contacts = 40}); }};
+}
+
+std::vector<ContactInput> recorded(const std::string& folder) {
+  std::vector<ContactInput> inputs;
+  if (folder.empty()) return inputs;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    const std::filesystem::path& path = file.path();
+    if (path.extension() != ".hdf5") continue;
+    inputs.push_back(
+        {path.stem().string(), [text = path.string()] { return read_contact_problem(text); }});
+  }
+  std::sort(inputs.begin(), inputs.end(),
+            [](const ContactInput& a, const ContactInput& b) { return a.name < b.name; });
+  return inputs;
+}
+
+/// Each scene has something that one of the switches leaves out.
+std::vector<ContactInput> skip_inputs() {
+  return {
+      packing("packing_1k", {.edge = 6}),
+      packing("packing_1k_loose", {.edge = 9, .kept = 0.15}),
+      packing("packing_1k_frictionless", {.edge = 6, .friction = 0}),
+      packing("packing_1k_debonded", {.edge = 6, .glue = {.stiffness = 1e7, .intensity = 0}}),
+      small_slab(),
+  };
+}
+
+constexpr ContactMethod methods[] = {ContactMethod::gauss_seidel, ContactMethod::nonlinear_cg,
+                                     ContactMethod::anderson,     ContactMethod::mass_splitting,
+                                     ContactMethod::newton,       ContactMethod::automatic};
+
+std::vector<double> tolerances(Extent extent, ContactPrecision precision) {
+  if (precision == ContactPrecision::float32) {
+    if (extent == Extent::brief) return {1e-2, 1e-4};
+    return {1e-2, 1e-3, 1e-4, 1e-5};
+  }
+  if (extent == Extent::brief) return {1e-2, 1e-4, 1e-8};
+  return {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
+}
+
+class Rows {
+ public:
+  Rows(Extent extent, int threads) : extent_(extent), threads_(threads) {}
+
+  /// Every method, precision and tolerance.
+  void add_work(const ContactInput& input) {
+    for (const ContactMethod method : methods) {
+      for (const auto precision : {ContactPrecision::float64, ContactPrecision::float32}) {
+        for (const double tolerance : tolerances(extent_, precision)) {
+          ContactOptions options = options_for(tolerance);
+          options.method = method;
+          options.precision = precision;
+          add({.input = input, .options = options});
+        }
+      }
+    }
+  }
+
+  /// First solve, following ones, and following ones that start where the last one ended.
+  void add_visits(const ContactInput& input) {
+    ContactOptions options = options_for(1e-4);
+    for (const int threads : thread_counts()) {
+      options.threads = threads;
+      for (const auto visit : {ContactVisit::first, ContactVisit::kept, ContactVisit::warm}) {
+        // In full, add_work has this row, too.
+        if (extent_ == Extent::full && visit == ContactVisit::first && threads == threads_)
+          continue;
+        add({.input = input, .options = options, .visit = visit});
+      }
+    }
+  }
+
+  void add_skips(const ContactInput& input) {
+    ContactOptions options = options_for(1e-6);
+    add({.kind = ContactKind::skip, .input = input, .options = options});
+    for (const ContactSkipVariant& variant : contact_skip_variants()) {
+      options.skip = variant.skip;
+      add({.kind = ContactKind::skip, .input = input, .options = options, .without = variant.name});
+    }
+  }
+
+  void add_scale(const ContactInput& input) {
+    ContactOptions options = options_for(1e-4);
+    for (const ContactMethod method : {ContactMethod::gauss_seidel, ContactMethod::automatic}) {
+      options.method = method;
+      for (const int threads : thread_counts()) {
+        options.threads = threads;
+        add({.kind = ContactKind::scale, .input = input, .options = options});
+      }
+    }
+  }
+
+  std::vector<ContactCase> take() { return std::move(rows_); }
+
+ private:
+  std::vector<int> thread_counts() const {
+    return threads_ > 1 ? std::vector<int>{1, threads_} : std::vector<int>{1};
+  }
+  void add(ContactCase row) {
+    row.max_updates = extent_ == Extent::full ? 200'000'000 : 1'000'000;
+    rows_.push_back(std::move(row));
+  }
+  ContactOptions options_for(double tolerance) const {
+    return {.tolerance = tolerance, .backend = Backend::cpu, .threads = threads_};
+  }
+
+  Extent extent_;
+  int threads_;
+  std::vector<ContactCase> rows_;
+};
+
+const char* name_of(ContactVisit visit) {
+  switch (visit) {
+    case ContactVisit::first:
+      return "first";
+    case ContactVisit::kept:
+      return "kept";
+    case ContactVisit::warm:
+      return "warm";
+  }
+  return "";
+}
+
+const char* name_of(ContactKind kind) {
+  switch (kind) {
+    case ContactKind::work:
+      return "contact";
+    case ContactKind::skip:
+      return "contact_skip";
+    case ContactKind::scale:
+      return "contact_scale";
+  }
+  return "";
+}
+
+}  // namespace
+
+const char* name_of(ContactMethod method) {
+  switch (method) {
+    case ContactMethod::automatic:
+      return "automatic";
+    case ContactMethod::gauss_seidel:
+      return "gauss_seidel";
+    case ContactMethod::nonlinear_cg:
+      return "nonlinear_cg";
+    case ContactMethod::anderson:
+      return "anderson";
+    case ContactMethod::mass_splitting:
+      return "mass_splitting";
+    case ContactMethod::newton:
+      return "newton";
+  }
+  return "";
+}
+
+std::string name_of(const ContactCase& row) {
+  std::string name =
+      fmt::format("{}/{}/{}/{}/cpu/threads:{}/tolerance:{:.0e}", name_of(row.kind), row.input.name,
+                  name_of(row.options.method),
+                  row.options.precision == ContactPrecision::float64 ? "float64" : "float32",
+                  row.options.threads, row.options.tolerance);
+  if (row.visit != ContactVisit::first) name += fmt::format("/visit:{}", name_of(row.visit));
+  if (!row.without.empty()) name += "/without:" + row.without;
+  return name;
+}
+
+std::vector<ContactSkipVariant> contact_skip_variants() {
+  return {{"frictionless_rows", {.frictionless_rows = false}},
+          {"debonded_springs", {.debonded_springs = false}},
+          {"contactless_bodies", {.contactless_bodies = false}},
+          {"converged_islands", {.converged_islands = false}},
+          {"frozen_contacts", {.frozen_contacts = false}}};
+}
+
+std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder) {
+  std::vector<ContactInput> inputs = {
+      stack("stack_10", {.boxes = 10}),
+      packing("packing_1k", {.edge = 6}),
+      small_slab(),
+  };
+  if (extent == Extent::full) {
+    inputs.push_back(stack("stack_30_ratio_1e4", {.boxes = 30, .mass_ratio = 1e4}));
+    inputs.push_back(stack("stack_100", {.boxes = 100}));
+    inputs.push_back(packing("packing_10k", {.edge = 13}));
+    inputs.push_back(packing("packing_100k", {.edge = 28}));
+    inputs.push_back(packing("packing_10k_glued", {.edge = 13, .glue = {.stiffness = 1e7}}));
+    inputs.push_back(slab(151));
+    inputs.push_back(slab(531));
+  }
+  for (ContactInput& input : recorded(fclib_folder)) inputs.push_back(std::move(input));
+  return inputs;
+}
+
+std::vector<ContactCase> contact_cases(Extent extent,
+                                       int threads,
+                                       const std::string& fclib_folder) {
+  Rows rows(extent, threads);
+  for (const ContactInput& input : contact_inputs(extent, fclib_folder)) rows.add_work(input);
+  for (const std::int64_t contacts : {151, 531}) rows.add_visits(slab(contacts));
+  for (const ContactInput& input : skip_inputs()) rows.add_skips(input);
+  std::vector<std::int64_t> edges = {3, 4, 6, 9, 13};
+  if (extent == Extent::full) edges.insert(edges.end(), {19, 28});
+  for (const std::int64_t edge : edges) {
+    rows.add_scale(packing(fmt::format("packing_edge_{}", edge), {.edge = edge}));
+  }
+  return rows.take();
+}
+
+}  // namespace tetwarp::bench

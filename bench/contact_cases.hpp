@@ -1,0 +1,69 @@
+/// @file contact_cases.hpp
+/// The rows of the contact benchmark, as data.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "bench/warp_cases.hpp"
+
+namespace tetwarp::bench {
+
+/// A problem by name, made when it is wanted.
+struct ContactInput {
+  std::string name;
+  std::function<ContactProblem()> make;
+};
+
+/// What a row shows.
+enum class ContactKind {
+  work,  ///< time to one tolerance, by one method
+  skip,  ///< with one switch of ContactSkipOptions off, or with none off
+  scale  ///< problems of one kind, smaller and larger
+};
+
+/// Which solve of a solver is timed.
+enum class ContactVisit {
+  first,  ///< of a new solver: buffers, structure and all
+  kept,   ///< of a solver that knows the structure; the load changes by a percent from one to next
+  warm    ///< so, too, and from the impulses of the solve before
+};
+
+/// One timed solve.
+struct ContactCase {
+  ContactKind kind = ContactKind::work;
+  ContactInput input;
+  ContactOptions options;  ///< measure and max_sweeps follow from the problem
+  ContactVisit visit = ContactVisit::first;
+  std::int64_t max_updates = 0;  ///< local solves at most, so that no method holds up the others
+  std::string without =
+      {};  ///< what is switched off: a name of contact_skip_variants(), or nothing
+};
+
+/// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04; kinds skip and scale are
+/// contact_skip and contact_scale; then, where not the default, /visit:kept and
+/// /without:frozen_contacts.
+std::string name_of(const ContactCase& row);
+
+/// "gauss_seidel" and so on, as in ContactMethod.
+const char* name_of(ContactMethod method);
+
+/// Switches of ContactSkipOptions, off one by one.
+struct ContactSkipVariant {
+  std::string name;
+  ContactSkipOptions skip;
+};
+std::vector<ContactSkipVariant> contact_skip_variants();
+
+/// Problems of all methods: stacks, packings, elastic blocks, then those of the folder.
+std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder);
+
+/// The rows for a processor with `threads` threads, those of one problem next to each other, loose
+/// tolerances first.
+/// @param fclib_folder  of recorded problems, *.hdf5; empty: none
+std::vector<ContactCase> contact_cases(Extent extent, int threads, const std::string& fclib_folder);
+
+}  // namespace tetwarp::bench

@@ -1,0 +1,63 @@
+/// @file contact_judge.cpp
+#include "bench/contact_judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetwarp::bench {
+
+namespace {
+
+/// Largest difference between u and J v + w, or W r + q, relative to the largest term.
+double velocity_mismatch(const ContactProblem& problem, const ContactSolution& solution) {
+  const bool is_local = problem.is_local();
+  const SparseMatrix& matrix = is_local ? problem.delassus : problem.jacobian;
+  const std::vector<double>& x = is_local ? solution.impulse : solution.body_velocity;
+  const std::vector<double>& offset = is_local ? problem.free_velocity : problem.velocity_offset;
+  double mismatch = 0, scale = 0;
+  for (std::size_t row = 0; row < offset.size(); ++row) {
+    double u = offset[row];
+    scale = std::max(scale, std::abs(u));
+    const auto end = static_cast<std::size_t>(matrix.row_start[row + 1]);
+    for (auto e = static_cast<std::size_t>(matrix.row_start[row]); e < end; ++e) {
+      const double term = matrix.value[e] * x[static_cast<std::size_t>(matrix.column[e])];
+      scale = std::max(scale, std::abs(term));
+      u += term;
+    }
+    mismatch = std::max(mismatch, std::abs(u - solution.velocity[row]));
+  }
+  return scale > 0 ? mismatch / scale : mismatch;
+}
+
+}  // namespace
+
+ContactMeasure measure_of(const ContactProblem& problem) {
+  return problem.adhesion.empty() ? ContactMeasure::fclib : ContactMeasure::eta;
+}
+
+ContactJudgement judge(const ContactProblem& problem,
+                       const ContactSolution& solution,
+                       const ContactOptions& options) {
+  ContactJudgement judgement;
+  judgement.residual = residual_of(problem, solution.impulse, solution.body_velocity, options);
+  const bool by_eta = options.measure == ContactMeasure::eta;
+  judgement.error = by_eta ? judgement.residual.eta : judgement.residual.fclib;
+  // Both sides round: a share of the tolerance, and what float64 leaves of sums of large terms.
+  if (solution.converged() && !(judgement.error <= 1.01 * options.tolerance + 1e-13)) {
+    judgement.fault = fmt::format("called converged at {:.0e}, but its error is {:.2e}",
+                                  options.tolerance, judgement.error);
+  }
+  if (solution.converged() && !(judgement.residual.balance <= options.tolerance)) {
+    judgement.fault =
+        fmt::format("momentum is out of balance by {:.1e}", judgement.residual.balance);
+  }
+  const double mismatch = velocity_mismatch(problem, solution);
+  if (!(mismatch <= 1e-10)) {
+    judgement.fault = fmt::format("contact velocities are off by {:.1e}", mismatch);
+  }
+  return judgement;
+}
+
+}  // namespace tetwarp::bench

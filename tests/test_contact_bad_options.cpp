@@ -1,0 +1,94 @@
+/// @file test_contact_bad_options.cpp
+/// Options out of range are named before anything is solved; the ends of the ranges are not.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+namespace tetwarp::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct OptionsCase {
+  const char* name;
+  ContactOptions options;
+  const char* named;  ///< how the complaint starts; good options: empty
+};
+
+class ContactBadOptions : public ::testing::TestWithParam<OptionsCase> {};
+
+const std::vector<OptionsCase> cases = {
+    {"Defaults", {}, ""},
+    {"ToleranceZero", {.tolerance = 0}, "tolerance"},
+    {"ToleranceNegative", {.tolerance = -1e-6}, "tolerance"},
+    {"ToleranceNan", {.tolerance = nan}, "tolerance"},
+    {"ToleranceInfinite", {.tolerance = infinity}, "tolerance"},
+    {"ToleranceTiny", {.tolerance = 1e-300}, ""},
+    {"SweepsZero", {.max_sweeps = 0}, "max_sweeps"},
+    {"SweepsNegative", {.max_sweeps = -1}, "max_sweeps"},
+    {"SweepsOne", {.max_sweeps = 1}, ""},
+    {"RelaxationZero", {.relaxation = 0}, "relaxation"},
+    {"RelaxationNegative", {.relaxation = -0.5}, "relaxation"},
+    {"RelaxationTwo", {.relaxation = 2}, "relaxation"},
+    {"RelaxationNan", {.relaxation = nan}, "relaxation"},
+    {"RelaxationBelowTwo", {.relaxation = 1.99}, ""},
+    {"InnerSweepsZero", {.inner_sweeps = 0}, "inner_sweeps"},
+    {"InnerSweepsNegative", {.inner_sweeps = -5}, "inner_sweeps"},
+    {"InnerSweepsOne", {.inner_sweeps = 1}, ""},
+    {"RecoverySpeedNegative", {.recovery_speed = -1e-9}, "recovery_speed"},
+    {"RecoverySpeedNan", {.recovery_speed = nan}, "recovery_speed"},
+    {"RecoverySpeedZero", {.recovery_speed = 0}, ""},
+    {"ThreadsNegative", {.threads = -1}, "threads"},
+    {"ThreadsOne", {.threads = 1}, ""}};
+INSTANTIATE_TEST_SUITE_P(Of, ContactBadOptions, ::testing::ValuesIn(cases), [](const auto& info) {
+  return std::string(info.param.name);
+});
+
+/// The text of the std::invalid_argument that `body` throws, empty when it throws none.
+std::string complaint(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+/// A contact at rest.
+ContactProblem quiet_contact() {
+  ContactProblem problem;
+  problem.delassus = {3, 3, {0, 1, 2, 3}, {0, 1, 2}, {1, 1, 1}};
+  problem.free_velocity = {0, 0, 0};
+  problem.friction = {0.5};
+  return problem;
+}
+
+TEST_P(ContactBadOptions, AreNamedInOneLine) {
+  const auto& [name, options, named] = GetParam();
+  const std::string made = complaint([&] { ContactSolver{options}; });
+  const std::string solved = complaint([&] { solve_contacts(quiet_contact(), options); });
+
+  EXPECT_EQ(made.empty(), std::string(named).empty()) << made;
+  EXPECT_EQ(made.find(named), 0U) << made;
+  EXPECT_EQ(made.find('\n'), std::string::npos);
+  EXPECT_EQ(solved, made);
+}
+
+/// The reference is as strict.
+TEST_P(ContactBadOptions, AreNamedByTheReferenceToo) {
+  auto [name, options, named] = GetParam();
+  const std::string made = complaint([&] { ContactSolver{options}; });
+  options.backend = Backend::reference;
+
+  EXPECT_EQ(complaint([&] { solve_contacts(quiet_contact(), options); }), made);
+}
+
+}  // namespace
+}  // namespace tetwarp::test
