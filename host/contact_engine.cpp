@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "host/contact_condense.hpp"
+#include "host/contact_coupled_solve.hpp"
 #include "host/contact_extract.hpp"
 #include "host/contact_feasibility.hpp"
 #include "host/contact_newton.hpp"
@@ -168,6 +170,69 @@ void ContactEngine::polish(const ContactProblem& problem,
   const double before = run.excess(i, outcome.sums);
   std::copy(polished.begin(), polished.end(), impulse);
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
+}
+
+void ContactEngine::solve_coupled(const ContactProblem& problem,
+                                  const ContactSystem<double>& system,
+                                  std::int64_t i,
+                                  EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  const CoupledRoute route = route_of(options_, island);
+  if (route != CoupledRoute::condensed) {
+    CpuContactExec exec(threads_);
+    const CoupledResult iterated =
+        iterate_coupled(exec, options_, structure_, system, island, route,
+                        gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
+                                 problem.contact_count()));
+    outcome = iterated.outcome;
+    scatter_impulses(structure_, island, iterated.impulse.data() + 3 * island.slot_begin,
+                     result.impulse);
+    scatter_velocities(structure_, island, iterated.body_velocity.data() + island.dof_begin,
+                       result.body_velocity);
+    const bool is_final = route == CoupledRoute::outer || is_too_large(island);
+    if (outcome.reason == StopReason::converged || is_final) return;
+  }
+  const ContactProblem part = make_island_problem(problem, structure_, island);
+  const CondensedProblem condensed(part);
+  ContactEngine engine(options_, threads_, device_);
+  const EngineResult inner = engine.solve(condensed.local());
+  const std::vector<double> v = condensed.body_velocity(inner.impulse);
+  scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
+  scatter_velocities(structure_, island, v.data(), result.body_velocity);
+  outcome = inner.outcomes[0];
+  result.updates_skipped += inner.updates_skipped;
+  result.colors = std::max(result.colors, inner.colors);
+  for (const std::int32_t c : inner.clamped) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(island.slot_begin + c)]);
+  }
+}
+
+void ContactEngine::solve_contactless(const ContactProblem& problem,
+                                      const ContactSystem<double>& system,
+                                      EngineResult& result) {
+  for (std::size_t i = index_of(structure_.contact_islands); i < structure_.islands.size(); ++i) {
+    const ContactIsland& island = structure_.islands[i];
+    if (!options_.skip.contactless_bodies && island.is_coupled) {
+      CpuContactExec exec(threads_);
+      const CoupledResult iterated =
+          iterate_coupled(exec, options_, structure_, system, island, CoupledRoute::outer, {});
+      scatter_velocities(structure_, island, iterated.body_velocity.data() + island.dof_begin,
+                         result.body_velocity);
+      continue;
+    }
+    if (options_.skip.contactless_bodies) {
+      result.bodies_skipped += island.block_end - island.block_begin;
+    }
+    if (!island.is_coupled) {
+      scatter_velocities(structure_, island, system.body_free.data() + island.dof_begin,
+                         result.body_velocity);
+      continue;
+    }
+    const CondensedProblem condensed(make_island_problem(problem, structure_, island));
+    scatter_velocities(structure_, island, condensed.body_velocity({}).data(),
+                       result.body_velocity);
+  }
 }
 
 }  // namespace tetwarp

@@ -43,11 +43,6 @@ class ContactEngine {
                      const ContactSystem<double>& system,
                      std::int64_t island,
                      EngineResult& result);
-  IslandOutcome iterate_coupled(const ContactProblem& problem,
-                                const ContactSystem<double>& system,
-                                const ContactIsland& island,
-                                bool is_outer,
-                                EngineResult& result);
   void solve_uncoupled(const ContactProblem& problem,
                        const ContactSystem<double>& system,
                        EngineResult& result);
