@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "host/contact_condense.hpp"
-#include "host/contact_coupled_solve.hpp"
 #include "host/contact_extract.hpp"
 #include "host/contact_feasibility.hpp"
 #include "host/contact_newton.hpp"
@@ -19,6 +18,25 @@ using Clock = std::chrono::steady_clock;
 
 std::size_t index_of(std::int64_t i) {
   return static_cast<std::size_t>(i);
+}
+
+/// Numbers per contact from slots to contacts, of one island.
+void scatter_impulses(const ContactStructure& structure,
+                      const ContactIsland& island,
+                      const double* from,
+                      std::vector<double>& to) {
+  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
+    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
+  }
+}
+
+void scatter_velocities(const ContactStructure& structure,
+                        const ContactIsland& island,
+                        const double* from,
+                        std::vector<double>& to) {
+  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
+    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
+  }
 }
 
 /// Offsets that ask for more than a recovery speed are lowered to it.
@@ -71,7 +89,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
     result.outcomes.resize(index_of(structure_.contact_islands));
     solve_uncoupled(problem, system, result);
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
-      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, system, i, result);
+      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, i, result);
     }
     solve_contactless(problem, system, result);
     if (result.clamped.empty()) {
@@ -173,26 +191,9 @@ void ContactEngine::polish(const ContactProblem& problem,
 }
 
 void ContactEngine::solve_coupled(const ContactProblem& problem,
-                                  const ContactSystem<double>& system,
                                   std::int64_t i,
                                   EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
-  IslandOutcome& outcome = result.outcomes[index_of(i)];
-  const CoupledRoute route = route_of(options_, island);
-  if (route != CoupledRoute::condensed) {
-    CpuContactExec exec(threads_);
-    const CoupledResult iterated =
-        iterate_coupled(exec, options_, structure_, system, island, route,
-                        gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
-                                 problem.contact_count()));
-    outcome = iterated.outcome;
-    scatter_impulses(structure_, island, iterated.impulse.data() + 3 * island.slot_begin,
-                     result.impulse);
-    scatter_velocities(structure_, island, iterated.body_velocity.data() + island.dof_begin,
-                       result.body_velocity);
-    const bool is_final = route == CoupledRoute::outer || is_too_large(island);
-    if (outcome.reason == StopReason::converged || is_final) return;
-  }
   const ContactProblem part = make_island_problem(problem, structure_, island);
   const CondensedProblem condensed(part);
   ContactEngine engine(options_, threads_, device_);
@@ -200,7 +201,7 @@ void ContactEngine::solve_coupled(const ContactProblem& problem,
   const std::vector<double> v = condensed.body_velocity(inner.impulse);
   scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
   scatter_velocities(structure_, island, v.data(), result.body_velocity);
-  outcome = inner.outcomes[0];
+  result.outcomes[index_of(i)] = inner.outcomes[0];
   result.updates_skipped += inner.updates_skipped;
   result.colors = std::max(result.colors, inner.colors);
   for (const std::int32_t c : inner.clamped) {
@@ -213,17 +214,7 @@ void ContactEngine::solve_contactless(const ContactProblem& problem,
                                       EngineResult& result) {
   for (std::size_t i = index_of(structure_.contact_islands); i < structure_.islands.size(); ++i) {
     const ContactIsland& island = structure_.islands[i];
-    if (!options_.skip.contactless_bodies && island.is_coupled) {
-      CpuContactExec exec(threads_);
-      const CoupledResult iterated =
-          iterate_coupled(exec, options_, structure_, system, island, CoupledRoute::outer, {});
-      scatter_velocities(structure_, island, iterated.body_velocity.data() + island.dof_begin,
-                         result.body_velocity);
-      continue;
-    }
-    if (options_.skip.contactless_bodies) {
-      result.bodies_skipped += island.block_end - island.block_begin;
-    }
+    result.bodies_skipped += island.block_end - island.block_begin;
     if (!island.is_coupled) {
       scatter_velocities(structure_, island, system.body_free.data() + island.dof_begin,
                          result.body_velocity);

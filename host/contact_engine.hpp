@@ -39,10 +39,7 @@ class ContactEngine {
 
  private:
   ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
-  void solve_coupled(const ContactProblem& problem,
-                     const ContactSystem<double>& system,
-                     std::int64_t island,
-                     EngineResult& result);
+  void solve_coupled(const ContactProblem& problem, std::int64_t island, EngineResult& result);
   void solve_uncoupled(const ContactProblem& problem,
                        const ContactSystem<double>& system,
                        EngineResult& result);

@@ -53,24 +53,6 @@ std::vector<double> gathered(const std::vector<double>& values,
   return result;
 }
 
-void scatter_impulses(const ContactStructure& structure,
-                      const ContactIsland& island,
-                      const double* from,
-                      std::vector<double>& to) {
-  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
-    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
-  }
-}
-
-void scatter_velocities(const ContactStructure& structure,
-                        const ContactIsland& island,
-                        const double* from,
-                        std::vector<double>& to) {
-  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
-    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
-  }
-}
-
 ContactProblem make_island_problem(const ContactProblem& problem,
                                    const ContactStructure& structure,
                                    const ContactIsland& island) {

@@ -15,18 +15,6 @@ ContactProblem make_island_problem(const ContactProblem& problem,
                                    const ContactStructure& structure,
                                    const ContactIsland& island);
 
-/// Numbers per contact of an island, from its slots to the problem's order.
-void scatter_impulses(const ContactStructure& structure,
-                      const ContactIsland& island,
-                      const double* from,
-                      std::vector<double>& to);
-
-/// Numbers per dof of an island, from its places to the problem's order.
-void scatter_velocities(const ContactStructure& structure,
-                        const ContactIsland& island,
-                        const double* from,
-                        std::vector<double>& to);
-
 /// Entries of `values` (`width` each) at `order`.
 std::vector<double> gathered(const std::vector<double>& values,
                              std::int64_t width,

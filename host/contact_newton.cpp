@@ -28,14 +28,14 @@ constexpr double least_epsilon = 1e-12;
 constexpr double most_epsilon = 100;
 constexpr double epsilon_drop = 0.3;
 constexpr int inner_limit = 12;     ///< Newton steps to a proximal point
-constexpr int halving_limit = 6;    ///< of one step's length
+constexpr int halving_limit = 12;   ///< of one step's length
 constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop again
 /// A map of steepness epsilon^-p; where Newton misses one proximal point, the next is sought with
 /// the other p.
 constexpr double steepness_powers[] = {0.5, 0.75};
 
 std::int64_t iteration_limit(std::size_t contacts) {
-  return std::clamp<std::int64_t>(300000 / static_cast<std::int64_t>(contacts + 1), 100, 1000);
+  return std::clamp<std::int64_t>(100000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
 }
 
 /// Impulses, the velocities they cause, and how far both are from a solution.
@@ -180,7 +180,6 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
     iterate = make_iterate(iterate.impulse + length * impulse_step);
     if (error_of(iterate) < error_of(best_)) best_ = iterate;
     if (norm <= goal || is_done(iterate)) return true;
-    if (step >= 3 && norm > 5 * goal) return false;  // a nearer point is easier to find
   }
   return false;
 }

@@ -67,10 +67,9 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
     return dense_factor_.matrixLU().diagonal().array().isFinite().all() &&
            (dense_factor_.matrixLU().diagonal().array() != 0).all();
   }
-  if (order_.size() == 0) Eigen::AMDOrdering<int>()(matrix, order_);
-  // A pivot off the diagonal costs fill, and the diagonal is large.
-  sparse_factor_.setPivotThreshold(1e-3);
-  sparse_factor_.compute(order_.inverse() * matrix * order_);
+  if (!has_order_) sparse_factor_.analyzePattern(matrix);
+  has_order_ = true;
+  sparse_factor_.factorize(matrix);
   return sparse_factor_.info() == Eigen::Success;
 }
 
@@ -89,7 +88,7 @@ VectorXd NewtonSystem::solve_once(const VectorXd& right_side) {
 
 VectorXd NewtonSystem::solve_factorized(const VectorXd& right_side) {
   if (is_dense_) return dense_factor_.solve(right_side);
-  return order_ * sparse_factor_.solve(order_.inverse() * right_side);
+  return sparse_factor_.solve(right_side);
 }
 
 }  // namespace tetwarp

@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <vector>
@@ -49,9 +48,8 @@ class NewtonSystem {
   Eigen::SparseMatrix<double> impulse_inverse_;  ///< E^-1, global form
   bool is_dense_;
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_factor_;
-  /// Reduces fill; found once, as the pattern stays.
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> sparse_factor_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_factor_;
+  bool has_order_ = false;  ///< the fill-reducing order is kept: the pattern stays
 };
 
 }  // namespace tetwarp

@@ -72,28 +72,6 @@ TETWARP_HD void add_block_row(const SystemView<T>& a, std::int64_t b, const T* x
   }
 }
 
-/// One index = one block: d += J^T r.
-template <class T>
-struct BodyPushBody {
-  BlockContacts contacts;
-  View<const std::int64_t> dof_start;
-  View<const T> jacobian;
-  View<const T> impulse;
-  View<T> defect;
-
-  TETWARP_HD void operator()(std::int64_t b) const {
-    const int size = static_cast<int>(dof_start[b + 1] - dof_start[b]);
-    T* d = defect.data + dof_start[b];
-    for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
-      const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
-      const T* j = jacobian.data + contacts.value[p];
-      for (int k = 0; k < size; ++k) {
-        d[k] += j[k] * r[0] + j[size + k] * r[1] + j[2 * size + k] * r[2];
-      }
-    }
-  }
-};
-
 /// One index = one block: the defect d = b + J^T r - A v.
 template <class T>
 struct BodyDefectBody {
@@ -112,7 +90,13 @@ struct BodyDefectBody {
     for (int k = 0; k < size; ++k) d[k] = 0;
     add_block_row(system, b, body_velocity.data, d);
     for (int k = 0; k < size; ++k) d[k] = load[first + k] - d[k];
-    BodyPushBody<T>{contacts, system.dof_start, jacobian, impulse, defect}(b);
+    for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+      const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+      const T* j = jacobian.data + contacts.value[p];
+      for (int k = 0; k < size; ++k) {
+        d[k] += j[k] * r[0] + j[size + k] * r[1] + j[2 * size + k] * r[2];
+      }
+    }
   }
 };
 
@@ -130,14 +114,6 @@ struct BodyRelaxBody {
     const std::int64_t first = dof_start[b];
     const int size = static_cast<int>(dof_start[b + 1] - first);
     const T* m = inverse.data + inverse_start[b];
-    if (size == 3) {  // nodes are many
-      const T* d = defect.data + first;
-      T* v = body_velocity.data + first;
-      for (int i = 0; i < 3; ++i) {
-        v[i] += relaxation * (m[3 * i] * d[0] + m[3 * i + 1] * d[1] + m[3 * i + 2] * d[2]);
-      }
-      return;
-    }
     for (int i = 0; i < size; ++i) {
       T sum = 0;
       for (int k = 0; k < size; ++k) sum += m[i * size + k] * defect[first + k];
