@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "host/cell_owners-inl.hpp"
@@ -33,7 +34,8 @@ class CellLine {
         counts_(counts),
         sampler_(job),
         open_(static_cast<std::size_t>(longest)),
-        runs_(static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge)),
+        runs_(std::make_unique_for_overwrite<RowRun[]>(
+            static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge))),
         row_capacity_(longest * cell_edge) {}
 
   /// Cells [ci_begin, ci_end) of line (cj, ck).
@@ -49,7 +51,7 @@ class CellLine {
       is_kept = is_kept && keeps;
       is_empty = is_empty && !keeps && range.begin >= range.end;
       if (keeps) {
-        std::fill_n(open_[static_cast<std::size_t>(ci - first_)].slice, cell_edge, SliceBits{0});
+        open_[static_cast<std::size_t>(ci - first_)] = {};
       } else {
         find(make_cell_box(job_.frame, ci, cj, ck), range, cell);
       }
@@ -78,7 +80,7 @@ class CellLine {
 
  private:
   RowRun* row_runs(int j, int k) {
-    return runs_.data() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
+    return runs_.get() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
   }
 
   /// Owners of one cell, the runs that they serve, and at once what needs no sample.
@@ -86,39 +88,45 @@ class CellLine {
     const int cell = box.corner[0] / cell_edge - first_;
     const std::int64_t work = work_of(job_, cell_index);
     const std::int64_t covered_before = counts_.covered;
-    SliceBits* open = open_[static_cast<std::size_t>(cell)].slice;
+    CellBits& open = open_[static_cast<std::size_t>(cell)];
     const SliceBits whole =
         rows_between(box.begin[1], box.end[1], (1u << box.end[0]) - (1u << box.begin[0]));
-    for (int k = box.begin[2]; k < box.end[2]; ++k) open[k] = whole;
-    std::uint32_t last_pair = ~std::uint32_t{0};
-    find_owners(job_, box, range, open, counts_, [&](std::uint32_t p, int k, SliceBits bits) {
+    open = {};
+    for (int k = box.begin[2]; k < box.end[2]; ++k) open.slice[k] = whole;
+    find_owners(job_, box, range, open, counts_, [&](std::uint32_t p, const CellBits& bits) {
       const int t = tet_of(job_.pairs[p]);
-      const int voxels = std::popcount(bits);
+      const int voxels = count_of(bits);
       counts_.covered += voxels;
       if (is_copied(job_, job_.setups[t])) counts_.copied += voxels;
-      if (work >= 0) return fill(box, k, bits, t, work);
-      if (p != last_pair) sources_.emplace_back(job_, job_.setups[t], box.corner, t);
-      last_pair = p;
-      const auto source = static_cast<std::int32_t>(sources_.size() - 1);
-      while (bits != 0) {
-        const int j = std::countr_zero(bits) / cell_edge;
-        const auto row = static_cast<std::uint16_t>(bits >> (cell_edge * j) & 0xff);
-        row_runs(j, k)[run_counts_[k][j]++] = {source, static_cast<std::uint16_t>(cell), row};
-        bits &= ~(SliceBits{0xff} << (cell_edge * j));
-      }
+      if (work >= 0) return fill(box, bits, t, work);
+      sources_.emplace_back(job_, job_.setups[t], box.corner, t);
+      add_runs(bits, cell);
     });
     if (job_.cell_covered.size > 0) {
       job_.cell_covered[cell_index] = static_cast<std::uint16_t>(counts_.covered - covered_before);
     }
   }
 
-  /// Voxels of slice k whose samples all equal source voxel `constant`.
-  void fill(const CellBox& box, int k, SliceBits bits, int tet, std::int64_t constant) {
+  /// The rows that the latest source serves in a cell.
+  void add_runs(const CellBits& bits, int cell) {
+    const auto source = static_cast<std::int32_t>(sources_.size() - 1);
+    const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
+    for (std::uint64_t left = rows_of(bits); left != 0; left &= left - 1) {
+      const int row = std::countr_zero(left);
+      RowRun* runs = row_runs(row % cell_edge, row / cell_edge);
+      int& count = run_counts_[row / cell_edge][row % cell_edge];
+      runs[count++] = {source, static_cast<std::uint16_t>(cell), rows[row]};
+    }
+  }
+
+  /// Voxels of a cell whose samples all equal source voxel `constant`.
+  void fill(const CellBox& box, const CellBits& bits, int tet, std::int64_t constant) {
     const int components = job_.source.components;
     const T* value = job_.source.data + constant * components;
-    for (int j = 0; j < cell_edge; ++j) {
-      unsigned row = static_cast<unsigned>(bits >> (cell_edge * j) & 0xff);
-      if (row == 0) continue;
+    const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
+    for (std::uint64_t left = rows_of(bits); left != 0; left &= left - 1) {
+      const int j = std::countr_zero(left) % cell_edge, k = std::countr_zero(left) / cell_edge;
+      unsigned row = rows[cell_edge * k + j];
       const std::int64_t voxel =
           job_.frame.offset_of(box.corner[0], box.corner[1] + j, box.corner[2] + k);
       if (job_.mask != nullptr || job_.tet != nullptr) write_extra(row, voxel, tet);
@@ -136,17 +144,20 @@ class CellLine {
   void write_open(int cells, const CellBox& first, int j, int k, std::int64_t row) {
     int begin = -1;
     for (int cell = 0; cell < cells; ++cell) {
-      const auto bits = static_cast<unsigned>(
+      auto bits = static_cast<unsigned>(
           open_[static_cast<std::size_t>(cell)].slice[k] >> (cell_edge * j) & 0xff);
-      if (bits == 0xff && begin >= 0) continue;
-      for (int i = 0; i < cell_edge; ++i) {
-        const int voxel = cell_edge * cell + i;
-        const bool is_open = bits >> i & 1;
-        if (is_open && begin < 0) begin = voxel;
+      if (bits == (begin < 0 ? 0u : 0xffu)) continue;
+      int at = 0;  // runs of equal bits, from the lowest voxel on
+      while (at < cell_edge) {
+        const bool is_open = bits & 1;
+        const int length = std::countr_zero(is_open ? ~bits : bits | 1u << (cell_edge - at));
+        if (is_open && begin < 0) begin = cell_edge * cell + at;
         if (!is_open && begin >= 0) {
-          write_outside(begin, voxel, first, j, k, row);
+          write_outside(begin, cell_edge * cell + at, first, j, k, row);
           begin = -1;
         }
+        bits >>= length;
+        at += length;
       }
     }
     if (begin >= 0) write_outside(begin, line_end_, first, j, k, row);
@@ -186,18 +197,14 @@ class CellLine {
     }
   }
 
-  struct OpenCell {
-    SliceBits slice[cell_edge];  ///< voxels without an owner
-  };
-
   const RasterJob<T>& job_;
   RasterCounts& counts_;
   RowSampler<T> sampler_;
   std::vector<RowSource<T>> sources_;  ///< of the pairs that own voxels of this line
-  std::vector<OpenCell> open_;         ///< [cell]
-  std::vector<RowRun> runs_;           ///< [k][j][run]
-  int run_counts_[cell_edge][cell_edge] = {};
+  std::vector<CellBits> open_;         ///< [cell], voxels without an owner
+  std::unique_ptr<RowRun[]> runs_;     ///< [k][j][run]
   int row_capacity_;
+  int run_counts_[cell_edge][cell_edge] = {};
   int first_ = 0;       ///< first cell of the line
   int line_begin_ = 0;  ///< voxels of the line in the output
   int line_end_ = 0;

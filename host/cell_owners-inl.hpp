@@ -8,6 +8,7 @@
 #define TETWARP_CELL_OWNERS_INL
 #endif
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -47,27 +48,59 @@ inline SliceBits rows_between(int begin, int end, unsigned row) {
   return all & (0x0101010101010101u * SliceBits{row});
 }
 
+/// Adds to `mine` those of the voxels `unsure` that lie inside tetrahedron t.
+template <class T>
+inline void ask_each(const RasterJob<T>& job,
+                     const CellBox& box,
+                     int t,
+                     const CellPlanes& planes,
+                     const CellBits& unsure,
+                     CellBits& mine,
+                     RasterCounts& counts) {
+  for (int k = 0; k < cell_edge; ++k) {
+    for (SliceBits bits = unsure.slice[k]; bits != 0; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      int side = certain_side(planes, bit % 8, bit / 8, k);
+      if (side == 0) {
+        ++counts.exact_tests;
+        const TetNodes nodes = tet_nodes(job.nodes, job.tets.data + std::int64_t{4} * t);
+        side = is_inside_exact(nodes, box.corner[0] + bit % 8, box.corner[1] + bit / 8,
+                               box.corner[2] + k);
+      }
+      if (side > 0) mine.slice[k] |= SliceBits{1} << bit;
+    }
+  }
+}
+
+/// Tells the memory that the tetrahedron of pair `p` will be read: meshes are larger than caches.
+template <class T>
+inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
+  if (p >= static_cast<std::uint64_t>(job.pairs.size)) return;
+  const TetSetup* setup = &job.setups[tet_of(job.pairs[p])];
+  for (std::size_t byte = 0; byte < sizeof(TetSetup); byte += 64) {
+    hwy::Prefetch(reinterpret_cast<const char*>(setup) + byte);
+  }
+}
+
 /// Gives every voxel of a cell to its lowest tetrahedron.
 /// @param job     planes, nodes and pairs
 /// @param box     the cell
 /// @param range   its pairs
-/// @param open    in and out, per slice: voxels without an owner
+/// @param open    in and out: voxels without an owner
 /// @param counts  tests are added
-/// @param own     own(pair, k, bits) is told of every slice in which a pair owns voxels, pairs
-///                ascending
+/// @param own     own(pair, bits) is told of every pair that owns voxels, pairs ascending
 template <class T, class Own>
 inline void find_owners(const RasterJob<T>& job,
                         const CellBox& box,
                         const CellRange& range,
-                        SliceBits* open,
+                        CellBits& open,
                         RasterCounts& counts,
                         Own&& own) {
   for (std::uint32_t p = range.begin; p < range.end; ++p) {
+    fetch_ahead(job, p + 3);
     if (is_accepted(job.pairs[p])) {
-      for (int k = box.begin[2]; k < box.end[2]; ++k) {
-        if (open[k] != 0) own(p, k, open[k]);
-        open[k] = 0;
-      }
+      own(p, open);
+      open = {};
       return;
     }
     const int t = tet_of(job.pairs[p]);
@@ -78,37 +111,26 @@ inline void find_owners(const RasterJob<T>& job,
       end[axis] = std::min(tet.end[axis] - box.corner[axis], box.end[axis]);
     }
     const SliceBits rows = rows_between(begin[1], end[1], 0xff);
-    SliceBits asked = 0;
-    for (int k = begin[2]; k < end[2]; ++k) asked |= open[k] & rows;
-    if (asked == 0) continue;
+    CellBits tested;
+    for (int k = 0; k < cell_edge; ++k) {
+      tested.slice[k] = k >= begin[2] && k < end[2] ? open.slice[k] & rows : 0;
+    }
+    if (!any_of(tested)) continue;
+    counts.inside_tests += count_of(tested);
     CellPlanes planes;
-    for (int face = 0; face < 4; ++face) {
-      set_cell_plane(tet, face, box.corner[0], box.corner[1], box.corner[2], planes);
+    set_cell_planes(tet, box.corner, planes);
+    CellBits inside = {}, possible = {};
+    cell_sides(planes, begin[2], end[2], inside, possible);
+    CellBits mine, unsure;
+    for (int k = 0; k < cell_edge; ++k) {
+      mine.slice[k] = inside.slice[k] & tested.slice[k];
+      unsure.slice[k] = possible.slice[k] & ~inside.slice[k] & tested.slice[k];
     }
-    SliceSides sides[cell_edge];
-    cell_sides(planes, begin[2], end[2], sides);
-    SliceBits left = 0;
-    for (int k = begin[2]; k < end[2]; ++k) {
-      const SliceBits tested = open[k] & rows;
-      counts.inside_tests += std::popcount(tested);
-      SliceBits mine = sides[k].inside & tested;
-      for (SliceBits unsure = sides[k].unsure & tested; unsure != 0; unsure &= unsure - 1) {
-        const int bit = std::countr_zero(unsure);
-        const int side = certain_side(planes, bit % 8, bit / 8, k);
-        if (side > 0) mine |= SliceBits{1} << bit;
-        if (side != 0) continue;
-        ++counts.exact_tests;
-        const TetNodes nodes = tet_nodes(job.nodes, job.tets.data + std::int64_t{4} * t);
-        if (is_inside_exact(nodes, box.corner[0] + bit % 8, box.corner[1] + bit / 8,
-                            box.corner[2] + k)) {
-          mine |= SliceBits{1} << bit;
-        }
-      }
-      if (mine != 0) own(p, k, mine);
-      open[k] &= ~mine;
-    }
-    for (int k = box.begin[2]; k < box.end[2]; ++k) left |= open[k];
-    if (left == 0) return;
+    if (any_of(unsure)) ask_each(job, box, t, planes, unsure, mine, counts);
+    if (!any_of(mine)) continue;
+    own(p, mine);
+    for (int k = 0; k < cell_edge; ++k) open.slice[k] &= ~mine.slice[k];
+    if (!any_of(open)) return;
   }
 }
 

@@ -2,6 +2,7 @@
 /// Rasters cells row by row; compiled once per vector instruction set.
 #include "host/cell_raster_cpu.hpp"
 
+#include <atomic>
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
@@ -17,16 +18,22 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Rasters lines [begin, end) of cells.
-void raster_lines(
-    PixelType type, const void* job, std::int64_t begin, std::int64_t end, RasterCounts& counts) {
+/// Rasters pieces of lines of cells, taken from `next` until `end`.
+void raster_pieces(PixelType type,
+                   const void* job,
+                   std::atomic<std::int64_t>& next,
+                   std::int64_t end,
+                   RasterCounts& counts) {
   with_pixel_type(type, [&]<class T>(T) {
     const RasterJob<T>& typed = *static_cast<const RasterJob<T>*>(job);
     const LineGrid lines(typed.frame);
     CellLine<T> line(typed, lines.longest(), counts);
-    for (std::int64_t l = begin; l < end; ++l) {
-      const LineGrid::Line at = lines.line(l);
-      line.raster(at.ci_begin, at.ci_end, at.cj, at.ck);
+    for (std::int64_t piece = next++; piece < end; piece = next++) {
+      const auto [first, past] = lines.piece(piece);
+      for (std::int64_t l = first; l < past; ++l) {
+        const LineGrid::Line at = lines.line(l);
+        line.raster(at.ci_begin, at.ci_end, at.cj, at.ck);
+      }
     }
   });
 }
@@ -38,7 +45,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tetwarp {
 
-HWY_EXPORT(raster_lines);
+HWY_EXPORT(raster_pieces);
 
 template <class T>
 void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
@@ -47,14 +54,14 @@ void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& pro
   const std::int64_t batches = progress.is_wanted() ? 32 : 1;
   RasterCounts sum = {0, 0, 0, 0};
   for (std::int64_t batch = 0; batch < batches; ++batch) {
-    const std::int64_t begin = pieces * batch / batches, end = pieces * (batch + 1) / batches;
+    const std::int64_t end = pieces * (batch + 1) / batches;
+    std::atomic<std::int64_t> next = pieces * batch / batches;
     std::int64_t covered = 0, inside_tests = 0, exact_tests = 0, copied = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(exec.threads()) \
+#pragma omp parallel num_threads(exec.threads()) \
     reduction(+ : covered, inside_tests, exact_tests, copied)
-    for (std::int64_t piece = begin; piece < end; ++piece) {
+    {
       RasterCounts counts = {0, 0, 0, 0};
-      const auto [first, past] = LineGrid(job.frame).piece(piece);
-      HWY_DYNAMIC_DISPATCH(raster_lines)(pixel_type_of<T>(), &job, first, past, counts);
+      HWY_DYNAMIC_DISPATCH(raster_pieces)(pixel_type_of<T>(), &job, next, end, counts);
       covered += counts.covered;
       inside_tests += counts.inside_tests;
       exact_tests += counts.exact_tests;

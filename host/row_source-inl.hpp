@@ -40,10 +40,15 @@ class RowSource {
       kind_ = kind_over_cell(job.source, start, linear);
     }
     for (int axis = 0; axis < 3; ++axis) corner_[axis] = corner[axis];
+    if (kind_ == RowKind::alone) return;
+    const bool is_along_rows = std::fabs(linear[1][0]) + std::fabs(linear[2][0]) < 0.5;
+    std::int64_t origin = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      const double step = kind_ == RowKind::alone ? 0 : std::rint(linear[axis][2]);
-      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + static_cast<std::int64_t>(step);
+      origin = origin * job.source.dims[axis] + map_.whole[axis];
+      const int step = static_cast<int>(std::rint(linear[axis][2])) + (axis == 2);
+      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + (is_along_rows ? step : 0);
     }
+    origin_ = static_cast<std::int32_t>(origin);
   }
 
   RowKind kind() const { return kind_; }
@@ -52,7 +57,10 @@ class RowSource {
   const SourceMap<float>& map() const { return map_; }
   const int* corner() const { return corner_; }
 
-  /// From a sample to the one of the next slice, about [sample].
+  /// The sample at the map's whole part, when kind() is inner.
+  std::int32_t origin() const { return origin_; }
+  /// From a sample to the upper neighbours of the one in the next slice, about; 0 where rows of the
+  /// output cross those of the source: eight voxels need too many lines of memory to ask ahead.
   std::int64_t slice_ahead() const { return slice_ahead_; }
 
  private:
@@ -90,6 +98,7 @@ class RowSource {
   SourceMap<float> map_;
   int corner_[3];
   std::int64_t slice_ahead_ = 0;
+  std::int32_t origin_ = 0;
 };
 
 /// Voxels of one row of a cell that one source serves.

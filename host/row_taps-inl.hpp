@@ -60,22 +60,26 @@ inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
 }
 
 /// Positions of some voxels of a row, in two parts as in SourceMap.
+template <bool Rim>
 struct RowPositions {
   hn::Vec<RowTag> local[3];
-  hn::Vec<RowIntTag> whole[3];
+  hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis, or without Rim RowSource::origin()
 };
 
 /// local_position() of the voxels of row (j, k) from `lane` on.
-inline RowPositions row_positions(const SourceMap<float>& map, std::size_t lane, int j, int k) {
+template <bool Rim, class T>
+inline RowPositions<Rim> row_positions(const RowSource<T>& source, std::size_t lane, int j, int k) {
   const RowTag d;
+  const SourceMap<float>& map = source.map();
   const auto i = hn::Iota(d, static_cast<float>(lane));
-  RowPositions positions;
+  RowPositions<Rim> positions;
   for (int axis = 0; axis < 3; ++axis) {
     const float line = (map.base[axis] + map.axis[1][axis] * static_cast<float>(j)) +
                        map.axis[2][axis] * static_cast<float>(k);
     positions.local[axis] = hn::Add(hn::Set(d, line), hn::Mul(hn::Set(d, map.axis[0][axis]), i));
-    positions.whole[axis] = hn::Set(RowIntTag(), map.whole[axis]);
+    if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), map.whole[axis]);
   }
+  if constexpr (!Rim) positions.whole[0] = hn::Set(RowIntTag(), source.origin());
   return positions;
 }
 
@@ -98,13 +102,16 @@ inline void add_unit(const SourceView<T>& view,
   if constexpr (Rim) inside = 0;
   for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
     // Voxels that no run describes follow the first one: readable, their values are not used.
-    RowPositions x = row_positions(sources[runs[0].source].map(), lane, j, k);
+    RowPositions<Rim> x = row_positions<Rim>(sources[runs[0].source], lane, j, k);
     for (int r = 1; r < run_count; ++r) {
-      const RowPositions more = row_positions(sources[runs[r].source].map(), lane, j, k);
+      const RowPositions<Rim> more = row_positions<Rim>(sources[runs[r].source], lane, j, k);
       const auto mine = lanes_of(runs[r].bits, lane);
+      const auto mine_int = hn::RebindMask(di, mine);
       for (int axis = 0; axis < 3; ++axis) {
         x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
-        x.whole[axis] = hn::IfThenElse(hn::RebindMask(di, mine), more.whole[axis], x.whole[axis]);
+      }
+      for (int part = 0; part < (Rim ? 3 : 1); ++part) {
+        x.whole[part] = hn::IfThenElse(mine_int, more.whole[part], x.whole[part]);
       }
     }
     hn::Vec<RowIntTag> voxel[3], step[3];
@@ -113,8 +120,9 @@ inline void add_unit(const SourceView<T>& view,
       const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
       const auto floor = hn::Floor(near);
       auto fraction = hn::Sub(near, floor);
-      voxel[axis] = hn::Add(hn::ConvertTo(di, floor), x.whole[axis]);
+      voxel[axis] = hn::ConvertTo(di, floor);
       if constexpr (Rim) {
+        voxel[axis] = hn::Add(voxel[axis], x.whole[axis]);
         const int last = view.dims[axis] - 1;
         const auto whole = hn::ConvertTo(d, x.whole[axis]);
         const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
@@ -131,7 +139,8 @@ inline void add_unit(const SourceView<T>& view,
       hn::Store(fraction, d, taps.fraction[axis] + at + lane);
     }
     const auto row = hn::Add(hn::Mul(voxel[2], hn::Set(di, view.dims[1])), voxel[1]);
-    const auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), voxel[0]);
+    auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), voxel[0]);
+    if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
     hn::Store(offset, di, taps.offset[0] + at + lane);
     if constexpr (Rim) {
       const auto above = hn::Add(offset, step[2]);
@@ -142,9 +151,10 @@ inline void add_unit(const SourceView<T>& view,
     }
   }
   // What this row will need one slice further up: rows jump too much for the hardware to guess.
-  const std::int64_t ahead = sources[runs[0].source].slice_ahead() + stride[2];
-  hwy::Prefetch(view.data + taps.offset[0][at] + ahead);
-  hwy::Prefetch(view.data + taps.offset[0][at + cell_edge / 2] + ahead);
+  if (const std::int64_t ahead = sources[runs[0].source].slice_ahead(); ahead != 0) {
+    hwy::Prefetch(view.data + taps.offset[0][at] + ahead);
+    hwy::Prefetch(view.data + taps.offset[0][at + cell_edge / 2] + ahead);
+  }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};
 }

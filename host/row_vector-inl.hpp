@@ -25,7 +25,7 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using PairTag = hn::CappedTag<std::uint64_t, cell_edge>;  ///< one x-pair of samples per lane
+using PairTag = hn::CappedTag<std::uint64_t, 4>;  ///< one x-pair of samples per lane
 using PairFloatTag = hn::Repartition<float, PairTag>;
 
 /// Eight bytes from each of N samples on. Loads and shuffles: half the time of a gather on the

@@ -122,7 +122,7 @@ TYPED_TEST(CellCull, NeverChangesWhoIsInside) {
       }
     }
   }
-  EXPECT_GT(rejected, 1000);
+  EXPECT_GT(rejected, 500);
   EXPECT_GT(accepted, 0);
 }
 
