@@ -33,6 +33,7 @@ class CellLine {
       : job_(job),
         counts_(counts),
         sampler_(job),
+        bounds_(job),
         open_(static_cast<std::size_t>(longest)),
         runs_(std::make_unique_for_overwrite<RowRun[]>(
             static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge))),
@@ -99,7 +100,7 @@ class CellLine {
       counts_.covered += voxels;
       if (is_copied(job_, job_.setups[t])) counts_.copied += voxels;
       if (work >= 0) return fill(box, bits, t, work);
-      sources_.emplace_back(job_, job_.setups[t], box.corner, t);
+      sources_.emplace_back(job_, bounds_, job_.setups[t], box.corner, t);
       add_runs(bits, cell);
     });
     if (job_.cell_covered.size > 0) {
@@ -200,9 +201,10 @@ class CellLine {
   const RasterJob<T>& job_;
   RasterCounts& counts_;
   RowSampler<T> sampler_;
-  std::vector<RowSource<T>> sources_;  ///< of the pairs that own voxels of this line
-  std::vector<CellBits> open_;         ///< [cell], voxels without an owner
-  std::unique_ptr<RowRun[]> runs_;     ///< [k][j][run]
+  SourceBounds bounds_;
+  std::vector<RowSource> sources_;  ///< of the pairs that own voxels of this line
+  std::vector<CellBits> open_;      ///< [cell], voxels without an owner
+  std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;
   int run_counts_[cell_edge][cell_edge] = {};
   int first_ = 0;       ///< first cell of the line

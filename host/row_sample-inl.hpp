@@ -31,7 +31,7 @@ class RowSampler {
 
   /// Writes the covered voxels of row (j, k); voxel 0 of the line's cell 0 is at `row` of the
   /// output. Runs of a cell stand side by side; their order within it is lost.
-  void write(const RowSource<T>* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
+  void write(const RowSource* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
     for (int r = 0; r < count;) {
       int past = r;
       RowKind kind = RowKind::inner;
@@ -53,11 +53,11 @@ class RowSampler {
  private:
   /// A cell's row of which some runs go voxel by voxel.
   void write_mixed(
-      const RowSource<T>* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
+      const RowSource* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
     int vectored_count = 0;  // those move to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
-      const RowSource<T>& source = sources[runs[r].source];
+      const RowSource& source = sources[runs[r].source];
       const std::int64_t cell_row = row + cell_edge * runs[r].cell;
       if (source.kind() != RowKind::alone) {
         if (source.kind() > kind) kind = source.kind();
@@ -72,7 +72,7 @@ class RowSampler {
   }
 
   void add(RowKind kind,
-           const RowSource<T>* sources,
+           const RowSource* sources,
            const RowRun* runs,
            int count,
            int j,

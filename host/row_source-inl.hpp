@@ -19,6 +19,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
 
 /// How the voxels that a tetrahedron owns in a cell are sampled.
 enum class RowKind {
@@ -27,34 +28,56 @@ enum class RowKind {
   alone   ///< voxel by voxel: copies, steep maps, float64, several components, huge sources
 };
 
-template <class T>
+/// Where a job's source may be read by vectors; three axes, and a fourth that never objects.
+struct SourceBounds {
+  template <class T>
+  explicit SourceBounds(const RasterJob<T>& job) {
+    const SourceView<T>& source = job.source;
+    const double samples = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
+    is_vectored = sizeof(ArithmeticOf<T>) == 4 && source.components == 1 &&
+                  samples <= std::numeric_limits<std::int32_t>::max();
+    // Eight bytes are read where two neighbours along x are wanted: up to `spare` samples more.
+    constexpr int spare = 8 / static_cast<int>(sizeof(T)) - 1;
+    constexpr double slack = 0.51;  // nearest rounds up
+    for (int axis = 0; axis < 3; ++axis) {
+      inner_low[axis] = 0.01;
+      inner_high[axis] = source.dims[axis] - 1 - slack;
+      end[axis] = inner_high[axis] - (axis == 0 ? spare : 0);
+    }
+  }
+
+  bool is_vectored;
+  double inner_low[4] = {0, 0, 0, -1};  ///< above and below these no neighbour is clamped
+  double inner_high[4] = {0, 0, 0, 1};
+  double end[4] = {0, 0, 0, -1};  ///< beyond these on all axes a read may pass the source's end
+};
+
+/// The map of one tetrahedron seen from one cell, as make_source_map() has it: equal bits.
 class RowSource {
  public:
-  RowSource(const RasterJob<T>& job, const TetSetup& tet, const int* corner, int number)
-      : setup_(&tet), number_(number) {
-    double start[3], linear[3][3];
-    map_start(tet, corner[0], corner[1], corner[2], start, linear);
-    map_ = make_source_map<float>(start, linear);
-    kind_ = RowKind::alone;
-    if (sizeof(ArithmeticOf<T>) == 4 && tet.kind != MapKind::steep && !is_copied(job, tet)) {
-      kind_ = kind_over_cell(job.source, start, linear);
-    }
-    for (int axis = 0; axis < 3; ++axis) corner_[axis] = corner[axis];
-    if (kind_ == RowKind::alone) return;
-    const bool is_along_rows = std::fabs(linear[1][0]) + std::fabs(linear[2][0]) < 0.5;
+  template <class T>
+  RowSource(const RasterJob<T>& job,
+            const SourceBounds& bounds,
+            const TetSetup& tet,
+            const int* corner,
+            int number)
+      : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
+    if (!bounds.is_vectored || tet.kind == MapKind::steep || is_copied(job, tet)) return;
+    set_map(bounds);
     std::int64_t origin = 0;
     for (int axis = 2; axis >= 0; --axis) {
-      origin = origin * job.source.dims[axis] + map_.whole[axis];
-      const int step = static_cast<int>(std::rint(linear[axis][2])) + (axis == 2);
-      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + (is_along_rows ? step : 0);
+      origin = origin * job.source.dims[axis] + whole[axis];
+      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + slice_step_[axis];
     }
     origin_ = static_cast<std::int32_t>(origin);
+    slice_ahead_ += std::int64_t{job.source.dims[0]} * job.source.dims[1];
+    const bool is_along_rows = std::fabs(tet.map[0][1]) + std::fabs(tet.map[0][2]) < 0.5;
+    if (!is_along_rows) slice_ahead_ = 0;
   }
 
   RowKind kind() const { return kind_; }
   int tet() const { return number_; }
   const TetSetup& setup() const { return *setup_; }
-  const SourceMap<float>& map() const { return map_; }
   const int* corner() const { return corner_; }
 
   /// The sample at the map's whole part, when kind() is inner.
@@ -63,43 +86,60 @@ class RowSource {
   /// output cross those of the source: eight voxels need too many lines of memory to ask ahead.
   std::int64_t slice_ahead() const { return slice_ahead_; }
 
+  // The parts of SourceMap<float>, unless kind() is alone.
+  alignas(16) float base[4];
+  alignas(16) float axis[3][4];
+  alignas(16) std::int32_t whole[4];
+
  private:
-  /// The kind by the box of all positions over the cell.
-  static RowKind kind_over_cell(const SourceView<T>& source,
-                                const double* start,
-                                const double (*linear)[3]) {
-    const double samples = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
-    if (source.components != 1 || samples > std::numeric_limits<std::int32_t>::max()) {
-      return RowKind::alone;
-    }
-    // Eight bytes are read where two neighbours along x are wanted: up to `spare` samples more.
-    constexpr int spare = 8 / sizeof(T) - 1;
+  void set_map(const SourceBounds& bounds) {
+    const hn::CappedTag<double, 4> d;  // one lane per axis of the source
+    const hn::Rebind<float, decltype(d)> df;
+    const hn::Rebind<std::int32_t, decltype(d)> di;
+    const auto zero = hn::Zero(d);
     bool is_inner = true, meets_end = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      double low = start[axis], high = start[axis];
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+      auto start = zero, below = zero, above = zero;
       for (int a = 0; a < 3; ++a) {
-        const double reach = (cell_edge - 1) * linear[axis][a];
-        low += min_of(reach, 0.0);
-        high += max_of(reach, 0.0);
+        const auto step = hn::LoadU(d, setup_->map[a] + lane);
+        const auto from = hn::Set(d, static_cast<double>(corner_[a] - setup_->anchor[a]));
+        start = a == 0 ? hn::Mul(step, from) : hn::Add(start, hn::Mul(step, from));
+        const auto reach = hn::Mul(step, hn::Set(d, double{cell_edge - 1}));
+        below = hn::Add(below, hn::Min(reach, zero));
+        above = hn::Add(above, hn::Max(reach, zero));
+        hn::Store(hn::DemoteTo(df, step), df, axis[a] + lane);
+        if (a == 2) hn::Store(hn::DemoteTo(di, hn::Round(step)), di, slice_step_ + lane);
       }
-      const double last = source.dims[axis] - 1;
-      const double slack = 0.51;  // nearest rounds up
-      is_inner = is_inner && low > 0.01 && high < last - slack;
-      meets_end = meets_end && high > last - slack - (axis == 0 ? spare : 0);
+      start = hn::Add(start, hn::LoadU(d, setup_->map[3] + lane));
+      const auto farthest = hn::Set(d, farthest_whole);
+      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
+      hn::Store(hn::DemoteTo(di, floor), di, whole + lane);
+      const auto low = hn::Add(start, below), high = hn::Add(start, above);
+      is_inner = is_inner && hn::AllTrue(d, hn::Gt(low, hn::LoadU(d, bounds.inner_low + lane))) &&
+                 hn::AllTrue(d, hn::Lt(high, hn::LoadU(d, bounds.inner_high + lane)));
+      meets_end = meets_end && hn::AllTrue(d, hn::Gt(high, hn::LoadU(d, bounds.end + lane)));
     }
-    // Only at the last voxels of all would the read pass the end of the source.
-    if (meets_end) return RowKind::alone;
-    return is_inner ? RowKind::inner : RowKind::rim;
+    if (!meets_end) kind_ = is_inner ? RowKind::inner : RowKind::rim;
   }
 
   const TetSetup* setup_;
   int number_;
-  RowKind kind_;
-  SourceMap<float> map_;
+  RowKind kind_ = RowKind::alone;
   int corner_[3];
-  std::int64_t slice_ahead_ = 0;
   std::int32_t origin_ = 0;
+  std::int64_t slice_ahead_ = 0;
+  alignas(16) std::int32_t slice_step_[4];
 };
+
+/// The same as one voxel at a time needs it.
+template <class Real>
+SourceMap<Real> source_map(const RowSource& source) {
+  double start[3], linear[3][3];
+  const int* corner = source.corner();
+  map_start(source.setup(), corner[0], corner[1], corner[2], start, linear);
+  return make_source_map<Real>(start, linear);
+}
 
 /// Voxels of one row of a cell that one source serves.
 struct RowRun {

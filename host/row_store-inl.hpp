@@ -88,13 +88,14 @@ inline void fill_run(T value, T* out, std::int64_t count) {
 /// The voxels `bits` of a row moved by whole voxels: copied where the source has them.
 template <class T>
 inline void copy_run(const RasterJob<T>& job,
-                     const RowSource<T>& source,
+                     const RowSource& source,
                      unsigned bits,
                      int j,
                      int k,
                      std::int64_t row) {
   const SourceView<T>& view = job.source;
-  const int* whole = source.map().whole;
+  const SourceMap<float> map = source_map<float>(source);
+  const int* whole = map.whole;
   const int y = whole[1] + j, z = whole[2] + k;
   const bool has_row = y >= 0 && y < view.dims[1] && z >= 0 && z < view.dims[2];
   const std::int64_t from = (std::int64_t{z} * view.dims[1] + y) * view.dims[0] + whole[0];
@@ -118,16 +119,17 @@ inline void copy_run(const RasterJob<T>& job,
 /// The voxels `bits` of a row one by one, in the pixel type's own arithmetic where the map allows.
 template <class T>
 inline void sample_alone(const RasterJob<T>& job,
-                         const RowSource<T>& source,
+                         const RowSource& source,
                          unsigned bits,
                          int j,
                          int k,
                          std::int64_t row) {
   const int* corner = source.corner();
+  const auto map = source_map<float>(source);
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
     if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
-      store_sample(job, job.filter, source.map(), i, j, k, row + i);
+      store_sample(job, job.filter, map, i, j, k, row + i);
     } else {
       store_owned<T, double>(job, source.setup(), corner[0], corner[1], corner[2], i, j, k,
                              row + i);

@@ -66,18 +66,29 @@ struct RowPositions {
   hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis, or without Rim RowSource::origin()
 };
 
-/// local_position() of the voxels of row (j, k) from `lane` on.
-template <bool Rim, class T>
-inline RowPositions<Rim> row_positions(const RowSource<T>& source, std::size_t lane, int j, int k) {
+/// Local positions at the start of row (j, k), the first sums of local_position().
+struct RowStart {
+  RowStart(const RowSource& source, int j, int k) {
+    const hn::FixedTag<float, 4> d;
+    const auto row = hn::Mul(hn::Load(d, source.axis[1]), hn::Set(d, static_cast<float>(j)));
+    const auto slice = hn::Mul(hn::Load(d, source.axis[2]), hn::Set(d, static_cast<float>(k)));
+    hn::Store(hn::Add(hn::Add(hn::Load(d, source.base), row), slice), d, at);
+  }
+  alignas(16) float at[4];
+};
+
+/// local_position() of the voxels of a row from `lane` on.
+template <bool Rim>
+inline RowPositions<Rim> row_positions(const RowSource& source,
+                                       const RowStart& start,
+                                       std::size_t lane) {
   const RowTag d;
-  const SourceMap<float>& map = source.map();
   const auto i = hn::Iota(d, static_cast<float>(lane));
   RowPositions<Rim> positions;
   for (int axis = 0; axis < 3; ++axis) {
-    const float line = (map.base[axis] + map.axis[1][axis] * static_cast<float>(j)) +
-                       map.axis[2][axis] * static_cast<float>(k);
-    positions.local[axis] = hn::Add(hn::Set(d, line), hn::Mul(hn::Set(d, map.axis[0][axis]), i));
-    if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), map.whole[axis]);
+    positions.local[axis] =
+        hn::Add(hn::Set(d, start.at[axis]), hn::Mul(hn::Set(d, source.axis[0][axis]), i));
+    if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
   }
   if constexpr (!Rim) positions.whole[0] = hn::Set(RowIntTag(), source.origin());
   return positions;
@@ -87,7 +98,7 @@ inline RowPositions<Rim> row_positions(const RowSource<T>& source, std::size_t l
 template <bool Rim, class T>
 inline void add_unit(const SourceView<T>& view,
                      bool nearest,
-                     const RowSource<T>* sources,
+                     const RowSource* sources,
                      const RowRun* runs,
                      int run_count,
                      int j,
@@ -100,11 +111,14 @@ inline void add_unit(const SourceView<T>& view,
   unsigned bits = 0, inside = 0xff;
   for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
   if constexpr (Rim) inside = 0;
+  const RowSource& first = sources[runs[0].source];
+  const RowStart first_start(first, j, k);
   for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
     // Voxels that no run describes follow the first one: readable, their values are not used.
-    RowPositions<Rim> x = row_positions<Rim>(sources[runs[0].source], lane, j, k);
+    RowPositions<Rim> x = row_positions<Rim>(first, first_start, lane);
     for (int r = 1; r < run_count; ++r) {
-      const RowPositions<Rim> more = row_positions<Rim>(sources[runs[r].source], lane, j, k);
+      const RowSource& source = sources[runs[r].source];
+      const RowPositions<Rim> more = row_positions<Rim>(source, RowStart(source, j, k), lane);
       const auto mine = lanes_of(runs[r].bits, lane);
       const auto mine_int = hn::RebindMask(di, mine);
       for (int axis = 0; axis < 3; ++axis) {
@@ -151,7 +165,7 @@ inline void add_unit(const SourceView<T>& view,
     }
   }
   // What this row will need one slice further up: rows jump too much for the hardware to guess.
-  if (const std::int64_t ahead = sources[runs[0].source].slice_ahead(); ahead != 0) {
+  if (const std::int64_t ahead = first.slice_ahead(); ahead != 0) {
     hwy::Prefetch(view.data + taps.offset[0][at] + ahead);
     hwy::Prefetch(view.data + taps.offset[0][at + cell_edge / 2] + ahead);
   }

@@ -112,9 +112,9 @@ TETWARP_HD void map_start(
                           static_cast<double>(cy - tet.anchor[1]),
                           static_cast<double>(cz - tet.anchor[2])};
   for (int row = 0; row < 3; ++row) {
-    const double* m = tet.map[row];
-    start[row] = m[0] * from[0] + m[1] * from[1] + m[2] * from[2] + m[3];
-    for (int axis = 0; axis < 3; ++axis) linear[row][axis] = m[axis];
+    start[row] = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] + tet.map[2][row] * from[2] +
+                 tet.map[3][row];
+    for (int axis = 0; axis < 3; ++axis) linear[row][axis] = tet.map[axis][row];
   }
 }
 

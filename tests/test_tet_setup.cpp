@@ -111,9 +111,9 @@ TYPED_TEST(TetSetupStage, TakesDeformedNodesToRestNodes) {
         const Point3 from = from_anchor(tet, node_of(input, input.deformed, t, a));
         const double distance = std::abs(from[0]) + std::abs(from[1]) + std::abs(from[2]) + 1;
         for (int row = 0; row < 3; ++row) {
-          double x = tet.map[row][3];
+          double x = tet.map[3][row];
           for (int axis = 0; axis < 3; ++axis) {
-            x += tet.map[row][axis] * from[static_cast<std::size_t>(axis)];
+            x += tet.map[axis][row] * from[static_cast<std::size_t>(axis)];
           }
           // Entries are sums of edges over heights, which may cancel: a few roundings of each term.
           const double first = voxels(node_of(input, input.rest, t, 0).x[row]);
@@ -165,9 +165,9 @@ TYPED_TEST(TetSetupStage, CopiesWholeShiftsToWithinAQuantum) {
 
   EXPECT_EQ(copied.kind, MapKind::copy);
   EXPECT_EQ(copied.map[0][0], 1);
-  EXPECT_EQ(copied.map[0][1], 0);
-  EXPECT_EQ(copied.map[0][3], 4);
-  EXPECT_EQ(copied.map[1][3], -2);
+  EXPECT_EQ(copied.map[1][0], 0);
+  EXPECT_EQ(copied.map[3][0], 4);
+  EXPECT_EQ(copied.map[3][1], -2);
   EXPECT_EQ(moved.kind, MapKind::affine);
 }
 
