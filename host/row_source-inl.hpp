@@ -10,7 +10,6 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -71,8 +70,6 @@ class RowSource {
     }
     origin_ = static_cast<std::int32_t>(origin);
     slice_ahead_ += std::int64_t{job.source.dims[0]} * job.source.dims[1];
-    const bool is_along_rows = std::fabs(tet.map[0][1]) + std::fabs(tet.map[0][2]) < 0.5;
-    if (!is_along_rows) slice_ahead_ = 0;
   }
 
   RowKind kind() const { return kind_; }
@@ -82,8 +79,7 @@ class RowSource {
 
   /// The sample at the map's whole part, when kind() is inner.
   std::int32_t origin() const { return origin_; }
-  /// From a sample to the upper neighbours of the one in the next slice, about; 0 where rows of the
-  /// output cross those of the source: eight voxels need too many lines of memory to ask ahead.
+  /// From a sample to the upper neighbour along z of the one in the next slice, about.
   std::int64_t slice_ahead() const { return slice_ahead_; }
 
   // The parts of SourceMap<float>, unless kind() is alone.

@@ -165,9 +165,10 @@ inline void add_unit(const SourceView<T>& view,
     }
   }
   // What this row will need one slice further up: rows jump too much for the hardware to guess.
-  if (const std::int64_t ahead = first.slice_ahead(); ahead != 0) {
-    hwy::Prefetch(view.data + taps.offset[0][at] + ahead);
-    hwy::Prefetch(view.data + taps.offset[0][at + cell_edge / 2] + ahead);
+  for (const int voxel : {0, cell_edge / 2}) {
+    const T* ahead = view.data + taps.offset[0][at + voxel] + first.slice_ahead();
+    hwy::Prefetch(ahead);
+    hwy::Prefetch(ahead + stride[1]);
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};
