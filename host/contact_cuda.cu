@@ -29,6 +29,33 @@ struct SystemBuffers {
   DeviceBuffer<T> impulse, best, velocity, body_velocity;
 };
 
+/// Records what is launched on a stream; the recording ends whatever is thrown meanwhile.
+class StreamCapture {
+ public:
+  explicit StreamCapture(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal),
+               "cudaStreamBeginCapture");
+  }
+  StreamCapture(const StreamCapture&) = delete;
+  StreamCapture& operator=(const StreamCapture&) = delete;
+  ~StreamCapture() {
+    if (is_recording_) cudaStreamEndCapture(stream_, &graph_);
+    if (graph_ != nullptr) cudaGraphDestroy(graph_);
+  }
+
+  /// What was recorded; stays this object's.
+  cudaGraph_t end() {
+    is_recording_ = false;
+    check_cuda(cudaStreamEndCapture(stream_, &graph_), "cudaStreamEndCapture");
+    return graph_;
+  }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraph_t graph_ = nullptr;
+  bool is_recording_ = true;
+};
+
 /// One sweep of one island, recorded once and launched again and again: a launch per color.
 class SweepGraph {
  public:
@@ -37,19 +64,14 @@ class SweepGraph {
              const SweepIsland& island,
              const std::int64_t* color_start,
              const Body& body) {
-    check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal),
-               "cudaStreamBeginCapture");
+    StreamCapture capture(stream);
     for (std::int64_t k = island.color_begin; k + 1 < island.color_end; ++k) {
       const std::int64_t count = color_start[k + 1] - color_start[k];
       launch(stream, each_kernel<FromContact<Body>>,
              dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads)),
              dim3(each_threads), 0, count, FromContact<Body>{body, color_start[k]});
     }
-    cudaGraph_t graph = nullptr;
-    check_cuda(cudaStreamEndCapture(stream, &graph), "cudaStreamEndCapture");
-    const cudaError_t error = cudaGraphInstantiate(&graph_, graph, 0);
-    cudaGraphDestroy(graph);
-    check_cuda(error, "cudaGraphInstantiate");
+    check_cuda(cudaGraphInstantiate(&graph_, capture.end(), 0), "cudaGraphInstantiate");
   }
   SweepGraph(const SweepGraph&) = delete;
   SweepGraph& operator=(const SweepGraph&) = delete;
