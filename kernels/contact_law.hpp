@@ -94,8 +94,16 @@ friction_size(T speed, T limit, T spring, T metric, T along, T across, bool rest
 template <class T>
 TETWARP_HD void cone_impulses(
     const ContactConstants<T>& c, bool restrictive, T limit, const T* free, T* impulse) {
-  const T spring = c.tangent_spring;
   const T metric = c.tangent_metric;
+  if (c.kind == ContactKind::coulomb) {
+    const T speed = sqrt(square_of(free[0]) + square_of(free[1]));
+    const T size =
+        speed > 0 ? friction_size(speed, limit, T(0), metric, T(0), T(0), false) / speed : T(0);
+    impulse[0] = -size * free[0];
+    impulse[1] = -size * free[1];
+    return;
+  }
+  const T spring = c.tangent_spring;
   const T rest = 1 / (1 + spring * metric);
   const T m = metric * rest;
   // Velocity with the springs but without friction.
@@ -127,6 +135,20 @@ axis_impulse(const ContactConstants<T>& c, bool restrictive, T limit, T free, T 
   return -size - spring * (x - metric * rest * size + offset);
 }
 
+/// Whether its normal row is all there is to solve.
+template <class T>
+TETWARP_HD bool has_one_row(const ContactConstants<T>& c, const T* impulse) {
+  return c.kind == ContactKind::frictionless && impulse[1] == 0 && impulse[2] == 0;
+}
+
+/// Replaces the normal impulse by the answer to the normal velocity; returns its change.
+template <class T>
+TETWARP_HD T solve_normal(const ContactConstants<T>& c, T velocity, T* impulse) {
+  const T before = impulse[0];
+  impulse[0] = normal_impulse(velocity - c.block[0] * before, c.block[0], c.normal_spring);
+  return impulse[0] - before;
+}
+
 /// Replaces `impulse` by the answer to `velocity` (u = B impulse + what all others do; changed on
 /// the way): normal first, then the tangents under the friction that the new normal allows. Its
 /// fixed point over all contacts is the exact law.
@@ -136,16 +158,14 @@ TETWARP_HD void solve_contact(const ContactConstants<T>& c,
                               T* velocity,
                               T* impulse) {
   const T* b = c.block;
-  const T normal = normal_impulse(velocity[0] - b[0] * impulse[0], b[0], c.normal_spring);
-  const T change = normal - impulse[0];
-  impulse[0] = normal;
+  const T change = solve_normal(c, velocity[0], impulse);
   if (c.kind == ContactKind::frictionless) {
     impulse[1] = impulse[2] = 0;
     return;
   }
   velocity[1] += b[3] * change;
   velocity[2] += b[6] * change;
-  const T limit = c.friction * max_of(normal, T(0));
+  const T limit = c.friction * max_of(impulse[0], T(0));
   if (!switches.pyramid) {
     const T free[2] = {velocity[1] - c.tangent_metric * impulse[1],
                        velocity[2] - c.tangent_metric * impulse[2]};

@@ -32,6 +32,16 @@ struct DelassusView {
     velocity[1] = y;
     velocity[2] = z;
   }
+  /// Its normal component alone.
+  TETWARP_HD T normal_velocity_at(std::int64_t c, const T* impulse) const {
+    T sum = free_velocity[3 * c];
+    for (std::int64_t k = row_start[c]; k < row_start[c + 1]; ++k) {
+      const T* w = blocks.data + 9 * k;
+      const T* r = impulse + 3 * std::int64_t{column[k]};
+      sum += w[0] * r[0] + w[1] * r[1] + w[2] * r[2];
+    }
+    return sum;
+  }
 };
 
 /// J and the responses of bodies, with the velocity offsets.
@@ -59,6 +69,18 @@ struct BodiesView {
     }
     for (int a = 0; a < 3; ++a) velocity[a] = sum[a];
   }
+  /// Its normal component alone.
+  TETWARP_HD T normal_velocity_at(std::int64_t c, const T* body_velocity) const {
+    T sum = offset[3 * c];
+    for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
+      const std::int32_t b = pairs.block[p];
+      const std::int64_t first = pairs.dof_start[b];
+      const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
+      const T* j = jacobian.data + pairs.value_start[p];
+      for (int k = 0; k < size; ++k) sum += j[k] * body_velocity[first + k];
+    }
+    return sum;
+  }
   /// v += A^-1 J^T change.
   TETWARP_HD void push(std::int64_t c, const T* change, T* body_velocity) const {
     for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
@@ -71,6 +93,16 @@ struct BodiesView {
         v[k] += answer[3 * k] * change[0] + answer[3 * k + 1] * change[1] +
                 answer[3 * k + 2] * change[2];
       }
+    }
+  }
+  /// So, for a change of the normal impulse alone.
+  TETWARP_HD void push_normal(std::int64_t c, T change, T* body_velocity) const {
+    for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
+      const std::int32_t b = pairs.block[p];
+      const std::int64_t first = pairs.dof_start[b];
+      const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
+      const T* answer = response.data + pairs.value_start[p];
+      for (int k = 0; k < size; ++k) body_velocity[first + k] += answer[3 * k] * change;
     }
   }
 };
@@ -114,12 +146,17 @@ struct DelassusSweepBody {
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (calm.is_asleep(c)) return;
-    T velocity[3];
+    const ContactConstants<T>& contact = constants[c];
     T* r = impulse.data + 3 * c;
-    const T before[3] = {r[0], r[1], r[2]};
-    delassus.velocity_at(c, impulse.data, velocity);
-    solve_contact(constants[c], switches, velocity, r);
-    const T change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
+    T change[3] = {-r[0], -r[1], -r[2]};
+    if (has_one_row(contact, r)) {
+      change[0] = solve_normal(contact, delassus.normal_velocity_at(c, impulse.data), r);
+    } else {
+      T velocity[3];
+      delassus.velocity_at(c, impulse.data, velocity);
+      solve_contact(contact, switches, velocity, r);
+      for (int a = 0; a < 3; ++a) change[a] += r[a];
+    }
     calm.note(c, change, r);
   }
 };
@@ -136,13 +173,19 @@ struct BodySweepBody {
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (calm.is_asleep(c)) return;
-    T velocity[3];
+    const ContactConstants<T>& contact = constants[c];
     T* r = impulse.data + 3 * c;
-    const T before[3] = {r[0], r[1], r[2]};
-    bodies.velocity_at(c, body_velocity.data, velocity);
-    solve_contact(constants[c], switches, velocity, r);
-    const T change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
-    bodies.push(c, change, body_velocity.data);
+    T change[3] = {-r[0], -r[1], -r[2]};
+    if (has_one_row(contact, r)) {
+      change[0] = solve_normal(contact, bodies.normal_velocity_at(c, body_velocity.data), r);
+      bodies.push_normal(c, change[0], body_velocity.data);
+    } else {
+      T velocity[3];
+      bodies.velocity_at(c, body_velocity.data, velocity);
+      solve_contact(contact, switches, velocity, r);
+      for (int a = 0; a < 3; ++a) change[a] += r[a];
+      bodies.push(c, change, body_velocity.data);
+    }
     calm.note(c, change, r);
   }
 };

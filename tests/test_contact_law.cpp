@@ -114,6 +114,8 @@ TYPED_TEST(ContactLaw, OneVisitFindsTheImpulseOfAnIsotropicContact) {
       if (trial % 7 != 0) {
         c.normal_spring = static_cast<T>(mass * this->power(-12, 12));
         c.tangent_spring = static_cast<T>(mass * this->power(-12, 12));
+      } else {
+        c.kind = ContactKind::coulomb;
       }
       for (T& offset : c.tangent_offset) offset = static_cast<T>(this->symmetric());
       Vector u = {this->unit(), this->symmetric(), this->symmetric()};
@@ -154,6 +156,8 @@ TYPED_TEST(ContactLaw, VisitsEndWhereEveryLawHolds) {
       if (trial % 7 != 0) {
         c.normal_spring = static_cast<T>(this->power(-3, 2));
         c.tangent_spring = static_cast<T>(this->power(-3, 2));
+      } else {
+        c.kind = ContactKind::coulomb;
       }
       for (T& offset : c.tangent_offset) offset = static_cast<T>(0.1L * this->symmetric());
       const Wide slow = trial % 3 == 0 ? 0.1L : 1;
