@@ -93,7 +93,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
     tests/test_contact_skip.cpp
+    tests/test_contact_solver.cpp
     tests/test_contact_sweep.cpp
+    tests/test_contact_threads.cpp
     tests/test_contact_tracker.cpp)
   tetwarp_discover(tetwarp_contact_tests unit FILTER "-*Cuda*")
   tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)

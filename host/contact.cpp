@@ -47,10 +47,12 @@ struct WholeResidual {
   ContactSums sums, free;
   double free_square = 0;
 
-  double eta() const {
+  /// Root of an energy as a share of eta.
+  double eta_of(double square) const {
     const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
-    return sums.eta > 0 ? std::sqrt(sums.eta) / std::max(scale, 1e-300) : 0;
+    return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
   }
+  double eta() const { return eta_of(sums.eta); }
   double fclib() const {
     return sums.fclib > 0 ? std::sqrt(sums.fclib / std::max(free_square, 1e-300)) : 0;
   }
@@ -151,6 +153,30 @@ void add_product(const SparseMatrix& matrix,
   }
 }
 
+/// |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form.
+double imbalance(const ContactProblem& problem, const ContactSolution& solution) {
+  if (problem.is_local()) return 0;
+  std::vector<double> push(problem.load.size(), 0.0), defect(problem.load.size(), 0.0);
+  const SparseMatrix& jacobian = problem.jacobian;
+  for (std::size_t row = 0; row < solution.impulse.size(); ++row) {
+    const auto end = static_cast<std::size_t>(jacobian.row_start[row + 1]);
+    for (auto e = static_cast<std::size_t>(jacobian.row_start[row]); e < end; ++e) {
+      push[static_cast<std::size_t>(jacobian.column[e])] +=
+          jacobian.value[e] * solution.impulse[row];
+    }
+  }
+  add_product(problem.system, solution.body_velocity, defect);
+  double square = 0, push_square = 0, load_square = 0;
+  for (std::size_t dof = 0; dof < defect.size(); ++dof) {
+    const double left = defect[dof] - push[dof] - problem.load[dof];
+    square += left * left;
+    push_square += push[dof] * push[dof];
+    load_square += problem.load[dof] * problem.load[dof];
+  }
+  const double scale = std::sqrt(std::max(push_square, load_square));
+  return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
+}
+
 /// u = W r + q, or u = J v + w.
 std::vector<double> contact_velocity(const ContactProblem& problem,
                                      const ContactSolution& solution) {
@@ -213,6 +239,8 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   const WholeResidual whole = whole_residual(result.outcomes);
   report.residual.eta = whole.eta();
   report.residual.fclib = whole.fclib();
+  report.residual.largest = whole.eta_of(whole.sums.largest);
+  report.residual.largest_contact = whole.sums.largest_contact;
   report.residual.penetration = whole.sums.deepest;
   const double error = s.options.measure == ContactMeasure::eta ? std::sqrt(whole.sums.eta)
                                                                 : std::sqrt(whole.sums.fclib);
@@ -222,6 +250,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);
+  report.residual.balance = imbalance(problem, solution);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;

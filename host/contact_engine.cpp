@@ -39,6 +39,12 @@ void scatter_velocities(const ContactStructure& structure,
   }
 }
 
+/// The largest term's slot becomes its contact.
+void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums) {
+  if (sums.largest_contact < 0) return;
+  sums.largest_contact = structure.contact_of_slot[index_of(first_slot + sums.largest_contact)];
+}
+
 /// Offsets that ask for more than a recovery speed are lowered to it.
 void clamp_offsets(ContactProblem& problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
@@ -59,13 +65,11 @@ ContactEngine::ContactEngine(const ContactOptions& options, int threads, Contact
     : options_(options), threads_(threads), device_(device) {}
 
 ContactSystem<double> ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
-  ContactSystem<double> system;
-  if (pattern_ && has_pattern(problem, *pattern_) &&
-      fill_system(problem, options_, structure_, system, result.savings)) {
-    return system;
+  if (!pattern_ || !has_pattern(problem, *pattern_)) {
+    structure_ = make_structure(problem, options_.skip);
+    pattern_ = pattern_of(problem);
   }
-  structure_ = make_structure(problem, options_.skip.converged_islands);
-  pattern_ = pattern_of(problem);
+  ContactSystem<double> system;
   fill_system(problem, options_, structure_, system, result.savings);
   return system;
 }
@@ -143,6 +147,7 @@ void ContactEngine::solve_uncoupled(const ContactProblem& problem,
     outcome.sums = run.measure(i);
     outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
     if (!run.is_done(i, outcome.sums)) fall_back(problem, i, run, result);
+    name_largest(structure_, 0, outcome.sums);
     scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
                      result.impulse);
     if (structure_.is_local) continue;
@@ -202,6 +207,7 @@ void ContactEngine::solve_coupled(const ContactProblem& problem,
   scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
   scatter_velocities(structure_, island, v.data(), result.body_velocity);
   result.outcomes[index_of(i)] = inner.outcomes[0];
+  name_largest(structure_, island.slot_begin, result.outcomes[index_of(i)].sums);
   result.updates_skipped += inner.updates_skipped;
   result.colors = std::max(result.colors, inner.colors);
   for (const std::int32_t c : inner.clamped) {

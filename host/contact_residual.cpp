@@ -35,7 +35,7 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
            const ContactOptions& options) {
   double energy = 0;
   double free_energy = 0;
-  double most = -1;
+  double most = 0;
   Eta eta;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const auto row = 3 * static_cast<Index>(c);
@@ -53,7 +53,7 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
       std::max(std::sqrt(free_energy) + std::sqrt(std::max(impulse.dot(velocity_change), 0.0)),
                std::numeric_limits<double>::min());
   eta.total = std::sqrt(energy) / scale;
-  eta.largest = std::sqrt(std::max(most, 0.0)) / scale;
+  eta.largest = std::sqrt(most) / scale;
   return eta;
 }
 

@@ -7,6 +7,18 @@
 
 namespace tetwarp {
 
+namespace {
+
+std::vector<std::int64_t> zeros_of(const SparseMatrix& matrix) {
+  std::vector<std::int64_t> zeros;
+  for (std::size_t e = 0; e < matrix.value.size(); ++e) {
+    if (matrix.value[e] == 0) zeros.push_back(static_cast<std::int64_t>(e));
+  }
+  return zeros;
+}
+
+}  // namespace
+
 PairView ContactStructure::pairs() const {
   return {view_of(pair_start), view_of(pair_block), view_of(pair_value), view_of(dof_start)};
 }
@@ -29,21 +41,21 @@ void take_order(ContactStructure& structure, ContactOrder order) {
   structure.color_start = std::move(order.color_start);
 }
 
-ContactStructure make_structure(const ContactProblem& problem, bool separates_islands) {
+ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip) {
   ContactStructure structure;
   structure.is_local = problem.is_local();
   if (structure.is_local) {
-    fill_local_structure(problem, separates_islands, structure);
+    fill_local_structure(problem, skip, structure);
   } else {
-    fill_global_structure(problem, separates_islands, structure);
+    fill_global_structure(problem, skip, structure);
   }
   return structure;
 }
 
 ContactPattern pattern_of(const ContactProblem& problem) {
-  return {problem.delassus.row_start, problem.delassus.column,    problem.system.row_start,
-          problem.system.column,      problem.jacobian.row_start, problem.jacobian.column,
-          problem.block_start};
+  return {problem.delassus.row_start, problem.delassus.column,  problem.system.row_start,
+          problem.system.column,      zeros_of(problem.system), problem.jacobian.row_start,
+          problem.jacobian.column,    problem.block_start};
 }
 
 bool has_pattern(const ContactProblem& problem, const ContactPattern& pattern) {
@@ -51,6 +63,7 @@ bool has_pattern(const ContactProblem& problem, const ContactPattern& pattern) {
          problem.delassus.column == pattern.delassus_column &&
          problem.system.row_start == pattern.system_row &&
          problem.system.column == pattern.system_column &&
+         zeros_of(problem.system) == pattern.system_zeros &&
          problem.jacobian.row_start == pattern.jacobian_row &&
          problem.jacobian.column == pattern.jacobian_column &&
          problem.block_start == pattern.block_start;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <tetwarp/contact_problem.hpp>
+#include <tetwarp/contact.hpp>
 
 #include "host/contact_islands.hpp"
 #include "kernels/body_relax.hpp"
@@ -80,17 +80,19 @@ SystemView<T> ContactStructure::system(View<const T> values) const {
           view_of(dof_start)};
 }
 
-/// @param separates_islands  false: all contacts are one island
+/// @param skip  without `converged_islands` all contacts are one island; without
+///              `contactless_bodies` the blocks that no contact reaches join the first island
 /// @pre check(problem) has passed
-ContactStructure make_structure(const ContactProblem& problem, bool separates_islands);
+ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip);
 
-/// The index arrays of a problem. Problems of one pattern share a structure, as long as no number
-/// that was a stored zero between blocks becomes another one.
+/// What a structure follows from: the index arrays of a problem, and which of the numbers of A are
+/// zero, since blocks and couplings are made of the others.
 struct ContactPattern {
   std::vector<std::int64_t> delassus_row;
   std::vector<std::int32_t> delassus_column;
   std::vector<std::int64_t> system_row;
   std::vector<std::int32_t> system_column;
+  std::vector<std::int64_t> system_zeros;  ///< stored entries that are zero
   std::vector<std::int64_t> jacobian_row;
   std::vector<std::int32_t> jacobian_column;
   std::vector<std::int32_t> block_start;

@@ -57,9 +57,9 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
 }
 
 /// Order of blocks by island; fills the islands. Contacts decide the numbering; blocks that no
-/// contact reaches form the islands behind.
+/// contact reaches form the islands behind, or join the first.
 std::vector<std::int32_t> order_blocks(const Blocks& blocks,
-                                       bool separates_islands,
+                                       const ContactSkipOptions& skip,
                                        ContactStructure& s) {
   Lists links = blocks.coupled;
   for (std::int64_t c = 0; c < blocks.touched.size(); ++c) {
@@ -73,12 +73,16 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
   std::int32_t count = 0;
   for (std::int64_t c = 0; c < blocks.touched.size(); ++c) {
     std::int32_t& island = island_of[index_of(component[index_of(blocks.touched.of(c)[0])])];
-    if (island < 0) island = separates_islands || count == 0 ? count++ : 0;
+    if (island < 0) island = skip.converged_islands || count == 0 ? count++ : 0;
     contact_island.push_back(island);
   }
   take_order(s, make_contact_order(blocks.touched, contact_island));
   for (const std::int32_t c : component) {
     if (island_of[index_of(c)] >= 0) continue;
+    if (!skip.contactless_bodies && s.contact_islands > 0) {
+      island_of[index_of(c)] = 0;
+      continue;
+    }
     island_of[index_of(c)] = count++;
     ContactIsland island;
     island.slot_begin = island.slot_end = blocks.touched.size();
@@ -221,7 +225,7 @@ void fill_system(const ContactProblem& problem,
 }  // namespace
 
 void fill_global_structure(const ContactProblem& problem,
-                           bool separates_islands,
+                           const ContactSkipOptions& skip,
                            ContactStructure& structure) {
   const std::vector<std::int32_t> starts = blocks_of(problem);
   Blocks blocks = make_blocks(problem, {starts.begin(), starts.end()});
@@ -229,7 +233,7 @@ void fill_global_structure(const ContactProblem& problem,
     std::vector<std::int64_t> merged = merged_starts(blocks);
     if (merged.size() != blocks.start.size()) blocks = make_blocks(problem, std::move(merged));
   }
-  const std::vector<std::int32_t> order = order_blocks(blocks, separates_islands, structure);
+  const std::vector<std::int32_t> order = order_blocks(blocks, skip, structure);
   const std::vector<std::int32_t> place_of_block = places_of(order);
   fill_dofs(blocks, order, structure);
   fill_pairs(problem, blocks, place_of_block, structure);

@@ -8,7 +8,7 @@
 namespace tetwarp {
 
 void fill_local_structure(const ContactProblem& problem,
-                          bool separates_islands,
+                          const ContactSkipOptions& skip,
                           ContactStructure& structure) {
   ContactStructure& s = structure;
   const SparseMatrix& w = problem.delassus;
@@ -31,7 +31,7 @@ void fill_local_structure(const ContactProblem& problem,
     groups.item.insert(groups.item.end(), {a, b});
     groups.close_list();
   }
-  const std::vector<std::int32_t> islands = separates_islands
+  const std::vector<std::int32_t> islands = skip.converged_islands
                                                 ? components_of(groups, contacts)
                                                 : std::vector<std::int32_t>(index_of(contacts), 0);
   take_order(s, make_contact_order(make_transposed(groups, contacts), islands));

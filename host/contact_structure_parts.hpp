@@ -60,10 +60,10 @@ Lists block_columns(const SparseMatrix& matrix,
 void take_order(ContactStructure& structure, ContactOrder order);
 
 void fill_local_structure(const ContactProblem& problem,
-                          bool separates_islands,
+                          const ContactSkipOptions& skip,
                           ContactStructure& structure);
 void fill_global_structure(const ContactProblem& problem,
-                           bool separates_islands,
+                           const ContactSkipOptions& skip,
                            ContactStructure& structure);
 
 }  // namespace tetwarp

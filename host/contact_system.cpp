@@ -14,21 +14,15 @@ std::size_t index_of(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Adds stored numbers up where they belong. False: one that is not zero has no place.
-bool scatter(const std::vector<double>& values,
+/// Adds stored numbers up where they belong; zeros may have no place.
+void scatter(const std::vector<double>& values,
              const std::vector<std::int64_t>& target,
              std::int64_t size,
              std::vector<double>& out) {
   out.assign(index_of(size), 0.0);
-  bool has_places = true;
   for (std::size_t e = 0; e < values.size(); ++e) {
-    if (target[e] >= 0) {
-      out[index_of(target[e])] += values[e];
-    } else {
-      has_places = has_places && values[e] == 0;
-    }
+    if (target[e] >= 0) out[index_of(target[e])] += values[e];
   }
-  return has_places;
 }
 
 double entry_of(const std::vector<double>& values, std::size_t i) {
@@ -138,7 +132,7 @@ std::vector<To> rounded(const std::vector<From>& values) {
 
 }  // namespace
 
-bool fill_system(const ContactProblem& problem,
+void fill_system(const ContactProblem& problem,
                  const ContactOptions& options,
                  const ContactStructure& structure,
                  ContactSystem<double>& system,
@@ -146,10 +140,8 @@ bool fill_system(const ContactProblem& problem,
   if (structure.is_local) {
     scatter(problem.delassus.value, structure.delassus_target,
             9 * static_cast<std::int64_t>(structure.delassus_column.size()), system.delassus);
-  } else if (!scatter(problem.system.value, structure.system_target, structure.system_size,
-                      system.system)) {
-    return false;
   } else {
+    scatter(problem.system.value, structure.system_target, structure.system_size, system.system);
     scatter(problem.jacobian.value, structure.jacobian_target, structure.jacobian_size,
             system.jacobian);
   }
@@ -172,7 +164,6 @@ bool fill_system(const ContactProblem& problem,
   } else {
     fill_global(options, problem, structure, system);
   }
-  return true;
 }
 
 ContactSystem<float> make_float32(const ContactSystem<double>& system) {

@@ -40,9 +40,9 @@ struct ContactSavings {
 };
 
 /// The system of a problem, in float64.
-/// @param savings  out
-/// @return false  when a stored zero that the structure left out has become another number
-bool fill_system(const ContactProblem& problem,
+/// @param structure  of this problem or one of the same pattern
+/// @param savings    out
+void fill_system(const ContactProblem& problem,
                  const ContactOptions& options,
                  const ContactStructure& structure,
                  ContactSystem<double>& system,

@@ -17,7 +17,7 @@ namespace tetwarp::test {
 /// All contacts are one island.
 struct ContactStages {
   explicit ContactStages(const ContactProblem& problem, const ContactOptions& options = {})
-      : structure(make_structure(problem, false)) {
+      : structure(make_structure(problem, {.converged_islands = false})) {
     ContactSavings savings;
     fill_system(problem, options, structure, system, savings);
   }

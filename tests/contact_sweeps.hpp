@@ -22,7 +22,7 @@ struct SweepScene {
   ContactSystem<double> system;
 
   SweepScene(const ContactProblem& problem, bool separates_islands)
-      : structure(make_structure(problem, separates_islands)) {
+      : structure(make_structure(problem, {.converged_islands = separates_islands})) {
     ContactSavings savings;
     fill_system(problem, {}, structure, system, savings);
   }

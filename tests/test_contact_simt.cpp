@@ -89,7 +89,7 @@ TEST(ContactSweepSimt, RigidBodiesHaveTheBitsOfTheHost) {
 /// More contacts of one color than a block has threads.
 TEST(ContactSweepSimt, WideColorsHaveTheBitsOfTheHost) {
   const ContactProblem problem = scenes::random_local({.seed = 7, .contacts = 700});
-  const ContactStructure structure = make_structure(problem, false);
+  const ContactStructure structure = make_structure(problem, {.converged_islands = false});
   EXPECT_GT(structure.color_start[1] - structure.color_start[0], sweep_threads);
 
   expect_equal_bits<double>(problem);
@@ -108,7 +108,7 @@ TEST(ContactSweepSimt, EveryLawAndRuleHasTheBitsOfTheHost) {
 
 TEST(ContactSweepSimt, IslandsSideBySideHaveTheBitsOfTheHost) {
   const ContactProblem spheres = scenes::sphere_packing({.seed = 9, .edge = 5, .kept = 0.2});
-  EXPECT_GT(make_structure(spheres, true).contact_islands, 5);
+  EXPECT_GT(make_structure(spheres, {}).contact_islands, 5);
 
   expect_equal_bits<double>(spheres, {}, true);
   expect_equal_bits<float>(spheres, {}, true);

@@ -127,9 +127,12 @@ TEST(ContactSkip, BodiesThatNoContactReachesAreSolvedApart) {
   problem.block_start = {0, 6, 12, 18, 24, 30};
 
   const ContactSolution on = solve(problem, &ContactSkipOptions::contactless_bodies, true);
+  const ContactSolution off = solve(problem, &ContactSkipOptions::contactless_bodies, false);
   const ContactSolution reference = solve_contacts(problem, {.backend = Backend::reference});
 
   EXPECT_EQ(on.report.bodies_skipped, 2);
+  EXPECT_EQ(off.report.bodies_skipped, 0);
+  expect_agreement(on, off);
   expect_agreement(on, reference);
   EXPECT_LE(residual_of(problem, on.impulse, on.body_velocity).balance, 1e-12);
 }

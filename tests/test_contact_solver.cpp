@@ -14,6 +14,7 @@
 
 #include "tests/contact_methods.hpp"
 #include "tests/contact_samples.hpp"
+#include "tests/contact_scenes.hpp"
 #include "tests/contact_stages.hpp"
 
 namespace tetwarp::test {
@@ -37,8 +38,9 @@ TEST(ContactSolver, UsedAgainGivesTheBitsOfANewOne) {
   }
 }
 
-/// A stored zero becomes a coupling: the pattern is the same, the structure is not.
-TEST(ContactSolver, NoticesACouplingWhereAZeroWasStored) {
+/// A stored zero becomes a coupling and a zero again: the index arrays are the same, the structures
+/// are not.
+TEST(ContactSolver, NoticesWhereStoredZerosComeAndGo) {
   ContactProblem coupled = global_problem(94, 3, 0.4), loose = coupled;
   for (std::int64_t row = 0; row < 18; ++row) {
     const auto r = static_cast<std::size_t>(row);
@@ -48,8 +50,26 @@ TEST(ContactSolver, NoticesACouplingWhereAZeroWasStored) {
     }
   }
   ContactSolver solver({.tolerance = 1e-9});
-  for (const ContactProblem& problem : {loose, coupled}) {
+  for (const ContactProblem& problem : {loose, coupled, loose}) {
     expect_same_bits(solver.solve(problem), solve_contacts(problem, {.tolerance = 1e-9}), "");
+  }
+}
+
+/// Many islands, in an order other than that of the contacts; bodies apart and coupled ones.
+TEST(ContactSolver, ReportsTheContactFarthestFromItsLawAndTheBalance) {
+  const ContactProblem packing = scenes::sphere_packing({.seed = 98, .edge = 5, .kept = 0.2});
+  for (const ContactProblem& problem :
+       {local_problem(98, 30), packing, global_problem(98, 12, 0.4)}) {
+    const ContactSolution solution = solve_contacts(problem, {.tolerance = 1e-3});
+    const ContactResidual& reported = solution.report.residual;
+    const ContactResidual expected = residual_of(problem, solution.impulse, solution.body_velocity);
+
+    EXPECT_GE(reported.largest_contact, 0);
+    EXPECT_EQ(reported.largest_contact, expected.largest_contact);
+    EXPECT_NEAR(reported.largest, expected.largest, 1e-6 * expected.largest);
+    EXPECT_LE(reported.largest, reported.eta);
+    EXPECT_LE(reported.balance, 1e-13);
+    EXPECT_EQ(reported.balance > 0, !problem.is_local());  // rounding leaves something
   }
 }
 

@@ -31,7 +31,8 @@ enum class AdhesionRule {
 };
 
 enum class ContactMethod {
-  automatic,       ///< chosen from the problem; falls back when the residual stops dropping
+  automatic,       ///< accelerated sweeps, and others in turn when the residual stops dropping;
+                   ///< back end cuda: plain sweeps there, the others on the host after them
   gauss_seidel,    ///< projected Gauss-Seidel over colors
   nonlinear_cg,    ///< nonsmooth nonlinear conjugate gradients over sweeps
   anderson,        ///< Anderson acceleration of sweeps, window 8
@@ -51,7 +52,8 @@ enum class ContactPrecision { float64, float32 };
 struct ContactSkipOptions {
   bool frictionless_rows = true;   ///< contacts with kappa = 0 and mu = 0 are one row, not three
   bool debonded_springs = true;    ///< contacts with beta = 0 carry no springs
-  bool contactless_bodies = true;  ///< parts of A that no contact touches are one linear solve
+  bool contactless_bodies = true;  ///< parts of A that no contact reaches are solved apart from
+                                   ///< those with contacts, linearly
   bool converged_islands = true;   ///< a converged island stops; all are checked at the end
   bool frozen_contacts = true;     ///< long converged contacts are revisited every few sweeps
 };
@@ -88,10 +90,10 @@ const char* name_of(ContactStatus status);
 struct ContactResidual {
   double eta = 0;
   double fclib = 0;
-  double largest = 0;  ///< largest share of one contact in eta
-  std::int64_t largest_contact = -1;
-  double penetration = 0;  ///< max(-u_n), m/s
-  double balance = 0;      ///< |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form
+  double largest = 0;  ///< largest share of one contact in eta: eta^2 sums their squares
+  std::int64_t largest_contact = -1;  ///< whose that is; -1: no contact has any
+  double penetration = 0;             ///< max(-u_n), m/s
+  double balance = 0;                 ///< |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form
 };
 
 /// What a solve did. Field names of the JSON are an interface.
