@@ -47,14 +47,30 @@ std::vector<ContactInput> recorded(const std::string& folder) {
   return inputs;
 }
 
-/// Each scene has something that one of the switches leaves out.
-std::vector<ContactInput> skip_inputs() {
+/// A switch of ContactSkipOptions and a scene that has what it leaves out.
+struct SkipChoice {
+  ContactInput input;
+  std::string without;
+  bool ContactSkipOptions::*choice;
+  ContactMethod method = ContactMethod::automatic;
+};
+
+std::vector<SkipChoice> skip_choices() {
+  const ContactInput beside = {"slab_beside_free_slab", [] {
+                                 return scenes::beside(
+                                     scenes::elastic_slab({.cubes = {8, 6, 3}, .contacts = 40}),
+                                     scenes::elastic_slab({.cubes = {24, 6, 3}, .contacts = 0}));
+                               }};
   return {
-      packing("packing_1k", {.edge = 6}),
-      packing("packing_1k_loose", {.edge = 9, .kept = 0.15}),
-      packing("packing_1k_frictionless", {.edge = 6, .friction = 0}),
-      packing("packing_1k_debonded", {.edge = 6, .glue = {.stiffness = 1e7, .intensity = 0}}),
-      small_slab(),
+      {packing("packing_1k_frictionless", {.edge = 6, .friction = 0}), "frictionless_rows",
+       &ContactSkipOptions::frictionless_rows},
+      {packing("packing_1k_debonded", {.edge = 6, .glue = {.stiffness = 1e7, .intensity = 0}}),
+       "debonded_springs", &ContactSkipOptions::debonded_springs},
+      {beside, "contactless_bodies", &ContactSkipOptions::contactless_bodies},
+      {packing("packing_1k_loose", {.edge = 9, .kept = 0.15}), "converged_islands",
+       &ContactSkipOptions::converged_islands},
+      {packing("packing_1k", {.edge = 6}), "frozen_contacts", &ContactSkipOptions::frozen_contacts,
+       ContactMethod::gauss_seidel},
   };
 }
 
@@ -103,13 +119,15 @@ class Rows {
     }
   }
 
-  void add_skips(const ContactInput& input) {
+  void add_skip(const SkipChoice& choice) {
     ContactOptions options = options_for(1e-6);
-    add({.kind = ContactKind::skip, .input = input, .options = options});
-    for (const ContactSkipVariant& variant : contact_skip_variants()) {
-      options.skip = variant.skip;
-      add({.kind = ContactKind::skip, .input = input, .options = options, .without = variant.name});
-    }
+    options.method = choice.method;
+    add({.kind = ContactKind::skip, .input = choice.input, .options = options});
+    options.skip.*choice.choice = false;
+    add({.kind = ContactKind::skip,
+         .input = choice.input,
+         .options = options,
+         .without = choice.without});
   }
 
   void add_scale(const ContactInput& input) {
@@ -197,14 +215,6 @@ std::string name_of(const ContactCase& row) {
   return name;
 }
 
-std::vector<ContactSkipVariant> contact_skip_variants() {
-  return {{"frictionless_rows", {.frictionless_rows = false}},
-          {"debonded_springs", {.debonded_springs = false}},
-          {"contactless_bodies", {.contactless_bodies = false}},
-          {"converged_islands", {.converged_islands = false}},
-          {"frozen_contacts", {.frozen_contacts = false}}};
-}
-
 std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder) {
   std::vector<ContactInput> inputs = {
       stack("stack_10", {.boxes = 10}),
@@ -230,7 +240,7 @@ std::vector<ContactCase> contact_cases(Extent extent,
   Rows rows(extent, threads);
   for (const ContactInput& input : contact_inputs(extent, fclib_folder)) rows.add_work(input);
   for (const std::int64_t contacts : {151, 531}) rows.add_visits(slab(contacts));
-  for (const ContactInput& input : skip_inputs()) rows.add_skips(input);
+  for (const SkipChoice& choice : skip_choices()) rows.add_skip(choice);
   std::vector<std::int64_t> edges = {3, 4, 6, 9, 13};
   if (extent == Extent::full) edges.insert(edges.end(), {19, 28});
   for (const std::int64_t edge : edges) {

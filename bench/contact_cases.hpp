@@ -21,7 +21,7 @@ struct ContactInput {
 /// What a row shows.
 enum class ContactKind {
   work,  ///< time to one tolerance, by one method
-  skip,  ///< with one switch of ContactSkipOptions off, or with none off
+  skip,  ///< with a switch of ContactSkipOptions off, and with none off
   scale  ///< problems of one kind, smaller and larger
 };
 
@@ -39,8 +39,7 @@ struct ContactCase {
   ContactOptions options;  ///< measure and max_sweeps follow from the problem
   ContactVisit visit = ContactVisit::first;
   std::int64_t max_updates = 0;  ///< local solves at most, so that no method holds up the others
-  std::string without =
-      {};  ///< what is switched off: a name of contact_skip_variants(), or nothing
+  std::string without = {};      ///< the switch that is off, by its name, or nothing
 };
 
 /// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04; kinds skip and scale are
@@ -50,13 +49,6 @@ std::string name_of(const ContactCase& row);
 
 /// "gauss_seidel" and so on, as in ContactMethod.
 const char* name_of(ContactMethod method);
-
-/// Switches of ContactSkipOptions, off one by one.
-struct ContactSkipVariant {
-  std::string name;
-  ContactSkipOptions skip;
-};
-std::vector<ContactSkipVariant> contact_skip_variants();
 
 /// Problems of all methods: stacks, packings, elastic blocks, then those of the folder.
 std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib_folder);

@@ -31,6 +31,29 @@ double velocity_mismatch(const ContactProblem& problem, const ContactSolution& s
   return scale > 0 ? mismatch / scale : mismatch;
 }
 
+ContactJudgement judge_residual(const ContactResidual& residual,
+                                const ContactProblem& problem,
+                                const ContactSolution& solution,
+                                const ContactOptions& options) {
+  ContactJudgement judgement;
+  judgement.residual = residual;
+  const bool by_eta = options.measure == ContactMeasure::eta;
+  judgement.error = by_eta ? residual.eta : residual.fclib;
+  // Both sides round: a share of the tolerance, and what float64 leaves of sums of large terms.
+  if (solution.converged() && !(judgement.error <= 1.01 * options.tolerance + 1e-13)) {
+    judgement.fault = fmt::format("called converged at {:.0e}, but its error is {:.2e}",
+                                  options.tolerance, judgement.error);
+  }
+  if (solution.converged() && !(residual.balance <= options.tolerance)) {
+    judgement.fault = fmt::format("momentum is out of balance by {:.1e}", residual.balance);
+  }
+  const double mismatch = velocity_mismatch(problem, solution);
+  if (!(mismatch <= 1e-10)) {
+    judgement.fault = fmt::format("contact velocities are off by {:.1e}", mismatch);
+  }
+  return judgement;
+}
+
 }  // namespace
 
 ContactMeasure measure_of(const ContactProblem& problem) {
@@ -40,24 +63,14 @@ ContactMeasure measure_of(const ContactProblem& problem) {
 ContactJudgement judge(const ContactProblem& problem,
                        const ContactSolution& solution,
                        const ContactOptions& options) {
-  ContactJudgement judgement;
-  judgement.residual = residual_of(problem, solution.impulse, solution.body_velocity, options);
-  const bool by_eta = options.measure == ContactMeasure::eta;
-  judgement.error = by_eta ? judgement.residual.eta : judgement.residual.fclib;
-  // Both sides round: a share of the tolerance, and what float64 leaves of sums of large terms.
-  if (solution.converged() && !(judgement.error <= 1.01 * options.tolerance + 1e-13)) {
-    judgement.fault = fmt::format("called converged at {:.0e}, but its error is {:.2e}",
-                                  options.tolerance, judgement.error);
-  }
-  if (solution.converged() && !(judgement.residual.balance <= options.tolerance)) {
-    judgement.fault =
-        fmt::format("momentum is out of balance by {:.1e}", judgement.residual.balance);
-  }
-  const double mismatch = velocity_mismatch(problem, solution);
-  if (!(mismatch <= 1e-10)) {
-    judgement.fault = fmt::format("contact velocities are off by {:.1e}", mismatch);
-  }
-  return judgement;
+  return judge_residual(residual_of(problem, solution.impulse, solution.body_velocity, options),
+                        problem, solution, options);
+}
+
+ContactJudgement judge_report(const ContactProblem& problem,
+                              const ContactSolution& solution,
+                              const ContactOptions& options) {
+  return judge_residual(solution.report.residual, problem, solution, options);
 }
 
 }  // namespace tetwarp::bench

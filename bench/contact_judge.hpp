@@ -26,4 +26,10 @@ ContactJudgement judge(const ContactProblem& problem,
                        const ContactSolution& solution,
                        const ContactOptions& options);
 
+/// The same from the errors that the solver reports, which takes no factorization of A: for the
+/// results of a method that judge() has looked at on this problem.
+ContactJudgement judge_report(const ContactProblem& problem,
+                              const ContactSolution& solution,
+                              const ContactOptions& options);
+
 }  // namespace tetwarp::bench

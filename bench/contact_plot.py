@@ -4,7 +4,8 @@ import argparse
 import os
 import sys
 
-from contact_rows import METHODS, fastest, methods_of, read_peers, read_solves, work_solves
+from contact_rows import METHODS, fastest, methods_of, read_peers, read_solves
+from contact_rows import skip_bases, work_solves
 from plot import Chart, bars
 from rows import machine_of
 
@@ -96,15 +97,14 @@ def draw_scale(solves, folder):
 
 def draw_skips(solves, folder):
     chosen = [solve for solve in solves if solve.kind == "contact_skip"]
-    bases = {solve.problem: solve.time for solve in chosen if not solve.without}
-    chosen = [solve for solve in chosen if solve.without and solve.problem in bases]
+    bases = skip_bases(chosen)
+    chosen = [s for s in chosen if s.without and (s.problem, s.method) in bases]
     title = "Time with one switch off over time with all on"
     with Chart(folder, "contact_skips", title, "time without / time with", "") as chart:
-        ratios = [solve.time / bases[solve.problem] for solve in chosen]
-        colors = [f"C{list(bases).index(solve.problem)}" for solve in chosen]
-        chart.axes[0].barh(range(len(chosen)), ratios, color=colors)
+        ratios = [s.time / bases[s.problem, s.method].time for s in chosen]
+        chart.axes[0].barh(range(len(chosen)), ratios)
         chart.axes[0].axvline(1, linestyle=":", color="black", label="nothing saved")
-        bars(chart, [f"{solve.problem}, {solve.without}" for solve in chosen])
+        bars(chart, [f"{s.problem}, {s.without}" for s in chosen])
 
 
 def main():

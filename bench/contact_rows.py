@@ -100,6 +100,11 @@ def work_solves(solves):
     return [s for s in work if s.threads == most]
 
 
+def skip_bases(solves):
+    """{(problem, method): solve} with every switch on."""
+    return {(s.problem, s.method): s for s in solves if s.kind == "contact_skip" and not s.without}
+
+
 def fastest(solves, threshold):
     """{(problem, method): solve} of the quickest that got there, float64."""
     best = {}

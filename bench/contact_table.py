@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from contact_rows import fastest, methods_of, read_peers, read_solves, work_solves
+from contact_rows import fastest, methods_of, read_peers, read_solves, skip_bases, work_solves
 from rows import machine_of
 from table import figure, table
 
@@ -45,9 +45,9 @@ def visit_table(solves):
 
 def skip_table(solves):
     lines = []
-    bases = {s.problem: s for s in solves if s.kind == "contact_skip" and not s.without}
+    bases = skip_bases(solves)
     for solve in solves:
-        base = bases.get(solve.problem)
+        base = bases.get((solve.problem, solve.method))
         if solve.kind != "contact_skip" or not solve.without or base is None:
             continue
         saved = f"{100 * (1 - base.time / solve.time):.0f} %"

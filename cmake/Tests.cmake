@@ -172,6 +172,16 @@ if(TETWARP_IO)
     tetwarp_discover(tetwarp_io_tests io)
   endif()
 
+  # What the contact benchmark rests on: the judge of results.
+  tetwarp_add_tests(tetwarp_bench_contact_tests LIBRARIES tetwarp_io fmt::fmt SOURCES
+    bench/contact_cases.cpp
+    bench/contact_judge.cpp
+    tests/contact_scenes.cpp
+    tests/contact_scenes_slab.cpp
+    tests/scenes.cpp
+    tests/test_bench_contact.cpp)
+  tetwarp_discover(tetwarp_bench_contact_tests unit)
+
   add_executable(fuzz_io tests/fuzz_io.cpp tests/fuzz_memory.cpp)
   target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)

@@ -229,6 +229,22 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
   return problem;
 }
 
+ContactProblem beside(ContactProblem a, const ContactProblem& b) {
+  const auto dofs = static_cast<std::int32_t>(a.dof_count());
+  const std::int64_t entries = a.system.row_start.back();
+  for (std::size_t row = 1; row < b.system.row_start.size(); ++row) {
+    a.system.row_start.push_back(entries + b.system.row_start[row]);
+  }
+  for (const std::int32_t column : b.system.column) a.system.column.push_back(dofs + column);
+  a.system.value.insert(a.system.value.end(), b.system.value.begin(), b.system.value.end());
+  a.load.insert(a.load.end(), b.load.begin(), b.load.end());
+  for (std::size_t k = 1; !a.block_start.empty() && k < b.block_start.size(); ++k) {
+    a.block_start.push_back(dofs + b.block_start[k]);
+  }
+  a.system.rows = a.system.columns = a.jacobian.columns = dofs + b.dof_count();
+  return a;
+}
+
 ContactProblem squeezed_sphere() {
   RigidScene scene;
   scene.add_body(1, 0.004, {0, 0, -0.1});

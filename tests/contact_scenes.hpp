@@ -78,6 +78,10 @@ struct ElasticSlab {
 };
 ContactProblem elastic_slab(const ElasticSlab& choice);
 
+/// Two scenes in one, none of them touching the other.
+/// @param b  in global form like `a`, without contacts
+ContactProblem beside(ContactProblem a, const ContactProblem& b);
+
 /// Two walls that leave a sphere less room than it has: no velocity satisfies both.
 ContactProblem squeezed_sphere();
 

@@ -45,6 +45,19 @@ TEST(BenchContactJudge, RefusesVelocitiesOfOtherBodies) {
   EXPECT_TRUE(solved.is_refused());
 }
 
+TEST(BenchContactJudge, OfReportsBelievesTheirErrorsButNotTheRest) {
+  Solved solved;
+  EXPECT_FALSE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
+  EXPECT_EQ(judge_report(solved.problem, solved.solution, solved.options).error,
+            solved.solution.report.residual.fclib);
+
+  solved.solution.velocity[1] += 1e-6;
+  EXPECT_TRUE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
+  solved.solution.velocity[1] -= 1e-6;
+  solved.solution.report.residual.balance = 1e-6;
+  EXPECT_TRUE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
+}
+
 /// Without friction a sliding box satisfies all contacts, however fast it slides.
 TEST(BenchContactJudge, RefusesMomentumFromNowhere) {
   Solved solved{.problem = scenes::box_stack({.boxes = 1, .friction = 0})};
