@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tetwarp/mesh.hpp>
@@ -52,5 +53,12 @@ std::vector<Point3> shifted(const std::vector<Point3>& points, const Point3& off
 /// far away, slivers, folded, overlapping, tiny tetrahedra, inverted, flat, partly outside,
 /// oblique.
 std::vector<Scene> adversarial_scenes(std::int64_t n);
+
+/// Their names, in that order.
+inline constexpr std::array<std::string_view, 20> adversarial_names{
+    "identity",    "aligned",      "half_voxel", "waved",        "rotated",
+    "tiny",        "outside",      "oblique",    "slivers",      "thin_aligned",
+    "slivers",     "thin_aligned", "slivers",    "thin_aligned", "soup",
+    "overlapping", "folded",       "flat",       "far",          "other_grid"};
 
 }  // namespace tetwarp::scenes

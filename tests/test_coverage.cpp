@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/brute_force.hpp"
+#include "tests/each_scene.hpp"
 #include "tests/warp_run.hpp"
 
 namespace tetwarp::test {
@@ -18,13 +19,20 @@ namespace {
 
 constexpr std::int64_t scene_size = 40;
 
-class Coverage : public ::testing::TestWithParam<scenes::Scene> {};
+class Coverage : public EachScene<scene_size> {};
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          Coverage,
-                         ::testing::ValuesIn(scenes::adversarial_scenes(scene_size)),
-                         [](const auto& info) {
-                           return info.param.name + "_" + std::to_string(info.index);
-                         });
+                         ::testing::ValuesIn(scene_numbers()),
+                         numbered_scene_name);
+
+TEST(AdversarialScenes, HaveTheNamesThatSuitesAreMadeFrom) {
+  const std::vector<scenes::Scene> all = scenes::adversarial_scenes(scene_size);
+
+  ASSERT_EQ(all.size(), scenes::adversarial_names.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].name, scenes::adversarial_names[i]) << i;
+  }
+}
 
 Volume source_of(const scenes::Scene& scene) {
   return scenes::wavy_volume(scene.source_grid, PixelType::uint8);
@@ -37,7 +45,7 @@ WarpOptions counting_folds() {
 }
 
 TEST_P(Coverage, OwnersEqualTheReference) {
-  const scenes::Scene& scene = GetParam();
+  const scenes::Scene& scene = this->scene();
   const Volume source = source_of(scene);
 
   const Warped cpu = run_warp(source, scene, Backend::cpu, counting_folds());
@@ -53,7 +61,7 @@ TEST_P(Coverage, OwnersEqualTheReference) {
 
 /// Half of the voxels anywhere, half of them covered, so that small meshes are met too.
 TEST_P(Coverage, OwnersEqualBruteForceOnRandomVoxels) {
-  const scenes::Scene& scene = GetParam();
+  const scenes::Scene& scene = this->scene();
   const Grid& grid = scene.output_grid;
   const Warped cpu = run_warp(source_of(scene), scene, Backend::cpu);
   const std::vector<TetQuanta> tets = tets_of(grid, scene.mesh, scene.deformed);
@@ -77,7 +85,7 @@ TEST_P(Coverage, OwnersEqualBruteForceOnRandomVoxels) {
 }
 
 TEST_P(Coverage, TheCountsAddUp) {
-  const scenes::Scene& scene = GetParam();
+  const scenes::Scene& scene = this->scene();
   const Warped cpu = run_warp(source_of(scene), scene, Backend::cpu);
 
   const Counts& counts = cpu.counts;

@@ -10,32 +10,28 @@
 #include <vector>
 
 #include "host/warp_backend.hpp"
+#include "tests/each_scene.hpp"
 #include "tests/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
 
-class Parity : public ::testing::TestWithParam<scenes::Scene> {
+class Parity : public EachScene<40> {
  protected:
   void SetUp() override {
     const BackendStatus status = cuda_status(0);
     if (!status.usable) GTEST_SKIP() << status.reason;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Scenes,
-                         Parity,
-                         ::testing::ValuesIn(scenes::adversarial_scenes(40)),
-                         [](const auto& info) {
-                           return info.param.name + "_" + std::to_string(info.index);
-                         });
+INSTANTIATE_TEST_SUITE_P(Scenes, Parity, ::testing::ValuesIn(scene_numbers()), numbered_scene_name);
 
 TEST_P(Parity, OwnersAndClassesAreTheSame) {
-  const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::int16);
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::int16);
   WarpOptions options;
   options.count_folded = true;
 
-  const Warped cpu = run_warp(source, GetParam(), Backend::cpu, options);
-  const Warped cuda = run_warp(source, GetParam(), Backend::cuda, options);
+  const Warped cpu = run_warp(source, scene(), Backend::cpu, options);
+  const Warped cuda = run_warp(source, scene(), Backend::cuda, options);
 
   EXPECT_TRUE(cpu.tet == cuda.tet);
   EXPECT_TRUE(cpu.mask == cuda.mask);
@@ -53,12 +49,12 @@ TEST_P(Parity, OwnersAndClassesAreTheSame) {
 /// 4 ulp more for the blends.
 TEST_P(Parity, Float32ValuesAreWithinAFewUlp) {
   for (const Outside outside : {Outside::background, Outside::identity}) {
-    const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::float32, 2);
+    const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float32, 2);
     WarpOptions options;
     options.outside = outside;
 
-    const auto cpu = numbers_of(run_warp(source, GetParam(), Backend::cpu, options).volume);
-    const auto cuda = numbers_of(run_warp(source, GetParam(), Backend::cuda, options).volume);
+    const auto cpu = numbers_of(run_warp(source, scene(), Backend::cpu, options).volume);
+    const auto cuda = numbers_of(run_warp(source, scene(), Backend::cuda, options).volume);
 
     ASSERT_EQ(cpu.size(), cuda.size());
     for (std::size_t s = 0; s < cpu.size(); ++s) {
@@ -69,10 +65,10 @@ TEST_P(Parity, Float32ValuesAreWithinAFewUlp) {
 
 TEST_P(Parity, IntegersDifferByRoundingOnlyAndFloat64By1e12) {
   for (const PixelType type : {PixelType::uint8, PixelType::int32, PixelType::float64}) {
-    const Volume source = scenes::wavy_volume(GetParam().source_grid, type);
+    const Volume source = scenes::wavy_volume(scene().source_grid, type);
 
-    const auto cpu = numbers_of(run_warp(source, GetParam(), Backend::cpu).volume);
-    const auto cuda = numbers_of(run_warp(source, GetParam(), Backend::cuda).volume);
+    const auto cpu = numbers_of(run_warp(source, scene(), Backend::cpu).volume);
+    const auto cuda = numbers_of(run_warp(source, scene(), Backend::cuda).volume);
 
     ASSERT_EQ(cpu.size(), cuda.size());
     for (std::size_t s = 0; s < cpu.size(); ++s) {
@@ -83,7 +79,7 @@ TEST_P(Parity, IntegersDifferByRoundingOnlyAndFloat64By1e12) {
 
 /// A step that needs more pairs than the one before runs again with more room.
 TEST_P(Parity, StepsThatGrowAndShrinkAreTheSame) {
-  const scenes::Scene& scene = GetParam();
+  const scenes::Scene& scene = this->scene();
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
   WarpOptions options;
   options.output_grid = scene.output_grid;
@@ -105,10 +101,10 @@ TEST_P(Parity, StepsThatGrowAndShrinkAreTheSame) {
 }
 
 TEST_P(Parity, RepeatedRunsGiveTheSameBits) {
-  const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::float32);
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float32);
 
-  const Warped first = run_warp(source, GetParam(), Backend::cuda);
-  const Warped second = run_warp(source, GetParam(), Backend::cuda);
+  const Warped first = run_warp(source, scene(), Backend::cuda);
+  const Warped second = run_warp(source, scene(), Backend::cuda);
 
   EXPECT_EQ(first.volume.data, second.volume.data);
   EXPECT_TRUE(first.tet == second.tet);

@@ -13,22 +13,24 @@
 #include <tetwarp/error.hpp>
 
 #include "host/warp_backend.hpp"
+#include "tests/each_scene.hpp"
 #include "tests/skip_series.hpp"
 
 namespace tetwarp::test {
 namespace {
 
-/// Back end and scene.
-using UpdateCase = std::tuple<Backend, scenes::Scene>;
+/// Back end and number of a scene.
+using UpdateCase = std::tuple<Backend, std::size_t>;
 
 class SkipUnchanged : public ::testing::TestWithParam<UpdateCase> {
  protected:
   void SetUp() override {
     const BackendStatus status = cuda_status(0);
     if (backend() == Backend::cuda && !status.usable) GTEST_SKIP() << status.reason;
+    scene_ = scenes::adversarial_scenes(32).at(std::get<1>(GetParam()));
   }
   static Backend backend() { return std::get<0>(GetParam()); }
-  static const scenes::Scene& scene() { return std::get<1>(GetParam()); }
+  const scenes::Scene& scene() const { return scene_; }
 
   static WarpOptions options(bool updates) {
     WarpOptions options;
@@ -38,26 +40,23 @@ class SkipUnchanged : public ::testing::TestWithParam<UpdateCase> {
     options.skip.unchanged_tets = updates;
     return options;
   }
+
+ private:
+  scenes::Scene scene_;
 };
 
 /// The meshes of tetrahedra small enough to move in part.
-std::vector<scenes::Scene> moving_scenes() {
-  std::vector<scenes::Scene> chosen;
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(32)) {
-    for (const char* name : {"identity", "aligned", "waved", "tiny", "outside", "oblique", "soup",
-                             "overlapping", "folded", "flat", "far", "other_grid"}) {
-      if (scene.name == name) chosen.push_back(scene);
-    }
-  }
-  return chosen;
-}
+const std::vector<std::size_t> moving_scenes =
+    scene_numbers({"identity", "aligned", "waved", "tiny", "outside", "oblique", "soup",
+                   "overlapping", "folded", "flat", "far", "other_grid"});
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          SkipUnchanged,
                          ::testing::Combine(::testing::Values(Backend::cpu, Backend::cuda),
-                                            ::testing::ValuesIn(moving_scenes())),
+                                            ::testing::ValuesIn(moving_scenes)),
                          [](const auto& info) {
-                           return std::get<1>(info.param).name + "_" +
+                           const std::size_t number = std::get<1>(info.param);
+                           return std::string(scenes::adversarial_names[number]) + "_" +
                                   name_of(std::get<0>(info.param));
                          });
 
@@ -159,7 +158,7 @@ TEST_P(SkipUnchanged, KeptCellsAreNotWritten) {
 
 /// A scene, its sources and a first step done.
 struct Started {
-  scenes::Scene scene = moving_scenes()[2];
+  scenes::Scene scene = scenes::adversarial_scenes(32).at(moving_scenes[2]);
   std::vector<Volume> sources = sources_of(scene);
   Series series;
   std::vector<std::vector<Point3>> steps = partial_motions(scene, 61);

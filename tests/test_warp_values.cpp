@@ -8,18 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "tests/each_scene.hpp"
 #include "tests/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
 
-class WarpValues : public ::testing::TestWithParam<scenes::Scene> {};
+class WarpValues : public EachScene<32> {};
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          WarpValues,
-                         ::testing::ValuesIn(scenes::adversarial_scenes(32)),
-                         [](const auto& info) {
-                           return info.param.name + "_" + std::to_string(info.index);
-                         });
+                         ::testing::ValuesIn(scene_numbers()),
+                         numbered_scene_name);
 
 /// Largest sample, and largest differences of neighbors summed over the axes.
 struct Extent {
@@ -62,10 +61,10 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 TEST_P(WarpValues, Float32IsWithinItsBound) {
-  const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::float32, 2);
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float32, 2);
 
-  const Warped cpu = run_warp(source, GetParam(), Backend::cpu);
-  const Warped reference = run_warp(source, GetParam(), Backend::reference);
+  const Warped cpu = run_warp(source, scene(), Backend::cpu);
+  const Warped reference = run_warp(source, scene(), Backend::reference);
 
   const double bound = float_bound(extent_of(source));
   EXPECT_LE(largest_difference(numbers_of(cpu.volume), numbers_of(reference.volume)), bound);
@@ -73,10 +72,10 @@ TEST_P(WarpValues, Float32IsWithinItsBound) {
 }
 
 TEST_P(WarpValues, Float64IsWithin1e12) {
-  const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::float64);
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float64);
 
-  const Warped cpu = run_warp(source, GetParam(), Backend::cpu);
-  const Warped reference = run_warp(source, GetParam(), Backend::reference);
+  const Warped cpu = run_warp(source, scene(), Backend::cpu);
+  const Warped reference = run_warp(source, scene(), Backend::reference);
 
   EXPECT_LE(largest_difference(numbers_of(cpu.volume), numbers_of(reference.volume)), 1e-12);
 }
@@ -84,13 +83,13 @@ TEST_P(WarpValues, Float64IsWithin1e12) {
 /// Against the same samples in float64: half for rounding, and what float32 costs.
 TEST_P(WarpValues, IntegersAreTheNearest) {
   for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::int32}) {
-    const Volume source = scenes::wavy_volume(GetParam().source_grid, type);
+    const Volume source = scenes::wavy_volume(scene().source_grid, type);
     Volume wide = make_volume(source.grid, PixelType::float64);
     std::ranges::copy(numbers_of(source), wide.samples<double>().begin());
 
-    const auto cpu = numbers_of(run_warp(source, GetParam(), Backend::cpu).volume);
-    const auto reference = numbers_of(run_warp(source, GetParam(), Backend::reference).volume);
-    const auto real = numbers_of(run_warp(wide, GetParam(), Backend::reference).volume);
+    const auto cpu = numbers_of(run_warp(source, scene(), Backend::cpu).volume);
+    const auto reference = numbers_of(run_warp(source, scene(), Backend::reference).volume);
+    const auto real = numbers_of(run_warp(wide, scene(), Backend::reference).volume);
 
     const double bound = type == PixelType::int32 ? 1e-8 : float_bound(extent_of(source));
     EXPECT_LE(largest_difference(cpu, real), 0.5 + bound) << name_of(type);
@@ -99,17 +98,17 @@ TEST_P(WarpValues, IntegersAreTheNearest) {
 }
 
 TEST_P(WarpValues, UncoveredVoxelsKeepTheirPlace) {
-  const Volume source = scenes::wavy_volume(GetParam().source_grid, PixelType::float32);
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float32);
   WarpOptions options;
   options.outside = Outside::identity;
   options.background = -3;
 
-  const Warped cpu = run_warp(source, GetParam(), Backend::cpu, options);
-  const Warped reference = run_warp(source, GetParam(), Backend::reference, options);
+  const Warped cpu = run_warp(source, scene(), Backend::cpu, options);
+  const Warped reference = run_warp(source, scene(), Backend::reference, options);
 
   EXPECT_LE(largest_difference(numbers_of(cpu.volume), numbers_of(reference.volume)),
             float_bound(extent_of(source)));
-  if (GetParam().source_grid != GetParam().output_grid) return;
+  if (scene().source_grid != scene().output_grid) return;
   for (std::size_t v = 0; v < cpu.tet.size(); ++v) {
     if (cpu.tet[v] >= 0) continue;
     ASSERT_EQ(cpu.volume.samples<float>()[v], source.samples<float>()[v]);
@@ -119,7 +118,7 @@ TEST_P(WarpValues, UncoveredVoxelsKeepTheirPlace) {
 /// Differences are ties: positions within rounding of the middle between two voxels. There the
 /// other candidate is what a position moved by the rounding would take.
 TEST_P(WarpValues, NearestTakesTheReferencesSampleButForTies) {
-  const scenes::Scene& scene = GetParam();
+  const scenes::Scene& scene = this->scene();
   WarpOptions options;
   options.filter = Filter::nearest;
   // The samples are the voxels' own coordinates, so that linear gives the position.
