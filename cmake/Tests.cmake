@@ -2,13 +2,32 @@
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
+# What several programs share: synthetic inputs, and headers parsed once for all of them.
+add_library(tetwarp_scenes STATIC
+  tests/contact_scenes.cpp
+  tests/contact_scenes_slab.cpp
+  tests/contact_transforms.cpp
+  tests/elastic_block.cpp
+  tests/rigid_bodies.cpp
+  tests/scenes.cpp)
+target_include_directories(tetwarp_scenes PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(tetwarp_scenes PRIVATE
+  tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+target_precompile_headers(tetwarp_scenes PRIVATE
+  <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
+  <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
+# As programs are compiled, or they could not use its headers.
+set_target_properties(tetwarp_scenes PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+
 # tetwarp_add_tests(PROGRAM [LIBRARIES ...] SOURCES ...)
 function(tetwarp_add_tests program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;SOURCES")
   add_executable(${program} ${arg_SOURCES})
   target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${program} PRIVATE
+  target_link_libraries(${program} PRIVATE tetwarp_scenes
     tetwarp ${arg_LIBRARIES} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+  target_precompile_headers(${program} REUSE_FROM tetwarp_scenes)
+  set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 endfunction()
 
 # tetwarp_discover(PROGRAM LABEL [FILTER gtest-filter] [PROPERTIES ...])
@@ -32,11 +51,19 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_tet_moved.cpp
     tests/test_volume_uniform.cpp)
   if(TETWARP_HAS_CUDA)
-    set_source_files_properties(${tetwarp_stage_tests} PROPERTIES LANGUAGE CUDA)
+    # Two units of five files: nvcc parses GoogleTest thrice per unit, for seconds.
+    foreach(first 0 5)
+      list(SUBLIST tetwarp_stage_tests ${first} 5 unit)
+      list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
+      list(JOIN unit "\n" TETWARP_UNIT)
+      set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
+      file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
+      list(APPEND tetwarp_stage_units ${file})
+    endforeach()
+    set(tetwarp_stage_tests ${tetwarp_stage_units})
   endif()
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
-    tests/scenes.cpp
     tests/test_face_sign.cpp
     tests/test_volume_sample.cpp
     tests/test_lattice_mesh.cpp
@@ -68,7 +95,6 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_tests reference FILTER "*Coverage*")
 
   tetwarp_add_tests(tetwarp_stress_tests SOURCES
-    tests/scenes.cpp
     tests/test_warp_error.cpp
     tests/test_warp_stress.cpp
     tests/test_warp_stress_data.cpp
@@ -78,11 +104,6 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_tests SOURCES
-    tests/contact_transforms.cpp
-    tests/rigid_bodies.cpp
-    tests/scenes.cpp
-    tests/contact_scenes.cpp
-    tests/contact_scenes_slab.cpp
     tests/test_body_relax.cpp
     tests/test_contact.cpp
     tests/test_contact_acceptance.cpp
@@ -101,25 +122,21 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
-    tests/contact_transforms.cpp
-    tests/rigid_bodies.cpp
     tests/test_contact_stress.cpp
     tests/test_contact_stress_invariance.cpp
     tests/test_contact_stress_stacks.cpp)
   tetwarp_discover(tetwarp_contact_stress_tests stress)
 
-  add_executable(example_contact tests/example_contact.cpp tests/rigid_bodies.cpp)
+  add_executable(example_contact tests/example_contact.cpp)
   target_include_directories(example_contact PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(example_contact PRIVATE tetwarp tetwarp_options Eigen3::Eigen)
+  target_link_libraries(example_contact PRIVATE
+    tetwarp_scenes tetwarp tetwarp_options Eigen3::Eigen)
   add_test(NAME example_contact COMMAND example_contact)
   set_tests_properties(example_contact PROPERTIES LABELS unit)
 
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
-    tests/scenes.cpp
     tests/test_simt.cpp
-    tests/contact_scenes.cpp
-    tests/contact_scenes_slab.cpp
     tests/test_cell_raster_simt.cpp
     tests/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
@@ -131,7 +148,6 @@ if(NOT BUILD_SHARED_LIBS)
     bench/timing.cpp
     bench/truth.cpp
     bench/workloads.cpp
-    tests/scenes.cpp
     tests/test_bench.cpp)
   tetwarp_discover(tetwarp_bench_tests unit)
 endif()
@@ -160,8 +176,6 @@ if(TETWARP_IO)
       tests/test_io_nifti.cpp
       tests/test_io_png.cpp
       tests/test_io_bad_files.cpp
-      tests/elastic_block.cpp
-      tests/rigid_bodies.cpp
       tests/test_contact_certified.cpp
       tests/test_contact_reference_certified.cpp
       tests/test_io_checkpoint.cpp
@@ -210,8 +224,7 @@ if(TETWARP_IO)
     tests/test_cli_contact.cpp
     tests/test_cli_contact_usage.cpp
     tests/test_cli_resume.cpp
-    tests/test_cli_skip.cpp
-    tests/scenes.cpp)
+    tests/test_cli_skip.cpp)
   target_compile_definitions(tetwarp_cli_tests PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
   add_dependencies(tetwarp_cli_tests tetwarp_command)

@@ -20,7 +20,7 @@ class CellCull : public EachExec<Exec> {
 TYPED_TEST_SUITE(CellCull, Execs, ExecNames);
 
 /// Holds cell 0 of a frame of 3 x 3 x 3 cells and cuts, touches or misses the others.
-StageInput corner_tet() {
+StageInput wedge_tet() {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(27.5, -1, -1),
                                    node_at(-1, 27.5, -1), node_at(-1, -1, 27.5)};
   return one_tet(nodes, nodes, frame_of(24, 24, 24));
@@ -80,7 +80,7 @@ std::vector<std::int64_t> cells_of(const TetSetup& tet, const OutputFrame& frame
 TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(23, -1, -1), node_at(-1, 23, -1),
                                    node_at(-1, -1, 23)};
-  const StageInput wide = corner_tet();
+  const StageInput wide = wedge_tet();
   const StageInput narrow = one_tet(nodes, nodes, frame_of(24, 24, 24));
 
   const auto near = this->download(this->run(wide).candidates);
@@ -182,7 +182,7 @@ TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedra) {
 
 /// Where masks ran out of room nothing is known: the pair is kept, the step comes again.
 TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
-  const StageInput input = corner_tet();
+  const StageInput input = wedge_tet();
   const Stages<TypeParam> stages = this->run(input);
   const auto pairs = this->template zeros<CellPair>(27);
 
