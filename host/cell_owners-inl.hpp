@@ -120,7 +120,7 @@ inline void find_owners(const RasterJob<T>& job,
     CellPlanes planes;
     set_cell_planes(tet, box.corner, planes);
     CellBits inside = {}, possible = {};
-    cell_sides(planes, begin[2], end[2], inside, possible);
+    cell_sides(planes, {begin[1], end[1], begin[2], end[2]}, inside, possible);
     CellBits mine, unsure;
     for (int k = 0; k < cell_edge; ++k) {
       mine.slice[k] = inside.slice[k] & tested.slice[k];

@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -117,13 +118,24 @@ struct RowCrossings {
   unsigned flat;  ///< bits of the faces that rows run along
 };
 
-/// Sides of the voxels of slices [k_begin, k_end) of a cell: those that lie inside for certain, and
-/// those that may; about the difference certain_side() must be asked.
-inline void cell_sides(
-    const CellPlanes& planes, int k_begin, int k_end, CellBits& inside, CellBits& possible) {
+/// Rows of a cell that a tetrahedron's box meets.
+struct RowBox {
+  int j_begin, j_end, k_begin, k_end;
+};
+
+/// cell_sides() with `Rows` rows of a slice, from `j_first` on, side by side in a vector; where it
+/// is wider, the next slice follows.
+template <int Rows>
+inline void packed_sides(const CellPlanes& planes,
+                         const RowBox& box,
+                         int j_first,
+                         CellBits& inside,
+                         CellBits& possible) {
   const hn::CappedTag<float, cell_edge> d;  // one lane per row
   const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
+  constexpr int slices = std::max(lanes / Rows, 1);
   const RowCrossings rows(planes);
   const auto edge = hn::Set(d, float{cell_edge}), zero = hn::Zero(d);
   const auto width = hn::Set(d, rows.width);
@@ -137,22 +149,32 @@ inline void cell_sides(
         hn::AndNot(hn::Shl(all, hn::ConvertTo(di, past)), hn::Shl(all, hn::ConvertTo(di, begin)));
     return hn::TruncateTo(d8, hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), bits));
   };
-  const auto store_rows = [&](auto rows8, CellBits& bits, int k, std::size_t lane) {
-    hn::StoreU(rows8, d8, reinterpret_cast<std::uint8_t*>(&bits.slice[k]) + lane);
+  const auto store_rows = [&](auto rows8, CellBits& bits, int k, int j) {
+    std::uint8_t part[lanes];
+    hn::StoreU(rows8, d8, part);
+    for (int slice = 0; slice < slices; ++slice) {
+      auto* row = reinterpret_cast<std::uint8_t*>(&bits.slice[k + slice]) + j;
+      std::memcpy(row, part + Rows * slice, std::min(lanes, Rows));
+    }
   };
-  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
-    const auto j = hn::Iota(d, static_cast<float>(lane));
+  const auto lane = hn::Iota(di, 0);
+  const auto lane_k = hn::ConvertTo(d, hn::ShiftRight < Rows == 8 ? 3 : 2 > (lane));
+  const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, Rows - 1)));
+  for (int j_part = 0; j_part < Rows; j_part += lanes) {
+    const auto j = hn::Add(lane_j, hn::Set(d, static_cast<float>(j_first + j_part)));
+    const int k_first = box.k_begin - box.k_begin % slices;
     hn::Vec<decltype(d)> at[4];
     for (int face = 0; face < 4; ++face) {
-      const float slice = rows.at[face] + rows.per_slice[face] * static_cast<float>(k_begin);
+      const float slice = rows.at[face] + rows.per_slice[face] * static_cast<float>(k_first);
       at[face] = hn::Add(hn::Set(d, slice), hn::Mul(j, hn::Set(d, rows.per_row[face])));
+      at[face] = hn::Add(at[face], hn::Mul(lane_k, hn::Set(d, rows.per_slice[face])));
     }
-    for (int k = k_begin; k < k_end; ++k) {
+    for (int k = k_first; k < box.k_end; k += slices) {
       auto enter = hn::Neg(never), leave = never;
       for (int face = 0; face < 4; ++face) {
         enter = hn::Max(enter, hn::Add(at[face], hn::Set(d, rows.if_entering[face])));
         leave = hn::Min(leave, hn::Add(at[face], hn::Set(d, rows.if_leaving[face])));
-        at[face] = hn::Add(at[face], hn::Set(d, rows.per_slice[face]));
+        at[face] = hn::Add(at[face], hn::Set(d, slices * rows.per_slice[face]));
       }
       const auto begin = voxel_from(hn::Add(enter, width));
       const auto begin_early = voxel_from(hn::Sub(enter, width));
@@ -160,18 +182,34 @@ inline void cell_sides(
       auto past_late = voxel_from(hn::Add(leave, width));
       for (unsigned flat = rows.flat; flat != 0; flat &= flat - 1) {
         const int face = std::countr_zero(flat);
-        const float slice = planes.value[face] + planes.step[2][face] * static_cast<float>(k);
-        const auto value = hn::Add(hn::Set(d, slice), hn::Mul(j, hn::Set(d, planes.step[1][face])));
+        const auto slice = hn::Add(lane_k, hn::Set(d, static_cast<float>(k)));
+        const auto value = hn::Add(
+            hn::Add(hn::Set(d, planes.value[face]), hn::Mul(j, hn::Set(d, planes.step[1][face]))),
+            hn::Mul(slice, hn::Set(d, planes.step[2][face])));
         const auto margin = hn::Set(d, RowCrossings::margin);
         past = hn::IfThenElseZero(hn::Gt(value, margin), past);
         past_late = hn::IfThenElseZero(hn::Gt(value, hn::Neg(margin)), past_late);
       }
       const auto sure = row_bits(begin, past);
-      store_rows(sure, inside, k, lane);
+      store_rows(sure, inside, k, j_first + j_part);
       const auto is_sure = hn::And(hn::Eq(begin, begin_early), hn::Eq(past, past_late));
       const bool all_sure = hn::AllTrue(d, is_sure);
-      store_rows(all_sure ? sure : row_bits(begin_early, past_late), possible, k, lane);
+      store_rows(all_sure ? sure : row_bits(begin_early, past_late), possible, k, j_first + j_part);
     }
+  }
+}
+
+/// Sides of the voxels of some rows of a cell: those that lie inside for certain, and those that
+/// may; about the difference certain_side() must be asked. Other rows hold anything.
+inline void cell_sides(const CellPlanes& planes,
+                       const RowBox& box,
+                       CellBits& inside,
+                       CellBits& possible) {
+  const int j_first = std::min(box.j_begin, cell_edge / 2);
+  if (box.j_end <= j_first + cell_edge / 2) {
+    packed_sides<cell_edge / 2>(planes, box, j_first, inside, possible);
+  } else {
+    packed_sides<cell_edge>(planes, box, 0, inside, possible);
   }
 }
 

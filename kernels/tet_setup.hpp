@@ -168,28 +168,19 @@ struct TetSetupBody {
   View<std::int64_t> pair_counts;
   View<std::int64_t> class_counts;
 
-  TETWARP_HD TetSetup setup_of(std::int64_t t) const {
-    TetSetup setup = {};
-    setup.tet_class = TetClass::bad_position;
+  /// Sets everything but the class, which is returned; nothing that counts when flat or worse.
+  TETWARP_HD TetClass set_up(std::int64_t t, TetSetup& setup) const {
     for (int a = 0; a < 4; ++a) {
-      if (deformed[tets[4 * t + a]].x[0] == bad_node) return setup;
+      if (deformed[tets[4 * t + a]].x[0] == bad_node) return TetClass::bad_position;
     }
     const TetNodes output = tet_nodes(deformed, tets.data + 4 * t);
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
-    setup.tet_class = TetClass::too_large;
-    if (!set_box(output, frame, setup)) {
-      for (int axis = 0; axis < 3; ++axis) setup.end[axis] = setup.begin[axis] = 0;
-      return setup;
-    }
+    if (!set_box(output, frame, setup)) return TetClass::too_large;
     double gradient[4][3], at_anchor[4];
-    setup.tet_class = TetClass::flat;
     const int turned = set_planes(output, setup, gradient, at_anchor);
-    if (turned == 0) {
-      setup.end[0] = setup.begin[0];
-      return setup;
-    }
-    setup.tet_class = turned * rest_orientation[t] < 0 ? TetClass::inverted : TetClass::regular;
+    if (turned == 0) return TetClass::flat;
     std::int64_t shift[3];
+    for (auto& column : setup.map) column[3] = 0;
     if (is_whole_shift(output, source, shift)) {
       for (int row = 0; row < 3; ++row) {
         for (int axis = 0; axis < 3; ++axis) setup.map[axis][row] = row == axis ? 1.0 : 0.0;
@@ -199,12 +190,14 @@ struct TetSetupBody {
     } else {
       set_map(source, gradient, at_anchor, setup);
     }
-    return setup;
+    return turned * rest_orientation[t] < 0 ? TetClass::inverted : TetClass::regular;
   }
 
   TETWARP_HD void operator()(std::int64_t t) const {
-    const TetSetup setup = setup_of(t);
-    setups[t] = setup;
+    TetSetup& setup = setups[t];  // in place: it is too large to pass around
+    const TetClass tet_class = set_up(t, setup);
+    if (tet_class != TetClass::regular && tet_class != TetClass::inverted) setup = {};
+    setup.tet_class = tet_class;
     std::int64_t corners = 0, pairs = 0;
     if (!is_empty(setup)) {
       corners = pairs = 1;

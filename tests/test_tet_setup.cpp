@@ -74,7 +74,7 @@ TYPED_TEST(TetSetupStage, BoxesTheVoxelsWithinAndTheirCells) {
   EXPECT_EQ(this->download(stages.corner_offsets), (std::vector<std::int64_t>{0, 0}));
 }
 
-TYPED_TEST(TetSetupStage, HasCoarseCornersFromNineCellsOn) {
+TYPED_TEST(TetSetupStage, HasCoarseCornersWhereItsBoxIsLarge) {
   const auto corners = [&](double size) {
     const Stages<TypeParam> stages =
         this->run(one_tet(corner_nodes(size), corner_nodes(8), frame_of(32, 32, 32)));
