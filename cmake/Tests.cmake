@@ -113,6 +113,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_device.cpp
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
+    tests/test_contact_newton.cpp
     tests/test_contact_skip.cpp
     tests/test_contact_solver.cpp
     tests/test_contact_sweep.cpp

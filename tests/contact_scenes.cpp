@@ -207,8 +207,8 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
     const Vector& x = centers[static_cast<std::size_t>(a)];
     const auto is_kept = [&] { return (dice.next() + 1) / 2 < choice.kept; };
     if (a < n * n && is_kept()) {
-      scene.add_contact(a, {0, 0, -radius}, -1, {}, {0, 0, 1}, (x[2] - radius) / choice.time_step,
-                        choice.friction);
+      scene.add_contact(a, {0, 0, -radius}, -1, {}, {0, 0, 1},
+                        choice.gaps * (x[2] - radius) / choice.time_step, choice.friction);
     }
     // Neighbors are among the spheres of this layer and the one below.
     for (std::int64_t b = std::max<std::int64_t>(a - 2 * n * n, 0); b < a; ++b) {
@@ -221,7 +221,8 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
       Vector arm = normal;
       for (double& component : arm) component *= radius;
       scene.add_contact(a, {-arm[0], -arm[1], -arm[2]}, b, arm, normal,
-                        std::max(distance - 2 * radius, -1e-3) / choice.time_step, choice.friction);
+                        choice.gaps * std::max(distance - 2 * radius, -1e-3) / choice.time_step,
+                        choice.friction);
     }
   }
   ContactProblem problem = scene.take();
