@@ -173,6 +173,9 @@ void ContactEngine::fall_back(const ContactProblem& problem,
   if (options_.method != ContactMethod::automatic || run.is_done(island, outcome.sums)) return;
   run.insist(island);
   outcome.sums = run.measure(island);
+  if (run.is_done(island, outcome.sums)) return;
+  polish(problem, island, run, outcome);  // from closer by it may find the way
+  outcome.sums = run.measure(island);
 }
 
 /// Newton from where the sweeps ended; what it finds is kept where it is better.

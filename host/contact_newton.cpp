@@ -35,7 +35,7 @@ constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop
 constexpr double steepness_powers[] = {0.5, 0.75};
 
 std::int64_t iteration_limit(std::size_t contacts) {
-  return std::clamp<std::int64_t>(100000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
+  return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
 }
 
 /// Impulses, the velocities they cause, and how far both are from a solution.
