@@ -137,10 +137,20 @@ if(NOT BUILD_SHARED_LIBS)
 
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
+    tests/test_affine_simt.cpp
     tests/test_simt.cpp
     tests/test_cell_raster_simt.cpp
     tests/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
+
+  # Back end cuda on an emulated device: whole warps through the public calls.
+  tetwarp_add_tests(tetwarp_emulated_tests SOURCES
+    tests/emulated_backend.cpp
+    tests/scenes.cpp
+    tests/test_parity.cpp
+    tests/test_warp_emulated.cpp)
+  tetwarp_discover(tetwarp_emulated_tests simt 
+    FILTER "*Emulated*:*Parity.Owners*:*Parity.Steps*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

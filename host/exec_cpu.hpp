@@ -118,6 +118,9 @@ class CpuExec {
     }
   }
 
+  /// Makes room for scans of so many values: here they need none.
+  void reserve_scan(std::int64_t) {}
+
   /// Marks pairs that no later stage may read by accident; here stages stop at the count.
   void reject_all(const char*, View<CellPair>) {}
 

@@ -1,19 +1,8 @@
 /// @file pipelines_cuda.cu
 /// Back end cuda: the pipeline on a device.
-#include "host/warp_pipeline.hpp"
-#include "kernels/cell_raster.cuh"
-#include "kernels/exec_cuda.cuh"
+#include "host/cell_raster_cuda.cuh"
 
 namespace tetwarp {
-
-/// One block per cell; counts are added by the kernel. @see cell_raster.cuh
-template <class T>
-void cell_raster(CudaExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
-  const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
-  exec.timed("warp/raster",
-             [&] { launch(exec.stream(), cell_raster_kernel<T>, cells, raster_threads, 0, job); });
-  progress.report(1.0);
-}
 
 BackendStatus cuda_status(int device) {
   BackendStatus status{Backend::cuda, false, "", ""};

@@ -21,6 +21,9 @@ struct MeshCounters {
 
 /// Counters of the work of one step, zeroed at its start.
 struct WorkCounters {
+  std::int64_t moved;         ///< tetrahedra, of an update
+  std::int64_t corners;       ///< that the tetrahedra to cull have
+  std::int64_t candidates;    ///< that they have
   std::int64_t pairs;         ///< that were not rejected
   std::int64_t merged_pairs;  ///< all pairs after an update
   std::int64_t accepted;
@@ -33,6 +36,20 @@ struct WorkCounters {
 struct StepCounters {
   MeshCounters mesh;
   WorkCounters work;
+};
+
+/// Brings the ends of sums to where the other counters are, so that the host reads once. One index.
+struct TotalsBody {
+  View<const std::int64_t> moved_offsets;  ///< size 0: not an update
+  View<const std::int64_t> corner_offsets;
+  View<const std::int64_t> pair_offsets;
+  View<WorkCounters> work;
+
+  TETWARP_HD void operator()(std::int64_t) const {
+    if (moved_offsets.size > 0) work[0].moved = moved_offsets[moved_offsets.size - 1];
+    work[0].corners = corner_offsets[corner_offsets.size - 1];
+    work[0].candidates = pair_offsets[pair_offsets.size - 1];
+  }
 };
 
 /// How much of the mesh and of the output a step had to do with.

@@ -28,28 +28,85 @@ class WarpOutputs {
     for (const VolumeView& source : plan.sources) {
       voxel_bytes_.push_back(source.components * static_cast<std::int64_t>(size_of(source.type)));
     }
-    volumes_.resize(voxel_bytes_.size());
+    for (Slot& slot : slots_) slot.volumes.resize(voxel_bytes_.size());
+  }
+
+  /// Chooses the memory for a step. What the target holds is unknown from now on.
+  /// @returns how many steps ago it got what, by its word, it still holds: 1 or 2; else 0
+  int take(const WarpTarget& target) {
+    ++step_;
+    const auto wrote = [&](const Slot& slot) { return slot.held && slot.held->is(target); };
+    const Slot* const found = std::ranges::find_if(slots_, wrote);
+    std::int64_t age = 0;
+    if (found != std::end(slots_)) {
+      now_ = static_cast<int>(found - slots_);
+      if (target.holds_previous) age = step_ - found->held->step;
+    } else if (target.holds_previous) {
+      now_ = 1 - now_;  // two targets in turns keep their own memory; others share
+    }
+    slots_[now_].held.reset();
+    return age <= 2 ? static_cast<int>(age) : 0;
   }
 
   /// Where an executor writes volume s, the mask and the owners; null where nobody asked.
   void* volume(std::size_t s, const WarpTarget& target) {
     return writable(static_cast<std::byte*>(target.volumes[s]), voxel_bytes_[s], target,
-                    volumes_[s]);
+                    slots_[now_].volumes[s]);
   }
-  std::uint8_t* mask(const WarpTarget& target) { return writable(target.mask, 1, target, mask_); }
-  std::int32_t* tet(const WarpTarget& target) { return writable(target.tet, 1, target, tet_); }
+  std::uint8_t* mask(const WarpTarget& target) {
+    return writable(target.mask, 1, target, slots_[now_].mask);
+  }
+  std::int32_t* tet(const WarpTarget& target) {
+    return writable(target.tet, 1, target, slots_[now_].tet);
+  }
 
-  /// Brings home what was written in these cells.
-  void deliver(const WarpTarget& target, const CellWindow& window) {
+  /// Brings home what was written: the marked cells; size 0: all.
+  void deliver(const WarpTarget& target, View<const std::uint8_t> marks) {
     if (target.memory == Memory::device) return;
-    for (std::size_t s = 0; s < volumes_.size(); ++s) {
-      deliver(volumes_[s], voxel_bytes_[s], static_cast<std::byte*>(target.volumes[s]), window);
+    const CellWindow window = marks.size > 0 ? window_of(marks) : whole();
+    const Slot& slot = slots_[now_];
+    for (std::size_t s = 0; s < slot.volumes.size(); ++s) {
+      deliver(slot.volumes[s], voxel_bytes_[s], static_cast<std::byte*>(target.volumes[s]), window);
     }
-    if (target.mask != nullptr) deliver(mask_, 1, target.mask, window);
-    if (target.tet != nullptr) deliver(tet_, 1, target.tet, window);
+    if (target.mask != nullptr) deliver(slot.mask, 1, target.mask, window);
+    if (target.tet != nullptr) deliver(slot.tet, 1, target.tet, window);
   }
 
-  /// All cells.
+  /// The step is complete: the target holds its result.
+  void finish(const WarpTarget& target) {
+    slots_[now_].held = Held{{target.volumes.begin(), target.volumes.end()},
+                             target.mask,
+                             target.tet,
+                             target.memory,
+                             step_};
+  }
+
+ private:
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  /// A target, by its pointers, and the step whose result it got.
+  struct Held {
+    std::vector<void*> volumes;
+    const std::uint8_t* mask;
+    const std::int32_t* tet;
+    Memory memory;
+    std::int64_t step;
+
+    bool is(const WarpTarget& target) const {
+      return mask == target.mask && tet == target.tet && memory == target.memory &&
+             std::ranges::equal(volumes, target.volumes);
+    }
+  };
+
+  /// Memory of one target.
+  struct Slot {
+    std::vector<Buffer<std::byte>> volumes;
+    Buffer<std::uint8_t> mask;
+    Buffer<std::int32_t> tet;
+    std::optional<Held> held;
+  };
+
   CellWindow whole() const { return {{0, 0}, {frame_.cells[1], frame_.cells[2]}}; }
 
   /// The least window with all marked cells.
@@ -71,31 +128,6 @@ class WarpOutputs {
     }
     return window;
   }
-
-  /// The step is complete: the target holds its result.
-  void finish(const WarpTarget& target) {
-    held_ = Held{
-        {target.volumes.begin(), target.volumes.end()}, target.mask, target.tet, target.memory};
-  }
-  /// True when the target holds, by its word and by what finish() was told last, the result of the
-  /// step before. What it holds is unknown from now on.
-  bool take_held(const WarpTarget& target) {
-    const std::optional<Held> held = std::exchange(held_, std::nullopt);
-    return target.holds_previous && held && held->mask == target.mask && held->tet == target.tet &&
-           held->memory == target.memory && std::ranges::equal(held->volumes, target.volumes);
-  }
-
- private:
-  template <class T>
-  using Buffer = typename Exec::template Buffer<T>;
-
-  /// A target, by its pointers.
-  struct Held {
-    std::vector<void*> volumes;
-    const std::uint8_t* mask;
-    const std::int32_t* tet;
-    Memory memory;
-  };
 
   template <class T>
   T* writable(T* wanted, std::int64_t per_voxel, const WarpTarget& target, Buffer<T>& buffer) {
@@ -125,10 +157,9 @@ class WarpOutputs {
   Exec& exec_;
   const OutputFrame& frame_;
   std::vector<std::int64_t> voxel_bytes_;
-  std::vector<Buffer<std::byte>> volumes_;
-  Buffer<std::uint8_t> mask_;
-  Buffer<std::int32_t> tet_;
-  std::optional<Held> held_;
+  Slot slots_[2];
+  int now_ = 0;  ///< the slot of this step
+  std::int64_t step_ = 0;
 };
 
 }  // namespace tetwarp

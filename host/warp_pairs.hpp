@@ -2,12 +2,12 @@
 /// From node positions to the sorted pairs of every cell, for any executor: all of them, or those
 /// of the step before brought up to date where tetrahedra have moved.
 #pragma once
+#include <algorithm>
 #include <cstdint>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "host/bad_positions.hpp"
 #include "host/step_counters.hpp"
 #include "host/warp_backend.hpp"
 #include "host/warp_geometry.hpp"
@@ -40,11 +40,13 @@ class WarpPairs {
     for (Buffer<Node>& nodes : nodes_) nodes.reserve(node_count);
   }
 
-  /// Runs setup, mask and cull. Where a size must travel from the device, buffers are trusted: ask
-  /// had_room() at the end of the step.
+  /// Runs setup, mask and cull. Where a size would have to travel from the device, buffers are
+  /// trusted from the second step on: nothing waits and nothing is allocated, and had_room() tells
+  /// at the end of the step.
   /// @throws std::invalid_argument on positions that are not finite or too far away
   void run(View<const double> positions) {
     now_ = 1 - now_;
+    was_update_ = is_update_;
     exec_.zero("warp/setup", View<WorkCounters>{&counters().data->work, 1});
     node_quantize(exec_, geometry_.output_index, geometry_.frame.origin, positions,
                   nodes_[now_].view(rest_.size));
@@ -53,17 +55,20 @@ class WarpPairs {
   }
 
   /// False when a buffer was too small: it has grown, the step must run again.
-  bool had_room() {
-    if (Exec::reads_are_free || is_update_) return true;
-    read_totals();
-    if (corner_total_ <= corner_capacity_ && pair_total_ <= pair_capacity_) return true;
-    grow();
+  /// @param counters  of the step, all of whose stages have run
+  bool had_room(const StepCounters& counters) {
+    take_totals(counters);
+    if (Exec::reads_are_free) return true;
+    const std::int64_t pairs = std::max(pair_total_, counters.work.merged_pairs);
+    if (corner_total_ <= corner_capacity_ && pairs <= pair_capacity_) return true;
+    grow(corner_total_, pairs);
     return false;
   }
 
   /// The step is complete: the next may be an update of it.
   void finish(const StepCounters& counters) {
     pairs_before_ = is_update_ ? counters.work.merged_pairs : counters.work.pairs;
+    moved_count_ = counters.work.moved;
     has_before_ = options_.skip.unchanged_tets;
   }
 
@@ -76,10 +81,22 @@ class WarpPairs {
 
   /// True when this step is an update; what follows is about updates only.
   bool is_update() const { return is_update_; }
+  /// True when the last `steps` ones are: 1 or 2.
+  bool are_updates(int steps) const { return is_update_ && (steps == 1 || was_update_); }
   View<const Node> nodes_before() const { return nodes_[1 - now_].const_view(rest_.size); }
   PairList list_before() const { return view_of(lists_[1 - now_]); }
   /// 1 where a tetrahedron that has moved was or is in the list of a cell.
-  View<const std::uint8_t> touched() const { return touched_.const_view(cell_count()); }
+  View<const std::uint8_t> touched() const { return touched_[now_].const_view(cell_count()); }
+  /// The same for any of the last `steps` steps, all of them updates: 1 or 2.
+  View<const std::uint8_t> touched_in(int steps) {
+    if (steps == 1) return touched();
+    touched_in_two_.reserve(cell_count());
+    const View<std::uint8_t> both = touched_in_two_.view(cell_count());
+    exec_.for_each(
+        "warp/cull", cell_count(),
+        CellEverTouchedBody{touched(), touched_[1 - now_].const_view(cell_count()), both});
+    return both;
+  }
 
   std::int64_t tet_count() const { return orientation_.size; }
   std::int64_t unchanged_count() const { return is_update_ ? tet_count() - moved_count_ : 0; }
@@ -101,50 +118,64 @@ class WarpPairs {
     const TetSetupBody setup = setup_body();
     tet_setup(exec_, tets_, nodes(), rest_, orientation_, geometry_.frame, setup.setups,
               setup.corner_counts, setup.pair_counts, setup.class_counts);
-    exec_.exclusive_scan("warp/setup", setup.corner_counts);
-    exec_.exclusive_scan("warp/setup", setup.pair_counts);
-    if (Exec::reads_are_free || pair_capacity_ == 0) {
-      read_totals();
-      grow();
+    sum_up(setup, {});
+    if (Exec::reads_are_free) {
+      take_totals(read_counters());
+      corner_capacity_ = corner_total_;
+      pair_capacity_ = pair_total_;
+    } else if (pair_capacity_ == 0) {
+      take_totals(read_counters());
+      grow(corner_total_, pair_total_);
     }
     cull(corner_capacity_, pair_capacity_, lists_[now_]);
   }
 
-  /// The pairs of the step before, but for those of moved tetrahedra. False when these are so many
-  /// that it would save next to nothing.
+  /// The pairs of the step before, but for those of moved tetrahedra. False when these are known to
+  /// be so many that it would save next to nothing.
   bool update() {
     const std::int64_t tets = tet_count();
     const TetSetupBody setup = setup_body();
-    node_moved_.reserve(rest_.size);
-    moved_.reserve(tets);
-    moved_offsets_.reserve(tets + 1);
+    reserve_update();
     tet_moved(exec_, tets_, nodes_before(), nodes(), setups(), node_moved_.view(rest_.size),
               moved_.view(tets), moved_offsets_.view(tets + 1), setup.class_counts);
     exec_.exclusive_scan("warp/setup", moved_offsets_.view(tets + 1));
-    exec_.read(last_of(moved_offsets_), &moved_count_);
-    if (moved_count_ > tets - tets / 8) return false;
-
+    std::int64_t most_moved = tets;
+    if (Exec::reads_are_free) {
+      most_moved = *last_of(moved_offsets_).data;
+      if (most_moved > tets - tets / 8) return false;
+    }
     exec_.zero("warp/setup", setup.corner_counts);
     exec_.zero("warp/setup", setup.pair_counts);
-    moved_tet_setup(exec_, moved_offsets_.const_view(tets + 1), moved_count_, setup);
-    exec_.exclusive_scan("warp/setup", setup.corner_counts);
-    exec_.exclusive_scan("warp/setup", setup.pair_counts);
-    read_totals();
-    cull(corner_total_, pair_total_, fresh_);
-
+    moved_tet_setup(exec_, moved_offsets_.const_view(tets + 1), most_moved, setup);
+    sum_up(setup, moved_offsets_.const_view(tets + 1));
     List& now = lists_[now_];
-    now.size = pairs_before_ + pair_total_;
-    check_pair_count(now.size);
+    if (Exec::reads_are_free) {
+      take_totals(read_counters());
+      cull(corner_total_, pair_total_, fresh_);
+      now.size = pairs_before_ + pair_total_;
+      check_pair_count(now.size);
+    } else {
+      cull(corner_capacity_, pair_capacity_, fresh_);
+      now.size = pair_capacity_;
+    }
     now.pairs.reserve(now.size);
     now.ranges.reserve(cell_count() + 1);
-    touched_.reserve(cell_count());
-    cell_offsets_.reserve(cell_count() + 1);
     WorkCounters& work = counters().data->work;
     cell_merge(exec_, list_before(), view_of(fresh_), moved_.const_view(tets),
                now.pairs.view(now.size), {&work.merged_pairs, 1},
                cell_offsets_.view(cell_count() + 1), now.ranges.view(cell_count() + 1),
-               touched_.view(cell_count()), {&work.touched_cells, 1});
+               touched_[now_].view(cell_count()), {&work.touched_cells, 1});
     return true;
+  }
+
+  /// Scans of the counts that a setup made, and their totals among the counters.
+  void sum_up(const TetSetupBody& setup, View<const std::int64_t> moved_offsets) {
+    exec_.exclusive_scan("warp/setup", setup.corner_counts);
+    exec_.exclusive_scan("warp/setup", setup.pair_counts);
+    exec_.for_each(
+        "warp/setup", 1,
+        TotalsBody{
+            moved_offsets, setup.corner_counts, setup.pair_counts, {&counters().data->work, 1}});
   }
 
   /// Pairs of the tetrahedra that have corners and candidates.
@@ -166,47 +197,45 @@ class WarpPairs {
                {&work.accepted, 1});
   }
 
-  void read_totals() {
+  StepCounters read_counters() {
     StepCounters counters;
     exec_.read(counters_.const_view(1), &counters);
-    throw_on_bad_positions(counters.mesh.classes);
-    exec_.read(last_of(corner_offsets_), &corner_total_);
-    exec_.read(last_of(pair_offsets_), &pair_total_);
+    return counters;
+  }
+  void take_totals(const StepCounters& counters) {
+    if (has_bad_positions(counters.mesh.classes)) {
+      std::vector<TetSetup> setups(static_cast<std::size_t>(tet_count()));
+      exec_.read(setups_.const_view(tet_count()), setups.data());
+      throw_on_bad_positions(setups);
+    }
+    corner_total_ = counters.work.corners;
+    pair_total_ = counters.work.candidates;
     check_pair_count(pair_total_);
   }
 
-  /// A quarter more than needed, so that a moving mesh does not come back at every step.
-  void grow() {
-    const std::int64_t spare = Exec::reads_are_free ? 0 : 1;
-    corner_capacity_ = corner_total_ + spare * (corner_total_ / 4 + 1024);
-    pair_capacity_ = pair_total_ + spare * (pair_total_ / 4 + 1024);
+  /// A quarter more than needed, so that a moving mesh does not come back at every step; and all
+  /// that an update will want, so that no later step allocates.
+  void grow(std::int64_t corners, std::int64_t pairs) {
+    corner_capacity_ = std::max(corner_capacity_, corners + corners / 4 + 1024);
+    pair_capacity_ = std::max(pair_capacity_, std::min(pairs + pairs / 4 + 1024, most_pairs));
+    for (List& list : lists_) {
+      list.pairs.reserve(pair_capacity_);
+      list.ranges.reserve(cell_count() + 1);
+    }
+    if (!options_.skip.unchanged_tets) return;
+    reserve_update();
+    fresh_.pairs.reserve(pair_capacity_);
+    fresh_.ranges.reserve(cell_count() + 1);
+    touched_in_two_.reserve(cell_count());
+    exec_.reserve_scan(cell_count() + 1);
   }
 
-  static void check_pair_count(std::int64_t count) {
-    if (count < (std::int64_t{1} << 32) - 1) return;
-    throw std::invalid_argument(
-        "mesh: " + std::to_string(count) +
-        " pairs of tetrahedron and cell, at most 2^32 - 2 fit; compute regions of the grid");
-  }
-
-  void throw_on_bad_positions(const std::int64_t* classes) {
-    if (classes[static_cast<int>(TetClass::bad_position)] == 0 &&
-        classes[static_cast<int>(TetClass::too_large)] == 0) {
-      return;
-    }
-    std::vector<TetSetup> setups(static_cast<std::size_t>(tet_count()));
-    exec_.read(setups_.const_view(tet_count()), setups.data());
-    for (std::size_t t = 0; t < setups.size(); ++t) {
-      if (setups[t].tet_class == TetClass::bad_position) {
-        throw std::invalid_argument("deformed positions: a node of tetrahedron " +
-                                    std::to_string(t) +
-                                    " is not finite or over 2^40 voxels from the output grid");
-      }
-      if (setups[t].tet_class == TetClass::too_large) {
-        throw std::invalid_argument("deformed positions: tetrahedron " + std::to_string(t) +
-                                    " spans over 2^20 voxels; use a coarser output grid");
-      }
-    }
+  void reserve_update() {
+    cell_offsets_.reserve(cell_count() + 1);
+    for (Buffer<std::uint8_t>& touched : touched_) touched.reserve(cell_count());
+    node_moved_.reserve(rest_.size);
+    moved_.reserve(tet_count());
+    moved_offsets_.reserve(tet_count() + 1);
   }
 
   TetSetupBody setup_body() const {
@@ -253,11 +282,13 @@ class WarpPairs {
   Buffer<std::uint8_t> node_moved_;
   Buffer<std::uint8_t> moved_;
   Buffer<std::int64_t> moved_offsets_;
-  List fresh_;  ///< of the moved tetrahedra
-  Buffer<std::uint8_t> touched_;
+  List fresh_;                       ///< of the moved tetrahedra
+  Buffer<std::uint8_t> touched_[2];  ///< by this step and by the one before, in turns
+  Buffer<std::uint8_t> touched_in_two_;
   Buffer<std::int64_t> cell_offsets_;
   bool has_before_ = false;  ///< the step before was completed
   bool is_update_ = false;
+  bool was_update_ = false;  ///< is_update_ of the step before
 
   std::int64_t moved_count_ = 0;
   std::int64_t corner_capacity_ = 0;

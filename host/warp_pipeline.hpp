@@ -31,6 +31,7 @@ class WarpPipeline : public WarpBackend {
         sources_(plan.sources.size()) {
     for (std::size_t s = 0; s < sources_.size(); ++s) upload_source(s);
     cell_covered_.reserve(geometry_.frame.cell_count());
+    cell_work_.reserve(geometry_.frame.cell_count());
   }
 
   StepReport step(const PositionsView& deformed,
@@ -43,13 +44,14 @@ class WarpPipeline : public WarpBackend {
             ? View<const double>{deformed.xyz, 3 * deformed.node_count}
             : exec_.resident("warp/upload", deformed.xyz, 3 * deformed.node_count,
                              position_buffer_);
-    const bool holds_previous = outputs_.take_held(target);
+    const int age = outputs_.take(target);
+    StepCounters counters;
     do {
-      run(positions, target, holds_previous, progress);
-    } while (!pairs_.had_room());
-    outputs_.deliver(target,
-                     keeps_cells_ ? outputs_.window_of(pairs_.touched()) : outputs_.whole());
-    StepReport report = finish(target);
+      run(positions, target, age, progress);
+      exec_.read(View<const StepCounters>(pairs_.counters()), &counters);
+    } while (!pairs_.had_room(counters));
+    outputs_.deliver(target, stale_);
+    StepReport report = finish(target, counters);
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
     report.timings.total = passed.count();
     exec_.times().clear();
@@ -72,15 +74,17 @@ class WarpPipeline : public WarpBackend {
   };
 
   /// The method: tetrahedron, corner, cell, voxel.
+  /// @param age  steps since the target got what it holds; 0: nothing is known
   void run(View<const double> positions,
            const WarpTarget& target,
-           bool holds_previous,
+           int age,
            const Progress& progress) {
     pairs_.run(positions);
-    keeps_cells_ = holds_previous && pairs_.is_update();
+    stale_ = {};
+    if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     for (std::size_t s = 0; s < sources_.size(); ++s) raster(s, target, progress);
-    if (!keeps_cells_) return;
+    if (stale_.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
     exec_.for_each("warp/raster", (cells + CoveredSumBody::cells - 1) / CoveredSumBody::cells,
                    CoveredSumBody{cell_covered_.const_view(cells), {&work_counters().covered, 1}});
@@ -148,11 +152,9 @@ class WarpPipeline : public WarpBackend {
   void choose_work(std::size_t s, RasterJob<T>& job) {
     const UniformMap uniform =
         plan_.options.skip.constant_cells ? uniform_map(s, job.source) : UniformMap{};
-    const auto touched = keeps_cells_ ? pairs_.touched() : View<const std::uint8_t>{};
-    if (touched.size == 0 && uniform.reach.size == 0) return;
+    if (stale_.size == 0 && uniform.reach.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
-    cell_work_.reserve(cells);
-    cell_work(exec_, job, uniform, touched, cell_work_.view(cells),
+    cell_work(exec_, job, uniform, stale_, cell_work_.view(cells),
               {&work_counters().constant_cells, s == 0 ? 1 : 0});
     job.cell_work = cell_work_.const_view(cells);
   }
@@ -182,14 +184,12 @@ class WarpPipeline : public WarpBackend {
   WorkCounters& work_counters() const { return pairs_.counters().data->work; }
 
   /// The step is complete: its report, and what the next one may build on.
-  StepReport finish(const WarpTarget& target) {
-    StepCounters counters;
-    exec_.read(View<const StepCounters>(pairs_.counters()), &counters);
-    if (!keeps_cells_) counters.work.covered = counters.work.raster.covered;
+  StepReport finish(const WarpTarget& target, StepCounters counters) {
+    if (stale_.size == 0) counters.work.covered = counters.work.raster.covered;
     pairs_.finish(counters);
     outputs_.finish(target);
     const std::int64_t cells_unchanged =
-        keeps_cells_ ? geometry_.frame.cell_count() - counters.work.touched_cells : 0;
+        stale_.size > 0 ? geometry_.frame.cell_count() - counters.work.touched_cells : 0;
     return make_step_report(counters, exec_.times(), geometry_.frame,
                             {.tets = pairs_.tet_count(),
                              .tets_unchanged = pairs_.unchanged_count(),
@@ -207,7 +207,7 @@ class WarpPipeline : public WarpBackend {
   Buffer<double> position_buffer_;
   Buffer<std::int64_t> cell_work_;
   Buffer<std::uint16_t> cell_covered_;  ///< kept from step to step where cells are
-  bool keeps_cells_ = false;            ///< this step leaves cells as the target holds them
+  View<const std::uint8_t> stale_;      ///< 0 for cells that the target holds; size 0: it has none
 };
 
 }  // namespace tetwarp

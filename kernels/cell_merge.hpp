@@ -35,6 +35,15 @@ struct CellTouchBody {
   }
 };
 
+/// One index = one cell; any order. Touched in either of two steps.
+struct CellEverTouchedBody {
+  View<const std::uint8_t> now;
+  View<const std::uint8_t> before;
+  View<std::uint8_t> touched;
+
+  TETWARP_HD void operator()(std::int64_t cell) const { touched[cell] = now[cell] | before[cell]; }
+};
+
 /// One index = one cell or the end behind the last; any order. Merges two runs that ascend by
 /// tetrahedron.
 struct CellMergeBody {
@@ -50,13 +59,14 @@ struct CellMergeBody {
     const std::int64_t begin = pair_offsets[cell];
     if (cell + 1 == ranges.size) {
       pair_count[0] = begin;
-      ranges[cell] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(begin)};
+      ranges[cell] = range_of(begin, begin);
       return;
     }
     const std::int64_t old_end = end_of_cell(before, cell), new_end = end_of_cell(fresh, cell);
     std::int64_t next = fresh.ranges[cell].begin, at = begin, settled = -1;
     const auto append = [&](CellPair pair) {
-      pairs[at++] = pair;
+      if (at < pairs.size) pairs[at] = pair;
+      ++at;
       if (settled < 0 && is_accepted(pair)) settled = at;
     };
     for (std::int64_t p = before.ranges[cell].begin; p < old_end; ++p) {
@@ -68,8 +78,12 @@ struct CellMergeBody {
       append(pair);
     }
     for (; next < new_end; ++next) append(fresh.pairs[next]);
-    ranges[cell] = {static_cast<std::uint32_t>(begin),
-                    static_cast<std::uint32_t>(settled < 0 ? at : settled)};
+    ranges[cell] = range_of(begin, settled < 0 ? at : settled);
+  }
+
+  TETWARP_HD CellRange range_of(std::int64_t begin, std::int64_t end) const {
+    return {static_cast<std::uint32_t>(min_of(begin, pairs.size)),
+            static_cast<std::uint32_t>(min_of(end, pairs.size))};
   }
 };
 
@@ -80,8 +94,8 @@ struct CellMergeBody {
 /// @param before         of the step before
 /// @param fresh          of the moved tetrahedra in this step
 /// @param moved          from tet_moved, shape [tet_count]
-/// @param pairs          out, room for the pairs of both lists
-/// @param pair_count     out, how many there are, shape [1]
+/// @param pairs          out; pairs that it has no room for are left out
+/// @param pair_count     out, how many there are, those left out included, shape [1]
 /// @param pair_offsets   scratch, shape [cell_count + 1]
 /// @param ranges         out, shape [cell_count + 1]
 /// @param touched        out, 1 where the pairs of a cell had or have a moved tetrahedron, shape

@@ -2,8 +2,6 @@
 /// CudaExec: the operations a pipeline is made of, on one stream of one device. The only file with
 /// allocation, copies, streams and events.
 #pragma once
-#include <cuda_runtime.h>
-
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -52,6 +50,7 @@ class DeviceBuffer {
 };
 
 // primitives_cuda.cu: CUB behind plain functions; `scratch` grows on first use.
+void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count);
 void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values);
@@ -192,6 +191,9 @@ class CudaExec {
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     timed(label, [&] { cuda_exclusive_scan(stream(), state_->scratch, values); });
   }
+
+  /// Makes room for scans of so many values, so that a later one does not allocate.
+  void reserve_scan(std::int64_t count) { cuda_reserve_scan(state_->scratch, count); }
 
   /// All pairs become rejected ones: later stages run over the capacity, not the count.
   void reject_all(const char* label, View<CellPair> pairs) {

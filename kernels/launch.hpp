@@ -10,7 +10,7 @@
 #include <string>
 #include <tetwarp/error.hpp>
 #else
-#include "kernels/emu/simt.hpp"
+#include "kernels/emu/runtime.hpp"
 #endif
 
 namespace tetwarp {
@@ -28,7 +28,7 @@ __device__ __forceinline__ T* dynamic_shared() {
 
 /// Launches `kernel(args...)`.
 ///
-/// @param stream        orders the work; the emulation runs at once
+/// @param stream        orders the work; the emulation takes none, too, and then runs at once
 /// @param grid          blocks, none of its extents zero
 /// @param block         threads of a block
 /// @param shared_bytes  dynamic shared memory of a block, at most 48 KiB
@@ -46,8 +46,7 @@ void launch(cudaStream_t stream,
     throw CudaError(std::string("kernel launch: ") + cudaGetErrorString(status));
   }
 #else
-  static_cast<void>(stream);
-  simt::launch(kernel, grid, block, shared_bytes, args...);
+  simt::launch_on(stream, kernel, grid, block, shared_bytes, args...);
 #endif
 }
 

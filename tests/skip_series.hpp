@@ -42,6 +42,18 @@ class Series {
     return warper_.step(deformed, target, progress).counts;
   }
 
+  /// The next step writes to other memory; the one after it to that of the last.
+  void swap_targets() {
+    if (other_volumes_.empty()) {
+      other_volumes_ = volumes;
+      other_mask_ = mask;
+      other_tet_ = tet;
+    }
+    volumes.swap(other_volumes_);
+    mask.swap(other_mask_);
+    tet.swap(other_tet_);
+  }
+
   bool has_bits_of(const Series& other) const {
     bool same = mask == other.mask && tet == other.tet;
     for (std::size_t s = 0; s < volumes.size(); ++s) {
@@ -60,6 +72,9 @@ class Series {
   }
 
   Warper warper_;
+  std::vector<Volume> other_volumes_;
+  std::vector<std::uint8_t> other_mask_;
+  std::vector<std::int32_t> other_tet_;
 };
 
 /// Nodes within `radius` voxels of a point of the scene's output grid get what `change` makes of

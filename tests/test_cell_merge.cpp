@@ -137,5 +137,25 @@ TYPED_TEST(CellMerge, PutsAComingTetrahedronInItsPlace) {
   EXPECT_EQ(result.touched_count, 2);
 }
 
+TYPED_TEST(CellMerge, LeavesOutWhatHasNoRoom) {
+  const OutputFrame frame = frame_of(16, 16, 8);
+  const PairList before = this->list_of({make_pair(0, 2, false), make_pair(3, 1, false)}, frame);
+  const PairList fresh = this->list_of({make_pair(1, 0, true), make_pair(3, 0, false)}, frame);
+  const auto pairs = this->upload(std::vector<CellPair>(4, 77));
+  const auto pair_count = this->template zeros<std::int64_t>(1);
+  const auto ranges = this->template zeros<CellRange>(5);
+
+  cell_merge(this->exec(), before, fresh,
+             View<const std::uint8_t>(this->upload(std::vector<std::uint8_t>{1, 0, 0})),
+             View<CellPair>{pairs.data, 3}, pair_count, this->template zeros<std::int64_t>(5),
+             ranges, this->template zeros<std::uint8_t>(4), this->template zeros<std::int64_t>(1));
+
+  EXPECT_EQ(this->download(pairs),
+            (std::vector<CellPair>{make_pair(0, 2, false), make_pair(1, 0, true),
+                                   make_pair(3, 0, false), 77}));
+  EXPECT_EQ(this->download(pair_count).front(), 4);
+  EXPECT_EQ(this->ranges_of(ranges), (Ranges{{0, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 3}}));
+}
+
 }  // namespace
 }  // namespace tetwarp::test

@@ -126,6 +126,22 @@ TEST_P(SkipUnchanged, BuffersThatDoNotHoldTheStepBeforeAreWrittenWhole) {
   EXPECT_GT(unchanged_tets, 0);
 }
 
+/// Every other step finds what the step before the last has left; kept cells are still those that
+/// have not changed since then, also where the targets are the same now and then.
+TEST_P(SkipUnchanged, TargetsInTurnsKeepWhatHasNotChangedSince) {
+  const std::vector<Volume> sources = sources_of(scene());
+  Series updated(sources, scene(), options(true)), anew(sources, scene(), options(false));
+  std::int64_t step = 0, inside_tests = 0, inside_tests_anew = 0;
+  for (const auto& positions : partial_motions(scene(), 61)) {
+    inside_tests += updated.step(positions).inside_tests;
+    inside_tests_anew += anew.step(positions).inside_tests;
+
+    EXPECT_TRUE(updated.has_bits_of(anew)) << "step " << step;
+    if (++step % 5 != 0) updated.swap_targets();
+  }
+  EXPECT_LT(inside_tests, inside_tests_anew);
+}
+
 /// What a kept cell held is there afterwards: marks put there by force survive.
 TEST_P(SkipUnchanged, KeptCellsAreNotWritten) {
   if (backend() == Backend::cuda) GTEST_SKIP() << "the device keeps its own copy of the result";

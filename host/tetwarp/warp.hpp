@@ -76,9 +76,9 @@ struct WarpTarget {
   std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
   std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
   Memory memory = Memory::host;
-  /// The buffers hold what the previous step wrote to them, untouched: a step then leaves alone
-  /// what it would write again. Has no effect on the first step, after one that threw, and on other
-  /// buffers than those of the previous step.
+  /// The buffers hold what a step wrote to them last, untouched: a step then leaves alone what it
+  /// would write again. Has no effect on the first step, after one that threw, and on other buffers
+  /// than those of the two steps before.
   bool holds_previous = false;
   void* stream = nullptr;  ///< cudaStream_t that orders work on device memory; cuda only
 };
