@@ -104,6 +104,22 @@ TEST(CliSkip, ReportsPerStepWhatStayed) {
   EXPECT_LT(steps[4]["counts"]["tets_unchanged"], 1080);
 }
 
+/// Deflating takes a processor of its own: each step is then written while the next is computed.
+TEST(CliSkip, StepsWrittenBesideTheNextAreTheSame) {
+  const PartlyMoving scene;
+
+  const Json beside = scene.warp("beside.vtkhdf", {"--compress", "1"})["counts"];
+  const Json after = scene.warp("after.vtkhdf", {})["counts"];
+
+  for (int step = 0; step < 6; ++step) {
+    const std::string suffix = "_000" + std::to_string(step) + ".vtkhdf";
+    scene.expect_same("beside" + suffix, "after" + suffix);
+  }
+  for (const char* same : {"voxels", "covered", "tets_unchanged", "cells_unchanged"}) {
+    EXPECT_EQ(beside[same], after[same]) << same;
+  }
+}
+
 /// Steps 3, 4 and 5 show what step 2 shows: their offset is repeated.
 TEST(CliSkip, StoresTemporalStepsThatLookTheSameOnce) {
   const PartlyMoving scene;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "host/cli/declare.hpp"
@@ -102,15 +103,27 @@ void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
   }
 }
 
+/// True when writing beside the computing of a step saves time: a device computes, or a processor
+/// has nothing to do, or deflating keeps a single one busy. Else both would only share processors.
+bool leaves_time(Backend backend, const WarpArguments& arguments) {
+  const auto processors = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = arguments.warp.threads > 0 ? arguments.warp.threads : processors;
+  return backend != Backend::cpu || threads < processors || arguments.compress > 0;
+}
+
 /// Two copies of every array, source and output, and the extra outputs must fit.
-void check_memory(const VolumePlan& plan, const ExtraOutputs& extra) {
+/// @returns whether the outputs fit once more
+bool check_memory(const VolumePlan& plan, const ExtraOutputs& extra) {
   const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
   const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
-  double bytes = output_voxels * ((extra.mask ? 1 : 0) + (extra.tet ? 4 : 0));
+  double source_bytes = 0,
+         output_bytes = output_voxels * ((extra.mask ? 1 : 0) + (extra.tet ? 4 : 0));
   for (const ArrayHeader& array : plan.arrays) {
-    bytes += (source_voxels + output_voxels) * array.components *
-             static_cast<double>(size_of(array.type));
+    const double voxel_bytes = array.components * static_cast<double>(size_of(array.type));
+    source_bytes += source_voxels * voxel_bytes;
+    output_bytes += output_voxels * voxel_bytes;
   }
+  const double bytes = source_bytes + output_bytes;
   const double available = available_memory();
   if (bytes > available) {
     throw std::invalid_argument(fmt::format(
@@ -119,6 +132,7 @@ void check_memory(const VolumePlan& plan, const ExtraOutputs& extra) {
         plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
         bytes_text(bytes), bytes_text(available)));
   }
+  return bytes + output_bytes <= available;
 }
 
 void check_axes(const VolumePlan& plan) {
@@ -151,6 +165,7 @@ VolumePlan plan_volume(const std::string& path,
                        const fs::path& output,
                        const WarpArguments& arguments,
                        const MeshReader& mesh,
+                       Backend backend,
                        const std::vector<std::int64_t>& steps) {
   const VolumeHeader header = read_volume_header(path);
   const auto step_count = std::max<std::int64_t>(1, std::ssize(header.times));
@@ -167,7 +182,8 @@ VolumePlan plan_volume(const std::string& path,
   plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
   plan.written_grid = cut_grid(plan.output_grid, arguments.warp.region);
   check_axes(plan);
-  check_memory(plan, arguments.extra);
+  plan.writes_beside =
+      check_memory(plan, arguments.extra) && steps.size() > 1 && leaves_time(backend, arguments);
   plan.outputs = output_names(output, steps, arguments.temporal);
   return plan;
 }
@@ -233,7 +249,7 @@ JobPlan plan_job(const WarpArguments& arguments) {
   for (const std::string& volume : volumes) {
     const fs::path output = several ? fs::path(arguments.output) / fs::path(volume).filename()
                                     : fs::path(arguments.output);
-    plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, plan.steps));
+    plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, backend, plan.steps));
   }
   check_outputs(plan, arguments);
   return plan;

@@ -52,24 +52,31 @@ void VolumeRun::write_each_step() {
   const Fingerprint inputs = fingerprint_of_inputs();
   for (std::size_t s = 0; s < plan_.steps.size(); ++s) {
     stop_if_interrupted();
+    finish_writing();
     StepReport report;
     report.step = plan_.steps[s];
     std::vector<Point3> positions = read_positions(report.step, report);
     Fingerprint fingerprint = inputs;
     fingerprint.add(positions);
     const std::string& output = volume_.outputs[s];
-    if (is_up_to_date(output, fingerprint.text())) {
+    const bool skips = is_up_to_date(output, fingerprint.text());
+    start_writing();
+    if (skips) {
+      finish_writing();
       ++result_.skipped;
-    } else {
-      compute(std::move(positions), report);
-      stop_if_interrupted();
-      const Stopwatch watch;
-      add_written(write_volumes(output, targets(), write_options(fingerprint)), report.counts);
-      report.timings.write = watch.seconds();
-      ++result_.written;
+      finish_step(report);
+      continue;
     }
-    finish_step(report);
+    compute(std::move(positions), report);
+    leave_to_write(report, [&output, options = write_options(fingerprint),
+                            volumes = outputs_[now_].volumes()] {
+      return write_volumes(output, volumes, options);
+    });
   }
+  stop_if_interrupted();
+  finish_writing();
+  start_writing();
+  finish_writing();
 }
 
 void VolumeRun::write_temporal() {
@@ -85,29 +92,34 @@ void VolumeRun::write_temporal() {
     ++result_.skipped;
     return;
   }
-  TemporalVolumeWriter writer(output, write_options(fingerprint));
+  temporal_.emplace(output, write_options(fingerprint));
   for (const std::int64_t step : plan_.steps) {
     stop_if_interrupted();
+    finish_writing();
     StepReport report;
     report.step = step;
     std::vector<Point3> positions = read_positions(step, report);
+    start_writing();
     compute(std::move(positions), report);
     const Counts& counts = report.counts;
     const bool repeats =
         counts.steps_unchanged > 0 || (counts.cells > 0 && counts.cells_unchanged == counts.cells);
-    stop_if_interrupted();
-    const Stopwatch watch;
     const double time = times[static_cast<std::size_t>(step)];
-    if (repeats) {
-      writer.repeat(time);
-    } else {
-      writer.append(time, targets());
-    }
-    report.timings.write = watch.seconds();
-    finish_step(report);
+    leave_to_write(report, [this, time, repeats, volumes = outputs_[now_].volumes()] {
+      if (repeats) {
+        temporal_->repeat(time);
+      } else {
+        temporal_->append(time, volumes);
+      }
+      return WrittenFile{};
+    });
   }
+  stop_if_interrupted();
+  finish_writing();
+  start_writing();
+  finish_writing();
   const Stopwatch watch;
-  add_written(writer.finish(), result_.report.counts);
+  add_written(temporal_->finish(), result_.report.counts);
   result_.report.timings.write += watch.seconds();
   ++result_.written;
 }
@@ -145,17 +157,22 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport& report) {
     return;
   }
   if (!warper_) start_warper();
+  if (volume_.writes_beside) now_ = 1 - now_;
+  Outputs& outputs = outputs_[now_];
+  if (outputs.warped.empty()) make_outputs(outputs);
   std::vector<void*> pointers;
-  for (Volume& volume : warped_) pointers.push_back(volume.data.data());
+  for (Volume& volume : outputs.warped) pointers.push_back(volume.data.data());
   WarpTarget target;
   target.volumes = pointers;
   target.holds_previous = true;
-  if (mask_) target.mask = mask_->samples<std::uint8_t>().data();
-  if (tet_) target.tet = tet_->samples<std::int32_t>().data();
+  if (outputs.mask) target.mask = outputs.mask->samples<std::uint8_t>().data();
+  if (outputs.tet) target.tet = outputs.tet->samples<std::int32_t>().data();
   const auto step_voxels = static_cast<double>(volume_.written_grid.voxel_count());
-  const auto steps_done = static_cast<double>(result_.report.steps.size());
+  const bool writes = writing_.valid();
+  const auto steps_done = static_cast<double>(result_.report.steps.size() + (writes ? 1 : 0));
+  const auto voxels_done = static_cast<double>(result_.report.counts.voxels +
+                                               (writes ? writing_report_.counts.voxels : 0));
   const Progress progress = [&](double share) {
-    const auto voxels_done = static_cast<double>(result_.report.counts.voxels);
     bar_.update(steps_done + share, voxels_done + share * step_voxels);
     return !is_interrupted();
   };
@@ -178,12 +195,49 @@ void VolumeRun::start_warper() {
   result_.report.device = report.device;
   result_.report.threads = report.threads;
   result_.report.position_quantum = report.position_quantum;
+}
+
+void VolumeRun::make_outputs(Outputs& outputs) const {
   const Grid& grid = warper_->output_grid();
   for (const Volume& source : sources_) {
-    warped_.push_back(make_volume(grid, source.type, source.components, source.name));
+    outputs.warped.push_back(make_volume(grid, source.type, source.components, source.name));
   }
-  if (arguments_.extra.mask) mask_ = make_volume(grid, PixelType::uint8, 1, mask_array_name);
-  if (arguments_.extra.tet) tet_ = make_volume(grid, PixelType::int32, 1, tet_array_name);
+  if (arguments_.extra.mask) outputs.mask = make_volume(grid, PixelType::uint8, 1, mask_array_name);
+  if (arguments_.extra.tet) outputs.tet = make_volume(grid, PixelType::int32, 1, tet_array_name);
+}
+
+std::vector<const Volume*> VolumeRun::Outputs::volumes() const {
+  std::vector<const Volume*> all;
+  for (const Volume& volume : warped) all.push_back(&volume);
+  if (mask) all.push_back(&*mask);
+  if (tet) all.push_back(&*tet);
+  return all;
+}
+
+void VolumeRun::leave_to_write(const StepReport& report, std::function<WrittenFile()> write) {
+  computed_ = Computed{report, std::move(write)};
+}
+
+void VolumeRun::start_writing() {
+  if (!computed_) return;
+  writing_report_ = computed_->report;
+  writing_ = std::async(std::launch::async, [write = std::move(computed_->write)] {
+    const Stopwatch watch;
+    const WrittenFile file = write();
+    return Written{file, watch.seconds()};
+  });
+  computed_.reset();
+  if (!volume_.writes_beside) finish_writing();
+}
+
+/// Throws what the write threw.
+void VolumeRun::finish_writing() {
+  if (!writing_.valid()) return;
+  const Written written = writing_.get();
+  add_written(written.file, writing_report_.counts);
+  writing_report_.timings.write = written.seconds;
+  if (!temporal_) ++result_.written;
+  finish_step(writing_report_);
 }
 
 void VolumeRun::finish_step(const StepReport& report) {
@@ -211,14 +265,6 @@ Fingerprint VolumeRun::fingerprint_of_inputs() const {
   fingerprint.add(plan_.mesh.mesh().tets);
   fingerprint.add(plan_.mesh.mesh().rest_positions);
   return fingerprint;
-}
-
-std::vector<const Volume*> VolumeRun::targets() const {
-  std::vector<const Volume*> volumes;
-  for (const Volume& volume : warped_) volumes.push_back(&volume);
-  if (mask_) volumes.push_back(&*mask_);
-  if (tet_) volumes.push_back(&*tet_);
-  return volumes;
 }
 
 VolumeWriteOptions VolumeRun::write_options(const Fingerprint& fingerprint) const {

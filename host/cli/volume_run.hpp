@@ -1,7 +1,9 @@
 /// @file volume_run.hpp
-/// One volume file warped by every step of a plan.
+/// One volume file warped by every step of a plan; each step is written while the next is computed.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +19,8 @@
 namespace tetwarp::cli {
 
 /// Holds the sources, the outputs and the Warper between steps. All references must outlive it.
+///
+/// Files are read between the writes, never beside one: HDF5 need not be built for threads.
 class VolumeRun {
  public:
   VolumeRun(const WarpArguments& arguments,
@@ -38,8 +42,10 @@ class VolumeRun {
   void compute(std::vector<Point3> positions, StepReport& report);
   void start_warper();
   void finish_step(const StepReport& report);
+  void leave_to_write(const StepReport& report, std::function<WrittenFile()> write);
+  void start_writing();
+  void finish_writing();
   Fingerprint fingerprint_of_inputs() const;
-  std::vector<const Volume*> targets() const;
   VolumeWriteOptions write_options(const Fingerprint& fingerprint) const;
 
   const WarpArguments& arguments_;
@@ -48,12 +54,35 @@ class VolumeRun {
   ProgressBar& bar_;
   JobResult& result_;
   std::vector<Volume> sources_;
-  std::vector<Volume> warped_;  ///< as sources_, on the written grid
-  std::optional<Volume> mask_;
-  std::optional<Volume> tet_;
   std::optional<Warper> warper_;        ///< made for the first step that is computed
-  std::vector<Point3> last_positions_;  ///< those of what the outputs hold now
+  std::vector<Point3> last_positions_;  ///< those of the last step that was computed
   StepReport last_report_;
+
+  /// What a step writes to.
+  struct Outputs {
+    std::vector<Volume> warped;  ///< as sources_, on the written grid
+    std::optional<Volume> mask;
+    std::optional<Volume> tet;
+
+    std::vector<const Volume*> volumes() const;
+  };
+  /// A computed step and how it gets to its file.
+  struct Computed {
+    StepReport report;
+    std::function<WrittenFile()> write;
+  };
+  struct Written {
+    WrittenFile file;
+    double seconds;
+  };
+  void make_outputs(Outputs& outputs) const;
+
+  Outputs outputs_[2];
+  std::size_t now_ = 0;  ///< the outputs that hold the last step that was computed
+  std::optional<TemporalVolumeWriter> temporal_;
+  std::optional<Computed> computed_;  ///< and not written yet
+  StepReport writing_report_;
+  std::future<Written> writing_;  ///< last: its end waits for the write, which uses all above
 };
 
 }  // namespace tetwarp::cli
