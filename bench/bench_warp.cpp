@@ -90,6 +90,10 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
 
+  if (!cuda.usable) {
+    std::fprintf(stderr, "back end cuda is left out, none of its rows is measured: %s\n",
+                 cuda.reason.c_str());
+  }
   for (const bench::WarpCase& row : bench::warp_cases(extent, threads, cuda.usable)) {
     bench::register_row(row);
   }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "bench/device_floors.hpp"
 #include "bench/floors.hpp"
 #include "bench/inputs.hpp"
 #include "bench/timing.hpp"
@@ -160,6 +161,19 @@ AffineJob floor_of(const WarpCase& row, const Subject& subject, const Buffer& ou
           turned_about_middle(source, target, angle)};
 }
 
+/// Beside the counters of the stages, which are mean times on the device.
+void count_device_floor(benchmark::State& state, const AffineJob& job, double bytes) {
+  static const double bandwidth = device_copy_bandwidth(0);
+  const DeviceFloor floor = measure_device_floor(job, 0);
+  const double kernel = state.counters["kernel"];
+  state.counters["kernel_copies"] = kernel + state.counters["upload"] + state.counters["download"];
+  state.counters["floor"] = 1e3 * floor.kernel;
+  state.counters["floor_copies"] = 1e3 * floor.with_copies;
+  state.counters["floor_ratio"] = kernel / (1e3 * floor.kernel);
+  state.counters["copy_ratio"] = kernel * 1e-3 * bandwidth / bytes;
+  state.SetLabel(floor.layout);
+}
+
 void run(benchmark::State& state, const WarpCase& row) {
   Subject subject(row);
   Checked checked(state, row, subject);
@@ -186,11 +200,14 @@ void run(benchmark::State& state, const WarpCase& row) {
   count_stages(state, subject);
   count_work(state, subject.last.counts, median);
   count_accuracy(state, checked.accuracy());
-  if (row.backend != Backend::cpu) return;
-  const double sampling = std::min(timings[1].median, timings[2].median);
   const auto bytes = static_cast<double>(subject.output_bytes()) +
                      static_cast<double>(subject.source.grid.voxel_count()) *
                          static_cast<double>(size_of(row.type));
+  if (row.backend == Backend::cuda) {
+    count_device_floor(state, floor_of(row, subject, subject.output), bytes);
+  }
+  if (row.backend != Backend::cpu) return;
+  const double sampling = std::min(timings[1].median, timings[2].median);
   state.counters["floor"] = 1e3 * sampling;
   state.counters["floor_ratio"] = median / sampling;
   state.counters["copy_ratio"] = median * copy_rate(row.threads) / bytes;

@@ -16,6 +16,9 @@ namespace tetwarp::bench {
 ///   kernel                   the step without upload and download
 ///   floor, floor_ratio       the sampling floor, and time / floor
 ///   copy_ratio               time / (bytes in and out at copy bandwidth)
+///   kernel_copies            on cuda: kernel with upload and download
+///   floor_copies             on cuda: the floor with its output brought home; there both ratios
+///                            are those of `kernel`, and the row's label names the floor's layout
 ///   ns_per_covered, ns_per_voxel [ns]
 ///   max_error, rms_error     of the values, as a share of the image's range
 ///   compared, holes, painted, doubles                      see Accuracy

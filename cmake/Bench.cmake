@@ -27,6 +27,12 @@ add_executable(tetwarp_bench
   bench/warp_cases.cpp
   bench/workloads.cpp
   tests/scenes.cpp)
+if(TETWARP_HAS_CUDA)
+  target_sources(tetwarp_bench PRIVATE bench/device_floors.cu)
+  target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
+else()
+  target_sources(tetwarp_bench PRIVATE bench/device_floors_nocuda.cpp)
+endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
 target_link_libraries(tetwarp_bench PRIVATE
