@@ -18,6 +18,8 @@ endforeach()
 add_custom_target(bundle
   COMMAND ${CMAKE_COMMAND} "-DPROGRAMS=${tetwarp_bundled_files}" -DSTRIP=${CMAKE_STRIP}
     -DFOLDER=${PROJECT_BINARY_DIR}/bundle -P ${PROJECT_SOURCE_DIR}/cmake/MakeBundle.cmake
+  COMMAND ${CMAKE_COMMAND} -E copy
+    ${PROJECT_SOURCE_DIR}/cmake/run_on_device.sh ${PROJECT_BINARY_DIR}/bundle
   COMMAND ${CMAKE_COMMAND}
     -DFOLDER=${PROJECT_BINARY_DIR}/bundle -P ${PROJECT_SOURCE_DIR}/cmake/CheckBundle.cmake
   DEPENDS ${tetwarp_bundled} VERBATIM)

@@ -4,6 +4,7 @@ cmake_minimum_required(VERSION 3.22)
 set(largest_mib 40)
 file(GLOB_RECURSE files ${FOLDER}/*)
 set(bytes 0)
+list(FILTER files EXCLUDE REGEX "\\.sh$")
 foreach(file IN LISTS files)
   execute_process(COMMAND readelf --dynamic ${file}
     OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)

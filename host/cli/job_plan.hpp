@@ -21,7 +21,8 @@ struct VolumePlan {
   Grid output_grid;  ///< before the region cuts it
   Grid written_grid;
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
-  bool writes_beside = false;  ///< there is memory to compute a step while the last is written
+  bool writes_beside =
+      false;  ///< there is time and memory to write a step while the next is computed
 };
 
 /// A whole job.
