@@ -146,7 +146,6 @@ if(NOT BUILD_SHARED_LIBS)
   # Back end cuda on an emulated device: whole warps through the public calls.
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emulated_backend.cpp
-    tests/scenes.cpp
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt 
