@@ -19,6 +19,7 @@
 #include "bench/build_info.hpp"
 #include "bench/floors.hpp"
 #include "bench/measure.hpp"
+#include "bench/region.hpp"
 #include "bench/series.hpp"
 #include "bench/timing.hpp"
 
@@ -98,6 +99,7 @@ int main(int argc, char** argv) {
     bench::register_row(row);
   }
   bench::register_series_rows(extent, threads, cuda.usable);
+  bench::register_region_rows(threads, cuda.usable);
   bench::register_analytic_rows(extent, threads);
   describe(cuda, cuda_seconds, threads);
   ShortConsole console;

@@ -69,6 +69,8 @@ def self_test():
     fields = (parsed.kind, parsed.workload, parsed.filter, parsed.type, parsed.backend)
     assert fields == ("warp", "W2_rotated_256", "linear", "float32", "cpu"), fields
     assert (parsed.threads, parsed.without) == (2, "culling"), parsed
+    parsed = parse_name("W1_torso_700/linear/uint8x3/cpu/threads:2")
+    assert (parsed.type, parsed.components) == ("uint8", 3), parsed
     assert parse_name("position/W1_torso_700/float32/cpu").kind == "position"
     print("compare.py: all verdicts as expected")
 

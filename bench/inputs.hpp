@@ -28,15 +28,16 @@ class Inputs {
     return *truth_;
   }
 
-  VolumeView image(const Workload& workload, PixelType type, Image image) {
+  VolumeView image(const Workload& workload, PixelType type, Image image, int components = 1) {
     const Grid& grid = scene(workload).source_grid;
-    const std::string name = name_of(type) + std::to_string(static_cast<int>(image));
+    const std::string name = std::string(name_of(type)) + "/" + std::to_string(components) + "/" +
+                             std::to_string(static_cast<int>(image));
     if (image_name_ != name) {
       image_ = Buffer();  // before the next one: two large images need not fit
-      image_ = make_image(grid, type, image);
+      image_ = make_image(grid, type, image, components);
       image_name_ = name;
     }
-    return {grid, type, 1, image_.data(), Memory::host};
+    return {grid, type, components, image_.data(), Memory::host};
   }
 
  private:

@@ -35,7 +35,7 @@ struct Subject {
 
   explicit Subject(const WarpCase& row)
       : scene(inputs().scene(row.workload)),
-        source(inputs().image(row.workload, row.type, row.image)),
+        source(inputs().image(row.workload, row.type, row.image, row.components)),
         output(output_bytes()) {
     WarpOptions options{.filter = row.filter,
                         .output_grid = scene.output_grid,
@@ -49,7 +49,8 @@ struct Subject {
   }
 
   std::size_t output_bytes() const {
-    return static_cast<std::size_t>(scene.output_grid.voxel_count()) * size_of(source.type);
+    return static_cast<std::size_t>(scene.output_grid.voxel_count() * source.components) *
+           size_of(source.type);
   }
 
   StepReport step(std::int32_t* tet = nullptr) {
@@ -120,10 +121,12 @@ void count_stages(benchmark::State& state, const Subject& subject) {
   state.counters["kernel"] = scale * (sum.setup + sum.mask + sum.cull + sum.raster);
 }
 
-void count_work(benchmark::State& state, const Counts& counts, double median) {
+void count_work(benchmark::State& state, const Subject& subject, double median) {
+  const Counts& counts = subject.last.counts;
   const auto covered = static_cast<double>(counts.covered);
   const auto voxels = static_cast<double>(counts.voxels);
   const auto pairs = std::max(1.0, static_cast<double>(counts.candidate_pairs));
+  state.counters["components"] = subject.source.components;
   state.counters["ns_per_covered"] = 1e9 * median / covered;
   state.counters["ns_per_voxel"] = 1e9 * median / voxels;
   state.counters["tets"] = static_cast<double>(counts.tetrahedra);
@@ -174,43 +177,64 @@ void count_device_floor(benchmark::State& state, const AffineJob& job, double by
   state.SetLabel(floor.layout);
 }
 
-void run(benchmark::State& state, const WarpCase& row) {
-  Subject subject(row);
-  Checked checked(state, row, subject);
-  if (!checked.is_right()) return;
+void count_row(benchmark::State& state, const Subject& subject, const Timing& timing) {
+  count_timing(state, timing);
+  count_stages(state, subject);
+  count_work(state, subject, timing.median);
+}
 
+Protocol protocol_of(const WarpCase& row) {
+  return {.busy_threads = row.backend == Backend::cpu ? static_cast<double>(row.threads) : 0.0};
+}
+
+/// In turn with the same step, everything on: what the switch saves.
+void run_beside_whole(benchmark::State& state, const WarpCase& row, Subject& subject) {
+  WarpCase with = row;
+  with.skip = {};
+  Subject whole(with);
+  if (std::memcmp(whole.output.data(), subject.output.data(), subject.output_bytes()) != 0) {
+    return refuse(state, "a switch changes the output");
+  }
+  const std::function<void()> jobs[] = {[&] { subject.timed_step(); }, [&] { whole.timed_step(); }};
+  const std::vector<Timing> timings = time_in_turn(jobs, protocol_of(row));
+  count_row(state, subject, timings[0]);
+  state.counters["with"] = 1e3 * timings[1].median;
+  state.counters["saved"] = 1 - timings[1].median / timings[0].median;
+}
+
+/// In turn with the sampling floor; on a device, and of one component, the floor comes after.
+void run_beside_floor(benchmark::State& state, const WarpCase& row, Subject& subject) {
   std::vector<std::function<void()>> jobs = {[&] { subject.timed_step(); }};
-  Protocol protocol;
-  Buffer floor_output;
-  AffineJob floor;
-  if (row.backend == Backend::cpu) {
-    floor_output = Buffer(subject.output_bytes());
-    floor = floor_of(row, subject, floor_output);
+  const bool has_floor = row.backend != Backend::reference && row.components == 1;
+  const Buffer floor_output(has_floor ? subject.output_bytes() : 0);
+  const AffineJob floor = floor_of(row, subject, floor_output);
+  if (has_floor && row.backend == Backend::cpu) {
     for (const RowOrder order : {RowOrder::lines, RowOrder::bundles}) {
       jobs.emplace_back([&, order] { sample_affine(floor, order, row.threads); });
       jobs.back()();  // first touch
     }
-    protocol.busy_threads = row.threads;
   }
-  const std::vector<Timing> timings = time_in_turn(jobs, protocol);
-  if (!checked.is_right()) return;
-
-  const double median = timings[0].median;
-  count_timing(state, timings[0]);
-  count_stages(state, subject);
-  count_work(state, subject.last.counts, median);
-  count_accuracy(state, checked.accuracy());
+  const std::vector<Timing> timings = time_in_turn(jobs, protocol_of(row));
+  count_row(state, subject, timings[0]);
+  if (!has_floor) return;
   const auto bytes = static_cast<double>(subject.output_bytes()) +
                      static_cast<double>(subject.source.grid.voxel_count()) *
                          static_cast<double>(size_of(row.type));
-  if (row.backend == Backend::cuda) {
-    count_device_floor(state, floor_of(row, subject, subject.output), bytes);
-  }
-  if (row.backend != Backend::cpu) return;
+  if (row.backend == Backend::cuda) return count_device_floor(state, floor, bytes);
+  const double median = timings[0].median;
   const double sampling = std::min(timings[1].median, timings[2].median);
   state.counters["floor"] = 1e3 * sampling;
   state.counters["floor_ratio"] = median / sampling;
   state.counters["copy_ratio"] = median * copy_rate(row.threads) / bytes;
+}
+
+void run(benchmark::State& state, const WarpCase& row) {
+  Subject subject(row);
+  Checked checked(state, row, subject);
+  if (!checked.is_right()) return;
+  (row.without.empty() ? run_beside_floor : run_beside_whole)(state, row, subject);
+  if (!checked.is_right()) return;
+  count_accuracy(state, checked.accuracy());
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 namespace tetwarp::bench {
 
 /// Registers a row. Run, it makes the input, checks a first result against the truth and refuses to
-/// time a wrong one; then it times steps in turn with the sampling floor where the back end is cpu.
+/// time a wrong one; then it times steps in turn with the sampling floor where the back end is cpu,
+/// or, where something is switched off, in turn with steps that have it on.
 /// The row's time is the median of at least nine repetitions. Its counters [ms where not said]:
 ///
 ///   low, high, min, kept, discarded, busy, contended       see Timing
@@ -19,10 +20,11 @@ namespace tetwarp::bench {
 ///   kernel_copies            on cuda: kernel with upload and download
 ///   floor_copies             on cuda: the floor with its output brought home; there both ratios
 ///                            are those of `kernel`, and the row's label names the floor's layout
+///   with, saved              the step with everything on; 1 - with / time
 ///   ns_per_covered, ns_per_voxel [ns]
 ///   max_error, rms_error     of the values, as a share of the image's range
 ///   compared, holes, painted, doubles                      see Accuracy
-///   tets, voxels, covered, tests_per_covered, exact_tests, copied [voxels]
+///   components, tets, voxels, covered, tests_per_covered, exact_tests, copied [voxels]
 ///   rejected_share, accepted_share [of pairs], constant_share [of cells]
 void register_row(const WarpCase& row);
 

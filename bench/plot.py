@@ -7,6 +7,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rows import machine_of, read_rows
 
@@ -43,6 +44,15 @@ class Chart:
         plt.close(self.figure)
 
 
+def use_logarithms(axis):
+    """Both ways, ticks at 1, 2, 5 in plain numbers."""
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
+    axis.yaxis.set_minor_formatter(NullFormatter())
+
+
 def main_rows(rows, backend, threads):
     """Linear, float32, all threads."""
     return [
@@ -50,6 +60,7 @@ def main_rows(rows, backend, threads):
         for row in rows
         if row.kind == "warp"
         and (row.filter, row.type, row.backend) == ("linear", "float32", backend)
+        and row.components == 1
         and row.threads in (0, threads)
     ]
 
@@ -89,16 +100,18 @@ def draw_work_precision(rows, folder):
                 ]
                 points = [row for _, row in sorted(points, key=lambda point: point[0])]
                 for axis, key in zip(chart.axes, ("max_error", "rms_error")):
-                    axis.set_xscale("log")
-                    axis.set_yscale("log")
+                    use_logarithms(axis)
                     if not points:
                         continue
                     errors = [row[key] for row in points]
                     times = [row["ns_per_covered"] for row in points]
                     label = f"{filter_name}, {type_name}"
                     axis.plot(errors, times, style, marker="o", color=f"C{color}", label=label)
-                    for row, error, time in zip(points, errors, times):
-                        axis.annotate(f"{row.workload}³", (error, time), fontsize=6)
+                    if type_name != "float32":
+                        continue
+                    for row, at in zip(points, zip(errors, times)):
+                        place = {"xytext": (6, 2), "textcoords": "offset points"}
+                        axis.annotate(f"{row.workload}³", at, fontsize=7, **place)
 
 
 def draw_sizes(rows, folder):
@@ -106,8 +119,7 @@ def draw_sizes(rows, folder):
     chosen = [row for row in chosen if row.workload.count("_") == 2]
     title = "Time against volume size, 1,080 tetrahedra, turned by 45° twice"
     with Chart(folder, "time_against_size", title, "output voxels", "ms") as chart:
-        chart.axes[0].set_xscale("log")
-        chart.axes[0].set_yscale("log")
+        use_logarithms(chart.axes[0])
         culling_lines(chart.axes[0], chosen, lambda row: row["voxels"])
 
 
@@ -116,8 +128,7 @@ def draw_tets(rows, folder):
     chosen = [row for row in chosen if row.workload.count("_") == 3]
     title = "Time against tetrahedra, 256³ voxels, waves"
     with Chart(folder, "time_against_tetrahedra", title, "tetrahedra", "ms") as chart:
-        chart.axes[0].set_xscale("log")
-        chart.axes[0].set_yscale("log")
+        use_logarithms(chart.axes[0])
         culling_lines(chart.axes[0], chosen, lambda row: row["tets"])
 
 
@@ -125,7 +136,7 @@ def draw_threads(rows, folder):
     with Chart(folder, "speed_up", "Speed-up over threads", "threads", "speed-up") as chart:
         chosen = [row for row in rows if row.kind == "warp" and row.backend == "cpu"]
         chosen = [row for row in chosen if row.type == "float32" and row.filter == "linear"]
-        chosen = [row for row in chosen if not row.without]
+        chosen = [row for row in chosen if not row.without and row.components == 1]
         for name in sorted({row.workload for row in chosen}):
             mine = {row.threads: row.time for row in chosen if row.workload == name}
             if 1 in mine and len(mine) > 1:

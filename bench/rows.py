@@ -8,10 +8,11 @@ class Row:
     """One benchmark. The parts of its name are fields, its counters a dictionary."""
 
     name: str
-    kind: str = "warp"  # warp, series, analytic or position
+    kind: str = "warp"  # warp, series, region, analytic or position
     workload: str = ""
     filter: str = ""
     type: str = ""
+    components: int = 1
     backend: str = ""
     threads: int = 0
     without: str = ""
@@ -30,7 +31,7 @@ def parse_name(name):
     """W2_rotated_256/linear/float32/cpu/threads:2/without:culling as a Row without figures."""
     row = Row(name)
     parts = name.split("/")
-    if parts[0] in ("analytic", "position", "series"):
+    if parts[0] in ("analytic", "position", "series", "region"):
         row.kind = parts.pop(0)
     row.workload = parts.pop(0)
     for part in parts:
@@ -45,7 +46,8 @@ def parse_name(name):
         elif part.startswith("moved:"):
             row.moved = int(part.split(":")[1])
         else:
-            row.type = part
+            row.type, _, components = part.partition("x")
+            row.components = int(components or 1)
     return row
 
 
@@ -67,11 +69,18 @@ def parse_rows(results):
     return rows
 
 
+def place_of(row):
+    """Sorts by kind, then workloads by the numbers in their names; else as measured."""
+    parts = row.workload.split("_")
+    return row.kind, [(part.isdigit(), int(part) if part.isdigit() else part) for part in parts]
+
+
 def read_rows(path):
-    """(context, rows by name) of a results file."""
+    """(context, rows by name) of a results file, in the order of place_of()."""
     with open(path, encoding="utf-8") as file:
         results = json.load(file)
-    return results["context"], parse_rows(results)
+    rows = parse_rows(results)
+    return results["context"], {row.name: row for row in sorted(rows.values(), key=place_of)}
 
 
 def machine_of(context):

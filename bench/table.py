@@ -21,6 +21,10 @@ def where_of(row):
     return f"{row.backend}, {row.threads} threads" if row.threads else row.backend
 
 
+def pixels_of(row):
+    return row.type if row.components == 1 else f"{row.components} x {row.type}"
+
+
 def spread_of(row):
     note = " (busy machine)" if row.contended else ""
     return f"{figure((row.high - row.low) / row.time * 100, 2)} %{note}"
@@ -34,7 +38,8 @@ def warp_table(rows):
         floor = figure(row["floor"]) if "floor" in row.counters else ""
         ratio = figure(row["floor_ratio"]) if "floor" in row.counters else ""
         lines.append(
-            [row.workload, row.filter, row.type, where_of(row), figure(row.time), spread_of(row)]
+            [row.workload, row.filter, pixels_of(row), where_of(row)]
+            + [figure(row.time), spread_of(row)]
             + [floor, ratio, figure(row["ns_per_covered"]), figure(row["tests_per_covered"])]
             + [figure(row["max_error"], 2), figure(row["rms_error"], 2)]
         )
@@ -43,19 +48,36 @@ def warp_table(rows):
     return table(header + ["max error", "RMS error"], lines)
 
 
-def skip_table(rows):
-    """What each switch saves: the row with everything on beside the row without it."""
-    by_name = {row.name: row for row in rows}
-    lines = []
+def type_table(rows):
+    """Filters, pixel types and components of one workload beside each other, each / float32."""
+    groups = {}
     for row in rows:
-        base = by_name.get(row.name.rsplit("/without:", 1)[0])
-        if row.kind != "warp" or not row.without or base is None:
+        if row.kind == "warp" and not row.without:
+            key = (row.workload, row.filter, row.components, where_of(row))
+            groups.setdefault(key, {})[row.type] = row.time
+    types = ("uint8", "int16", "float32", "float64")
+    lines = []
+    for (workload, filter_name, components, where), times in groups.items():
+        if len(times) < 2:
             continue
-        saved = 1 - base.time / row.time
-        lines.append(
-            [row.workload, row.type, where_of(row), row.without]
-            + [figure(row.time), figure(base.time), f"{100 * saved:.0f} %"]
-        )
+        cells = []
+        for name in types:
+            ratio = times[name] / times["float32"] if {name, "float32"} <= times.keys() else 0
+            note = f" ({ratio:.2f})" if ratio and name != "float32" else ""
+            cells.append(figure(times[name]) + note if name in times else "")
+        lines.append([workload, filter_name, str(components), where, *cells])
+    header = ["workload", "filter", "components", "where"]
+    return table(header + [f"{name}, ms" for name in types], lines)
+
+
+def skip_table(rows):
+    """What each switch saves; the step that has it on was timed in turn with the one without."""
+    lines = [
+        [row.workload, pixels_of(row), where_of(row), row.without]
+        + [figure(row.time), figure(row["with"]), f"{round(100 * row['saved'])} %"]
+        for row in rows
+        if row.kind == "warp" and row.without
+    ]
     header = ["workload", "pixels", "where", "without", "ms without", "ms with", "saved"]
     return table(header, lines)
 
@@ -70,6 +92,18 @@ def series_table(rows):
     ]
     header = ["workload", "where", "nodes moved", "tetrahedra moved", "cells touched"]
     return table(header + ["ms of an update", "ms of a whole step", "cost"], lines)
+
+
+def region_table(rows):
+    lines = [
+        [row.workload, where_of(row), f"{100 * row['voxel_share']:.1f} %"]
+        + [f"{100 * row['covered_share']:.1f} %", figure(row.time), figure(row["whole"])]
+        + [f"{100 * row['cost_share']:.1f} %"]
+        for row in rows
+        if row.kind == "region"
+    ]
+    header = ["workload", "where", "voxels of the region", "covered voxels of the region"]
+    return table(header + ["ms", "ms of the whole", "cost"], lines)
 
 
 def error_table(rows):
@@ -95,10 +129,18 @@ def main():
     context, rows = read_rows(sys.argv[1])
     rows = list(rows.values())
     print(machine_of(context) + "\n")
-    sections = [("Time", warp_table(rows)), ("What skipping saves", skip_table(rows))]
-    sections += [("What updating saves", series_table(rows)), ("Error", error_table(rows))]
+    sections = [
+        ("Time", warp_table(rows)),
+        ("Pixel types, in brackets: over float32", type_table(rows)),
+        ("What skipping saves", skip_table(rows)),
+        ("What updating saves", series_table(rows)),
+        ("What a region costs", region_table(rows)),
+        ("Error", error_table(rows)),
+    ]
     for title, lines in sections:
-        print(f"### {title}\n\n" + "\n".join(lines))
+        lines = list(lines)
+        if len(lines) > 3:  # header, rule, empty line
+            print(f"### {title}\n\n" + "\n".join(lines))
     return 0
 
 

@@ -150,7 +150,8 @@ Truth make_truth(const scenes::Scene& scene) {
 
 std::optional<double> sample_truth(const VolumeView& source,
                                    Filter filter,
-                                   const Point3& position) {
+                                   const Point3& position,
+                                   int component) {
   std::array<std::int64_t, 3> low;
   std::array<double, 3> fraction;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -174,7 +175,8 @@ std::optional<double> sample_truth(const VolumeView& source,
             std::clamp(low[axis] + upper, std::int64_t{0}, source.grid.dims[axis] - 1);
         offset = offset * source.grid.dims[axis] + i;
       }
-      sum += weight * static_cast<double>(static_cast<const T*>(source.data)[offset]);
+      sum += weight * static_cast<double>(static_cast<const T*>(
+                          source.data)[offset * source.components + component]);
     }
   });
   return sum;
@@ -196,17 +198,21 @@ Accuracy compare(const Truth& truth,
   with_pixel_type(source.type, [&]<class T>(T) {
     for (std::size_t v = 0; v < truth.voxels.size(); ++v) {
       const std::int32_t owner = truth.owners[v], given = tet[truth.voxels[v]];
-      const auto value = static_cast<double>(static_cast<const T*>(output)[truth.voxels[v]]);
+      const T* const values = static_cast<const T*>(output) + truth.voxels[v] * source.components;
+      const bool is_blank =
+          std::all_of(values, values + source.components, [](T value) { return value == T{0}; });
       accuracy.holes += owner >= 0 && given < 0;
-      accuracy.painted += owner < 0 && (given >= 0 || value != 0);
+      accuracy.painted += owner < 0 && (given >= 0 || !is_blank);
       accuracy.doubles += owner >= 0 && given >= 0 && given != owner;
-      if (owner < 0) continue;
-      const std::optional<double> expected = sample_truth(source, filter, truth.positions[v]);
-      if (!expected) continue;
-      ++valued;
-      const double error = error_between(value, *expected) / range_of(source.type);
-      accuracy.max_error = std::max(accuracy.max_error, error);
-      squares += error * error;
+      for (int c = 0; owner >= 0 && c < source.components; ++c) {
+        const std::optional<double> expected = sample_truth(source, filter, truth.positions[v], c);
+        if (!expected) continue;
+        ++valued;
+        const double error =
+            error_between(static_cast<double>(values[c]), *expected) / range_of(source.type);
+        accuracy.max_error = std::max(accuracy.max_error, error);
+        squares += error * error;
+      }
     }
   });
   accuracy.compared = static_cast<std::int64_t>(truth.voxels.size());

@@ -26,10 +26,13 @@ struct Truth {
 /// All voxels for sources of up to 128^3, else 100,000 seeded ones.
 Truth make_truth(const scenes::Scene& scene);
 
-/// The float64 value at a source position.
+/// The float64 value of a component at a source position.
 /// @returns the value, or nothing outside of the source, and for the nearest filter within 1e-4
 ///          voxel of a place where the nearest sample changes
-std::optional<double> sample_truth(const VolumeView& source, Filter filter, const Point3& position);
+std::optional<double> sample_truth(const VolumeView& source,
+                                   Filter filter,
+                                   const Point3& position,
+                                   int component = 0);
 
 /// Their distance; infinite for a NaN, which must not pass as no error.
 double error_between(double value, double expected);
@@ -44,8 +47,8 @@ struct Accuracy {
   double rms_error = 0;
 };
 
-/// @param source  one component; what was warped
-/// @param output  samples of the source's type, background zero
+/// @param source  what was warped
+/// @param output  samples of the source's type and components, background zero
 /// @param tet     owners, as WarpTarget::tet
 Accuracy compare(const Truth& truth,
                  const VolumeView& source,

@@ -2,6 +2,7 @@
 #include "bench/warp_cases.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace tetwarp::bench {
 
@@ -26,18 +27,18 @@ class Rows {
     const auto same = [&](const WarpCase& other) { return name_of(other) == name_of(row); };
     if (std::none_of(rows_.begin(), rows_.end(), same)) rows_.push_back(row);
   }
-  void add_with_and_without_culling(WarpCase row) {
-    add(row);
-    row.without = "culling";
-    for (const SkipVariant& variant : skip_variants()) {
-      if (variant.name == row.without) row.skip = variant.skip;
-    }
+  void add_without(WarpCase row, const SkipVariant& variant) {
+    row.without = variant.name;
+    row.skip = variant.skip;
     add(row);
   }
   /// Rows of one input stand together, so that it is made once.
   std::vector<WarpCase> sorted() && {
     std::stable_sort(rows_.begin(), rows_.end(), [](const WarpCase& a, const WarpCase& b) {
-      return a.workload.name < b.workload.name;
+      const auto input = [](const WarpCase& row) {
+        return std::tie(row.workload.name, row.image, row.type, row.components);
+      };
+      return input(a) < input(b);
     });
     return std::move(rows_);
   }
@@ -45,6 +46,69 @@ class Rows {
  private:
   std::vector<WarpCase> rows_;
 };
+
+/// One step of every workload; time against volume size and against tetrahedra, with and without
+/// culling.
+void add_workloads(Rows& rows, WarpCase row, bool full) {
+  for (const Workload& workload : {ties_128(), torso_700(), fish_35()}) {
+    row.workload = workload;
+    rows.add(row);
+  }
+  const SkipVariant no_culling = skip_variants().front();
+  for (const std::int64_t n : {128, 256, 384, 512}) {
+    row.workload = rotated(n);
+    if (full || n <= 384) rows.add(row);
+    if (full || n <= 256) rows.add_without(row, no_culling);
+  }
+  for (const int tets : waved_tet_counts) {
+    row.workload = waved(256, tets);
+    rows.add(row);
+    rows.add_without(row, no_culling);
+  }
+}
+
+/// Filters, pixel types, components.
+void add_types(Rows& rows, WarpCase row, bool full) {
+  for (const Workload& workload : {torso_700(), rotated(256), waved(256, 5000)}) {
+    const bool is_small = workload.name == torso_700().name;
+    const bool is_large = workload.name == rotated(256).name;
+    row.workload = workload;
+    for (const PixelType type : types) {
+      row.type = type;
+      for (const Filter filter : filters) {
+        row.filter = filter;
+        const bool is_shown = filter == Filter::linear && is_integer(type) && is_large;
+        if (full || is_small || is_shown) rows.add(row);
+      }
+      row.filter = Filter::linear;
+      row.components = 3;
+      if (full || (is_small && size_of(type) != 2)) rows.add(row);
+      row.components = 1;
+    }
+  }
+}
+
+/// A switch is on for work of this kind; culling as a whole is among the workloads' rows.
+bool is_telling(const WarpCase& row, const SkipVariant& variant) {
+  const bool is_shifted = row.workload.deformation == Deformation::shift;
+  if (variant.name == "constant_cells") return row.image == Image::in_air && !is_shifted;
+  if (row.image == Image::in_air || variant.name == "culling") return false;
+  return (variant.name == "copied_voxels") == is_shifted;
+}
+
+/// What each switch saves: in the short list where it has work to leave out, in the long one also
+/// where it has none.
+void add_skips(Rows& rows, WarpCase row, bool full) {
+  for (const Workload& workload : {shifted_256(), rotated(256), waved(256, 50000)}) {
+    for (const Image image : {Image::textured, Image::in_air}) {
+      row.workload = workload;
+      row.image = image;
+      for (const SkipVariant& variant : skip_variants()) {
+        if (full || is_telling(row, variant)) rows.add_without(row, variant);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -58,8 +122,9 @@ std::vector<SkipVariant> skip_variants() {
 
 std::string name_of(const WarpCase& row) {
   std::string name = row.workload.name + (row.image == Image::in_air ? "_in_air" : "") +
-                     (row.filter == Filter::nearest ? "/nearest/" : "/linear/") +
-                     name_of(row.type) + "/" + name_of(row.backend);
+                     (row.filter == Filter::nearest ? "/nearest/" : "/linear/") + name_of(row.type);
+  if (row.components > 1) name += "x" + std::to_string(row.components);
+  name += std::string("/") + name_of(row.backend);
   if (row.backend == Backend::cpu) name += "/threads:" + std::to_string(row.threads);
   if (!row.without.empty()) name += "/without:" + row.without;
   return name;
@@ -71,47 +136,16 @@ std::vector<WarpCase> warp_cases(Extent extent, int threads, bool with_cuda) {
   std::vector<Backend> backends = {Backend::cpu};
   if (with_cuda) backends.push_back(Backend::cuda);
   for (const Backend backend : backends) {
-    // One step of every workload; time against volume size and against tetrahedra.
-    for (const Workload& workload : {ties_128(), torso_700(), fish_35()}) {
-      rows.add({.workload = workload, .backend = backend, .threads = threads});
-    }
-    for (const std::int64_t n : {128, 256, 384, 512}) {
-      if (n == 512 && !full) continue;
-      rows.add_with_and_without_culling(
-          {.workload = rotated(n), .backend = backend, .threads = threads});
-    }
-    for (const int tets : waved_tet_counts) {
-      rows.add_with_and_without_culling(
-          {.workload = waved(256, tets), .backend = backend, .threads = threads});
-    }
-    // Filters and pixel types.
-    for (const Workload& workload : {rotated(256), torso_700(), waved(256, 5000)}) {
-      for (const Filter filter : filters) {
-        for (const PixelType type : types) {
-          if (!full && workload.name != rotated(256).name) continue;
-          rows.add({workload, filter, type, backend, threads});
-        }
-      }
-    }
-    // What each skip saves, on a workload that has something to skip and on one that has not.
-    for (const Workload& workload : {ties_128(), rotated(256), waved(256, 50000)}) {
-      for (const Image image : {Image::textured, Image::in_air}) {
-        WarpCase row{.workload = workload, .backend = backend, .threads = threads, .image = image};
-        rows.add(row);
-        for (const SkipVariant& variant : skip_variants()) {
-          row.without = variant.name;
-          row.skip = variant.skip;
-          // Only air around the image makes cells constant.
-          const bool matters = (image == Image::in_air) == (variant.name == "constant_cells");
-          if (full || matters) rows.add(row);
-        }
-      }
-    }
+    const WarpCase row{.workload = torso_700(), .backend = backend, .threads = threads};
+    add_workloads(rows, row, full);
+    add_types(rows, row, full);
+    add_skips(rows, row, full);
   }
   for (const int count : thread_counts(threads)) {
     for (const Workload& workload :
-         {torso_700(), rotated(256), waved(256, 5000), waved(256, 500000)}) {
-      rows.add({.workload = workload, .threads = count});
+         {torso_700(), waved(256, 5000), rotated(256), waved(256, 500000)}) {
+      const bool is_short = workload.name != rotated(256).name && workload.tet_count() <= 5000;
+      if (full || is_short) rows.add({.workload = workload, .threads = count});
     }
   }
   if (full) rows.add({.workload = rotated(128), .backend = Backend::reference});

@@ -17,12 +17,13 @@ struct WarpCase {
   PixelType type = PixelType::float32;
   Backend backend = Backend::cpu;
   int threads = 1;
+  int components = 1;
   Image image = Image::textured;
   std::string without = {};  ///< what is switched off: a name of skip_variants(), or nothing
   SkipOptions skip = {};
 };
 
-/// W2_rotated_256/linear/float32/cpu/threads:2/without:culling
+/// W2_rotated_256/linear/float32/cpu/threads:2/without:culling; of several components: float32x3
 std::string name_of(const WarpCase& warp_case);
 
 /// Switches of SkipOptions that change one step in memory, off one by one or together.

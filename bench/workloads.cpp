@@ -52,7 +52,9 @@ std::vector<Point3> deform(const Workload& workload, const std::vector<Point3>& 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     centre[axis] = static_cast<double>(workload.dims[axis] - 1) / 2;
   }
-  if (workload.deformation == Deformation::shift) return scenes::shifted(nodes, {3, -2, 5});
+  if (workload.deformation == Deformation::ties || workload.deformation == Deformation::shift) {
+    return scenes::shifted(nodes, {3, -2, 5});
+  }
   if (workload.deformation == Deformation::rotation) return scenes::rotated_45_45(nodes, centre);
   std::vector<Point3> deformed;
   for (const Point3& p : nodes) {
@@ -102,13 +104,17 @@ std::vector<double> bulge_along(std::int64_t dims) {
 }  // namespace
 
 Workload ties_128() {
-  return {"W0_ties_128", {128, 128, 128}, {6, 6, 6}, Deformation::shift};
+  return {"W0_ties_128", {128, 128, 128}, {6, 6, 6}, Deformation::ties};
 }
 Workload torso_700() {
   return {"W1_torso_700", {256, 160, 122}, {7, 5, 4}, Deformation::bend};
 }
 Workload fish_35() {
   return {"W4_fish_35", {204, 202, 512}, {1, 1, 7}, Deformation::swim};
+}
+
+Workload shifted_256() {
+  return {"W5_shifted_256", {256, 256, 256}, {6, 6, 6}, Deformation::shift};
 }
 
 Workload rotated(std::int64_t n) {
@@ -134,7 +140,7 @@ scenes::Scene make_scene(const Workload& workload) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     high[axis] = static_cast<double>(workload.dims[axis]) - 0.5;
   }
-  if (workload.deformation == Deformation::shift) {  // planes every 20 voxels
+  if (workload.deformation == Deformation::ties) {  // planes every 20 voxels
     low = {0, 0, 0};
     high = {120, 120, 120};
   }
@@ -148,7 +154,7 @@ double range_of(PixelType type) {
   return !is_integer(type) ? 1.0 : size_of(type) == 1 ? 254.0 : 4000.0;
 }
 
-Buffer make_image(const Grid& grid, PixelType type, Image image) {
+Buffer make_image(const Grid& grid, PixelType type, Image image, int components) {
   if (type != PixelType::uint8 && type != PixelType::int16 &&
       !(size_of(type) >= 4 && !is_integer(type))) {
     throw std::invalid_argument(std::string("make_image: no image of ") + name_of(type));
@@ -161,7 +167,8 @@ Buffer make_image(const Grid& grid, PixelType type, Image image) {
   const auto nx = static_cast<std::size_t>(grid.dims[0]);
   const auto ny = static_cast<std::size_t>(grid.dims[1]);
   const auto nz = static_cast<std::size_t>(grid.dims[2]);
-  Buffer buffer(nx * ny * nz * size_of(type));
+  const auto count = static_cast<std::size_t>(components);
+  Buffer buffer(nx * ny * nz * count * size_of(type));
   const double range = range_of(type);
   with_pixel_type(type, [&]<class T>(T) {
     T* const samples = reinterpret_cast<T*>(buffer.data());
@@ -169,12 +176,14 @@ Buffer make_image(const Grid& grid, PixelType type, Image image) {
     for (std::size_t k = 0; k < nz; ++k) {
       for (std::size_t j = 0; j < ny; ++j) {
         for (std::size_t i = 0; i < nx; ++i) {
-          const std::size_t at = (k * ny + j) * nx + i;
           const bool empty = image == Image::in_air && bulge[0][i] + bulge[1][j] + bulge[2][k] > 1;
-          const double noise = 0.1 * (unit_of(at) - 0.5);
-          const double value = 0.5 + 0.2 * along_x[i] * along_y[j] + 0.2 * along_z[k] + noise;
-          const double sample = empty ? 0.0 : range * value;
-          samples[at] = static_cast<T>(is_integer(type) ? std::nearbyint(sample) : sample);
+          for (std::size_t c = 0; c < count; ++c) {
+            const std::size_t at = ((k * ny + j) * nx + i) * count + c;
+            const double noise = 0.1 * (unit_of(at) - 0.5);
+            const double value = 0.5 + 0.2 * along_x[i] * along_y[j] + 0.2 * along_z[k] + noise;
+            const double sample = empty ? 0.0 : range * value;
+            samples[at] = static_cast<T>(is_integer(type) ? std::nearbyint(sample) : sample);
+          }
         }
       }
     }

@@ -18,7 +18,8 @@ namespace tetwarp::bench {
 
 /// How the nodes move.
 enum class Deformation {
-  shift,     ///< by whole voxels, planes of the mesh through voxel centres: every tie there is
+  ties,      ///< by whole voxels, planes of the mesh through voxel centres: every tie there is
+  shift,     ///< by whole voxels, planes of the mesh between voxel centres
   bend,      ///< twisted about z, bent along x, a wave along z
   rotation,  ///< 45 degrees about z, then 45 degrees about x
   modes,     ///< 18 smooth sine modes, none of them inverts a tetrahedron
@@ -36,12 +37,13 @@ struct Workload {
 };
 
 /// The inputs by number: W0 ties, W1 torso, W2 a rotated n^3 volume in 1,080 tetrahedra, W3 an n^3
-/// volume in few or many tetrahedra, W4 a long fish.
+/// volume in few or many tetrahedra, W4 a long fish; W5 a volume whose tetrahedra can be copied.
 Workload ties_128();
 Workload torso_700();
 Workload rotated(std::int64_t n);
 Workload waved(std::int64_t n, int tets);  ///< tets: one of waved_tet_counts
 Workload fish_35();
+Workload shifted_256();
 inline constexpr std::array waved_tet_counts{40, 320, 1080, 5000, 50000, 500000};
 
 /// Mesh, deformed nodes and grids of a workload.
@@ -56,9 +58,9 @@ enum class Image {
 /// Width of the values of an image: 1 for floating point, 4000 for 16 bits, 254 for 8.
 double range_of(PixelType type);
 
-/// Samples of an image: uint8, int16, float32 or float64.
+/// Samples of an image: uint8, int16, float32 or float64; components differ by their noise.
 /// @throws std::invalid_argument for other pixel types
-Buffer make_image(const Grid& grid, PixelType type, Image image);
+Buffer make_image(const Grid& grid, PixelType type, Image image, int components = 1);
 
 /// The nodes after `share` of them, those nearest to the middle of the mesh, moved on by up to half
 /// a voxel.

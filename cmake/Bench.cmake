@@ -20,6 +20,7 @@ add_executable(tetwarp_bench
   bench/bench_warp.cpp
   bench/floors.cpp
   bench/measure.cpp
+  bench/region.cpp
   bench/series.cpp
   bench/timed_row.cpp
   bench/timing.cpp

@@ -26,11 +26,11 @@ struct Warped {
   std::vector<std::int32_t> tet;
   Counts counts;
 
-  explicit Warped(const scenes::Scene& warped_scene)
+  explicit Warped(const scenes::Scene& warped_scene, int components = 1)
       : scene(warped_scene),
-        source(scenes::wavy_volume(scene.source_grid, PixelType::float32)),
-        output(static_cast<std::size_t>(scene.output_grid.voxel_count())),
-        tet(output.size()) {
+        source(scenes::wavy_volume(scene.source_grid, PixelType::float32, components)),
+        output(static_cast<std::size_t>(scene.output_grid.voxel_count() * components)),
+        tet(static_cast<std::size_t>(scene.output_grid.voxel_count())) {
     Warper warper(source, scene.mesh,
                   {.output_grid = scene.output_grid, .backend = Backend::reference});
     void* const out = output.data();
@@ -50,9 +50,9 @@ struct Warped {
   }
 };
 
-Warped rotated_box() {
+Warped rotated_box(int components = 1) {
   for (const scenes::Scene& scene : scenes::adversarial_scenes(16)) {
-    if (scene.name == "rotated") return Warped(scene);
+    if (scene.name == "rotated") return Warped(scene, components);
   }
   throw std::logic_error("no scene named rotated");
 }
@@ -129,6 +129,19 @@ TEST(BenchCheck, RefusesAWrongValueAndANaN) {
 
     EXPECT_FALSE(warped.compared().max_error <= 1e-5);
     EXPECT_TRUE(warped.is_refused());
+  }
+}
+
+TEST(BenchCheck, RefusesAWrongValueInAnyComponent) {
+  for (std::size_t component = 0; component < 3; ++component) {
+    Warped warped = rotated_box(3);
+    EXPECT_FALSE(warped.is_refused());
+
+    warped.output[3 * warped.first_voxel(true) + component] += 0.1f;
+    EXPECT_TRUE(warped.is_refused()) << component;
+    warped = rotated_box(3);
+    warped.output[3 * warped.first_voxel(false) + component] = 0.25f;
+    EXPECT_EQ(warped.compared().painted, 1) << component;
   }
 }
 
