@@ -94,10 +94,11 @@ def read_peers(path):
 
 
 def work_solves(solves):
-    """Every method on every problem: first solves on all threads."""
+    """Every method on every problem that all were tried on: first solves on all threads."""
     work = [s for s in solves if (s.kind, s.visit, s.without) == ("contact", "first", "")]
     most = max((s.threads for s in work), default=1)
-    return [s for s in work if s.threads == most]
+    tried = {p: {s.method for s in work if s.problem == p} for p in {s.problem for s in work}}
+    return [s for s in work if s.threads == most and len(tried[s.problem]) > 1]
 
 
 def skip_bases(solves):
