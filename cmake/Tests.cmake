@@ -104,6 +104,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_tests SOURCES
+    tests/elastic_block.cpp
     tests/test_body_relax.cpp
     tests/test_contact.cpp
     tests/test_contact_acceptance.cpp
@@ -113,7 +114,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_device.cpp
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
+    tests/test_contact_linear.cpp
     tests/test_contact_newton.cpp
+    tests/test_contact_outer.cpp
     tests/test_contact_skip.cpp
     tests/test_contact_solver.cpp
     tests/test_contact_sweep.cpp

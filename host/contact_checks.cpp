@@ -133,8 +133,12 @@ class SymmetryCheck {
   }
 
   void compare(std::size_t row, std::size_t c, double entry, double mirrored) const {
+    if (std::abs(entry - mirrored) > tolerance * std::abs(entry)) doubt(row, c, entry, mirrored);
+  }
+
+  /// Throws unless the difference is small beside the largest entry of either row.
+  void doubt(std::size_t row, std::size_t c, double entry, double mirrored) const {
     const double difference = std::abs(entry - mirrored);
-    if (difference <= tolerance * std::abs(entry)) return;
     if (difference <= tolerance * std::max(largest_of(row), largest_of(c))) return;
     const std::string r = std::to_string(row);
     const std::string k = std::to_string(c);

@@ -1,6 +1,8 @@
 /// @file contact_condense.cpp
 #include "host/contact_condense.hpp"
 
+#include <algorithm>
+
 #include "host/contact_matrix.hpp"
 
 namespace tetwarp {
@@ -23,9 +25,13 @@ CondensedProblem::CondensedProblem(const ContactProblem& problem)
   local_.adhesion = problem.adhesion;
   local_.impulse_guess = problem.impulse_guess;
   if (rows == 0) return;
-  const Eigen::MatrixXd answers = factor_.solve(Eigen::MatrixXd(jacobian_.transpose()));
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus =
-      jacobian_ * answers;
+  constexpr Index run = 48;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus(rows, rows);
+  for (Index first = 0; first < rows; first += run) {
+    const Index count = std::min(run, rows - first);
+    const Eigen::MatrixXd pushes = jacobian_.middleRows(first, count).transpose();
+    delassus.middleCols(first, count) = jacobian_ * factor_.solve(pushes);
+  }
   local_.delassus.rows = local_.delassus.columns = rows;
   for (Index row = 0; row <= rows; ++row) local_.delassus.row_start.push_back(row * rows);
   for (Index row = 0; row < rows; ++row) {

@@ -11,7 +11,8 @@ namespace tetwarp {
 
 class CondensedProblem {
  public:
-  /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers.
+  /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers. The solves go in
+  /// runs, so that A^-1 J^T is never there as a whole.
   /// @param problem  global form, outlived by this
   /// @throws ContactProblemError  A is not positive definite
   explicit CondensedProblem(const ContactProblem& problem);

@@ -20,31 +20,6 @@ std::size_t index_of(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Numbers per contact from slots to contacts, of one island.
-void scatter_impulses(const ContactStructure& structure,
-                      const ContactIsland& island,
-                      const double* from,
-                      std::vector<double>& to) {
-  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
-    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
-  }
-}
-
-void scatter_velocities(const ContactStructure& structure,
-                        const ContactIsland& island,
-                        const double* from,
-                        std::vector<double>& to) {
-  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
-    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
-  }
-}
-
-/// The largest term's slot becomes its contact.
-void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums) {
-  if (sums.largest_contact < 0) return;
-  sums.largest_contact = structure.contact_of_slot[index_of(first_slot + sums.largest_contact)];
-}
-
 /// Offsets that ask for more than a recovery speed are lowered to it.
 void clamp_offsets(ContactProblem& problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
@@ -92,9 +67,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
     result.body_velocity.assign(index_of(problem.dof_count()), 0.0);
     result.outcomes.resize(index_of(structure_.contact_islands));
     solve_uncoupled(problem, system, result);
-    for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
-      if (structure_.islands[index_of(i)].is_coupled) solve_coupled(problem, i, result);
-    }
+    solve_coupled(problem, system, result);
     solve_contactless(problem, system, result);
     if (result.clamped.empty()) {
       result.clamped = std::move(clamped);
@@ -196,26 +169,6 @@ void ContactEngine::polish(const ContactProblem& problem,
   const double before = run.excess(i, outcome.sums);
   std::copy(polished.begin(), polished.end(), impulse);
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
-}
-
-void ContactEngine::solve_coupled(const ContactProblem& problem,
-                                  std::int64_t i,
-                                  EngineResult& result) {
-  const ContactIsland& island = structure_.islands[index_of(i)];
-  const ContactProblem part = make_island_problem(problem, structure_, island);
-  const CondensedProblem condensed(part);
-  ContactEngine engine(options_, threads_, device_);
-  const EngineResult inner = engine.solve(condensed.local());
-  const std::vector<double> v = condensed.body_velocity(inner.impulse);
-  scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
-  scatter_velocities(structure_, island, v.data(), result.body_velocity);
-  result.outcomes[index_of(i)] = inner.outcomes[0];
-  name_largest(structure_, island.slot_begin, result.outcomes[index_of(i)].sums);
-  result.updates_skipped += inner.updates_skipped;
-  result.colors = std::max(result.colors, inner.colors);
-  for (const std::int32_t c : inner.clamped) {
-    result.clamped.push_back(structure_.contact_of_slot[index_of(island.slot_begin + c)]);
-  }
 }
 
 void ContactEngine::solve_contactless(const ContactProblem& problem,

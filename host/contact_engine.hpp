@@ -39,7 +39,15 @@ class ContactEngine {
 
  private:
   ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
-  void solve_coupled(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+  void solve_coupled(const ContactProblem& problem,
+                     const ContactSystem<double>& system,
+                     EngineResult& result);
+  void iterate(const ContactProblem& problem,
+               const ContactSystem<double>& system,
+               std::int64_t island,
+               std::int64_t most,
+               EngineResult& result);
+  void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
   void solve_uncoupled(const ContactProblem& problem,
                        const ContactSystem<double>& system,
                        EngineResult& result);

@@ -26,7 +26,7 @@ class CpuContactExec {
     for (std::int64_t i = 0; i < count; ++i) body(i);
   }
 
-  /// Sum of body(i) for i in [first, last): runs of 256 in sequence, then their sums in sequence.
+  /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
   template <class Sum, class Body>
   Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
     const std::int64_t runs = (last - first + run_length - 1) / run_length;
@@ -51,7 +51,7 @@ class CpuContactExec {
 
  private:
   static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
-  static constexpr std::int64_t run_length = 256;
+  static constexpr std::int64_t run_length = 64;
 
   int threads_;
 };

@@ -99,4 +99,27 @@ ContactProblem make_island_problem(const ContactProblem& problem,
   return part;
 }
 
+void scatter_impulses(const ContactStructure& structure,
+                      const ContactIsland& island,
+                      const double* from,
+                      std::vector<double>& to) {
+  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s, from += 3) {
+    std::copy_n(from, 3, to.begin() + 3 * std::int64_t{structure.contact_of_slot[index_of(s)]});
+  }
+}
+
+void scatter_velocities(const ContactStructure& structure,
+                        const ContactIsland& island,
+                        const double* from,
+                        std::vector<double>& to) {
+  for (std::int64_t d = island.dof_begin; d < island.dof_end; ++d, ++from) {
+    to[index_of(structure.dof_of_place[index_of(d)])] = *from;
+  }
+}
+
+void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums) {
+  if (sums.largest_contact < 0) return;
+  sums.largest_contact = structure.contact_of_slot[index_of(first_slot + sums.largest_contact)];
+}
+
 }  // namespace tetwarp

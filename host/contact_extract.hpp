@@ -7,6 +7,7 @@
 #include <tetwarp/contact_problem.hpp>
 
 #include "host/contact_structure.hpp"
+#include "kernels/contact_residual.hpp"
 
 namespace tetwarp {
 
@@ -20,5 +21,22 @@ std::vector<double> gathered(const std::vector<double>& values,
                              std::int64_t width,
                              const std::int32_t* order,
                              std::int64_t count);
+
+/// Impulses of an island from its slots to the contacts of the problem.
+/// @param from  [3 slots of the island]
+void scatter_impulses(const ContactStructure& structure,
+                      const ContactIsland& island,
+                      const double* from,
+                      std::vector<double>& to);
+
+/// Velocities of an island from its places to the dofs of the problem.
+/// @param from  [dofs of the island]
+void scatter_velocities(const ContactStructure& structure,
+                        const ContactIsland& island,
+                        const double* from,
+                        std::vector<double>& to);
+
+/// The slot of the largest term, counted from `first_slot`, becomes its contact.
+void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums);
 
 }  // namespace tetwarp

@@ -23,12 +23,15 @@ struct StopRule {
   double error_of(const ContactSums& sums) const {
     return std::sqrt(measure == ContactMeasure::eta ? sums.eta : sums.fclib);
   }
+  double allowed_at(const ContactSums& sums) const {
+    const double work = measure == ContactMeasure::eta ? std::sqrt(std::max(sums.work, 0.0)) : 0.0;
+    return allowed + tolerance * work;
+  }
   /// At most 1 when done.
   double excess_of(const ContactSums& sums) const {
-    const double work = measure == ContactMeasure::eta ? std::sqrt(std::max(sums.work, 0.0)) : 0.0;
     const double error = error_of(sums);
     if (error == 0) return 0;
-    const double excess = error / std::max(allowed + tolerance * work, 1e-300);
+    const double excess = error / std::max(allowed_at(sums), 1e-300);
     return std::isfinite(excess) ? excess : std::numeric_limits<double>::infinity();
   }
 };

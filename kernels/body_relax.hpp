@@ -51,25 +51,28 @@ struct SystemView {
   View<const std::int64_t> dof_start;    ///< [blocks + 1]
 };
 
-/// out += A x, one block row.
+/// out = A x, one block row. Rows of 3 x 3 blocks, nodes among nodes, are summed in registers.
 template <class T>
-TETWARP_HD void add_block_row(const SystemView<T>& a, std::int64_t b, const T* x, T* out) {
+TETWARP_HD void multiply_block_row(const SystemView<T>& a, std::int64_t b, const T* x, T* out) {
   const int rows = static_cast<int>(a.dof_start[b + 1] - a.dof_start[b]);
+  for (int i = 0; i < rows; ++i) out[i] = 0;
+  T sum[3] = {0, 0, 0};
   for (std::int64_t k = a.row_start[b]; k < a.row_start[b + 1]; ++k) {
     const T* m = a.values.data + a.value_start[k];
     const std::int64_t from = a.dof_start[a.column[k]];
     const T* y = x + from;
     const int columns = static_cast<int>(a.dof_start[a.column[k] + 1] - from);
     if (rows == 3 && columns == 3) {
-      out[0] += m[0] * y[0] + m[1] * y[1] + m[2] * y[2];
-      out[1] += m[3] * y[0] + m[4] * y[1] + m[5] * y[2];
-      out[2] += m[6] * y[0] + m[7] * y[1] + m[8] * y[2];
+      sum[0] += m[0] * y[0] + m[1] * y[1] + m[2] * y[2];
+      sum[1] += m[3] * y[0] + m[4] * y[1] + m[5] * y[2];
+      sum[2] += m[6] * y[0] + m[7] * y[1] + m[8] * y[2];
       continue;
     }
     for (int i = 0; i < rows; ++i) {
       for (int j = 0; j < columns; ++j) out[i] += m[i * columns + j] * y[j];
     }
   }
+  for (int i = 0; i < min_of(rows, 3); ++i) out[i] += sum[i];
 }
 
 /// One index = one block: the defect d = b + J^T r - A v.
@@ -87,8 +90,7 @@ struct BodyDefectBody {
     const std::int64_t first = system.dof_start[b];
     const int size = static_cast<int>(system.dof_start[b + 1] - first);
     T* d = defect.data + first;
-    for (int k = 0; k < size; ++k) d[k] = 0;
-    add_block_row(system, b, body_velocity.data, d);
+    multiply_block_row(system, b, body_velocity.data, d);
     for (int k = 0; k < size; ++k) d[k] = load[first + k] - d[k];
     for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
       const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
@@ -99,6 +101,23 @@ struct BodyDefectBody {
     }
   }
 };
+
+/// out = keep out + factor M x for one dense block; nodes, the many, without inner loops.
+template <class T>
+TETWARP_HD void update_block(const T* m, int size, T keep, T factor, const T* x, T* out) {
+  if (size == 3) {
+    const T a = x[0], b = x[1], c = x[2];
+    const T sum[3] = {m[0] * a + m[1] * b + m[2] * c, m[3] * a + m[4] * b + m[5] * c,
+                      m[6] * a + m[7] * b + m[8] * c};
+    for (int i = 0; i < 3; ++i) out[i] = keep * out[i] + factor * sum[i];
+    return;
+  }
+  for (int i = 0; i < size; ++i) {
+    T sum = 0;
+    for (int k = 0; k < size; ++k) sum += m[i * size + k] * x[k];
+    out[i] = keep * out[i] + factor * sum;
+  }
+}
 
 /// One index = one block: v += omega D^-1 d.
 template <class T>
@@ -113,12 +132,8 @@ struct BodyRelaxBody {
   TETWARP_HD void operator()(std::int64_t b) const {
     const std::int64_t first = dof_start[b];
     const int size = static_cast<int>(dof_start[b + 1] - first);
-    const T* m = inverse.data + inverse_start[b];
-    for (int i = 0; i < size; ++i) {
-      T sum = 0;
-      for (int k = 0; k < size; ++k) sum += m[i * size + k] * defect[first + k];
-      body_velocity[first + i] += relaxation * sum;
-    }
+    update_block(inverse.data + inverse_start[b], size, T(1), relaxation, defect.data + first,
+                 body_velocity.data + first);
   }
 };
 

@@ -165,6 +165,8 @@ TEST_F(ContactCommand, FindsTheSameVelocitiesByEveryMethod) {
                                                {"--solver", "newton"},
                                                {"--precision", "single", "--tolerance", "1e-5"},
                                                {"--no-skip", "all"},
+                                               {"--coupling", "condensed"},
+                                               {"--coupling", "iterated", "--inner", "2"},
                                                {"--relaxation", "1"}}) {
     Names all = {"--tolerance", "1e-8"};
     all.insert(all.end(), words.begin(), words.end());

@@ -20,6 +20,9 @@ const Choices<ContactMethod> solvers{{"auto", ContactMethod::automatic},
                                      {"anderson", ContactMethod::anderson},
                                      {"mass-splitting", ContactMethod::mass_splitting},
                                      {"newton", ContactMethod::newton}};
+const Choices<ContactCoupling> couplings{{"auto", ContactCoupling::automatic},
+                                         {"condensed", ContactCoupling::condensed},
+                                         {"iterated", ContactCoupling::iterated}};
 const Choices<ContactPrecision> precisions{{"double", ContactPrecision::float64},
                                            {"single", ContactPrecision::float32}};
 
@@ -56,10 +59,15 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
       ->check(above_zero())
       ->type_name("N");
   add_choice(app, "--solver", options.method, solvers, "method [auto]");
+  add_choice(app, "--coupling", options.coupling, couplings,
+             "bodies that A couples: condensed onto their contacts, or an outer iteration [auto]");
   app.add_option("--relaxation", options.relaxation,
-                 "of the outer iteration over bodies, above 0 and below 2 [0.5]")
+                 "of the outer iteration, above 0 and below 2 [0.5]")
       ->check(above_zero())
       ->type_name("W");
+  app.add_option("--inner", options.inner_sweeps, "sweeps per outer iteration [5]")
+      ->check(above_zero())
+      ->type_name("N");
   app.add_flag_callback(
       "--warm-start", [&arguments] { arguments.start = ContactStart::stored; },
       "start from the impulses of the file: its solution, else its first guess");

@@ -40,6 +40,25 @@ enum class ContactMethod {
   newton           ///< sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
+/// What is done with islands of bodies that A couples, as it does the nodes of elastic bodies.
+///
+/// Iterated, with D the diagonal blocks of A and omega = `relaxation`:
+///
+///     v_f = v - omega D^-1 (A v - b),  sweeps in omega J D^-1 J^T,  v = v_f + omega D^-1 J^T r
+///
+/// It converges where omega lambda_max(D^-1 A) < 2, which 0.5 grants for tetrahedra. Anderson's
+/// method accelerates v, or with method `nonlinear_cg` conjugate directions; with `gauss_seidel`
+/// nothing does. `mass_splitting` and `newton` always condense. The eta that such an island reports
+/// and is stopped by is an estimate, usually within a factor of two; residual_of() has the value.
+/// Source: Otaduy et al. 2009 (iterative constraint anticipation).
+enum class ContactCoupling {
+  automatic,  ///< method `automatic`: large islands iterated, and condensed should that fail and
+              ///< they have at most 2000 contacts; all else condensed
+  condensed,  ///< sparse Cholesky of A, the Delassus matrix dense: 72 bytes per pair of contacts,
+              ///< about three times over
+  iterated    ///< outer block-Jacobi iteration around sweeps: memory as for A itself
+};
+
 /// What `tolerance` bounds.
 enum class ContactMeasure {
   eta,   ///< energy-weighted natural residual, relative, with the true A; free of units
@@ -66,8 +85,9 @@ struct ContactOptions {
   ContactMeasure measure = ContactMeasure::eta;
   double tolerance = 1e-6;
   std::int64_t max_sweeps = 20000;  ///< passes over all contacts of an island, all methods
-  double relaxation = 0.5;          ///< omega of the outer block-Jacobi iteration
-  int inner_sweeps = 5;             ///< sweeps per outer iteration
+  ContactCoupling coupling = ContactCoupling::automatic;
+  double relaxation = 0.5;  ///< omega of the outer block-Jacobi iteration
+  int inner_sweeps = 5;     ///< per outer iteration
   double recovery_speed = std::numeric_limits<double>::infinity();  ///< penetration is undone at
                                                                     ///< most this fast [m/s]
   ContactPrecision precision = ContactPrecision::float64;
@@ -108,7 +128,7 @@ struct ContactReport {
   std::int64_t contacts = 0;
   std::int64_t colors = 0;
   std::int64_t islands = 0;           ///< connected components that have contacts
-  std::int64_t outer_iterations = 0;  ///< of the island that took most
+  std::int64_t outer_iterations = 0;  ///< over coupled bodies, of the island that took most
   std::int64_t sweeps = 0;            ///< of the island that took most
   std::int64_t newton_iterations = 0;
   std::int64_t contact_updates = 0;      ///< local solves in all

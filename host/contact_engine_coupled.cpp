@@ -1,0 +1,114 @@
+/// @file contact_engine_coupled.cpp
+/// Islands of bodies that A couples: iterated, condensed, or both in turn.
+#include <algorithm>
+#include <utility>
+
+#include "host/contact_condense.hpp"
+#include "host/contact_engine.hpp"
+#include "host/contact_extract.hpp"
+#include "host/contact_outer.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+std::size_t index_of(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// How the contacts of coupled bodies are solved: by so many outer iterations, and condensed where
+/// these are none or fail.
+struct CoupledRoute {
+  std::int64_t outer_iterations;
+  bool condenses;
+};
+
+CoupledRoute coupled_route(const ContactOptions& options, const ContactIsland& island) {
+  constexpr std::int64_t cheap = 300'000;       // numbers of A^-1 J^T that cost about a millisecond
+  constexpr std::int64_t most_contacts = 2000;  // 290 MB for the Delassus matrix
+  constexpr std::int64_t patience = 1000;
+  const std::int64_t budget =
+      (options.max_sweeps + options.inner_sweeps - 1) / options.inner_sweeps;
+  if (options.method == ContactMethod::mass_splitting || options.method == ContactMethod::newton ||
+      options.coupling == ContactCoupling::condensed) {
+    return {0, true};
+  }
+  if (options.coupling == ContactCoupling::iterated) return {budget, false};
+  if (options.method != ContactMethod::automatic) return {0, true};
+  const std::int64_t rows = 3 * island.contact_count();
+  if (rows * (island.dof_end - island.dof_begin) < cheap) return {0, true};
+  const bool fits = island.contact_count() <= most_contacts;
+  return {fits ? std::min(budget, patience) : budget, fits};
+}
+
+}  // namespace
+
+void ContactEngine::solve_coupled(const ContactProblem& problem,
+                                  const ContactSystem<double>& system,
+                                  EngineResult& result) {
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    const ContactIsland& island = structure_.islands[index_of(i)];
+    if (!island.is_coupled) continue;
+    const CoupledRoute route = coupled_route(options_, island);
+    if (route.outer_iterations > 0) iterate(problem, system, i, route.outer_iterations, result);
+    const bool is_solved =
+        route.outer_iterations > 0 && result.outcomes[index_of(i)].reason == StopReason::converged;
+    if (!is_solved && route.condenses) condense(problem, i, result);
+  }
+}
+
+void ContactEngine::iterate(const ContactProblem& problem,
+                            const ContactSystem<double>& system,
+                            std::int64_t i,
+                            std::int64_t most,
+                            EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  CpuContactExec exec(threads_);
+  CoupledJudge<CpuContactExec> judge(exec, options_, structure_, system, island);
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  judge.start(outcome);
+  std::vector<double> v(system.load.size(), 0.0);
+  std::vector<double> r = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
+                                   problem.contact_count());
+  if (r.empty()) {
+    r.assign(system.offset.size(), 0.0);
+  } else {
+    judge.judge(r, v, true, outcome);
+    v = judge.body_velocity();
+  }
+  if (outcome.reason != StopReason::converged) {
+    OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
+    outer.solve(most, std::move(r), std::move(v), outcome);
+  }
+  name_largest(structure_, 0, outcome.sums);
+  result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
+  scatter_impulses(structure_, island, judge.best_impulse().data() + 3 * island.slot_begin,
+                   result.impulse);
+  scatter_velocities(structure_, island, judge.best_body_velocity().data() + island.dof_begin,
+                     result.body_velocity);
+}
+
+void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  const ContactProblem part = make_island_problem(problem, structure_, island);
+  const CondensedProblem condensed(part);
+  ContactEngine engine(options_, threads_, device_);
+  const EngineResult inner = engine.solve(condensed.local());
+  const std::vector<double> v = condensed.body_velocity(inner.impulse);
+  scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
+  scatter_velocities(structure_, island, v.data(), result.body_velocity);
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  const IslandOutcome before = std::exchange(outcome, inner.outcomes[0]);
+  name_largest(structure_, island.slot_begin, outcome.sums);
+  outcome.sweeps += before.sweeps;
+  outcome.outer_iterations = before.outer_iterations;
+  outcome.contact_updates += before.contact_updates;
+  outcome.methods.insert(outcome.methods.begin(), before.methods.begin(), before.methods.end());
+  result.updates_skipped += inner.updates_skipped;
+  result.colors = std::max(result.colors, inner.colors);
+  for (const std::int32_t c : inner.clamped) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(island.slot_begin + c)]);
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,149 @@
+/// @file contact_outer.hpp
+/// Contacts of bodies that A couples, by an outer block-Jacobi iteration around sweeps.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host/contact_accelerators.hpp"
+#include "host/contact_coupled.hpp"
+
+namespace tetwarp {
+
+/// With D the diagonal blocks of A and q = J v_f + w, one outer step is
+///
+///     v_f = v - omega D^-1 (A v - b)
+///     sweeps solve the contacts in  u = omega J D^-1 J^T r + q
+///     v = v_f + omega D^-1 J^T r
+///
+/// Proximal gradients in the metric D / omega: it converges where omega times the largest
+/// eigenvalue of D^-1 A is below 2. That eigenvalue is at most the number of nodes of an element,
+/// so that 0.5 suits tetrahedra. Where A couples nothing and omega is 1, one step is exact.
+/// Source: Otaduy et al. 2009 (iterative constraint anticipation); relaxation and acceleration
+/// (Anderson, or nonlinear conjugate gradients, on v) are ours.
+template <class Exec>
+class OuterIteration {
+ public:
+  /// @param judge  has been started
+  OuterIteration(Exec& exec,
+                 const ContactOptions& options,
+                 const ContactStructure& structure,
+                 const ContactSystem<double>& system,
+                 const ContactIsland& island,
+                 CoupledJudge<Exec>& judge)
+      : exec_(exec),
+        options_(options),
+        pipeline_(exec, structure, system, island, switches_of(options), state_),
+        judge_(judge),
+        inner_sweeps_(island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1),
+        weights_(diagonal_of(structure, system, island)),
+        before_(weights_.size()) {}
+
+  /// Goes on until judged done, out of budget, or far off.
+  /// @param most           outer iterations
+  /// @param impulse        to start from, [3 slots]
+  /// @param body_velocity  to start from, [dofs]
+  void solve(std::int64_t most,
+             std::vector<double> impulse,
+             std::vector<double> body_velocity,
+             IslandOutcome& outcome) {
+    state_.impulse = std::move(impulse);
+    state_.body_velocity = std::move(body_velocity);
+    state_.defect.resize(state_.body_velocity.size());
+    iterate(most, outcome);
+    outcome.contact_updates = outcome.sweeps * pipeline_.island().contact_count();
+  }
+
+ private:
+  void iterate(std::int64_t most, IslandOutcome& outcome) {
+    switch (options_.method) {
+      case ContactMethod::gauss_seidel:
+        outcome.methods = {"outer_jacobi"};
+        return iterate(most, outcome, [](View<const double>, View<double>, double) {});
+      case ContactMethod::nonlinear_cg: {
+        outcome.methods = {"outer_nonlinear_cg"};
+        ConjugateDirection<Exec, double> direction(exec_, pipeline_.body_velocity().size);
+        return iterate(most, outcome, [&](View<const double> x, View<double> image, double defect) {
+          direction.advance(x, image, defect);
+        });
+      }
+      default: {
+        outcome.methods = {"outer_anderson"};
+        AndersonMixer<Exec, double> mixer(exec_, weights_);
+        return iterate(most, outcome, [&](View<const double> x, View<double> image, double defect) {
+          mixer.mix(x, image, defect);
+        });
+      }
+    }
+  }
+
+  /// @param advance  takes v before and after a step and the size of their difference, and may
+  ///                 replace v
+  template <class Advance>
+  void iterate(std::int64_t most, IslandOutcome& outcome, const Advance& advance) {
+    const View<double> v = pipeline_.body_velocity();
+    const View<const double> before = {before_.data(), v.size};
+    const std::vector<double> rest(before_.size(), 0.0);
+    double start = defect_of<Exec, double>(exec_, weights_, view_of(rest), v);
+    while (outcome.outer_iterations < most) {
+      std::copy_n(v.data, v.size, before_.data());
+      pipeline_.find_defect();
+      pipeline_.relax(options_.relaxation);
+      for (int sweep = 0; sweep < inner_sweeps_; ++sweep) pipeline_.sweep({});
+      outcome.sweeps += inner_sweeps_;
+      ++outcome.outer_iterations;
+      const double defect = defect_of<Exec, double>(exec_, weights_, before, v);
+      if (aim_ == 0) {
+        start += defect;
+        aim_ = options_.tolerance * start;
+      }
+      if (!(defect <= divergence * start)) return;
+      const bool is_last = outcome.outer_iterations == most;
+      const bool is_due = is_last || defect <= aim_ || outcome.outer_iterations >= next_;
+      if (is_due && judge(defect, is_last, outcome) <= 1) return;
+      advance(before, v, defect);
+    }
+  }
+
+  /// Judging costs as much as 5 to 30 steps: it is done when the defect of the iteration has
+  /// dropped as far as the last judgement asked for, at first to the tolerance, and now and then.
+  double judge(double defect, bool is_last, IslandOutcome& outcome) {
+    const double excess = judge_.judge(state_.impulse, state_.body_velocity, is_last, outcome);
+    aim_ = 0.9 * defect / excess;
+    next_ = 2 * std::max(outcome.outer_iterations, first_check);
+    return excess;
+  }
+
+  /// The diagonal of A: nearly the metric of the iteration.
+  static std::vector<double> diagonal_of(const ContactStructure& structure,
+                                         const ContactSystem<double>& system,
+                                         const ContactIsland& island) {
+    std::vector<double> diagonal;
+    for (std::int64_t b = island.block_begin; b < island.block_end; ++b) {
+      const auto block = static_cast<std::size_t>(b);
+      const std::int64_t size = structure.dof_start[block + 1] - structure.dof_start[block];
+      for (std::int64_t k = 0; k < size; ++k) {
+        diagonal.push_back(system.system[static_cast<std::size_t>(structure.diagonal_value[block] +
+                                                                  k * (size + 1))]);
+      }
+    }
+    return diagonal;
+  }
+
+  static constexpr std::int64_t first_check = 32;
+  static constexpr double divergence = 1e8;  ///< of the velocities: nothing comes back from there
+
+  Exec& exec_;
+  const ContactOptions& options_;
+  ContactState<double> state_;
+  ContactPipeline<Exec, double> pipeline_;
+  CoupledJudge<Exec>& judge_;
+  int inner_sweeps_;  ///< one is enough where no two contacts share a body: there is one color
+  std::vector<double> weights_;
+  std::vector<double> before_;
+  double aim_ = 0;
+  std::int64_t next_ = 2 * first_check;
+};
+
+}  // namespace tetwarp
