@@ -73,8 +73,9 @@ void ContactEngine::iterate(const ContactProblem& problem,
   if (r.empty()) {
     r.assign(system.offset.size(), 0.0);
   } else {
-    judge.judge(r, v, true, outcome);
+    judge.find_body_velocity(r);
     v = judge.body_velocity();
+    judge.judge(r, v, true, outcome);
   }
   if (outcome.reason != StopReason::converged) {
     OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);

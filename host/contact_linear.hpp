@@ -44,14 +44,16 @@ class CoupledLinear {
         image_(system.load.size()) {}
 
   /// Moves x towards the solution. Every step lowers the square of the error, in the norm of A, by
-  /// a known gain; the gains of the last steps tell what is left (Strakos and Tichy 2002).
+  /// a known gain; the gains of the last third of the steps tell what is left (Strakos and Tichy
+  /// 2002).
   /// @param rest  in: g - A x before; out: after
   /// @returns the size of what x has moved, in the norm of A
   /// @throws ContactProblemError  A is not positive definite
   double solve(const LinearAim& aim, std::vector<double>& x, std::vector<double>& rest) {
     constexpr int most_products = 1000;
     double size = sum(StartBody{inverse_, rest.data(), image_.data(), direction_.data()});
-    double gains[watched_steps] = {}, total = 0;
+    std::vector<double> gains;
+    double total = 0;
     for (int k = 0; k < most_products && size > 0; ++k) {
       const double curvature = sum(ProductBody{matrix_, direction_.data(), product_.data()});
       if (!(curvature > 0)) {
@@ -59,24 +61,24 @@ class CoupledLinear {
                                   ": not positive definite although its diagonal blocks are; give "
                                   "mass to every dof");
       }
-      gains[k % watched_steps] = size * size / curvature;
-      total += gains[k % watched_steps];
+      gains.push_back(size * size / curvature);
+      total += gains.back();
       const double last = size;
       size = sum(StepBody{inverse_, size / curvature, direction_.data(), product_.data(), x.data(),
                           rest.data(), image_.data()});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  TurnBody{inverse_.dof_start, size / last, image_.data(), direction_.data()});
-      const double left = std::sqrt(std::accumulate(gains, gains + watched_steps, 0.0));
       const double moved = std::sqrt(total);
       if (moved > aim.too_far) break;
-      if (k >= watched_steps && left <= std::max(aim.share * moved, aim.error)) break;
+      const int watched = std::max(4, k / 3);
+      if (k < watched) continue;
+      const double left = std::sqrt(std::accumulate(gains.end() - watched, gains.end(), 0.0));
+      if (left <= std::max(aim.share * moved, aim.error)) break;
     }
     return std::sqrt(total);
   }
 
  private:
-  static constexpr int watched_steps = 4;
-
   /// D^-1 by blocks.
   struct InverseBlocks {
     View<const std::int64_t> dof_start;
