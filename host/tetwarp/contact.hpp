@@ -49,7 +49,7 @@ enum class ContactMethod {
 /// It converges where omega lambda_max(D^-1 A) < 2, which 0.5 grants for tetrahedra. Anderson's
 /// method accelerates v, or with method `nonlinear_cg` conjugate directions; with `gauss_seidel`
 /// nothing does. `mass_splitting` and `newton` always condense. The eta that such an island reports
-/// and is stopped by is an estimate, usually within a factor of two; residual_of() has the value.
+/// and is stopped by is an estimate, too low for stiff bodies; residual_of() has the value.
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation).
 enum class ContactCoupling {
   automatic,  ///< method `automatic`: large islands iterated, and condensed should that fail and
