@@ -104,7 +104,6 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_tests SOURCES
-    tests/elastic_block.cpp
     tests/test_body_relax.cpp
     tests/test_contact.cpp
     tests/test_contact_acceptance.cpp

@@ -21,7 +21,8 @@ namespace tetwarp {
 /// eta is estimated: its metric needs the contacts' own blocks of J A^-1 J^T, which only a
 /// factorization yields; those of J D^-1 J^T, D the diagonal blocks of A, stand in for them. On
 /// elastic slabs up to 1e6 Pa at 8 ms the estimate was 0.4 to 1.3 of eta, so 0.3 of the tolerance
-/// is asked for; at 1e7 Pa it can be lower still. The measure of FCLIB has no metric and is as exact as the velocities.
+/// is asked for; at 1e7 Pa it can be lower still. The measure of FCLIB has no metric and is as
+/// exact as the velocities.
 template <class Exec>
 class CoupledJudge {
  public:
