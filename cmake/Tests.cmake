@@ -71,11 +71,6 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_phantom.cpp
     tests/test_render_volume.cpp
     tests/test_report.cpp
-    tests/test_contact_problem.cpp
-    tests/test_contact_reference.cpp
-    tests/test_contact_reference_limits.cpp
-    tests/test_contact_report.cpp
-    tests/test_contact_residual.cpp
     tests/test_skip_constant.cpp
     tests/test_skip_far_memory.cpp
     tests/test_skip_unchanged.cpp
@@ -116,11 +111,18 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_linear.cpp
     tests/test_contact_newton.cpp
     tests/test_contact_outer.cpp
+    tests/test_contact_problem.cpp
+    tests/test_contact_reference.cpp
+    tests/test_contact_reference_limits.cpp
+    tests/test_contact_report.cpp
+    tests/test_contact_residual.cpp
     tests/test_contact_skip.cpp
     tests/test_contact_solver.cpp
     tests/test_contact_sweep.cpp
     tests/test_contact_threads.cpp
     tests/test_contact_tracker.cpp)
+  # Four files at a time: what they include and instantiate costs more than they do.
+  set_target_properties(tetwarp_contact_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
   tetwarp_discover(tetwarp_contact_tests unit FILTER "-*Cuda*")
   tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)
 
@@ -202,9 +204,6 @@ if(TETWARP_IO)
   tetwarp_add_tests(tetwarp_bench_contact_tests LIBRARIES tetwarp_io fmt::fmt SOURCES
     bench/contact_cases.cpp
     bench/contact_judge.cpp
-    tests/contact_scenes.cpp
-    tests/contact_scenes_slab.cpp
-    tests/scenes.cpp
     tests/test_bench_contact.cpp)
   tetwarp_discover(tetwarp_bench_contact_tests unit)
 

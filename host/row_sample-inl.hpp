@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <utility>
@@ -36,10 +37,9 @@ class RowSampler {
       int past = r;
       RowKind kind = RowKind::inner;
       for (; past < count && runs[past].cell == runs[r].cell; ++past) {
-        const RowKind more = sources[runs[past].source].kind();
-        if (more > kind) kind = more;
+        kind = std::max(kind, sources[runs[past].source].kind());
       }
-      if (kind == RowKind::alone) {
+      if (kind >= RowKind::alone) {
         write_mixed(sources, runs + r, past - r, j, k, row);
       } else {
         add(kind, sources, runs + r, past - r, j, k, row);
@@ -48,6 +48,7 @@ class RowSampler {
     }
     flush(inner_, row);
     flush(rim_, row);
+    copier_.flush();
   }
 
  private:
@@ -59,16 +60,24 @@ class RowSampler {
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
       const std::int64_t cell_row = row + cell_edge * runs[r].cell;
-      if (source.kind() != RowKind::alone) {
-        if (source.kind() > kind) kind = source.kind();
-        std::swap(runs[vectored_count++], runs[r]);
-      } else if (is_copied(job_, source.setup())) {
-        copy_run(job_, source, runs[r].bits, j, k, cell_row);
-      } else {
+      if (source.kind() == RowKind::alone) {
         sample_alone(job_, source, runs[r].bits, j, k, cell_row);
+      } else if (source.kind() == RowKind::copied) {
+        unsigned bits = runs[r].bits;  // and of neighbours that move alike
+        for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
+          bits |= runs[r + 1].bits;
+        }
+        copy_run(job_, source, bits, j, k, cell_row, copier_);
+      } else {
+        kind = std::max(kind, source.kind());
+        std::swap(runs[vectored_count++], runs[r]);
       }
     }
     if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k, row);
+  }
+
+  static bool moves_alike(const RowSource& a, const RowSource& b) {
+    return b.kind() == RowKind::copied && std::equal(a.whole, a.whole + 3, b.whole);
   }
 
   void add(RowKind kind,
@@ -110,6 +119,7 @@ class RowSampler {
 
   const RasterJob<T>& job_;
   bool nearest_;
+  RunCopier<T> copier_;
   RowTaps<false> inner_;
   RowTaps<true> rim_;
   alignas(64) float values_[cell_edge * RowTaps<false>::row_units];

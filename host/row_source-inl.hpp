@@ -24,7 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 enum class RowKind {
   inner,  ///< a vector of float32 positions, none near the source's rim
   rim,    ///< the same, but positions may lie outside and neighbours are clamped
-  alone   ///< voxel by voxel: copies, steep maps, float64, several components, huge sources
+  alone,  ///< voxel by voxel: steep maps, float64, several components, huge sources
+  copied  ///< moved by whole voxels
 };
 
 /// Where a job's source may be read by vectors; three axes, and a fourth that never objects.
@@ -61,14 +62,14 @@ class RowSource {
             const int* corner,
             int number)
       : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
-    if (!bounds.is_vectored || tet.kind == MapKind::steep || is_copied(job, tet)) return;
+    const bool is_moved = is_copied(job, tet);
+    if (!is_moved && (!bounds.is_vectored || tet.kind == MapKind::steep)) return;
     set_map(bounds);
-    std::int64_t origin = 0;
+    if (is_moved) kind_ = RowKind::copied;
     for (int axis = 2; axis >= 0; --axis) {
-      origin = origin * job.source.dims[axis] + whole[axis];
+      origin_ = origin_ * job.source.dims[axis] + whole[axis];
       slice_ahead_ = slice_ahead_ * job.source.dims[axis] + slice_step_[axis];
     }
-    origin_ = static_cast<std::int32_t>(origin);
     slice_ahead_ += std::int64_t{job.source.dims[0]} * job.source.dims[1];
   }
 
@@ -77,8 +78,8 @@ class RowSource {
   const TetSetup& setup() const { return *setup_; }
   const int* corner() const { return corner_; }
 
-  /// The sample at the map's whole part, when kind() is inner.
-  std::int32_t origin() const { return origin_; }
+  /// The sample at the map's whole part, unless kind() is alone; it may lie outside the source.
+  std::int64_t origin() const { return origin_; }
   /// From a sample to the upper neighbour along z of the one in the next slice, about.
   std::int64_t slice_ahead() const { return slice_ahead_; }
 
@@ -123,7 +124,7 @@ class RowSource {
   int number_;
   RowKind kind_ = RowKind::alone;
   int corner_[3];
-  std::int32_t origin_ = 0;
+  std::int64_t origin_ = 0;
   std::int64_t slice_ahead_ = 0;
   alignas(16) std::int32_t slice_step_[4];
 };

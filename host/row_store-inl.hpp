@@ -85,6 +85,29 @@ inline void fill_run(T value, T* out, std::int64_t count) {
   std::fill_n(out + i, count - i, value);
 }
 
+/// Copies entries, those that follow each other on both sides in one go.
+template <class T>
+class RunCopier {
+ public:
+  void add(const T* from, T* to, std::int64_t count) {
+    if (from != from_ + count_ || to != to_ + count_) {
+      flush();
+      from_ = from;
+      to_ = to;
+    }
+    count_ += count;
+  }
+  void flush() {
+    std::copy_n(from_, count_, to_);
+    count_ = 0;
+  }
+
+ private:
+  const T* from_ = nullptr;
+  T* to_ = nullptr;
+  std::int64_t count_ = 0;
+};
+
 /// The voxels `bits` of a row moved by whole voxels: copied where the source has them.
 template <class T>
 inline void copy_run(const RasterJob<T>& job,
@@ -92,26 +115,28 @@ inline void copy_run(const RasterJob<T>& job,
                      unsigned bits,
                      int j,
                      int k,
-                     std::int64_t row) {
+                     std::int64_t row,
+                     RunCopier<T>& copier) {
   const SourceView<T>& view = job.source;
-  const SourceMap<float> map = source_map<float>(source);
-  const int* whole = map.whole;
-  const int y = whole[1] + j, z = whole[2] + k;
+  const int components = view.components;
+  const std::int64_t x = source.whole[0], y = source.whole[1] + j, z = source.whole[2] + k;
   const bool has_row = y >= 0 && y < view.dims[1] && z >= 0 && z < view.dims[2];
-  const std::int64_t from = (std::int64_t{z} * view.dims[1] + y) * view.dims[0] + whole[0];
-  const bool is_whole = bits == 0xff && view.components == 1;
-  if (is_whole && has_row && whole[0] >= 0 && whole[0] <= view.dims[0] - cell_edge) {
-    std::copy_n(view.data + from, cell_edge, job.volume + row);
-    return;
-  }
-  for (; bits != 0; bits &= bits - 1) {
-    const int i = std::countr_zero(bits);
-    const int x = whole[0] + i;
-    T* out = job.volume + (row + i) * view.components;
-    if (has_row && x >= 0 && x < view.dims[0]) {
-      std::copy_n(view.data + (from + i) * view.components, view.components, out);
-    } else {
-      std::fill_n(out, view.components, job.background);
+  const std::int64_t from = source.origin() + (std::int64_t{k} * view.dims[1] + j) * view.dims[0];
+  while (bits != 0) {
+    int i = std::countr_zero(bits);
+    const int past = i + std::countr_one(bits >> i);
+    bits &= ~0u << past;
+    while (i < past) {
+      const bool is_inside = has_row && x + i >= 0 && x + i < view.dims[0];
+      const std::int64_t edge = x + i < 0 ? -x : is_inside ? view.dims[0] - x : past;
+      const int end = static_cast<int>(std::min<std::int64_t>(past, edge));
+      T* to = job.volume + (row + i) * components;
+      if (is_inside) {
+        copier.add(view.data + (from + i) * components, to, std::int64_t{end - i} * components);
+      } else {
+        std::fill_n(to, (end - i) * components, job.background);
+      }
+      i = end;
     }
   }
 }

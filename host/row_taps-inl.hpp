@@ -90,7 +90,9 @@ inline RowPositions<Rim> row_positions(const RowSource& source,
         hn::Add(hn::Set(d, start.at[axis]), hn::Mul(hn::Set(d, source.axis[0][axis]), i));
     if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
   }
-  if constexpr (!Rim) positions.whole[0] = hn::Set(RowIntTag(), source.origin());
+  if constexpr (!Rim) {
+    positions.whole[0] = hn::Set(RowIntTag(), static_cast<std::int32_t>(source.origin()));
+  }
   return positions;
 }
 

@@ -40,9 +40,8 @@ class WarpPairs {
     for (Buffer<Node>& nodes : nodes_) nodes.reserve(node_count);
   }
 
-  /// Runs setup, mask and cull. Where a size would have to travel from the device, buffers are
-  /// trusted from the second step on: nothing waits and nothing is allocated, and had_room() tells
-  /// at the end of the step.
+  /// Runs setup, mask and cull. Where sizes would have to travel from a device, buffers are trusted
+  /// from the second step on: nothing waits, nothing is allocated; had_room() tells at the end.
   /// @throws std::invalid_argument on positions that are not finite or too far away
   void run(View<const double> positions) {
     now_ = 1 - now_;

@@ -19,8 +19,8 @@ using samples::list_of;
 using samples::single_contact;
 using samples::vector_of;
 
-constexpr AdhesionRule rules[] = {AdhesionRule::parallel, AdhesionRule::restrictive};
-constexpr FrictionLaw laws[] = {FrictionLaw::cone, FrictionLaw::pyramid};
+constexpr AdhesionRule both_rules[] = {AdhesionRule::parallel, AdhesionRule::restrictive};
+constexpr FrictionLaw both_laws[] = {FrictionLaw::cone, FrictionLaw::pyramid};
 
 TEST(ContactResidual, VanishesForTheSlidingPoint) {
   const ContactProblem problem = single_contact({-1, 3, 4}, 0.5);
@@ -38,7 +38,7 @@ TEST(ContactResidual, VanishesForTheSlidingPoint) {
 }
 
 TEST(ContactResidual, MeasuresNoImpulseAtAllAsOne) {
-  for (const FrictionLaw law : laws) {
+  for (const FrictionLaw law : both_laws) {
     const ContactResidual residual = residual_of(
         single_contact({-2, 0, 1}, 0.5), std::vector<double>{0.0, 0.0, 0.0}, {}, {.law = law});
 
@@ -53,8 +53,8 @@ TEST(ContactResidual, KnowsThePulledSpringUnderEveryLaw) {
   problem.adhesion = bond(0.25);
   const std::vector impulse{-0.2, 0.0, 0.0};  // -kappa u0 / (1 + kappa)
 
-  for (const FrictionLaw law : laws) {
-    for (const AdhesionRule rule : rules) {
+  for (const FrictionLaw law : both_laws) {
+    for (const AdhesionRule rule : both_rules) {
       const ContactResidual right = residual_of(problem, impulse, {}, {.law = law, .rule = rule});
       const ContactResidual wrong = residual_of(problem, std::vector<double>{-0.25, 0.0, 0.0}, {},
                                                 {.law = law, .rule = rule});
@@ -147,7 +147,7 @@ TEST_P(GlobalResidual, HasTheDelassusBlocksOfTheWholeSystem) {
 }
 
 TEST_P(GlobalResidual, AgreesWithTheLocalForm) {
-  for (const FrictionLaw law : laws) {
+  for (const FrictionLaw law : both_laws) {
     const ContactResidual global = residual_of(problem_, impulse_, {}, {.law = law});
     const ContactResidual local = residual_of(local_, impulse_, {}, {.law = law});
 
@@ -219,7 +219,7 @@ TEST(ContactResidual, LimitsTheRecoveryOfPenetrationAsAsked) {
 
 TEST(ContactResidual, NeverPassesForAResultThatIsNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const FrictionLaw law : laws) {
+  for (const FrictionLaw law : both_laws) {
     for (std::size_t row = 0; row < 3; ++row) {
       std::vector impulse{1.0, 0.0, 0.0};
       impulse[row] = nan;
