@@ -3,8 +3,8 @@
 /// its voxels once, background included. No race on shared faces, no separate clear.
 ///
 /// 128 threads, two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
-/// float32), four voxels along k per thread. The planes and maps of `chunk` tetrahedra at a time
-/// are made once per cell by the first threads and read by all from shared memory.
+/// float32), four voxels along k per thread. The planes, rows and maps of `raster_chunk` tetrahedra
+/// at a time are made once per cell by the first threads and read by all from shared memory.
 #pragma once
 #include "kernels/cell_raster.hpp"
 #include "kernels/launch.hpp"
@@ -22,8 +22,18 @@ struct RasterChunk {
   CellPlanes planes[raster_chunk];
   SourceMap<Real> maps[raster_chunk];
   int tet[raster_chunk];
-  unsigned char accepted[raster_chunk];
+  std::uint16_t rows[raster_chunk];  ///< of the box in the cell: bit j, and bit 8 + k
+  bool accepted[raster_chunk];
+  bool copied[raster_chunk];
+  bool steep[raster_chunk];
 };
+
+/// Voxels [begin, end) that lie within the eight from `corner` on, one bit each.
+__device__ __forceinline__ unsigned bits_within(int begin, int end, int corner) {
+  const int first = min_of(max_of(begin - corner, 0), cell_edge);
+  const int past = min_of(max_of(end - corner, 0), cell_edge);
+  return ((1u << past) - 1) & ~((1u << first) - 1);
+}
 
 template <class T>
 __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
@@ -39,11 +49,17 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
   } else if (thread >= 4 * raster_chunk && thread - 4 * raster_chunk < count) {
     const int slot = thread - 4 * raster_chunk;
     const CellPair pair = job.pairs[first + static_cast<unsigned>(slot)];
+    const TetSetup& tet = job.setups[tet_of(pair)];
     double start[3], linear[3][3];
-    map_start(job.setups[tet_of(pair)], corner[0], corner[1], corner[2], start, linear);
+    map_start(tet, corner[0], corner[1], corner[2], start, linear);
     chunk.maps[slot] = make_source_map<ArithmeticOf<T>>(start, linear);
     chunk.tet[slot] = tet_of(pair);
+    chunk.rows[slot] =
+        static_cast<std::uint16_t>(bits_within(tet.begin[1], tet.end[1], corner[1]) |
+                                   bits_within(tet.begin[2], tet.end[2], corner[2]) << cell_edge);
     chunk.accepted[slot] = is_accepted(pair);
+    chunk.copied[slot] = is_copied(job, tet);
+    chunk.steep[slot] = tet.kind == MapKind::steep;
   }
 }
 
@@ -59,7 +75,7 @@ __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
                                           RasterCounts& mine) {
   for (int slot = 0; slot < count; ++slot) {
     if (chunk.accepted[slot]) return slot;
-    if (!is_in_rows(job.setups[chunk.tet[slot]], corner[1] + j, corner[2] + k)) continue;
+    if ((chunk.rows[slot] >> j & chunk.rows[slot] >> (cell_edge + k) & 1) == 0) continue;
     ++mine.inside_tests;
     const int side = certain_side(chunk.planes[slot], i, j, k);
     if (side > 0) return slot;
@@ -117,17 +133,15 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
       open &= ~(1u << d);
       ++mine.covered;
       const int t = chunk.tet[slot];
-      const TetSetup& tet = job.setups[t];
       const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-      const bool copies = is_copied(job, tet);
-      mine.copied += copies;
+      mine.copied += chunk.copied[slot];
       if (work >= 0) {
         store_filled(job, work, voxel);
-      } else if (sizeof(Real) == 4 && tet.kind == MapKind::steep) {
-        store_owned<T, double>(job, tet, corner[0], corner[1], corner[2], i, j, k, voxel);
+      } else if (sizeof(Real) == 4 && chunk.steep[slot]) {
+        store_owned<T, double>(job, job.setups[t], corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
-        store_sample(job, copies ? Interpolation::nearest : job.filter, chunk.maps[slot], i, j, k,
-                     voxel);
+        store_sample(job, chunk.copied[slot] ? Interpolation::nearest : job.filter,
+                     chunk.maps[slot], i, j, k, voxel);
       }
       if (job.mask != nullptr) job.mask[voxel] = 1;
       if (job.tet != nullptr) job.tet[voxel] = t;

@@ -100,11 +100,6 @@ TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
   return least > 1.0f ? 1 : least < -1.0f ? -1 : 0;
 }
 
-/// True when voxel (i, j, k) [frame] lies in the rows (j, k) of the tetrahedron's box.
-TETWARP_HD bool is_in_rows(const TetSetup& tet, int j, int k) {
-  return j >= tet.begin[1] && j < tet.end[1] && k >= tet.begin[2] && k < tet.end[2];
-}
-
 /// Source position of a cell's corner under a tetrahedron's map, in float64.
 TETWARP_HD void map_start(
     const TetSetup& tet, int cx, int cy, int cz, double* start, double (*linear)[3]) {
