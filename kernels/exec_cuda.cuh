@@ -67,8 +67,19 @@ void cuda_sort_pairs(cudaStream_t stream,
 
 constexpr int each_threads = 256;  ///< of the kernels below: one index per thread
 
+/// Blocks that a multiprocessor should hold at once, for the compiler to share out registers; 0: as
+/// it thinks best. A body says so where the compiler would rather spill.
 template <class Body>
-__global__ void __launch_bounds__(each_threads) each_kernel(std::int64_t count, Body body) {
+constexpr int resident_blocks = 0;
+template <class Body>
+requires requires {
+  Body::resident_blocks;
+}
+constexpr int resident_blocks<Body> = Body::resident_blocks;
+
+template <class Body>
+__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
+    each_kernel(std::int64_t count, Body body) {
   const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
   if (i < count) body(i);
 }

@@ -30,6 +30,13 @@ struct UniformMap {
   TETWARP_HD std::int64_t block_index(int bi, int bj, int bk) const {
     return (std::int64_t{bk} * blocks[1] + bj) * blocks[0] + bi;
   }
+  /// The inverse: bi, bj, bk.
+  TETWARP_HD void set_position(std::int64_t block, int* at) const {
+    const std::int64_t line = block / blocks[0], layer = line / blocks[1];
+    at[0] = static_cast<int>(block - line * blocks[0]);
+    at[1] = static_cast<int>(line - layer * blocks[1]);
+    at[2] = static_cast<int>(layer);
+  }
 };
 
 /// The blocks of a source, nothing known of them.
@@ -123,6 +130,7 @@ struct BlockNeedBody {
 /// One index = one block; any order. A needed block that holds one value reaches 1, others 0.
 template <class T>
 struct BlockUniformBody {
+  static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
   SourceView<T> source;
   UniformMap map;
   View<std::uint8_t> reach;
@@ -132,18 +140,16 @@ struct BlockUniformBody {
   }
 
   TETWARP_HD bool is_uniform(std::int64_t block) const {
-    const std::int64_t line = block / map.blocks[0];
-    const int begin[3] = {static_cast<int>(block % map.blocks[0]) << block_shift,
-                          static_cast<int>(line % map.blocks[1]) << block_shift,
-                          static_cast<int>(line / map.blocks[1]) << block_shift};
+    int begin[3], end[3];
+    map.set_position(block, begin);
+    for (int axis = 0; axis < 3; ++axis) {
+      begin[axis] <<= block_shift;
+      end[axis] = min_of(begin[axis] + (1 << block_shift), source.dims[axis]);
+    }
     const T* first =
         source.data + voxel_of(source, begin[0], begin[1], begin[2]) * source.components;
     for (int c = 0; c < source.components; ++c) {
       if (!can_fill(first[c])) return false;
-    }
-    int end[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      end[axis] = min_of(begin[axis] + (1 << block_shift), source.dims[axis]);
     }
     for (int k = begin[2]; k < end[2]; ++k) {
       for (int j = begin[1]; j < end[1]; ++j) {
@@ -164,6 +170,7 @@ struct BlockUniformBody {
 /// higher i, j and k reach n, with one value.
 template <class T>
 struct BlockReachBody {
+  static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
   SourceView<T> source;
   UniformMap map;
   int n;
@@ -179,10 +186,8 @@ struct BlockReachBody {
   }
 
   TETWARP_HD bool goes_on(std::int64_t block) const {
-    const std::int64_t line = block / map.blocks[0];
-    const int at[3] = {static_cast<int>(block % map.blocks[0]),
-                       static_cast<int>(line % map.blocks[1]),
-                       static_cast<int>(line / map.blocks[1])};
+    int at[3];
+    map.set_position(block, at);
     const T* mine = samples_of(at[0], at[1], at[2]);
     for (int bk = at[2]; bk <= min_of(at[2] + 1, map.blocks[2] - 1); ++bk) {
       for (int bj = at[1]; bj <= min_of(at[1] + 1, map.blocks[1] - 1); ++bj) {
