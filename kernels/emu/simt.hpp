@@ -160,6 +160,10 @@ inline void check_launch(dim3 grid, dim3 block, std::size_t shared_bytes) {
   if (shared_bytes > std::size_t{48} * 1024) throw Fault("shared memory");
 }
 
+/// Grids of fewer blocks run on one OS thread: to wake others takes longer, by far on a machine
+/// that has other work.
+constexpr std::int64_t fewest_parallel_blocks = 64;
+
 /// Runs a kernel to its end: blocks in parallel, the threads of a block as schedule() says.
 /// @throws Fault on the first block that breaks a rule
 template <class Kernel, class... Args>
@@ -167,8 +171,9 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
   check_launch(grid, block, shared_bytes);
   const std::int64_t slice = std::int64_t{grid.x} * grid.y;
   const std::int64_t block_count = slice * grid.z;
+  const bool is_parallel = !has_address_sanitizer && block_count >= fewest_parallel_blocks;
   std::exception_ptr fault;
-#pragma omp parallel for schedule(dynamic) if (!has_address_sanitizer)
+#pragma omp parallel for schedule(dynamic) if (is_parallel)
   for (std::int64_t b = 0; b < block_count; ++b) {
     blockIdx = {static_cast<unsigned>(b % grid.x), static_cast<unsigned>(b % slice / grid.x),
                 static_cast<unsigned>(b / slice)};
