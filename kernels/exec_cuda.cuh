@@ -67,15 +67,12 @@ void cuda_sort_pairs(cudaStream_t stream,
 
 constexpr int each_threads = 256;  ///< of the kernels below: one index per thread
 
-/// Blocks that a multiprocessor should hold at once, for the compiler to share out registers; 0: as
-/// it thinks best. A body says so where the compiler would rather spill.
+/// Blocks per multiprocessor to share registers among, where ptxas would spill; 0: its own choice.
 template <class Body>
-constexpr int resident_blocks = 0;
-template <class Body>
-requires requires {
-  Body::resident_blocks;
-}
-constexpr int resident_blocks<Body> = Body::resident_blocks;
+constexpr int resident_blocks = [] {
+  if constexpr (requires { Body::resident_blocks; }) return Body::resident_blocks;
+  return 0;
+}();
 
 template <class Body>
 __global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
