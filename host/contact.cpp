@@ -233,6 +233,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   report.springs_skipped = result.savings.springs;
   report.bodies_skipped = result.bodies_skipped;
   report.updates_skipped = result.updates_skipped;
+  report.condensations_kept = result.condensations_kept;
   count_outcomes(result.outcomes, report);
   report.contact_updates -= result.updates_skipped;
 

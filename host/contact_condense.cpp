@@ -11,20 +11,13 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 CondensedProblem::CondensedProblem(const ContactProblem& problem)
-    : factor_(make_eigen(problem.system)),
-      jacobian_(make_eigen(problem.jacobian)),
-      load_(Eigen::Map<const VectorXd>(problem.load.data(),
-                                       static_cast<Index>(problem.load.size()))) {
+    : factor_(make_eigen(problem.system)), jacobian_(make_eigen(problem.jacobian)) {
   if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0)) {
     throw ContactProblemError("system",
                               ": not positive definite although its diagonal blocks are; give mass "
                               "to every dof");
   }
   const Index rows = jacobian_.rows();
-  local_.friction = problem.friction;
-  local_.adhesion = problem.adhesion;
-  local_.impulse_guess = problem.impulse_guess;
-  if (rows == 0) return;
   constexpr Index run = 48;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus(rows, rows);
   for (Index first = 0; first < rows; first += run) {
@@ -40,10 +33,19 @@ CondensedProblem::CondensedProblem(const ContactProblem& problem)
     }
   }
   local_.delassus.value.assign(delassus.data(), delassus.data() + delassus.size());
+  update(problem);
+}
+
+void CondensedProblem::update(const ContactProblem& problem) {
+  load_ = Eigen::Map<const VectorXd>(problem.load.data(), static_cast<Index>(problem.load.size()));
+  local_.friction = problem.friction;
+  local_.adhesion = problem.adhesion;
+  local_.impulse_guess = problem.impulse_guess;
+  local_.free_velocity = problem.velocity_offset;
+  if (local_.free_velocity.empty()) return;
   const VectorXd free = jacobian_ * factor_.solve(load_);
-  for (Index row = 0; row < rows; ++row) {
-    local_.free_velocity.push_back(free(row) +
-                                   problem.velocity_offset[static_cast<std::size_t>(row)]);
+  for (std::size_t row = 0; row < local_.free_velocity.size(); ++row) {
+    local_.free_velocity[row] += free(static_cast<Index>(row));
   }
 }
 

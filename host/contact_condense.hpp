@@ -13,9 +13,13 @@ class CondensedProblem {
  public:
   /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers. The solves go in
   /// runs, so that A^-1 J^T is never there as a whole.
-  /// @param problem  global form, outlived by this
+  /// @param problem  global form
   /// @throws ContactProblemError  A is not positive definite
   explicit CondensedProblem(const ContactProblem& problem);
+
+  /// Takes all but A and J from another problem, which has the same; the bits are those of a new
+  /// condensation. Cost: one solve.
+  void update(const ContactProblem& problem);
 
   /// W = J A^-1 J^T dense, q = J A^-1 b + w; the rest as in the problem.
   const ContactProblem& local() const { return local_; }

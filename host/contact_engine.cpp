@@ -43,7 +43,9 @@ ContactSystem<double> ContactEngine::prepare(const ContactProblem& problem, Engi
   if (!pattern_ || !has_pattern(problem, *pattern_)) {
     structure_ = make_structure(problem, options_.skip);
     pattern_ = pattern_of(problem);
+    kept_ = {};
   }
+  forget_unless_same(problem);
   ContactSystem<double> system;
   fill_system(problem, options_, structure_, system, result.savings);
   return system;

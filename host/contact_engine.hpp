@@ -2,6 +2,7 @@
 /// From a checked problem to impulses and velocities: structure, islands, methods, fallbacks.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,8 +25,23 @@ struct EngineResult {
   std::int64_t colors = 0;
   std::int64_t updates_skipped = 0;
   std::int64_t bodies_skipped = 0;
+  std::int64_t condensations_kept = 0;
   std::vector<std::int32_t> clamped;  ///< contacts whose offsets no velocity could meet
   double setup_seconds = 0;
+};
+
+struct Condensation;
+
+/// What a series of problems with the same A and J has of its coupled islands.
+struct KeptSystem {
+  /// Of one island.
+  struct Island {
+    std::shared_ptr<Condensation> condensation;  ///< null: none
+    std::int64_t outer_iterations = 0;           ///< so far
+  };
+
+  std::vector<double> system, jacobian;  ///< stored numbers of A and J
+  std::vector<Island> islands;
 };
 
 class ContactEngine {
@@ -48,6 +64,7 @@ class ContactEngine {
                std::int64_t most,
                EngineResult& result);
   void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+  void forget_unless_same(const ContactProblem& problem);
   void solve_uncoupled(const ContactProblem& problem,
                        const ContactSystem<double>& system,
                        EngineResult& result);
@@ -68,6 +85,7 @@ class ContactEngine {
   ContactDevice* device_;
   std::optional<ContactPattern> pattern_;
   ContactStructure structure_;
+  KeptSystem kept_;
 };
 
 }  // namespace tetwarp

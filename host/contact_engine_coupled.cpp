@@ -1,6 +1,8 @@
 /// @file contact_engine_coupled.cpp
 /// Islands of bodies that A couples: iterated, condensed, or both in turn.
 #include <algorithm>
+#include <cstring>
+#include <memory>
 #include <utility>
 
 #include "host/contact_condense.hpp"
@@ -41,7 +43,38 @@ CoupledRoute coupled_route(const ContactOptions& options, const ContactIsland& i
   return {fits ? std::min(budget, patience) : budget, fits};
 }
 
+/// Outer iterations that cost as much as condensing an island, for a row of J: about as many on
+/// slabs of 10,000 tetrahedra with 151 and 531 contacts.
+constexpr std::int64_t condensing_costs = 7;
+
 }  // namespace
+
+/// The contacts of an island alone.
+struct Condensation {
+  Condensation(const ContactProblem& part, ContactEngine solver)
+      : problem(part), engine(std::move(solver)) {}
+
+  CondensedProblem problem;
+  ContactEngine engine;
+};
+
+void ContactEngine::forget_unless_same(const ContactProblem& problem) {
+  const auto is_coupled = [](const ContactIsland& island) { return island.is_coupled; };
+  if (!options_.skip.constant_systems ||
+      std::none_of(structure_.islands.begin(), structure_.islands.end(), is_coupled)) {
+    return;
+  }
+  const auto is_same = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+  };
+  if (is_same(kept_.system, problem.system.value) &&
+      is_same(kept_.jacobian, problem.jacobian.value)) {
+    return;
+  }
+  kept_.system = problem.system.value;
+  kept_.jacobian = problem.jacobian.value;
+  kept_.islands.assign(structure_.islands.size(), {});
+}
 
 void ContactEngine::solve_coupled(const ContactProblem& problem,
                                   const ContactSystem<double>& system,
@@ -49,11 +82,20 @@ void ContactEngine::solve_coupled(const ContactProblem& problem,
   for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
     const ContactIsland& island = structure_.islands[index_of(i)];
     if (!island.is_coupled) continue;
-    const CoupledRoute route = coupled_route(options_, island);
+    CoupledRoute route = coupled_route(options_, island);
+    const std::int64_t rows = 3 * island.contact_count();
+    const bool sweeps_fast = rows * rows <= static_cast<std::int64_t>(problem.system.value.size());
+    if (!kept_.islands.empty() && route.condenses && sweeps_fast &&
+        kept_.islands[index_of(i)].outer_iterations >= condensing_costs * rows) {
+      route.outer_iterations = 0;  // where A and J stay, condensing once pays at last
+    }
     if (route.outer_iterations > 0) iterate(problem, system, i, route.outer_iterations, result);
     const bool is_solved =
         route.outer_iterations > 0 && result.outcomes[index_of(i)].reason == StopReason::converged;
     if (!is_solved && route.condenses) condense(problem, i, result);
+    if (!kept_.islands.empty()) {
+      kept_.islands[index_of(i)].outer_iterations += result.outcomes[index_of(i)].outer_iterations;
+    }
   }
 }
 
@@ -75,12 +117,9 @@ void ContactEngine::iterate(const ContactProblem& problem,
   } else {
     judge.find_body_velocity(r);
     v = judge.body_velocity();
-    judge.judge(r, v, true, outcome);
   }
-  if (outcome.reason != StopReason::converged) {
-    OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
-    outer.solve(most, std::move(r), std::move(v), outcome);
-  }
+  OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
+  outer.solve(most, std::move(r), std::move(v), outcome);
   name_largest(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
   scatter_impulses(structure_, island, judge.best_impulse().data() + 3 * island.slot_begin,
@@ -92,10 +131,17 @@ void ContactEngine::iterate(const ContactProblem& problem,
 void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   const ContactProblem part = make_island_problem(problem, structure_, island);
-  const CondensedProblem condensed(part);
-  ContactEngine engine(options_, threads_, device_);
-  const EngineResult inner = engine.solve(condensed.local());
-  const std::vector<double> v = condensed.body_velocity(inner.impulse);
+  std::shared_ptr<Condensation> unkept;
+  std::shared_ptr<Condensation>& kept =
+      kept_.islands.empty() ? unkept : kept_.islands[index_of(i)].condensation;
+  if (kept == nullptr) {
+    kept = std::make_shared<Condensation>(part, ContactEngine(options_, threads_, device_));
+  } else {
+    kept->problem.update(part);
+    ++result.condensations_kept;
+  }
+  const EngineResult inner = kept->engine.solve(kept->problem.local());
+  const std::vector<double> v = kept->problem.body_velocity(inner.impulse);
   scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);
   scatter_velocities(structure_, island, v.data(), result.body_velocity);
   IslandOutcome& outcome = result.outcomes[index_of(i)];

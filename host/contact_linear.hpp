@@ -2,6 +2,7 @@
 /// A x = g for bodies that A couples, by conjugate gradients, for any executor: products with A and
 /// no factor of it.
 #pragma once
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,10 +19,12 @@
 
 namespace tetwarp {
 
-/// When a linear solve may end; all in the norm of A.
+/// When a linear solve may end; all in the norm of A but `seen`.
 struct LinearAim {
   double share = 0;  ///< the error is at most this share of what x has moved,
-  double error = 0;  ///< or at most this,
+  double error = 0;  ///< or at most this;
+  double seen = std::numeric_limits<double>::infinity();  ///< in both cases also at most this, as
+                                                          ///< whoever asked sees it;
   double too_far = std::numeric_limits<double>::infinity();  ///< or x has moved further than this
 };
 
@@ -44,16 +47,21 @@ class CoupledLinear {
         image_(system.load.size()) {}
 
   /// Moves x towards the solution. Every step lowers the square of the error, in the norm of A, by
-  /// a known gain; the gains of the last third of the steps tell what is left (Strakos and Tichy
-  /// 2002).
+  /// a known gain; the gains of the last third of the steps estimate what is left (Strakos and
+  /// Tichy 2002). Slow solves leave more, at most |g - A x| in D^-1 over the root of the smallest
+  /// eigenvalue of D^-1 A, which the steps of all solves so far approach (Lanczos).
   /// @param rest  in: g - A x before; out: after
+  /// @param see   the size, in a seminorm, of a vector [dofs]
   /// @returns the size of what x has moved, in the norm of A
-  /// @throws ContactProblemError  A is not positive definite
-  double solve(const LinearAim& aim, std::vector<double>& x, std::vector<double>& rest) {
+  template <class See>
+  double solve(const LinearAim& aim,
+               std::vector<double>& x,
+               std::vector<double>& rest,
+               const See& see) {
     constexpr int most_products = 1000;
     double size = sum(StartBody{inverse_, rest.data(), image_.data(), direction_.data()});
-    std::vector<double> gains;
-    double total = 0;
+    std::vector<double> gains, seen, diagonal, beside;
+    double total = 0, last_share = 0;
     for (int k = 0; k < most_products && size > 0; ++k) {
       const double curvature = sum(ProductBody{matrix_, direction_.data(), product_.data()});
       if (!(curvature > 0)) {
@@ -61,21 +69,33 @@ class CoupledLinear {
                                   ": not positive definite although its diagonal blocks are; give "
                                   "mass to every dof");
       }
-      gains.push_back(size * size / curvature);
+      const double last = size, factor = size / curvature;
+      gains.push_back(size * factor);
       total += gains.back();
-      const double last = size;
-      size = sum(StepBody{inverse_, size / curvature, direction_.data(), product_.data(), x.data(),
+      seen.push_back(factor * see(direction_));
+      size = sum(StepBody{inverse_, factor, direction_.data(), product_.data(), x.data(),
                           rest.data(), image_.data()});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  TurnBody{inverse_.dof_start, size / last, image_.data(), direction_.data()});
+      diagonal.push_back(1 / factor + last_share);
+      beside.push_back(std::sqrt(size / last) / factor);
+      last_share = size / last / factor;
       const double moved = std::sqrt(total);
       if (moved > aim.too_far) break;
       const int watched = std::max(4, k / 3);
       if (k < watched) continue;
+      const double allowed = std::max(aim.share * moved, aim.error);
       const double left = std::sqrt(std::accumulate(gains.end() - watched, gains.end(), 0.0));
-      if (left <= std::max(aim.share * moved, aim.error)) break;
+      const double seen_left = std::accumulate(seen.end() - watched, seen.end(), 0.0);
+      if (left > allowed || seen_left > aim.seen) continue;
+      find_smallest(diagonal, beside);
+      const double bound = std::sqrt(size / smallest_);
+      if (bound <= allowed && bound * seen_left <= aim.seen * left) break;
     }
     return std::sqrt(total);
+  }
+  double solve(const LinearAim& aim, std::vector<double>& x, std::vector<double>& rest) {
+    return solve(aim, x, rest, [](const std::vector<double>&) { return 0.0; });
   }
 
  private:
@@ -144,6 +164,17 @@ class CoupledLinear {
     }
   };
 
+  /// Lowers the smallest eigenvalue known to that of a tridiagonal matrix.
+  void find_smallest(const std::vector<double>& diagonal, const std::vector<double>& beside) {
+    using Eigen::VectorXd;
+    const auto size = static_cast<Eigen::Index>(diagonal.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(Eigen::Map<const VectorXd>(diagonal.data(), size),
+                                  Eigen::Map<const VectorXd>(beside.data(), size - 1),
+                                  Eigen::EigenvaluesOnly);
+    if (solver.eigenvalues()(0) > 0) smallest_ = std::min(smallest_, solver.eigenvalues()(0));
+  }
+
   template <class Body>
   double sum(const Body& body) {
     return exec_
@@ -156,6 +187,7 @@ class CoupledLinear {
   SystemView<double> matrix_;
   InverseBlocks inverse_;
   std::vector<double> direction_, product_, image_;
+  double smallest_ = 1;  ///< eigenvalue of D^-1 A known
 };
 
 }  // namespace tetwarp

@@ -45,6 +45,7 @@ std::string to_json(const ContactReport& report) {
                                        {"bodies_skipped", report.bodies_skipped},
                                        {"islands_stopped", report.islands_stopped},
                                        {"updates_skipped", report.updates_skipped},
+                                       {"condensations_kept", report.condensations_kept},
                                        {"timings",
                                         {{"setup", report.setup_seconds},
                                          {"solve", report.solve_seconds},

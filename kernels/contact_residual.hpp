@@ -65,16 +65,23 @@ TETWARP_HD double natural_square(const ContactConstants<T>& c,
   return sum + (square_of(nu[0] - aim[0]) + square_of(nu[1] - aim[1])) / rho_t;
 }
 
-/// Share in eta: metrics rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
+/// Metrics of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
+template <class T>
+TETWARP_HD double normal_weight(const ContactConstants<T>& c) {
+  return 1 / double{c.block[0]} + double{c.normal_spring};
+}
+template <class T>
+TETWARP_HD double tangent_weight(const ContactConstants<T>& c) {
+  return c.tangent_metric > 0 ? 1 / double{c.tangent_metric} + double{c.tangent_spring} : 1;
+}
+
+/// Share in eta.
 template <class T>
 TETWARP_HD double eta_square(const ContactConstants<T>& c,
                              ContactSwitches switches,
                              const T* impulse,
                              const T* velocity) {
-  const double rho_n = 1 / double{c.block[0]} + double{c.normal_spring};
-  const double rho_t =
-      c.tangent_metric > 0 ? 1 / double{c.tangent_metric} + double{c.tangent_spring} : 1;
-  return natural_square(c, switches, rho_n, rho_t, impulse, velocity);
+  return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
 }
 
 /// Share in FCLIB's error: squared distance of nu from the projection of nu - u~ onto the cone of

@@ -63,7 +63,8 @@ TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
                                                    "balance",         "residual_history",
                                                    "rows_skipped",    "springs_skipped",
                                                    "bodies_skipped",  "islands_stopped",
-                                                   "updates_skipped", "timings"}));
+                                                   "updates_skipped", "condensations_kept",
+                                                   "timings"}));
   EXPECT_EQ(names_of(json["timings"]), (std::set<std::string>{"setup", "solve", "total"}));
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -170,6 +171,29 @@ TEST(ContactSkip, ContactsAtRestAreVisitedLessOften) {
     EXPECT_EQ(off.report.updates_skipped, 0);
     EXPECT_EQ(off.report.contact_updates, contacts * off.report.sweeps);
     expect_agreement(on, off);
+  }
+}
+
+/// The third problem has another A.
+TEST(ContactSkip, CoupledIslandsStayCondensedWhileTheSystemStays) {
+  std::mt19937 random(107);
+  const ContactProblem problem = samples::random_global(random, 8, 6, 0.3, 0.3);
+  ContactProblem pushed = problem;
+  for (double& load : pushed.load) load *= 1.1;
+  ContactProblem stiffer = pushed;
+  for (double& value : stiffer.system.value) value *= 2;
+  ContactOptions options{.tolerance = tolerance, .max_sweeps = 100000};
+  ContactSolver on(options);
+  options.skip.constant_systems = false;
+  ContactSolver off(options);
+  const std::pair<const ContactProblem*, std::int64_t> steps[] = {
+      {&problem, 0}, {&pushed, 1}, {&stiffer, 0}, {&stiffer, 1}};
+  for (const auto& [step, kept] : steps) {
+    const ContactSolution with = on.solve(*step), without = off.solve(*step);
+
+    EXPECT_EQ(with.report.condensations_kept, kept);
+    EXPECT_EQ(without.report.condensations_kept, 0);
+    expect_agreement(with, without);
   }
 }
 

@@ -82,9 +82,10 @@ void declare_skips(CLI::App& app, ContactSkipOptions& skip) {
       {"contactless-bodies", {&Skip::contactless_bodies}},
       {"converged-islands", {&Skip::converged_islands}},
       {"frozen-contacts", {&Skip::frozen_contacts}},
+      {"constant-systems", {&Skip::constant_systems}},
       {"all",
        {&Skip::frictionless_rows, &Skip::debonded_springs, &Skip::contactless_bodies,
-        &Skip::converged_islands, &Skip::frozen_contacts}}};
+        &Skip::converged_islands, &Skip::frozen_contacts, &Skip::constant_systems}}};
   add_word_list(
       app, "--no-skip", skips,
       [&skip](const Switches& members) {

@@ -49,11 +49,13 @@ enum class ContactMethod {
 /// It converges where omega lambda_max(D^-1 A) < 2, which 0.5 grants for tetrahedra. Anderson's
 /// method accelerates v, or with method `nonlinear_cg` conjugate directions; with `gauss_seidel`
 /// nothing does. `mass_splitting` and `newton` always condense. The eta that such an island reports
-/// and is stopped by is an estimate, too low for stiff bodies; residual_of() has the value.
+/// and is stopped by is a bound, above what residual_of() says (an estimate where one body has
+/// several contacts).
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation).
 enum class ContactCoupling {
-  automatic,  ///< method `automatic`: large islands iterated, and condensed should that fail and
-              ///< they have at most 2000 contacts; all else condensed
+  automatic,  ///< method `automatic`: large islands iterated, and condensed should that fail, or
+              ///< have cost as much in a row with the same A and J (few contacts only), if they
+              ///< have at most 2000 contacts; all else condensed
   condensed,  ///< sparse Cholesky of A, the Delassus matrix dense: 72 bytes per pair of contacts,
               ///< about three times over
   iterated    ///< outer block-Jacobi iteration around sweeps: memory as for A itself
@@ -75,6 +77,8 @@ struct ContactSkipOptions {
                                    ///< those with contacts, linearly
   bool converged_islands = true;   ///< a converged island stops; all are checked at the end
   bool frozen_contacts = true;     ///< long converged contacts are revisited every few sweeps
+  bool constant_systems = true;    ///< a ContactSolver condenses a coupled island once for all
+                                   ///< problems in a row whose A and J are the same bits
 };
 
 /// Choices of a solve. Defaults give what most people want.
@@ -139,6 +143,7 @@ struct ContactReport {
   std::int64_t bodies_skipped = 0;       ///< blocks that no contact reaches
   std::int64_t islands_stopped = 0;      ///< stopped before the last one
   std::int64_t updates_skipped = 0;      ///< local solves left out for frozen contacts
+  std::int64_t condensations_kept = 0;   ///< coupled islands condensed by an earlier solve
   double setup_seconds = 0;
   double solve_seconds = 0;
   double total_seconds = 0;
@@ -158,8 +163,8 @@ struct ContactSolution {
 };
 
 /// Solves problem after problem, keeping buffers, and as long as the structure stays the same the
-/// colors and islands too. Same input, same bits, whatever the number of threads.
-/// Not safe for concurrent calls.
+/// colors and islands too. Same inputs in the same order, same bits, whatever the number of
+/// threads. Not safe for concurrent calls.
 class ContactSolver {
  public:
   /// @throws std::invalid_argument  on options out of range, naming them
