@@ -9,9 +9,10 @@
 
 namespace tetwarp {
 
-/// One index = one contact: at least its share in the eta of no impulses, whatever B is.
+/// One index = one contact: about the least share in the eta of no impulses, whatever B is.
 ///
-/// Each term of the natural map rises with its weight, then falls, so that it is least at an end.
+/// Each term of the natural map rises with its weight, then falls, so that it is least at an end;
+/// under tangential offsets nearly so: the sum may then be too high by up to a fifth.
 struct CoupledFreeBody {
   ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
 
