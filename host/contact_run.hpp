@@ -103,8 +103,12 @@ class ContactRun {
   double excess(std::int64_t i, const ContactSums& sums) const {
     return rules_[static_cast<std::size_t>(i)].excess_of(sums);
   }
-  bool is_done(std::int64_t i, const ContactSums& sums) const { return excess(i, sums) <= 1; }
-  const std::vector<StopRule>& rules() const { return rules_; }
+  bool is_done(std::int64_t i, const ContactSums& sums) const {
+    return excess(i, sums) <= 1;
+  }
+  const std::vector<StopRule>& rules() const {
+    return rules_;
+  }
 
  private:
   static constexpr std::int64_t shared_from = 4096;  ///< contacts of an island worth all threads

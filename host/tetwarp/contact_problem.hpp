@@ -25,17 +25,17 @@ struct SparseMatrix {
 /// Adhesion of each contact. Every vector is empty (none of that effect; C_t: as C_n; gap: zero
 /// tangents) or has one entry per contact.
 struct AdhesionState {
-  double time_step = 0;                       ///< dt [s], > 0 where any contact adheres
-  std::vector<double> area;                   ///< [m^2], >= 0
-  std::vector<double> stiffness;              ///< C_n [N/m^3], >= 0
-  std::vector<double> tangential_stiffness;   ///< C_t [N/m^3], >= 0
-  std::vector<double> intensity;              ///< beta, 0 debonded to 1 bonded
-  std::vector<double> gap;                    ///< [contact][normal, tangent 1, tangent 2], m, of the
-                                              ///< material anchors at the start of the step
-  std::vector<double> energy;                 ///< W [J/m^2], >= 0
-  std::vector<double> viscosity;              ///< eta [J s/m^2], >= 0; 0: no debonding
-  std::vector<double> bonding_rate;           ///< r [1/(Pa s)], >= 0
-  std::vector<double> saturation_pressure;    ///< p0 [Pa], >= 0
+  double time_step = 0;                      ///< dt [s], > 0 where any contact adheres
+  std::vector<double> area;                  ///< [m^2], >= 0
+  std::vector<double> stiffness;             ///< C_n [N/m^3], >= 0
+  std::vector<double> tangential_stiffness;  ///< C_t [N/m^3], >= 0
+  std::vector<double> intensity;             ///< beta, 0 debonded to 1 bonded
+  std::vector<double> gap;                   ///< [contact][normal, tangent 1, tangent 2], m, of the
+                                             ///< material anchors at the start of the step
+  std::vector<double> energy;                ///< W [J/m^2], >= 0
+  std::vector<double> viscosity;             ///< eta [J s/m^2], >= 0; 0: no debonding
+  std::vector<double> bonding_rate;          ///< r [1/(Pa s)], >= 0
+  std::vector<double> saturation_pressure;   ///< p0 [Pa], >= 0
 
   bool empty() const { return intensity.empty(); }
 };
