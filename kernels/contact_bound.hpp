@@ -9,15 +9,16 @@
 
 namespace tetwarp {
 
-/// One index = one contact: about the least share in the eta of no impulses, whatever B is.
+/// One index = one contact: at most its share in the eta of no impulses, whatever B is.
 ///
 /// Each term of the natural map rises with its weight, then falls, so that it is least at an end;
-/// under tangential offsets nearly so: the sum may then be too high by up to a fifth.
+/// under tangential offsets nearly so: the least sum over the ends was then seen to be up to 2.2 %
+/// too high, and a fifth is taken off for that. This part is measured, not proven.
 struct CoupledFreeBody {
   ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {
-    constexpr double tiny = 1e-150;
+    constexpr double tiny = 1e-150, taken_off = 0.8;
     ContactSums sums = natural(i);
     const ContactConstants<double>& c = natural.constants[i];
     const double* r = natural.impulse.data + 3 * i;
@@ -27,8 +28,8 @@ struct CoupledFreeBody {
     const auto energy = [&](double rho_n, double rho_t) {
       return natural_square(c, natural.switches, rho_n, rho_t, r, u);
     };
-    sums.eta = min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
-                      min_of(energy(high_n, low_t), energy(high_n, high_t)));
+    sums.eta = taken_off * min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
+                                  min_of(energy(high_n, low_t), energy(high_n, high_t)));
     sums.largest = sums.eta;
     return sums;
   }

@@ -96,7 +96,7 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
 
 TYPED_TEST(CellCull, NeverChangesWhoIsInside) {
   std::int64_t rejected = 0, accepted = 0;
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(24)) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(32)) {
     const StageInput input = input_of(scene);
     const Stages<TypeParam> stages = this->run(input);
     const auto setups = this->download(stages.setups);
@@ -122,7 +122,7 @@ TYPED_TEST(CellCull, NeverChangesWhoIsInside) {
       }
     }
   }
-  EXPECT_GT(rejected, 500);
+  EXPECT_GT(rejected, 1000);
   EXPECT_GT(accepted, 0);
 }
 

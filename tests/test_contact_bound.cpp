@@ -71,7 +71,7 @@ TEST(ContactBound, EtaIsAtMostWhatIsSaid) {
   EXPECT_GT(closest, 0.9);
 }
 
-TEST(ContactBound, TheEtaOfNoImpulsesIsHardlyBelowWhatIsSaid) {
+TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastWhatIsSaid) {
   double closest = 0;
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);
@@ -79,10 +79,10 @@ TEST(ContactBound, TheEtaOfNoImpulsesIsHardlyBelowWhatIsSaid) {
     const double bound = CoupledFreeBody{c.natural(BoundCase::zero, c.velocity)}(0).eta;
 
     const double eta = eta_square(c.exact, {}, BoundCase::zero, c.velocity);
-    EXPECT_GE(eta, 0.8 * bound) << seed;
+    EXPECT_GE(eta, bound) << seed;
     if (eta > 0) closest = std::max(closest, bound / eta);
   }
-  EXPECT_GT(closest, 0.9);
+  EXPECT_GT(closest, 0.8);  // 0.8 / 0.978 where it is tightest
 }
 
 }  // namespace
