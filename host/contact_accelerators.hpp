@@ -1,10 +1,15 @@
 /// @file contact_accelerators.hpp
 /// Accelerators of a fixed-point iteration x -> g(x), for any executor. They see vectors and a
-/// metric and know nothing of contacts.
+/// diagonal metric and know nothing of contacts. All have
+///
+///     double observe(x, image)             looks at image = g(x); the size of image - x
+///     bool advance(x, image, that size)    may replace image by the next x; whether it did
 #pragma once
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "kernels/hd.hpp"
@@ -45,6 +50,22 @@ double defect_of(Exec& exec,
   return sqrt(exec.template sum<PlainSums<1>>("contact/mix", 0, x.size, body).value[0]);
 }
 
+/// The iteration as it is.
+template <class Exec, class T>
+class PlainSteps {
+ public:
+  PlainSteps(Exec& exec, const std::vector<double>& weights) : exec_(exec), weights_(weights) {}
+
+  double observe(View<const T> x, View<const T> image) {
+    return defect_of(exec_, weights_, x, image);
+  }
+  bool advance(View<const T>, View<T>, double) { return false; }
+
+ private:
+  Exec& exec_;
+  const std::vector<double>& weights_;
+};
+
 /// Anderson acceleration, type II, window 8 (Walker and Ni 2011), the least squares in a diagonal
 /// metric. An image whose defect g(x) - x has grown to more than twice the last one is rejected:
 /// the iteration restarts from the last good image.
@@ -53,66 +74,94 @@ class AndersonMixer {
  public:
   static constexpr int window = 8;
 
-  /// @param weights  diagonal of the metric, [size]
-  AndersonMixer(Exec& exec, std::vector<double> weights)
-      : exec_(exec), weights_(std::move(weights)) {
-    const std::size_t size = weights_.size();
-    last_defect_.resize(size);
-    last_image_.resize(size);
-    defect_changes_.resize(window * size);
-    image_changes_.resize(window * size);
+  /// @param weights  diagonal of the metric, [size]; kept by the caller
+  AndersonMixer(Exec& exec, const std::vector<double>& weights)
+      : exec_(exec),
+        weights_(weights),
+        now_(weights.size()),
+        last_(weights.size()),
+        defect_changes_(window * weights.size()),
+        image_changes_(window * weights.size()) {}
+
+  double observe(View<const T> x, View<const T> image) {
+    newest_ = has_last_ ? (newest_ + 1) % window : -1;
+    sums_ = exec_.template sum_runs<GramSums>(
+        "contact/mix", 0, x.size,
+        ObserveBody{weights_.data(), x, image, last_.defect.data(), last_.image.data(),
+                    now_.defect.data(), now_.image.data(), defect_changes_.data(),
+                    image_changes_.data(), newest_});
+    return std::sqrt(sums_.value[2 * window]);
   }
 
-  /// Replaces `image` = g(x), at distance `defect` from x, by the next x. False: x was rejected,
-  /// `image` is the one before.
-  bool mix(View<const T> x, View<T> image, double defect) {
+  bool advance(View<const T>, View<T> image, double defect) {
     if (has_last_ && defect > 2 * last_size_) {
-      copy(last_image_.data(), image);
+      exec_.for_each("contact/mix", image.size, CopyBody{last_.image.data(), image});
       restart();
-      return false;
+      return true;
     }
-    const GramSums sums = remember(x, image);
-    if (has_last_) add_to_gram(sums);
+    if (has_last_) add_to_gram();
+    std::swap(now_, last_);
     has_last_ = true;
     last_size_ = defect;
-    if (depth_ > 0) subtract_combination(sums, image);
+    if (depth_ == 0) return false;
+    subtract_combination(image);
     return true;
-  }
-
-  void restart() {
-    depth_ = 0;
-    newest_ = -1;
-    has_last_ = false;
   }
 
  private:
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, window, window>;
   using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, window, 1>;
-  using GramSums = PlainSums<2 * window>;  ///< products with the new change, then with the defect
+  /// Products with the new change, then with the defect; the square of the defect.
+  using GramSums = PlainSums<2 * window + 1>;
 
-  /// Stores the new changes in column `newest` and multiplies them with all columns.
-  struct RememberBody {
+  struct Iterate {
+    explicit Iterate(std::size_t size) : defect(size), image(size) {}
+    std::vector<T> defect, image;
+  };
+
+  /// One run of entries: stores the iterate and its changes in column `newest`, multiplies them
+  /// with all columns.
+  struct ObserveBody {
     const double* weights;
     View<const T> x, image;
-    T *last_defect, *last_image, *defect_changes, *image_changes;
+    const T *last_defect, *last_image;
+    T *now_defect, *now_image, *defect_changes, *image_changes;
     int newest;  ///< -1: there is no last one yet
-    TETWARP_HD GramSums operator()(std::int64_t i) const {
-      const T defect = image[i] - x[i];
-      T* changes = defect_changes + window * i;
-      double change = 0;
-      if (newest >= 0) {
-        changes[newest] = defect - last_defect[i];
-        image_changes[window * i + newest] = image[i] - last_image[i];
-        change = weights[i] * changes[newest];
-      }
-      last_defect[i] = defect;
-      last_image[i] = image[i];
+
+    GramSums operator()(std::int64_t first, std::int64_t last) const {
+      const auto count = static_cast<int>(last - first);
+      T* const newest_defect = defect_changes + newest * x.size + first;
+      T* const newest_image = image_changes + newest * x.size + first;
+      double change[Exec::run_length] = {}, weighted[Exec::run_length];
       GramSums sums;
+      for (int i = 0; i < count; ++i) {
+        const T defect = image[first + i] - x[first + i];
+        weighted[i] = weights[first + i] * defect;
+        sums.value[2 * window] += weighted[i] * defect;
+        if (newest >= 0) {
+          newest_defect[i] = defect - last_defect[first + i];
+          newest_image[i] = image[first + i] - last_image[first + i];
+          change[i] = weights[first + i] * newest_defect[i];
+        }
+        now_defect[first + i] = defect;
+        now_image[first + i] = image[first + i];
+      }
       for (int k = 0; k < window; ++k) {
-        sums.value[k] = change * changes[k];
-        sums.value[window + k] = weights[i] * defect * changes[k];
+        const T* const changes = defect_changes + k * x.size + first;
+        sums.value[k] = product(change, changes, count);
+        sums.value[window + k] = product(weighted, changes, count);
       }
       return sums;
+    }
+
+    /// In four lanes, which compilers turn into vectors.
+    static double product(const double* a, const T* b, int count) {
+      double lanes[4] = {};
+      for (int i = 0; i + 4 <= count; i += 4) {
+        for (int lane = 0; lane < 4; ++lane) lanes[lane] += a[i + lane] * b[i + lane];
+      }
+      for (int i = count - count % 4; i < count; ++i) lanes[0] += a[i] * b[i];
+      return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
     }
   };
 
@@ -122,7 +171,7 @@ class AndersonMixer {
     View<T> image;
     TETWARP_HD void operator()(std::int64_t i) const {
       T sum = 0;
-      for (int k = 0; k < window; ++k) sum += factor[k] * image_changes[window * i + k];
+      for (int k = 0; k < window; ++k) sum += factor[k] * image_changes[k * image.size + i];
       image[i] -= sum;
     }
   };
@@ -133,27 +182,20 @@ class AndersonMixer {
     TETWARP_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
   };
 
-  void copy(const T* from, View<T> to) {
-    exec_.for_each("contact/mix", to.size, CopyBody{from, to});
+  void restart() {
+    depth_ = 0;
+    has_last_ = false;
   }
 
-  GramSums remember(View<const T> x, View<const T> image) {
-    if (has_last_) newest_ = (newest_ + 1) % window;
-    return exec_.template sum<GramSums>(
-        "contact/mix", 0, x.size,
-        RememberBody{weights_.data(), x, image, last_defect_.data(), last_image_.data(),
-                     defect_changes_.data(), image_changes_.data(), newest_});
-  }
-
-  void add_to_gram(const GramSums& sums) {
+  void add_to_gram() {
     depth_ = min_of(depth_ + 1, window);
-    for (int k = 0; k < depth_; ++k) gram_(k, newest_) = gram_(newest_, k) = sums.value[k];
+    for (int k = 0; k < depth_; ++k) gram_(k, newest_) = gram_(newest_, k) = sums_.value[k];
   }
 
-  void subtract_combination(const GramSums& sums, View<T> image) {
+  void subtract_combination(View<T> image) {
     Small gram = gram_.topLeftCorner(depth_, depth_);
     SmallVector products(depth_);
-    for (int k = 0; k < depth_; ++k) products(k) = sums.value[window + k];
+    for (int k = 0; k < depth_; ++k) products(k) = sums_.value[window + k];
     // Old and new changes differ in size by many orders: scale first, then regularize.
     const SmallVector scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
     gram = scale.asDiagonal() * gram * scale.asDiagonal();
@@ -167,12 +209,13 @@ class AndersonMixer {
   }
 
   Exec& exec_;
-  std::vector<double> weights_;
-  std::vector<T> last_defect_, last_image_;
-  std::vector<T> defect_changes_, image_changes_;  ///< [size][window]
+  const std::vector<double>& weights_;
+  Iterate now_, last_;
+  std::vector<T> defect_changes_, image_changes_;  ///< [window][size]
   Eigen::Matrix<double, window, window> gram_;
+  GramSums sums_;  ///< of the last look
   int depth_ = 0;
-  int newest_ = -1;
+  int newest_ = -1;  ///< column of the last look
   bool has_last_ = false;
   double last_size_ = 0;
 };
@@ -182,16 +225,19 @@ class AndersonMixer {
 template <class Exec, class T>
 class ConjugateDirection {
  public:
-  ConjugateDirection(Exec& exec, std::int64_t size)
-      : exec_(exec), direction_(static_cast<std::size_t>(size)) {}
+  /// @param weights  diagonal of the metric, [size]; kept by the caller
+  ConjugateDirection(Exec& exec, const std::vector<double>& weights)
+      : exec_(exec), weights_(weights), direction_(weights.size()) {}
 
-  /// Replaces `image` = g(x) by the next x.
-  /// @param defect  size of image - x in the metric
-  void advance(View<const T> x, View<T> image, double defect) {
+  double observe(View<const T> x, View<const T> image) {
+    return defect_of(exec_, weights_, x, image);
+  }
+  bool advance(View<const T> x, View<T> image, double defect) {
     const double ratio = last_ > 0 ? (defect / last_) * (defect / last_) : 2;
     last_ = defect;
     exec_.for_each("contact/mix", image.size,
                    AdvanceBody{x, image, direction_.data(), static_cast<T>(ratio), ratio > 1});
+    return true;
   }
 
  private:
@@ -213,6 +259,7 @@ class ConjugateDirection {
   };
 
   Exec& exec_;
+  const std::vector<double>& weights_;
   std::vector<T> direction_;
   double last_ = 0;
 };

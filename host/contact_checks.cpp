@@ -93,7 +93,8 @@ namespace {
 /// Compares each entry above the diagonal with its mirror image, in one pass over the rows.
 class SymmetryCheck {
  public:
-  explicit SymmetryCheck(const SparseMatrix& system) : system_(system), cursor_(system.row_start) {}
+  explicit SymmetryCheck(const SparseMatrix& system)
+      : system_(system), cursor_(system.row_start), largest_(cursor_.size(), -1.0) {}
 
   void run() {
     for (std::size_t row = 0; row + 1 < cursor_.size(); ++row) {
@@ -124,20 +125,21 @@ class SymmetryCheck {
     }
   }
 
-  double largest_of(std::size_t row) const {
-    double largest = 0;
+  double largest_of(std::size_t row) {
+    double& largest = largest_[row];
+    if (largest >= 0) return largest;
     for (std::int64_t e = system_.row_start[row]; e < system_.row_start[row + 1]; ++e) {
       largest = std::max(largest, std::abs(value(e)));
     }
     return largest;
   }
 
-  void compare(std::size_t row, std::size_t c, double entry, double mirrored) const {
+  void compare(std::size_t row, std::size_t c, double entry, double mirrored) {
     if (std::abs(entry - mirrored) > tolerance * std::abs(entry)) doubt(row, c, entry, mirrored);
   }
 
   /// Throws unless the difference is small beside the largest entry of either row.
-  void doubt(std::size_t row, std::size_t c, double entry, double mirrored) const {
+  void doubt(std::size_t row, std::size_t c, double entry, double mirrored) {
     const double difference = std::abs(entry - mirrored);
     if (difference <= tolerance * std::max(largest_of(row), largest_of(c))) return;
     const std::string r = std::to_string(row);
@@ -149,6 +151,7 @@ class SymmetryCheck {
 
   const SparseMatrix& system_;
   std::vector<std::int64_t> cursor_;  ///< first entry of each row that nobody asked for yet
+  std::vector<double> largest_;       ///< size of the largest entry of each row; -1: not looked at
 };
 
 constexpr double smallest_pivot =

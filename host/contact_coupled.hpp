@@ -58,7 +58,7 @@ class CoupledJudge {
   void start(IslandOutcome& outcome) {
     impulse_.assign(system_.offset.size(), 0.0);
     rest_ = system_.load;
-    linear_.solve({.share = 0.1}, body_velocity_, rest_);
+    linear_.solve(body_velocity_, rest_, [](const LinearProgress& p) { return is_within(0.1, p); });
     find_velocity(free_velocity_);
     outcome.free = outcome.sums =
         exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
@@ -81,14 +81,16 @@ class CoupledJudge {
     impulse_ = impulse;
     std::fill(body_velocity_.begin(), body_velocity_.end(), 0.0);
     find_rest();
-    linear_.solve({.share = options_.tolerance}, body_velocity_, rest_);
+    linear_.solve(body_velocity_, rest_, [&](const LinearProgress& progress) {
+      return is_within(options_.tolerance, progress);
+    });
   }
 
-  /// Judges impulses, keeps them if they are the best so far and notes them in the outcome.
+  /// Judges impulses and keeps them if they are the best so far.
   /// @param impulse        [3 slots]
   /// @param body_velocity  [dofs], close to the velocities that the impulses cause; with these the
   ///                       contacts obey their law
-  /// @param is_last        false: impulses far from a solution are told so early, and not kept
+  /// @param is_last        false: impulses far from a solution are told so early
   /// @returns  at most 1 when done: residual and imbalance over the tolerance
   double judge(const Vector& impulse,
                const Vector& body_velocity,
@@ -97,24 +99,31 @@ class CoupledJudge {
     impulse_ = impulse;
     body_velocity_ = body_velocity;
     find_rest();
-    LinearAim aim{.share = 0.1};
-    if (options_.measure == ContactMeasure::eta) {
-      find_velocity(obedient_velocity_);
-      const double allowed = rule_.allowed_at(contact_residual(
-          exec_, island_.slot_begin, island_.slot_end, natural(obedient_velocity_)));
-      aim.error = aim.seen = allowed / 10;
-      if (!is_last) aim.too_far = allowed / 2;
+    find_velocity(obedient_velocity_);
+    Vector seen = obedient_velocity_;
+    ContactSums sums = bounded_sums();
+    double excess = rule_.excess_of(sums), doubt = 0, moved = 0;
+    linear_.solve(body_velocity_, rest_, [&](const LinearProgress& progress) {
+      sums = bounded_sums();
+      excess = rule_.excess_of(sums);
+      if (options_.measure == ContactMeasure::fclib) return is_within(0.1, progress);
+      // What is left moves the contacts as much as what has come since the last question.
+      const double step = std::sqrt(square_of(progress.moved) - square_of(moved));
+      doubt = step > 0 ? progress.left / step * distance(seen) / rule_.allowed_at(sums) : 0;
+      seen = velocity_;
+      moved = progress.moved;
+      const bool is_bad = !is_last && excess > 1;  // it hardly falls from here
+      const bool is_good = excess + doubt <= 1 && imbalance() <= options_.tolerance;
+      return is_bad || is_good || doubt <= settled * excess;
+    });
+    const bool is_settled = is_last || excess + doubt <= 1 || doubt <= settled * excess;
+    excess += is_settled ? doubt : std::min(doubt, excess) / 2;
+    if (is_settled) {
+      sums.eta = square_of(std::sqrt(sums.eta) + doubt * rule_.allowed_at(sums));
     }
-    const double moved =
-        linear_.solve(aim, body_velocity_, rest_, [&](const Vector& v) { return seen(v); });
-    if (moved > aim.too_far) return 2 * moved / aim.too_far;
-    find_velocity(velocity_);
-    const ContactSums sums = exec_.template sum<ContactSums>(
-        "contact/residual", island_.slot_begin, island_.slot_end,
-        CoupledBoundBody{natural(velocity_), view_of(std::as_const(obedient_velocity_))});
-    const double excess = std::max(rule_.excess_of(sums), imbalance() / options_.tolerance);
+    excess = std::max(excess, imbalance() / options_.tolerance);
     outcome.events.push_back({outcome.sweeps, rule_.error_of(sums)});
-    if (excess < best_excess_) {
+    if (is_settled && excess < best_excess_) {
       best_excess_ = excess;
       best_impulse_ = impulse_;
       best_body_velocity_ = body_velocity_;
@@ -132,7 +141,8 @@ class CoupledJudge {
   const Vector& best_body_velocity() const { return best_body_velocity_; }
 
  private:
-  static constexpr double margin = 0.8;  ///< of the tolerance: velocities have errors, too
+  static constexpr double margin = 0.8;   ///< of the tolerance: velocities have errors, too
+  static constexpr double settled = 0.1;  ///< doubt that leaves an excess worth its name
 
   /// One index = one block: squares of rest, load and J^T r.
   struct BalanceBody {
@@ -186,31 +196,39 @@ class CoupledJudge {
                    FromContact<Body>{body, island_.slot_begin});
   }
 
-  /// One index = one contact: |J v|^2 weighed as eta does.
-  struct SeenBody {
-    BodiesView<double> bodies;
+  /// One index = one contact: squared difference of two velocities, weighed as eta does.
+  struct DistanceBody {
     View<const ContactConstants<double>> constants;
-    const double* body_velocity;
+    const double *a, *b;
 
     TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
-      double u[3], still[3];
-      bodies.velocity_at(c, body_velocity, u);
-      for (int a = 0; a < 3; ++a) still[a] = bodies.offset[3 * c + a];
-      return {{normal_weight(constants[c]) * square_of(u[0] - still[0]) +
-               tangent_weight(constants[c]) *
-                   (square_of(u[1] - still[1]) + square_of(u[2] - still[2]))}};
+      const double* x = a + 3 * c;
+      const double* y = b + 3 * c;
+      return {{normal_weight(constants[c]) * square_of(x[0] - y[0]) +
+               tangent_weight(constants[c]) * (square_of(x[1] - y[1]) + square_of(x[2] - y[2]))}};
     }
   };
 
-  /// The size of J v in the weights of eta: springs much stiffer than the body they hold feel
-  /// errors that the norm of A does not.
-  double seen(const Vector& body_velocity) const {
-    return std::sqrt(
-        exec_
-            .template sum<PlainSums<1>>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        SeenBody{system_.bodies_view(structure_),
-                                                 view_of(constants_), body_velocity.data()})
-            .value[0]);
+  /// From other velocities to those at hand, in the weights of eta: springs much stiffer than the
+  /// body they hold feel errors that the norm of A does not.
+  double distance(const Vector& velocity) const {
+    return std::sqrt(exec_
+                         .template sum<PlainSums<1>>(
+                             "contact/residual", island_.slot_begin, island_.slot_end,
+                             DistanceBody{view_of(constants_), velocity_.data(), velocity.data()})
+                         .value[0]);
+  }
+
+  /// Of the impulses and the velocities of the bodies at hand, against the obedient velocities.
+  ContactSums bounded_sums() {
+    find_velocity(velocity_);
+    return exec_.template sum<ContactSums>(
+        "contact/residual", island_.slot_begin, island_.slot_end,
+        CoupledBoundBody{natural(velocity_), view_of(std::as_const(obedient_velocity_))});
+  }
+
+  static bool is_within(double share, const LinearProgress& progress) {
+    return progress.left <= share * progress.moved;
   }
 
   /// The natural map of the impulses at hand.

@@ -28,13 +28,21 @@ class CpuContactExec {
 
   /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
   template <class Sum, class Body>
-  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+  Sum sum(const char* stage, std::int64_t first, std::int64_t last, const Body& body) const {
+    return sum_runs<Sum>(stage, first, last, [&](std::int64_t begin, std::int64_t end) {
+      Sum sum{};
+      for (std::int64_t i = begin; i < end; ++i) sum += body(i);
+      return sum;
+    });
+  }
+
+  /// Sum of body(begin, end) over runs of 64 indices of [first, last), in sequence.
+  template <class Sum, class Body>
+  Sum sum_runs(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
     const std::int64_t runs = (last - first + run_length - 1) / run_length;
     const auto run_sum = [&](std::int64_t run) {
-      Sum sum{};
-      const std::int64_t end = std::min(first + (run + 1) * run_length, last);
-      for (std::int64_t i = first + run * run_length; i < end; ++i) sum += body(i);
-      return sum;
+      const std::int64_t begin = first + run * run_length;
+      return body(begin, std::min(begin + run_length, last));
     };
     Sum total{};
     if (threads_ == 1 || last - first < serial_below) {
@@ -49,9 +57,10 @@ class CpuContactExec {
     return total;
   }
 
+  static constexpr std::int64_t run_length = 64;
+
  private:
   static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
-  static constexpr std::int64_t run_length = 64;
 
   int threads_;
 };

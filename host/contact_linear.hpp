@@ -5,9 +5,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <numeric>
 #include <vector>
 
 #include <tetwarp/contact_problem.hpp>
@@ -19,13 +18,10 @@
 
 namespace tetwarp {
 
-/// When a linear solve may end; all in the norm of A but `seen`.
-struct LinearAim {
-  double share = 0;  ///< the error is at most this share of what x has moved,
-  double error = 0;  ///< or at most this;
-  double seen = std::numeric_limits<double>::infinity();  ///< in both cases also at most this, as
-                                                          ///< whoever asked sees it;
-  double too_far = std::numeric_limits<double>::infinity();  ///< or x has moved further than this
+/// How far a linear solve is, in the norm of A.
+struct LinearProgress {
+  double moved = 0;  ///< how far x has come
+  double left = 0;   ///< at most how far it is off; estimated
 };
 
 /// Linear systems of one island, preconditioned by the inverse diagonal blocks of A (Hestenes and
@@ -46,23 +42,23 @@ class CoupledLinear {
         product_(system.load.size()),
         image_(system.load.size()) {}
 
-  /// Moves x towards the solution. Every step lowers the square of the error, in the norm of A, by
-  /// a known gain; the gains of the last third of the steps estimate what is left (Strakos and
-  /// Tichy 2002). Slow solves leave more, at most |g - A x| in D^-1 over the root of the smallest
-  /// eigenvalue of D^-1 A, which the steps of all solves so far approach (Lanczos).
-  /// @param rest  in: g - A x before; out: after
-  /// @param see   the size, in a seminorm, of a vector [dofs]
-  /// @returns the size of what x has moved, in the norm of A
-  template <class See>
-  double solve(const LinearAim& aim,
-               std::vector<double>& x,
-               std::vector<double>& rest,
-               const See& see) {
-    constexpr int most_products = 1000;
+  /// Moves x towards the solution until `enough`, asked now and then, or as far as rounding lets
+  /// it.
+  ///
+  /// What is left is bounded by Gauss-Radau quadrature (Golub and Meurant 1997; Meurant and Tichy
+  /// 2013) from the smallest eigenvalue of D^-1 A, for which half of the smallest stands that the
+  /// steps of all solves so far have seen (Lanczos).
+  /// @param rest    in: g - A x before; out: after
+  /// @param enough  (LinearProgress) -> bool
+  template <class Enough>
+  LinearProgress solve(std::vector<double>& x, std::vector<double>& rest, const Enough& enough) {
+    constexpr std::size_t most_products = 1000, first_ask = 4;
     double size = sum(StartBody{inverse_, rest.data(), image_.data(), direction_.data()});
-    std::vector<double> gains, seen, diagonal, beside;
-    double total = 0, last_share = 0;
-    for (int k = 0; k < most_products && size > 0; ++k) {
+    LinearProgress progress;
+    double gained = 0;
+    std::size_t next_ask = first_ask;
+    steps_.clear();
+    while (size > 0 && steps_.size() < most_products) {
       const double curvature = sum(ProductBody{matrix_, direction_.data(), product_.data()});
       if (!(curvature > 0)) {
         throw ContactProblemError("system",
@@ -70,32 +66,19 @@ class CoupledLinear {
                                   "mass to every dof");
       }
       const double last = size, factor = size / curvature;
-      gains.push_back(size * factor);
-      total += gains.back();
-      seen.push_back(factor * see(direction_));
       size = sum(StepBody{inverse_, factor, direction_.data(), product_.data(), x.data(),
                           rest.data(), image_.data()});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  TurnBody{inverse_.dof_start, size / last, image_.data(), direction_.data()});
-      diagonal.push_back(1 / factor + last_share);
-      beside.push_back(std::sqrt(size / last) / factor);
-      last_share = size / last / factor;
-      const double moved = std::sqrt(total);
-      if (moved > aim.too_far) break;
-      const int watched = std::max(4, k / 3);
-      if (k < watched) continue;
-      const double allowed = std::max(aim.share * moved, aim.error);
-      const double left = std::sqrt(std::accumulate(gains.end() - watched, gains.end(), 0.0));
-      const double seen_left = std::accumulate(seen.end() - watched, seen.end(), 0.0);
-      if (left > allowed || seen_left > aim.seen) continue;
-      find_smallest(diagonal, beside);
-      const double bound = std::sqrt(size / smallest_);
-      if (bound <= allowed && bound * seen_left <= aim.seen * left) break;
+      steps_.push_back({factor, size / last});
+      gained += last * factor;
+      progress.moved = std::sqrt(gained);
+      if (size > 0 && steps_.size() < std::min(next_ask, most_products)) continue;
+      progress.left = std::sqrt(size * left_factor());
+      if (enough(progress)) break;
+      next_ask += std::max(first_ask, next_ask / 8);
     }
-    return std::sqrt(total);
-  }
-  double solve(const LinearAim& aim, std::vector<double>& x, std::vector<double>& rest) {
-    return solve(aim, x, rest, [](const std::vector<double>&) { return 0.0; });
+    return progress;
   }
 
  private:
@@ -164,15 +147,38 @@ class CoupledLinear {
     }
   };
 
-  /// Lowers the smallest eigenvalue known to that of a tridiagonal matrix.
-  void find_smallest(const std::vector<double>& diagonal, const std::vector<double>& beside) {
-    using Eigen::VectorXd;
-    const auto size = static_cast<Eigen::Index>(diagonal.size());
+  /// One step of conjugate gradients.
+  struct Step {
+    double factor;  ///< of the direction
+    double shrink;  ///< of g . D^-1 g
+  };
+
+  /// Lowers the smallest eigenvalue known to that of the tridiagonal matrix of the steps.
+  void find_smallest() {
+    const auto count = static_cast<Eigen::Index>(steps_.size());
+    Eigen::VectorXd diagonal(count), beside(count);
+    double carried = 0;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto [factor, shrink] = steps_[static_cast<std::size_t>(k)];
+      diagonal(k) = 1 / factor + carried;
+      carried = shrink / factor;
+      beside(k) = std::sqrt(shrink) / factor;
+    }
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(Eigen::Map<const VectorXd>(diagonal.data(), size),
-                                  Eigen::Map<const VectorXd>(beside.data(), size - 1),
-                                  Eigen::EigenvaluesOnly);
+    solver.computeFromTridiagonal(diagonal, beside.head(count - 1), Eigen::EigenvaluesOnly);
     if (solver.eigenvalues()(0) > 0) smallest_ = std::min(smallest_, solver.eigenvalues()(0));
+  }
+
+  /// The square of the error in the norm of A is at most this, times g . D^-1 g.
+  double left_factor() {
+    find_smallest();
+    const double shift = smallest_ / 2;
+    double bound = 1 / shift;
+    for (const Step& step : steps_) {
+      const double excess = bound - step.factor;
+      bound = excess / (shift * excess + step.shrink);
+    }
+    return bound;
   }
 
   template <class Body>
@@ -187,7 +193,8 @@ class CoupledLinear {
   SystemView<double> matrix_;
   InverseBlocks inverse_;
   std::vector<double> direction_, product_, image_;
-  double smallest_ = 1;  ///< eigenvalue of D^-1 A known
+  std::vector<Step> steps_;  ///< of the solve at hand
+  double smallest_ = 1;      ///< eigenvalue of D^-1 A known
 };
 
 }  // namespace tetwarp

@@ -74,12 +74,15 @@ std::vector<std::int32_t> blocks_of(const ContactProblem& problem) {
   std::iota(reach.begin(), reach.end(), 0);
   for (std::int32_t row = 0; row < dofs; ++row) {
     const auto r = static_cast<std::size_t>(row);
+    std::int32_t low = row, high = row;
     for (std::int64_t e = system.row_start[r]; e < system.row_start[r + 1]; ++e) {
-      if (system.value[static_cast<std::size_t>(e)] == 0) continue;  // recorded files store zeros
       const std::int32_t column = system.column[static_cast<std::size_t>(e)];
-      const auto low = static_cast<std::size_t>(std::min(row, column));
-      reach[low] = std::max(reach[low], std::max(row, column));
+      // Recorded files store zeros.
+      const std::int32_t other = system.value[static_cast<std::size_t>(e)] != 0 ? column : row;
+      low = std::min(low, other);
+      high = std::max(high, other);
     }
+    reach[static_cast<std::size_t>(low)] = std::max(reach[static_cast<std::size_t>(low)], high);
   }
   std::vector<std::int32_t> starts{0};
   std::int32_t last = 0;

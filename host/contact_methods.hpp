@@ -43,23 +43,13 @@ class ContactMethods {
   }
 
   StopReason gauss_seidel(std::int64_t patience, const CalmContacts<T>& calm) {
-    return iterate(patience, calm, [](View<const T>, View<T>, double) {});
+    return iterate<PlainSteps<Exec, T>>(patience, calm);
   }
-
   StopReason anderson(std::int64_t patience) {
-    AndersonMixer<Exec, T> mixer(pipeline_.exec(), weights_);
-    return iterate(patience, {}, [&](View<const T> x, View<T> image, double defect) {
-      mixer.mix(x, image, defect);
-      pipeline_.follow_impulses();
-    });
+    return iterate<AndersonMixer<Exec, T>>(patience, {});
   }
-
   StopReason conjugate_directions(std::int64_t patience) {
-    ConjugateDirection<Exec, T> direction(pipeline_.exec(), pipeline_.impulse().size);
-    return iterate(patience, {}, [&](View<const T> x, View<T> image, double defect) {
-      direction.advance(x, image, defect);
-      pipeline_.follow_impulses();
-    });
+    return iterate<ConjugateDirection<Exec, T>>(patience, {});
   }
 
   /// Nesterov's acceleration, restarted when it leads uphill, of contacts solved all at once in the
@@ -105,8 +95,9 @@ class ContactMethods {
   }
 
  private:
-  template <class Advance>
-  StopReason iterate(std::int64_t patience, CalmContacts<T> calm, const Advance& advance) {
+  template <class Accelerator>
+  StopReason iterate(std::int64_t patience, CalmContacts<T> calm) {
+    Accelerator accelerator(pipeline_.exec(), weights_);
     monitor_.start_method(patience);
     const View<T> x = pipeline_.impulse();
     const View<const T> before = {before_.data(), x.size};
@@ -115,9 +106,9 @@ class ContactMethods {
       calm.all_awake = calm.visits.size == 0 || monitor_.sweeps() % CalmContacts<T>::pause == 0;
       pipeline_.sweep(calm);
       monitor_.count_sweep();
-      const double defect = defect_of<Exec, T>(pipeline_.exec(), weights_, before, x);
+      const double defect = accelerator.observe(before, x);
       if (monitor_.is_due(defect) && measure(defect)) break;
-      advance(before, x, defect);
+      if (accelerator.advance(before, x, defect)) pipeline_.follow_impulses();
     }
     return monitor_.reason();
   }

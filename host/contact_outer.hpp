@@ -38,7 +38,7 @@ class OuterIteration {
         judge_(judge),
         inner_sweeps_(island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1),
         weights_(diagonal_of(structure, system, island)),
-        before_(weights_.size()) {}
+        before_(system.load.size()) {}
 
   /// Goes on until judged done, out of budget, or far off.
   /// @param most           outer iterations
@@ -60,40 +60,29 @@ class OuterIteration {
     switch (options_.method) {
       case ContactMethod::gauss_seidel:
         outcome.methods = {"outer_jacobi"};
-        return iterate(most, outcome, [](View<const double>, View<double>, double) {});
-      case ContactMethod::nonlinear_cg: {
+        return iterate<PlainSteps<Exec, double>>(most, outcome);
+      case ContactMethod::nonlinear_cg:
         outcome.methods = {"outer_nonlinear_cg"};
-        ConjugateDirection<Exec, double> direction(exec_, pipeline_.body_velocity().size);
-        return iterate(most, outcome, [&](View<const double> x, View<double> image, double defect) {
-          direction.advance(x, image, defect);
-        });
-      }
-      default: {
+        return iterate<ConjugateDirection<Exec, double>>(most, outcome);
+      default:
         outcome.methods = {"outer_anderson"};
-        AndersonMixer<Exec, double> mixer(exec_, weights_);
-        return iterate(most, outcome, [&](View<const double> x, View<double> image, double defect) {
-          mixer.mix(x, image, defect);
-        });
-      }
+        return iterate<AndersonMixer<Exec, double>>(most, outcome);
     }
   }
 
-  /// @param advance  takes v before and after a step and the size of their difference, and may
-  ///                 replace v
-  template <class Advance>
-  void iterate(std::int64_t most, IslandOutcome& outcome, const Advance& advance) {
-    const View<double> v = pipeline_.body_velocity();
-    const View<const double> before = {before_.data(), v.size};
-    const std::vector<double> rest(before_.size(), 0.0);
-    double start = defect_of<Exec, double>(exec_, weights_, view_of(rest), v);
+  template <class Accelerator>
+  void iterate(std::int64_t most, IslandOutcome& outcome) {
+    Accelerator accelerator(exec_, weights_);
+    double start = size_of_velocity();
     while (outcome.outer_iterations < most) {
-      std::copy_n(v.data, v.size, before_.data());
-      pipeline_.find_defect();
-      pipeline_.relax(options_.relaxation);
+      std::swap(before_, state_.body_velocity);
+      pipeline_.step_bodies(before_, options_.relaxation);
       for (int sweep = 0; sweep < inner_sweeps_; ++sweep) pipeline_.sweep({});
       outcome.sweeps += inner_sweeps_;
       ++outcome.outer_iterations;
-      const double defect = defect_of<Exec, double>(exec_, weights_, before, v);
+      const View<const double> before = {before_.data() + pipeline_.island().dof_begin,
+                                         pipeline_.body_velocity().size};
+      const double defect = accelerator.observe(before, pipeline_.body_velocity());
       if (aim_ == 0) {
         start += defect;
         aim_ = options_.tolerance * start;
@@ -102,8 +91,14 @@ class OuterIteration {
       const bool is_last = outcome.outer_iterations == most;
       const bool is_due = is_last || defect <= aim_ || outcome.outer_iterations >= next_;
       if (is_due && judge(defect, is_last, outcome) <= 1) return;
-      advance(before, v, defect);
+      accelerator.advance(before, pipeline_.body_velocity(), defect);
     }
+  }
+
+  double size_of_velocity() {
+    const std::vector<double> rest(weights_.size(), 0.0);
+    const View<const double> v = pipeline_.body_velocity();
+    return defect_of(exec_, weights_, view_of(rest), v);
   }
 
   /// Judging costs as much as 5 to 30 steps: it is done when the defect of the iteration has
@@ -141,7 +136,7 @@ class OuterIteration {
   CoupledJudge<Exec>& judge_;
   int inner_sweeps_;  ///< one is enough where no two contacts share a body: there is one color
   std::vector<double> weights_;
-  std::vector<double> before_;
+  std::vector<double> before_;  ///< v of the step before, [dofs]
   double aim_ = 0;
   std::int64_t next_ = 2 * first_check;
 };

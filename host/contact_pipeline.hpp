@@ -52,7 +52,6 @@ class ContactPipeline {
   View<T> body_velocity() const {
     return part(state_.body_velocity, island_.dof_begin, island_.dof_end);
   }
-  View<T> defect() const { return part(state_.defect, island_.dof_begin, island_.dof_end); }
   View<const ContactConstants<T>> constants() const {
     return {system_.constants.data() + island_.slot_begin, island_.contact_count()};
   }
@@ -104,21 +103,18 @@ class ContactPipeline {
                                    view_of(system_.body_free), view_of(state_.body_velocity)});
   }
 
-  /// The defect of A v = b + J^T r.
-  void find_defect() {
+  /// A step of block-Jacobi with the impulses at hand: v = x + omega D^-1 (b + J^T r - A x).
+  /// @param x  [dofs] of the whole problem
+  void step_bodies(const std::vector<T>& x, T relaxation) {
     body_relax(
         exec_, island_.block_begin, island_.block_end,
-        BodyDefectBody<T>{structure_.system(view_of(system_.system)), structure_.block_contacts(),
-                          view_of(system_.jacobian), view_of(system_.load), view_of(state_.impulse),
-                          view_of(state_.body_velocity), view_of(state_.defect)});
-  }
-
-  /// v += omega D^-1 defect.
-  void relax(T relaxation) {
-    body_relax(exec_, island_.block_begin, island_.block_end,
-               BodyRelaxBody<T>{view_of(structure_.dof_start), view_of(structure_.inverse_start),
-                                view_of(system_.inverse), relaxation, view_of(state_.defect),
-                                view_of(state_.body_velocity)});
+        BodyStepBody<T>{{structure_.system(view_of(system_.system)), structure_.block_contacts(),
+                         view_of(system_.jacobian), view_of(system_.load), view_of(state_.impulse),
+                         view_of(x), view_of(state_.defect)},
+                        view_of(structure_.inverse_start),
+                        view_of(system_.inverse),
+                        relaxation,
+                        view_of(state_.body_velocity)});
   }
 
   /// How far r and v are from the law.

@@ -36,6 +36,7 @@ struct ContactStructure {
   // Global form.
   std::vector<std::int32_t> dof_of_place;  ///< dof of the problem at each place here
   std::vector<std::int64_t> dof_start;     ///< [blocks + 1]
+  bool has_only_nodes = false;             ///< all blocks have three dofs
   std::vector<std::int64_t> pair_start;    ///< [slots + 1]
   std::vector<std::int32_t> pair_block;
   std::vector<std::int64_t> pair_value;
@@ -77,7 +78,7 @@ View<T> view_of(std::vector<T>& values) {
 template <class T>
 SystemView<T> ContactStructure::system(View<const T> values) const {
   return {view_of(system_row), view_of(system_column), view_of(system_value), values,
-          view_of(dof_start)};
+          view_of(dof_start),  has_only_nodes};
 }
 
 /// @param skip  without `converged_islands` all contacts are one island; without

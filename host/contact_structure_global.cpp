@@ -30,9 +30,9 @@ Blocks make_blocks(const ContactProblem& problem, std::vector<std::int64_t> star
               static_cast<std::int32_t>(b));
   }
   const auto block_of = [&](std::int32_t dof) { return blocks.of_dof[index_of(dof)]; };
-  blocks.touched =
-      block_columns(problem.jacobian, contact_rows(problem.contact_count()), block_of, true);
-  blocks.coupled = block_columns(problem.system, blocks.start, block_of, false);
+  blocks.touched = block_columns(problem.jacobian, contact_rows(problem.contact_count()),
+                                 blocks.count(), block_of, true);
+  blocks.coupled = block_columns(problem.system, blocks.start, blocks.count(), block_of, false);
   return blocks;
 }
 
@@ -116,9 +116,11 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
 void fill_dofs(const Blocks& blocks, const std::vector<std::int32_t>& order, ContactStructure& s) {
   s.dof_start = {0};
   s.inverse_start = {0};
+  s.has_only_nodes = true;
   for (const std::int32_t b : order) {
     const std::int64_t first = blocks.start[index_of(b)];
     const std::int64_t last = blocks.start[index_of(b) + 1];
+    s.has_only_nodes = s.has_only_nodes && last - first == 3;
     for (std::int64_t dof = first; dof < last; ++dof) {
       s.dof_of_place.push_back(static_cast<std::int32_t>(dof));
     }
@@ -188,6 +190,7 @@ void fill_system(const ContactProblem& problem,
   s.system_row = {0};
   s.system_target.resize(a.value.size());
   std::vector<std::int32_t> columns;
+  std::vector<std::int64_t> entry_of(order.size(), -1);  // in this block row, by block
   for (std::size_t place = 0; place < order.size(); ++place) {
     const std::size_t b = index_of(order[place]);
     columns.clear();
@@ -196,8 +199,8 @@ void fill_system(const ContactProblem& problem,
     }
     std::sort(columns.begin(), columns.end());
     const std::int64_t rows = blocks.start[b + 1] - blocks.start[b];
-    const std::size_t first = s.system_column.size();
     for (const std::int32_t column : columns) {
+      entry_of[index_of(order[index_of(column)])] = s.system_size;
       if (column == static_cast<std::int32_t>(place)) s.diagonal_value.push_back(s.system_size);
       s.system_column.push_back(column);
       s.system_value.push_back(s.system_size);
@@ -209,16 +212,14 @@ void fill_system(const ContactProblem& problem,
       for (; e < a.row_start[index_of(row) + 1]; ++e) {
         const std::int32_t dof = a.column[index_of(e)];
         const std::int32_t other = blocks.of_dof[index_of(dof)];
-        const std::int32_t column = place_of_block[index_of(other)];
-        const auto found = std::lower_bound(columns.begin(), columns.end(), column);
-        const bool is_kept = found != columns.end() && *found == column;
-        const std::size_t entry = first + static_cast<std::size_t>(found - columns.begin());
-        s.system_target[index_of(e)] = is_kept ? s.system_value[entry] +
-                                                     (row - blocks.start[b]) * size_of(column) +
-                                                     dof - blocks.start[index_of(other)]
-                                               : -1;
+        const std::int64_t begin = blocks.start[index_of(other)];
+        const std::int64_t size = blocks.start[index_of(other) + 1] - begin;
+        const std::int64_t entry = entry_of[index_of(other)];
+        s.system_target[index_of(e)] =
+            entry < 0 ? -1 : entry + (row - blocks.start[b]) * size + dof - begin;
       }
     }
+    for (const std::int32_t other : blocks.coupled.of(order[place])) entry_of[index_of(other)] = -1;
   }
 }
 

@@ -14,7 +14,7 @@ void fill_local_structure(const ContactProblem& problem,
   const SparseMatrix& w = problem.delassus;
   const std::int64_t contacts = problem.contact_count();
   const auto contact_of = [](std::int32_t column) { return column / 3; };
-  const Lists rows = block_columns(w, contact_rows(contacts), contact_of, true);
+  const Lists rows = block_columns(w, contact_rows(contacts), contacts, contact_of, true);
 
   // A coupling, in either direction, is a group of two.
   std::vector<std::pair<std::int32_t, std::int32_t>> couplings;

@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "host/contact_structure.hpp"
@@ -31,25 +32,27 @@ inline std::vector<std::int64_t> contact_rows(std::int64_t contacts) {
 
 /// The block columns that each range of scalar rows touches, rising.
 /// @param row_start    first scalar row of each range, and the end
+/// @param blocks       how many block columns there are
 /// @param block_of     block of a scalar column
 /// @param keeps_zeros  whether stored zeros count
 template <class BlockOf>
 Lists block_columns(const SparseMatrix& matrix,
                     const std::vector<std::int64_t>& row_start,
+                    std::int64_t blocks,
                     const BlockOf& block_of,
                     bool keeps_zeros) {
   Lists rows;
   std::vector<std::int32_t> touched;
+  std::vector<std::size_t> last_range(index_of(blocks), row_start.size());  // that touched a block
   for (std::size_t b = 0; b + 1 < row_start.size(); ++b) {
     touched.clear();
     const std::int64_t last = matrix.row_start[index_of(row_start[b + 1])];
     for (std::int64_t e = matrix.row_start[index_of(row_start[b])]; e < last; ++e) {
       if (!keeps_zeros && matrix.value[index_of(e)] == 0) continue;
       const std::int32_t block = block_of(matrix.column[index_of(e)]);
-      if (touched.empty() || touched.back() != block) touched.push_back(block);
+      if (std::exchange(last_range[index_of(block)], b) != b) touched.push_back(block);
     }
     std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
     rows.item.insert(rows.item.end(), touched.begin(), touched.end());
     rows.close_list();
   }

@@ -105,6 +105,47 @@ struct Relaxation {
 
 const CpuContactExec exec(1);
 
+/// Nodes among nodes take a way of their own.
+TEST(BodyRelax, ProductsAreTheSameWhetherOnlyNodesAreKnownOrNot) {
+  const Relaxation c(96, 40, 3, 0.5);
+  SystemView<double> known = c.stages.structure.system(view_of(c.stages.system.system));
+  SystemView<double> looked_up = known;
+  EXPECT_TRUE(known.has_only_nodes);
+  looked_up.has_only_nodes = false;
+  const Numbers x = c.by_place(c.velocity);
+  for (std::int64_t b = 0; b < c.block_count(); ++b) {
+    double a[3], d[3];
+
+    multiply_block_row(known, b, x.data(), a);
+
+    multiply_block_row(looked_up, b, x.data(), d);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(a[i], d[i]) << b;
+  }
+  EXPECT_FALSE(Relaxation(97, 4, 6, 0.5).stages.structure.has_only_nodes);
+}
+
+/// The two stages that it joins have tests of their own.
+TEST(BodyRelax, AStepIsTheDefectAndItsRelaxation) {
+  for (const Index dofs : {3, 6, 12}) {
+    const Relaxation c(98, 7, dofs, 0.5);
+    const Numbers r = c.by_slot(c.impulse), x = c.by_place(c.velocity);
+    Numbers defect(x.size()), v(x.size(), -1.0);
+    const ContactStructure& s = c.stages.structure;
+
+    body_relax(
+        exec, 0, c.block_count(),
+        BodyStepBody<double>{{s.system(view_of(c.stages.system.system)), s.block_contacts(),
+                              view_of(c.stages.system.jacobian), view_of(c.stages.system.load),
+                              view_of(r), view_of(x), view_of(defect)},
+                             view_of(s.inverse_start),
+                             view_of(c.stages.system.inverse),
+                             0.5,
+                             view_of(v)});
+
+    EXPECT_EQ(v, c.relaxed(exec, 0, c.block_count(), 0.5, c.defect(exec, x), x));
+  }
+}
+
 TEST(BodyRelax, DefectIsWhatTheEquationLeaves) {
   for (const Index dofs : {3, 6, 12}) {
     for (const double coupling : {0.0, 0.5}) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
@@ -17,80 +16,122 @@
 #include "host/contact_linear.hpp"
 #include "tests/contact_samples.hpp"
 #include "tests/contact_stages.hpp"
+#include "tests/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {
 
 using Eigen::VectorXd;
 
-/// Coupled bodies of six dofs, their places in the order of the problem.
+/// A of a problem with one island, its places in the order of the structure, and a load.
 struct LinearCase {
-  explicit LinearCase(double coupling) : random(141) {
-    const ContactProblem problem = samples::random_global(random, 30, 6, coupling, 0.3);
-    stages = std::make_unique<ContactStages>(problem);
-    matrix.setZero(180, 180);
-    const ContactStructure& s = stages->structure;
-    for (Eigen::Index column = 0; column < 180; ++column) {
-      std::vector<double> unit(180, 0.0), image(180);
+  explicit LinearCase(const ContactProblem& problem) : stages(problem), random(141) {
+    const ContactStructure& s = stages.structure;
+    const auto dofs = static_cast<Eigen::Index>(problem.load.size());
+    matrix.setZero(dofs, dofs);
+    for (Eigen::Index column = 0; column < dofs; ++column) {
+      std::vector<double> unit(problem.load.size(), 0.0), image(problem.load.size());
       unit[static_cast<std::size_t>(column)] = 1;
-      for (std::int64_t b = 0; b < 30; ++b) {
-        multiply_block_row(s.system(view_of(std::as_const(stages->system.system))), b, unit.data(),
+      for (std::int64_t b = 0; b < stages.island().block_end; ++b) {
+        multiply_block_row(s.system(view_of(std::as_const(stages.system.system))), b, unit.data(),
                            image.data() + s.dof_start[static_cast<std::size_t>(b)]);
       }
       matrix.col(column) = samples::vector_of(image);
     }
-    goal = samples::random_vector(random, 180);
+    goal = samples::random_vector(random, dofs);
   }
 
+  double size_of(const VectorXd& x) const { return std::sqrt(x.dot(matrix * x)); }
+
+  ContactStages stages;
   std::mt19937 random;
-  std::unique_ptr<ContactStages> stages;
   Eigen::MatrixXd matrix;
   VectorXd goal;
 };
 
+/// Coupled bodies of six dofs.
+LinearCase bodies(double coupling) {
+  std::mt19937 random(142);
+  return LinearCase(samples::random_global(random, 30, 6, coupling, 0.3));
+}
+
+using Linear = CoupledLinear<CpuContactExec>;
+
+Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
+  return Linear(exec, c.stages.structure, c.stages.system, c.stages.island());
+}
+
 TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
-  const LinearCase c(0.4);
+  const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
+  const double size = c.size_of(exact);
   CpuContactExec exec(1);
-  CoupledLinear<CpuContactExec> linear(exec, c.stages->structure, c.stages->system,
-                                       c.stages->island());
+  Linear linear = make_linear(exec, c);
   for (const double share : {1e-1, 1e-4, 1e-8}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
-    const double moved = linear.solve({.share = share}, x, rest);
+    const LinearProgress progress = linear.solve(
+        x, rest, [&](const LinearProgress& now) { return now.left <= share * now.moved; });
 
-    const VectorXd error = samples::vector_of(x) - exact;
-    const double size = std::sqrt(exact.dot(c.matrix * exact));
-    EXPECT_LE(std::sqrt(error.dot(c.matrix * error)), 2 * share * size) << share;
-    EXPECT_NEAR(moved, size, share * size);
+    EXPECT_LE(c.size_of(samples::vector_of(x) - exact), share * size) << share;
+    EXPECT_NEAR(progress.moved, size, share * size);
     EXPECT_LE((c.goal - c.matrix * samples::vector_of(x) - samples::vector_of(rest)).norm(),
               1e-12 * c.goal.norm());
   }
 }
 
-TEST(CoupledLinear, GivesUpBeyondTheDistanceAllowed) {
-  const LinearCase c(0.4);
+/// From well to badly conditioned, at every question; a rough solve before has shown the smallest
+/// eigenvalue.
+TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
+  const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
+                              LinearCase(make_elastic_problem({.young = 1e7}))};
+  for (const LinearCase& c : cases) {
+    CpuContactExec exec(1);
+    Linear linear = make_linear(exec, c);
+    std::mt19937 random(143);
+    const auto dofs = c.goal.size();
+    std::vector<double> rough(static_cast<std::size_t>(dofs), 0.0);
+    std::vector<double> first = samples::list_of(samples::random_vector(random, dofs));
+    linear.solve(rough, first,
+                 [](const LinearProgress& now) { return now.left <= 0.1 * now.moved; });
+    const VectorXd exact = c.matrix.llt().solve(c.goal);
+    std::vector<double> x(rough.size(), 0.0), rest = samples::list_of(c.goal);
+    int questions = 0;
+
+    linear.solve(x, rest, [&](const LinearProgress& now) {
+      const double error = c.size_of(samples::vector_of(x) - exact);
+      ++questions;
+      EXPECT_GE(now.left, error) << dofs << " dofs, question " << questions;
+      EXPECT_LE(now.left, 100 * error) << dofs << " dofs, question " << questions;
+      return error < 1e-8 * now.moved;
+    });
+
+    EXPECT_GE(questions, 2);
+  }
+}
+
+TEST(CoupledLinear, StopsWhereItIsToldTo) {
+  const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
-  const double limit = 0.1 * std::sqrt(exact.dot(c.goal));
   CpuContactExec exec(1);
-  CoupledLinear<CpuContactExec> linear(exec, c.stages->structure, c.stages->system,
-                                       c.stages->island());
+  Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
-  EXPECT_GT(linear.solve({.share = 1e-8, .too_far = limit}, x, rest), limit);
-  EXPECT_GT((samples::vector_of(x) - exact).norm(), 1e-3 * exact.norm());
+  linear.solve(x, rest, [](const LinearProgress&) { return true; });
+
+  EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
 
 /// Couplings twice as strong as the blocks they join: these stay positive, the whole does not.
 TEST(CoupledLinear, RefusesASystemThatIsNotPositiveDefinite) {
-  const LinearCase c(2);
+  const LinearCase c = bodies(2);
   CpuContactExec exec(1);
-  CoupledLinear<CpuContactExec> linear(exec, c.stages->structure, c.stages->system,
-                                       c.stages->island());
+  Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
   EXPECT_LT(c.matrix.selfadjointView<Eigen::Lower>().eigenvalues()(0), 0);
-  EXPECT_THROW(linear.solve({.share = 1e-12}, x, rest), ContactProblemError);
+  EXPECT_THROW(linear.solve(x, rest, [](const LinearProgress&) { return false; }),
+               ContactProblemError);
 }
 
 }  // namespace
