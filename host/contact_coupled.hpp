@@ -58,8 +58,22 @@ class CoupledJudge {
   void start(IslandOutcome& outcome) {
     impulse_.assign(system_.offset.size(), 0.0);
     rest_ = system_.load;
-    linear_.solve(body_velocity_, rest_, [](const LinearProgress& p) { return is_within(0.1, p); });
-    find_velocity(free_velocity_);
+    const auto is_zero = [](double value) { return value == 0; };
+    const bool is_still = std::all_of(rest_.begin(), rest_.end(), is_zero);
+    if (is_still) {  // nothing would be learned of A; a push on every contact shows it
+      for (std::size_t row = 0; row < impulse_.size(); row += 3) impulse_[row] = 1;
+      find_rest();
+    }
+    const LinearProgress progress = linear_.solve(
+        body_velocity_, rest_, [](const LinearProgress& now) { return is_within(0.1, now); });
+    find_velocity(velocity_);
+    seen_share_ = progress.moved > 0 ? distance(system_.offset) / progress.moved : 0;
+    if (is_still) {
+      impulse_.assign(system_.offset.size(), 0.0);
+      body_velocity_.assign(system_.load.size(), 0.0);
+      find_velocity(velocity_);
+    }
+    free_velocity_ = velocity_;
     outcome.free = outcome.sums =
         exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
                                         CoupledFreeBody{natural(free_velocity_)});
@@ -107,17 +121,18 @@ class CoupledJudge {
       sums = bounded_sums();
       excess = rule_.excess_of(sums);
       if (options_.measure == ContactMeasure::fclib) return is_within(0.1, progress);
-      // What is left moves the contacts as much as what has come since the last question.
+      // What is left moves the contacts as much as the free motion did, or the last steps.
       const double step = std::sqrt(square_of(progress.moved) - square_of(moved));
-      doubt = step > 0 ? progress.left / step * distance(seen) / rule_.allowed_at(sums) : 0;
+      const double share = std::max(step > 0 ? distance(seen) / step : 0, seen_share_);
+      doubt = share * progress.left / rule_.allowed_at(sums);
       seen = velocity_;
       moved = progress.moved;
-      const bool is_bad = !is_last && excess > 1;  // it hardly falls from here
+      const bool is_bad = !is_last && excess > 0.8;  // soon over 1, or only after many steps below
       const bool is_good = excess + doubt <= 1 && imbalance() <= options_.tolerance;
       return is_bad || is_good || doubt <= settled * excess;
     });
     const bool is_settled = is_last || excess + doubt <= 1 || doubt <= settled * excess;
-    excess += is_settled ? doubt : std::min(doubt, excess) / 2;
+    excess += is_settled ? doubt : std::min(doubt, excess);
     if (is_settled) {
       sums.eta = square_of(std::sqrt(sums.eta) + doubt * rule_.allowed_at(sums));
     }
@@ -248,6 +263,7 @@ class CoupledJudge {
   StopRule rule_;
   Vector best_impulse_, best_body_velocity_;
   double best_excess_ = std::numeric_limits<double>::infinity();
+  double seen_share_ = 0;  ///< distance() per size in the norm of A, of smooth motion
 };
 
 }  // namespace tetwarp

@@ -3,6 +3,7 @@
 /// do, what it reports, and when it is chosen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -223,6 +224,43 @@ TEST(OuterIteration, WhatIsCalledConvergedIsWithinTheTolerance) {
             residual_of(problem, solution.impulse, solution.body_velocity);
         EXPECT_LE(residual.eta, tolerance) << young << " " << glue;
         EXPECT_LE(residual.balance, tolerance) << young << " " << glue;
+      }
+    }
+  }
+}
+
+/// Bodies at rest show nothing of A: only offsets ask for impulses.
+TEST(OuterIteration, BoundsTheErrorOfBodiesAtRest) {
+  ContactProblem problem = scenes::elastic_slab(
+      {.cubes = {6, 5, 2}, .contacts = 30, .young = 2e5, .friction = 1, .glue = {4e8, 1}});
+  std::fill(problem.load.begin(), problem.load.end(), 0.0);
+  for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+    problem.velocity_offset[row] -= 0.01;
+    problem.adhesion.gap[row] = problem.adhesion.time_step * problem.velocity_offset[row];
+  }
+
+  const ContactSolution solution = solve_contacts(problem, iterated());
+
+  EXPECT_TRUE(solution.converged());
+  EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).eta, 1e-8);
+}
+
+/// Springs much stiffer than the bodies they hold feel errors that the energy hardly knows.
+TEST(OuterIteration, IsRightAboutStiffGlueOnSoftBodies) {
+  for (const double young : {3e4, 2e5, 3e6}) {
+    for (const double glue : {1e8, 1e9}) {
+      const ContactProblem problem = scenes::elastic_slab(
+          {.cubes = {9, 7, 4}, .contacts = 45, .young = young, .friction = 1, .glue = {glue, 1}});
+      for (const double tolerance : {1e-3, 1e-6}) {
+        ContactOptions options = iterated();
+        options.tolerance = tolerance;
+        options.max_sweeps = 100000;
+
+        const ContactSolution solution = solve_contacts(problem, options);
+
+        EXPECT_TRUE(solution.converged()) << young << " " << glue;
+        EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).eta, tolerance)
+            << young << " " << glue;
       }
     }
   }
