@@ -111,27 +111,12 @@ class DeviceArray {
   cudaTextureObject_t texture_ = 0;
 };
 
-/// Memory of the host that the device reaches by itself.
-class PinnedMemory {
- public:
-  explicit PinnedMemory(std::size_t size) {
-    check_cuda(cudaMallocHost(&data_, size), "cudaMallocHost");
-  }
-  PinnedMemory(const PinnedMemory&) = delete;
-  PinnedMemory& operator=(const PinnedMemory&) = delete;
-  ~PinnedMemory() { cudaFreeHost(data_); }
-  void* data() const { return data_; }
-
- private:
-  void* data_ = nullptr;
-};
-
 /// One layout after the other; keeps the best.
 template <class T>
 class FloorRun {
  public:
-  FloorRun(const AffineJob& job, int device)
-      : job_(job), clock_(device), home_(static_cast<std::size_t>(output_count()) * sizeof(T)) {
+  FloorRun(const AffineJob& job, int device) : job_(job), clock_(device) {
+    home_.reserve(output_count());
     output_.reserve(output_count());
   }
 
@@ -156,7 +141,7 @@ class FloorRun {
       if (best_.kernel > 0 && seconds >= best_.kernel) continue;
       const auto both = clock_.seconds_of([&] {
         kernel();
-        check_cuda(cudaMemcpyAsync(home_.data(), job.output,
+        check_cuda(cudaMemcpyAsync(home_.view(output_count()).data, job.output,
                                    static_cast<std::size_t>(output_count()) * sizeof(T),
                                    cudaMemcpyDeviceToHost, clock_.stream()),
                    "cudaMemcpyAsync to host");
@@ -175,7 +160,7 @@ class FloorRun {
 
   const AffineJob& job_;
   Clock clock_;
-  PinnedMemory home_;
+  PinnedBuffer<T> home_;
   DeviceBuffer<T> output_;
   DeviceFloor best_;
 };

@@ -76,6 +76,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
+    tests/test_warp_in_flight.cpp
     tests/test_warp_invariance.cpp
     tests/test_warp_values.cpp
     tests/test_coverage.cpp
@@ -152,9 +153,11 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emulated_backend.cpp
     tests/test_parity.cpp
-    tests/test_warp_emulated.cpp)
-  tetwarp_discover(tetwarp_emulated_tests simt 
-    FILTER "*Emulated*:*Parity.Owners*:*Parity.Steps*/waved*")
+    tests/test_warp_emulated.cpp
+    tests/test_warp_emulated_overlap.cpp
+    tests/test_warp_in_flight.cpp)
+  tetwarp_discover(tetwarp_emulated_tests simt
+    FILTER "*Emulated*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -168,7 +171,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh report tetwarp version volume warp)
+set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers io)
 endif()

@@ -39,6 +39,10 @@ class CpuExec {
  public:
   template <class T>
   using Buffer = HostBuffer<T>;
+  template <class T>
+  using HomeBuffer = HostBuffer<T>;
+  template <class T>
+  struct Staged {};  ///< nothing: what upload() is given is read in place
 
   /// Sizes can be read between stages for nothing, so buffers are always made to measure.
   static constexpr bool reads_are_free = true;
@@ -47,11 +51,23 @@ class CpuExec {
 
   int threads() const { return threads_; }
   std::string device() const { return processor_name(); }
-  StageTimes& times() { return times_; }
+  StageTimes& times() { return times_[flight_]; }
+
+  /// What follows belongs to one of two steps in flight, 0 or 1. All of it is done at once, so that
+  /// nothing has to wait for anything.
+  void select(int flight) { flight_ = flight; }
+  void begin_compute(void*) {}
+  void end_compute() {}
+  void wait_computed() {}
+  void drain() noexcept {}
 
   /// Host memory for a stage to read: no copy.
   template <class T>
   View<const T> resident(const char*, const T* host, std::int64_t size, Buffer<T>&) {
+    return {host, size};
+  }
+  template <class T>
+  View<const T> upload(const char*, const T* host, std::int64_t size, Staged<T>&) {
     return {host, size};
   }
   /// Host memory for a stage to write: no copy.
@@ -62,11 +78,16 @@ class CpuExec {
   /// Brings what was written to writable() memory home: it is there.
   template <class T>
   void deliver(const char*, View<const T>, T*) {}
+  bool delivers_beside(const void*) const { return true; }
 
   /// The value of a few entries, once all stages before have run.
   template <class T>
   void read(View<const T> from, T* to) {
     std::copy_n(from.data, from.size, to);
+  }
+  template <class T>
+  void fetch(View<const T> from, HomeBuffer<T>& to) {
+    read(from, to.view(from.size).data);
   }
   template <class T>
   void zero(const char* label, View<T> view) {
@@ -171,9 +192,6 @@ class CpuExec {
     if (from != pairs.data) std::copy_n(from, count, pairs.data);
   }
 
-  /// The caller's stream: there is none here.
-  void use_stream(void*) {}
-
   /// Adds its life time to a label.
   class Clock {
    public:
@@ -181,7 +199,7 @@ class CpuExec {
         : exec_(exec), label_(label), start_(std::chrono::steady_clock::now()) {}
     ~Clock() {
       const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
-      exec_.times_.add(label_, passed.count());
+      exec_.times().add(label_, passed.count());
     }
     Clock(const Clock&) = delete;
     Clock& operator=(const Clock&) = delete;
@@ -231,7 +249,8 @@ class CpuExec {
   static constexpr int radix_bits = 11;
 
   int threads_;
-  StageTimes times_;
+  StageTimes times_[2];  ///< of each step in flight
+  int flight_ = 0;
   HostBuffer<CellPair> scratch_;
   std::vector<std::int64_t> places_;  ///< of the sort, [thread][digit]
 };

@@ -24,6 +24,16 @@ BackendStatus cuda_status(int device) {
   return status;
 }
 
+bool cuda_lock_pages(void* data, std::size_t bytes) {
+  if (cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess) return true;
+  cudaGetLastError();  // leaves no error behind for the next call
+  return false;
+}
+
+void cuda_unlock_pages(void* data) {
+  cudaHostUnregister(data);
+}
+
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
   return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device));
 }

@@ -14,6 +14,12 @@ BackendStatus cuda_status(int) {
   return {Backend::cuda, false, "", reason};
 }
 
+bool cuda_lock_pages(void*, std::size_t) {
+  return false;
+}
+
+void cuda_unlock_pages(void*) {}
+
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan&) {
   throw CudaError(reason);
 }

@@ -60,18 +60,21 @@ struct StepSizes {
   std::int64_t candidate_pairs;
 };
 
-/// The report of a step: stage times by label, counters, sizes.
+/// Adds stage times by label.
+inline void add_stages(const StageTimes& times, Timings& timings) {
+  timings.upload += times.of("warp/upload");
+  timings.setup += times.of("warp/setup");
+  timings.mask += times.of("warp/mask");
+  timings.cull += times.of("warp/cull");
+  timings.raster += times.of("warp/raster") + times.of("warp/fold");
+  timings.download += times.of("warp/download");
+}
+
+/// The report of a step without its times: counters and sizes.
 inline StepReport make_step_report(const StepCounters& counters,
-                                   const StageTimes& times,
                                    const OutputFrame& frame,
                                    const StepSizes& sizes) {
   StepReport report;
-  report.timings.upload = times.of("warp/upload");
-  report.timings.setup = times.of("warp/setup");
-  report.timings.mask = times.of("warp/mask");
-  report.timings.cull = times.of("warp/cull");
-  report.timings.raster = times.of("warp/raster") + times.of("warp/fold");
-  report.timings.download = times.of("warp/download");
   Counts& counts = report.counts;
   const WorkCounters& work = counters.work;
   counts.voxels = frame.voxel_count();

@@ -1,14 +1,16 @@
 /// @file warp.cpp
-/// The public calls: check every argument once, choose a back end, run, fill the report.
+/// The public calls: check every argument once, run, fill the report.
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
-#include <tetwarp/error.hpp>
 #include <tetwarp/version.hpp>
 #include <tetwarp/warp.hpp>
 #include <tuple>
 #include <utility>
 
+#include "host/step_queue.hpp"
 #include "host/warp_backend.hpp"
 #include "kernels/node_quantize.hpp"
 
@@ -83,22 +85,6 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   return plan;
 }
 
-/// The back end that will run, and why.
-std::pair<Backend, std::string> choose_backend(const WarpOptions& options) {
-  if (options.backend == Backend::cpu || options.backend == Backend::reference) {
-    return {options.backend, "asked for"};
-  }
-  const BackendStatus cuda = cuda_status(options.device);
-  if (cuda.usable) {
-    return {Backend::cuda,
-            options.backend == Backend::cuda ? "asked for" : "a CUDA device answers"};
-  }
-  if (options.backend == Backend::cuda) {
-    throw CudaError("back end cuda: " + cuda.reason + "; use cpu or auto");
-  }
-  return {Backend::cpu, "no CUDA device answers (" + cuda.reason + ")"};
-}
-
 void check_memory_space(const WarpPlan& plan, Backend backend) {
   for (const VolumeView& source : plan.sources) {
     if (source.memory == Memory::device && backend != Backend::cuda) {
@@ -141,33 +127,35 @@ void check_step(const WarpPlan& plan,
   }
 }
 
+std::unique_ptr<WarpBackend> make_backend(Backend backend, const WarpPlan& plan) {
+  switch (backend) {
+    case Backend::cuda:
+      return make_cuda_backend(plan);
+    case Backend::reference:
+      return make_reference_backend(plan);
+    default:
+      return make_cpu_backend(plan);
+  }
+}
+
 }  // namespace
 
 struct Warper::State {
   WarpPlan plan;
-  std::unique_ptr<WarpBackend> backend;
   Report report;
+  std::optional<StepQueue> queue;
 };
 
 Warper::Warper(std::span<const VolumeView> sources, const TetMesh& mesh, const WarpOptions& options)
     : state_(std::make_unique<State>()) {
   state_->plan = make_plan(sources, mesh, options);
   Report& report = state_->report;
-  std::tie(report.backend, report.backend_reason) = choose_backend(options);
+  std::tie(report.backend, report.backend_reason) = choose_backend(options.backend, options.device);
   check_memory_space(state_->plan, report.backend);
-  switch (report.backend) {
-    case Backend::cuda:
-      state_->backend = make_cuda_backend(state_->plan);
-      break;
-    case Backend::reference:
-      state_->backend = make_reference_backend(state_->plan);
-      break;
-    default:
-      state_->backend = make_cpu_backend(state_->plan);
-  }
+  state_->queue.emplace(make_backend(report.backend, state_->plan));
   report.version = TETWARP_VERSION;
-  report.device = state_->backend->device();
-  report.threads = state_->backend->threads();
+  report.device = state_->queue->backend().device();
+  report.threads = state_->queue->backend().threads();
   report.position_quantum = 1.0 / static_cast<double>(quanta_per_voxel);
 }
 
@@ -186,17 +174,43 @@ const Report& Warper::report() const {
   return state_->report;
 }
 
-StepReport Warper::step(const PositionsView& deformed,
+void Warper::begin_step(const PositionsView& deformed,
                         const WarpTarget& target,
                         const Progress& progress) {
+  check_step(state_->plan, state_->report.backend, deformed, target);
+  StepQueue& queue = *state_->queue;
+  if (queue.size() == most_in_flight) {
+    throw std::logic_error("begin_step: two steps are in flight; finish one first");
+  }
+  if (queue.writes_to(target)) {
+    throw std::invalid_argument("target: a step in flight writes to it");
+  }
+  queue.begin(deformed, target, progress);
+}
+
+StepReport Warper::finish_step() {
+  if (state_->queue->size() == 0) throw std::logic_error("finish_step: no step is in flight");
+  StepReport step = state_->queue->finish();
   Report& report = state_->report;
-  check_step(state_->plan, report.backend, deformed, target);
-  StepReport step = state_->backend->step(deformed, target, progress);
   step.step = static_cast<std::int64_t>(report.steps.size());
   report.timings += step.timings;
   report.counts += step.counts;
   report.steps.push_back(step);
   return step;
+}
+
+std::size_t Warper::steps_in_flight() const {
+  return state_->queue->size();
+}
+
+StepReport Warper::step(const PositionsView& deformed,
+                        const WarpTarget& target,
+                        const Progress& progress) {
+  if (steps_in_flight() > 0) {
+    throw std::logic_error("step: others are in flight; finish them first");
+  }
+  begin_step(deformed, target, progress);
+  return finish_step();
 }
 
 Volume Warper::step(const PositionsView& deformed) {

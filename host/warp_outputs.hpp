@@ -41,12 +41,17 @@ class WarpOutputs {
     if (found != std::end(slots_)) {
       now_ = static_cast<int>(found - slots_);
       if (target.holds_previous) age = step_ - found->held->step;
-    } else if (target.holds_previous) {
-      now_ = 1 - now_;  // two targets in turns keep their own memory; others share
+    } else if (target.holds_previous || slots_[now_].is_leaving) {
+      now_ = 1 - now_;  // two targets in turns keep their own memory; others share where they can
     }
     slots_[now_].held.reset();
+    slots_[now_].is_leaving = true;
     return age <= 2 ? static_cast<int>(age) : 0;
   }
+  /// The memory of the step that take() was called for last.
+  int slot() const { return now_; }
+  /// That memory has been brought home, or never will be.
+  void release(int slot) { slots_[slot].is_leaving = false; }
 
   /// Where an executor writes volume s, the mask and the owners; null where nobody asked.
   void* volume(std::size_t s, const WarpTarget& target) {
@@ -60,11 +65,36 @@ class WarpOutputs {
     return writable(target.tet, 1, target, slots_[now_].tet);
   }
 
-  /// Brings home what was written: the marked cells; size 0: all.
-  void deliver(const WarpTarget& target, View<const std::uint8_t> marks) {
-    if (target.memory == Memory::device) return;
-    const CellWindow window = marks.size > 0 ? window_of(marks) : whole();
-    const Slot& slot = slots_[now_];
+  /// What was written: the least window with all marked cells; size 0: all.
+  CellWindow window_of(View<const std::uint8_t> marks) {
+    if (marks.size == 0) return {{0, 0}, {frame_.cells[1], frame_.cells[2]}};
+    std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
+    exec_.read(marks, marked.data());
+    CellWindow window{{frame_.cells[1], frame_.cells[2]}, {0, 0}};
+    std::size_t line = 0;
+    for (int ck = 0; ck < frame_.cells[2]; ++ck) {
+      for (int cj = 0; cj < frame_.cells[1];
+           ++cj, line += static_cast<std::size_t>(frame_.cells[0])) {
+        const auto first = marked.begin() + static_cast<std::ptrdiff_t>(line);
+        if (std::find(first, first + frame_.cells[0], 1) == first + frame_.cells[0]) continue;
+        window.begin[0] = std::min(window.begin[0], cj);
+        window.begin[1] = std::min(window.begin[1], ck);
+        window.end[0] = std::max(window.end[0], cj + 1);
+        window.end[1] = std::max(window.end[1], ck + 1);
+      }
+    }
+    return window;
+  }
+
+  /// True when deliver() to this target does not keep the host waiting.
+  bool delivers_beside(const WarpTarget& target) const {
+    const auto beside = [&](const void* to) { return to == nullptr || exec_.delivers_beside(to); };
+    return std::ranges::all_of(target.volumes, beside) && beside(target.mask) && beside(target.tet);
+  }
+
+  /// Brings home a window of what a step wrote to the memory of a slot.
+  void deliver(int from, const WarpTarget& target, const CellWindow& window) {
+    const Slot& slot = slots_[from];
     for (std::size_t s = 0; s < slot.volumes.size(); ++s) {
       deliver(slot.volumes[s], voxel_bytes_[s], static_cast<std::byte*>(target.volumes[s]), window);
     }
@@ -105,29 +135,8 @@ class WarpOutputs {
     Buffer<std::uint8_t> mask;
     Buffer<std::int32_t> tet;
     std::optional<Held> held;
+    bool is_leaving = false;  ///< a step in flight writes it or has it brought home
   };
-
-  CellWindow whole() const { return {{0, 0}, {frame_.cells[1], frame_.cells[2]}}; }
-
-  /// The least window with all marked cells.
-  CellWindow window_of(View<const std::uint8_t> marks) {
-    std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
-    exec_.read(marks, marked.data());
-    CellWindow window{{frame_.cells[1], frame_.cells[2]}, {0, 0}};
-    std::size_t line = 0;
-    for (int ck = 0; ck < frame_.cells[2]; ++ck) {
-      for (int cj = 0; cj < frame_.cells[1];
-           ++cj, line += static_cast<std::size_t>(frame_.cells[0])) {
-        const auto first = marked.begin() + static_cast<std::ptrdiff_t>(line);
-        if (std::find(first, first + frame_.cells[0], 1) == first + frame_.cells[0]) continue;
-        window.begin[0] = std::min(window.begin[0], cj);
-        window.begin[1] = std::min(window.begin[1], ck);
-        window.end[0] = std::max(window.end[0], cj + 1);
-        window.end[1] = std::max(window.end[1], ck + 1);
-      }
-    }
-    return window;
-  }
 
   template <class T>
   T* writable(T* wanted, std::int64_t per_voxel, const WarpTarget& target, Buffer<T>& buffer) {

@@ -1,7 +1,6 @@
 /// @file warp_pipeline.hpp
 /// The warp as a list of stages, for any executor. Read this file first; run() is the method.
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -34,29 +33,63 @@ class WarpPipeline : public WarpBackend {
     cell_work_.reserve(geometry_.frame.cell_count());
   }
 
-  StepReport step(const PositionsView& deformed,
-                  const WarpTarget& target,
-                  const Progress& progress) override {
-    const auto start = std::chrono::steady_clock::now();
-    exec_.use_stream(target.stream);
-    const View<const double> positions =
+  ~WarpPipeline() override { exec_.drain(); }
+
+  void upload(int number, const PositionsView& deformed) override {
+    exec_.select(number);
+    const std::int64_t size = 3 * deformed.node_count;
+    flights_[number].positions =
         deformed.memory == Memory::device
-            ? View<const double>{deformed.xyz, 3 * deformed.node_count}
-            : exec_.resident("warp/upload", deformed.xyz, 3 * deformed.node_count,
-                             position_buffer_);
-    const int age = outputs_.take(target);
-    StepCounters counters;
-    do {
-      run(positions, target, age, progress);
-      exec_.read(View<const StepCounters>(pairs_.counters()), &counters);
-    } while (!pairs_.had_room(counters));
-    outputs_.deliver(target, stale_);
-    StepReport report = finish(target, counters);
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    report.timings.total = passed.count();
-    exec_.times().clear();
+            ? View<const double>{deformed.xyz, size}
+            : exec_.upload("warp/upload", deformed.xyz, size, flights_[number].position_buffer);
+  }
+
+  void compute(int number, const WarpTarget& target, const Progress& progress) override {
+    exec_.select(number);
+    Flight& flight = flights_[number];
+    flight.target = target;
+    flight.age = outputs_.take(target);
+    flight.slot = outputs_.slot();
+    flight.is_delivered = false;
+    compute(flight, progress);
+    // Parts of an output are known when the step is settled; a whole one may be on its way by then.
+    if (stale_.size == 0 && target.memory == Memory::host && outputs_.delivers_beside(target)) {
+      flight.window = outputs_.window_of({});
+      deliver(number);
+    }
+  }
+
+  void settle(int number) override {
+    Flight& flight = flights_[number];
+    exec_.select(number);
+    for (;;) {
+      exec_.wait_computed();
+      if (pairs_.had_room(*flight.counters.view(1).data)) break;
+      flight.is_delivered = false;
+      compute(flight, {});
+    }
+    flight.report = complete(flight.target, *flight.counters.view(1).data);
+    if (flight.target.memory == Memory::host) flight.window = outputs_.window_of(stale_);
+  }
+
+  void deliver(int number) override {
+    Flight& flight = flights_[number];
+    if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
+    exec_.select(number);
+    outputs_.deliver(flight.slot, flight.target, flight.window);
+  }
+
+  StepReport finish(int number) override {
+    exec_.select(number);
+    StageTimes& times = exec_.times();  // waits for the download, too
+    outputs_.release(flights_[number].slot);
+    StepReport report = flights_[number].report;
+    add_stages(times, report.timings);
+    times.clear();
     return report;
   }
+
+  void drain() noexcept override { exec_.drain(); }
 
   std::string device() const override { return exec_.device(); }
   int threads() const override { return exec_.threads(); }
@@ -72,6 +105,27 @@ class WarpPipeline : public WarpBackend {
     Buffer<std::uint8_t> reach;
     std::optional<UniformMap> uniform;  ///< found when first needed
   };
+
+  /// A step between its parts.
+  struct Flight {
+    typename Exec::template Staged<double> position_buffer;
+    View<const double> positions;
+    typename Exec::template HomeBuffer<StepCounters> counters;
+    WarpTarget target;
+    int age = 0;   ///< steps since the target got what it holds; 0: nothing is known
+    int slot = 0;  ///< of outputs_
+    CellWindow window{};
+    bool is_delivered = false;
+    StepReport report;
+  };
+
+  void compute(Flight& flight, const Progress& progress) {
+    exec_.begin_compute(flight.target.stream);
+    run(flight.positions, flight.target, flight.age, progress);
+    flight.counters.reserve(1);
+    exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
+    exec_.end_compute();
+  }
 
   /// The method: tetrahedron, corner, cell, voxel.
   /// @param age  steps since the target got what it holds; 0: nothing is known
@@ -183,14 +237,14 @@ class WarpPipeline : public WarpBackend {
 
   WorkCounters& work_counters() const { return pairs_.counters().data->work; }
 
-  /// The step is complete: its report, and what the next one may build on.
-  StepReport finish(const WarpTarget& target, StepCounters counters) {
+  /// The step is computed: its report without times, and what the next one may build on.
+  StepReport complete(const WarpTarget& target, StepCounters counters) {
     if (stale_.size == 0) counters.work.covered = counters.work.raster.covered;
     pairs_.finish(counters);
     outputs_.finish(target);
     const std::int64_t cells_unchanged =
         stale_.size > 0 ? geometry_.frame.cell_count() - counters.work.touched_cells : 0;
-    return make_step_report(counters, exec_.times(), geometry_.frame,
+    return make_step_report(counters, geometry_.frame,
                             {.tets = pairs_.tet_count(),
                              .tets_unchanged = pairs_.unchanged_count(),
                              .cells_unchanged = cells_unchanged,
@@ -204,7 +258,7 @@ class WarpPipeline : public WarpBackend {
   WarpOutputs<Exec> outputs_;
   std::vector<Source> sources_;
 
-  Buffer<double> position_buffer_;
+  Flight flights_[2];
   Buffer<std::int64_t> cell_work_;
   Buffer<std::uint16_t> cell_covered_;  ///< kept from step to step where cells are
   View<const std::uint8_t> stale_;      ///< 0 for cells that the target holds; size 0: it has none

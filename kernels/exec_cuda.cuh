@@ -1,53 +1,20 @@
 /// @file exec_cuda.cuh
-/// CudaExec: the operations a pipeline is made of, on one stream of one device. The only file with
-/// allocation, copies, streams and events.
+/// CudaExec: the operations a pipeline is made of, on one device: kernels on one stream, copies to
+/// it and back on two others, so that those of one step run beside the kernels of another.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tetwarp/error.hpp>
 #include <utility>
-#include <vector>
 
-#include "host/stage_times.hpp"
 #include "kernels/cell_cull.hpp"
+#include "kernels/exec_buffer.cuh"
+#include "kernels/exec_stream.cuh"
 #include "kernels/launch.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
-
-/// Throws CudaError naming the call when it failed.
-inline void check_cuda(cudaError_t error, const char* call) {
-  if (error != cudaSuccess) {
-    throw CudaError(std::string(call) + ": " + cudaGetErrorString(error));
-  }
-}
-
-/// Owns device memory that only grows; contents are undefined after growth.
-template <class T>
-class DeviceBuffer {
- public:
-  DeviceBuffer() = default;
-  DeviceBuffer(DeviceBuffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), capacity_(std::exchange(other.capacity_, 0)) {}
-  DeviceBuffer& operator=(DeviceBuffer&&) = delete;
-  ~DeviceBuffer() { cudaFree(data_); }
-
-  void reserve(std::int64_t size) {
-    if (size <= capacity_) return;
-    check_cuda(cudaFree(data_), "cudaFree");
-    data_ = nullptr;
-    capacity_ = 0;
-    check_cuda(cudaMalloc(&data_, static_cast<std::size_t>(size) * sizeof(T)), "cudaMalloc");
-    capacity_ = size;
-  }
-  View<T> view(std::int64_t size) const { return {data_, size}; }
-  View<const T> const_view(std::int64_t size) const { return {data_, size}; }
-
- private:
-  T* data_ = nullptr;
-  std::int64_t capacity_ = 0;
-};
 
 // primitives_cuda.cu: CUB behind plain functions; `scratch` grows on first use.
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count);
@@ -103,6 +70,13 @@ class CudaExec {
  public:
   template <class T>
   using Buffer = DeviceBuffer<T>;
+  template <class T>
+  using HomeBuffer = PinnedBuffer<T>;  ///< on the host
+  template <class T>
+  struct Staged {
+    HomeBuffer<T> home;
+    Buffer<T> far;
+  };
 
   /// Reading a size waits for the device: pipelines do it once, then trust their buffers.
   static constexpr bool reads_are_free = false;
@@ -117,28 +91,41 @@ class CudaExec {
   }
   int threads() const { return 1; }
 
+  /// What follows belongs to one of two steps in flight, 0 or 1; at first to 0.
+  void select(int flight) {
+    check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
+    state_->flight = &state_->flights[flight];
+  }
+
   /// Runs what follows on the caller's stream; null: on this executor's own.
   void use_stream(void* stream) {
     check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
     const cudaStream_t wanted =
-        stream != nullptr ? static_cast<cudaStream_t>(stream) : state_->own_stream;
+        stream != nullptr ? static_cast<cudaStream_t>(stream) : cudaStream_t{state_->own_stream};
     if (wanted == state_->stream) return;
     check_cuda(cudaStreamSynchronize(state_->stream), "cudaStreamSynchronize");
     state_->stream = wanted;
   }
 
-  /// Seconds per label since the last clear(); waits for the stream.
-  StageTimes& times() {
-    check_cuda(cudaStreamSynchronize(stream()), "cudaStreamSynchronize");
-    for (std::size_t i = 0; i < state_->used; ++i) {
-      float milliseconds = 0;
-      const Span& span = state_->spans[i];
-      check_cuda(cudaEventElapsedTime(&milliseconds, span.begin, span.end), "cudaEventElapsedTime");
-      state_->times.add(span.label, milliseconds * 1e-3);
-    }
-    state_->used = 0;
-    return state_->times;
+  /// The kernels of the selected step come now; they wait for its upload().
+  void begin_compute(void* stream) {
+    use_stream(stream);
+    flight().uploaded.hold_back(this->stream());
   }
+  /// There are no more of them: what deliver() brings home is there when they have run.
+  void end_compute() { flight().computed.record(stream()); }
+  void wait_computed() { flight().computed.wait(); }
+
+  /// Waits for all that was asked for, whatever became of it.
+  void drain() noexcept {
+    for (cudaStream_t stream :
+         {cudaStream_t{state_->upload}, state_->stream, cudaStream_t{state_->download}}) {
+      cudaStreamSynchronize(stream);
+    }
+  }
+
+  /// Seconds per label of the selected step since the last clear(); waits for all it was charged.
+  StageTimes& times() { return flight().times(); }
 
   template <class T>
   View<const T> resident(const char* label, const T* host, std::int64_t size, Buffer<T>& buffer) {
@@ -150,18 +137,48 @@ class CudaExec {
     });
     return buffer.const_view(size);
   }
+  /// Numbers for the selected step, taken as they are now, that travel beside earlier kernels.
+  template <class T>
+  View<const T> upload(const char* label, const T* host, std::int64_t size, Staged<T>& staged) {
+    staged.home.reserve(size);
+    staged.far.reserve(size);
+    std::copy_n(host, size, staged.home.view(size).data);
+    flight().timed(label, state_->upload, [&] {
+      check_cuda(cudaMemcpyAsync(staged.far.view(size).data, staged.home.view(size).data,
+                                 bytes_of<T>(size), cudaMemcpyHostToDevice, state_->upload),
+                 "cudaMemcpyAsync to device");
+    });
+    flight().uploaded.record(state_->upload);
+    return staged.far.const_view(size);
+  }
   template <class T>
   T* writable(T*, std::int64_t size, Buffer<T>& buffer) {
     buffer.reserve(size);
     return buffer.view(size).data;
   }
+  /// Brings home what the selected step has computed, beside the kernels of the next. Returns
+  /// before it is there if delivers_beside().
   template <class T>
   void deliver(const char* label, View<const T> from, T* to) {
-    timed(label, [&] {
-      check_cuda(
-          cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost, stream()),
-          "cudaMemcpyAsync to host");
+    flight().computed.hold_back(state_->download);
+    flight().timed(label, state_->download, [&] {
+      check_cuda(cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost,
+                                 state_->download),
+                 "cudaMemcpyAsync to host");
     });
+  }
+  /// True for page-locked memory. Copies to other memory wait on the host.
+  bool delivers_beside(const void* to) const {
+    cudaPointerAttributes attributes;
+    check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
+    return attributes.type == cudaMemoryTypeHost;
+  }
+  /// As read(), but they are there after wait_computed().
+  template <class T>
+  void fetch(View<const T> from, HomeBuffer<T>& to) {
+    check_cuda(cudaMemcpyAsync(to.view(from.size).data, from.data, bytes_of<T>(from.size),
+                               cudaMemcpyDeviceToHost, stream()),
+               "cudaMemcpyAsync to host");
   }
   template <class T>
   void read(View<const T> from, T* to) {
@@ -236,56 +253,30 @@ class CudaExec {
   /// Runs work between two events that are charged to a label.
   template <class Work>
   void timed(const char* label, Work&& work) {
-    const Span& span = state_->next_span(label);
-    check_cuda(cudaEventRecord(span.begin, stream()), "cudaEventRecord");
-    work();
-    check_cuda(cudaEventRecord(span.end, stream()), "cudaEventRecord");
+    flight().timed(label, stream(), std::forward<Work>(work));
   }
 
  private:
-  struct Span {
-    const char* label;
-    cudaEvent_t begin;
-    cudaEvent_t end;
-  };
-
   struct State {
     int device;
-    cudaStream_t own_stream = nullptr;
-    cudaStream_t stream = nullptr;
-    std::vector<Span> spans;
-    std::size_t used = 0;
-    StageTimes times;
+    DeviceStream own_stream, upload, download;
+    DeviceFlight flights[2];
+    cudaStream_t stream = own_stream;
+    DeviceFlight* flight = flights;
     DeviceBuffer<std::byte> scratch;
     DeviceBuffer<CellPair> other_pairs;
 
-    explicit State(int number) : device(number) {
-      check_cuda(cudaSetDevice(device), "cudaSetDevice");
-      check_cuda(cudaStreamCreateWithFlags(&own_stream, cudaStreamNonBlocking),
-                 "cudaStreamCreateWithFlags");
-      stream = own_stream;
-    }
+    explicit State(int number) : device(made_current(number)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
-    ~State() {
-      for (const Span& span : spans) {
-        cudaEventDestroy(span.begin);
-        cudaEventDestroy(span.end);
-      }
-      cudaStreamDestroy(own_stream);
-    }
-    const Span& next_span(const char* label) {
-      if (used == spans.size()) {
-        Span span{label, nullptr, nullptr};
-        check_cuda(cudaEventCreate(&span.begin), "cudaEventCreate");
-        check_cuda(cudaEventCreate(&span.end), "cudaEventCreate");
-        spans.push_back(span);
-      }
-      spans[used].label = label;
-      return spans[used++];
+
+    static int made_current(int number) {
+      check_cuda(cudaSetDevice(number), "cudaSetDevice");
+      return number;
     }
   };
 
+  DeviceFlight& flight() { return *state_->flight; }
   template <class T>
   static std::size_t bytes_of(std::int64_t size) {
     return static_cast<std::size_t>(size) * sizeof(T);

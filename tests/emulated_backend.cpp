@@ -20,6 +20,7 @@ void enqueue(cudaStream_t stream, Work&& work) {
   const std::lock_guard guard(simt::Device::only().lock);
   simt::Device::only().note(simt::Call::launch);
   static_cast<simt::Stream*>(stream)->enqueue(std::forward<Work>(work));
+  simt::Device::only().go_ahead();
 }
 
 /// Like CUB's, the primitives want scratch memory that grows with their input.
@@ -73,6 +74,14 @@ void cuda_sort_pairs(cudaStream_t stream,
 BackendStatus cuda_status(int device) {
   if (device == 0) return {Backend::cuda, true, "emulation", ""};
   return {Backend::cuda, false, "", "no device " + std::to_string(device) + ", there are 1"};
+}
+
+bool cuda_lock_pages(void* data, std::size_t bytes) {
+  return cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess;
+}
+
+void cuda_unlock_pages(void* data) {
+  cudaHostUnregister(data);
 }
 
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {

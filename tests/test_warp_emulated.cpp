@@ -1,6 +1,6 @@
 /// @file test_warp_emulated.cpp
-/// What a step asks of the device, on an emulated one: from the second step on one sequence of work
-/// on one stream, one wait at its end, no allocation.
+/// What a step asks of the device, on an emulated one: from the second step on one sequence of
+/// work, one wait at its end, no allocation.
 #include <gtest/gtest.h>
 
 #include <algorithm>

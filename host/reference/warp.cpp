@@ -92,18 +92,21 @@ class ReferenceBackend : public WarpBackend {
   std::string device() const override { return processor_name(); }
   int threads() const override { return 1; }
 
-  StepReport step(const PositionsView& deformed,
-                  const WarpTarget& target,
-                  const Progress& progress) override {
+  void upload(int flight, const PositionsView& deformed) override {
+    positions_[flight].assign(deformed.xyz, deformed.xyz + 3 * deformed.node_count);
+  }
+
+  void compute(int flight, const WarpTarget& target, const Progress& progress) override {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
     owner_.assign(voxels, -1);
     source_position_.assign(voxels, Eigen::Vector3d::Zero());
     strictly_inside_.assign(plan_.options.count_folded ? voxels : 0, 0);
-    StepReport report;
+    StepReport& report = reports_[flight];
+    report = {};
     const auto tets = static_cast<std::int32_t>(plan_.mesh.tets.size());
     for (std::int32_t t = 0; t < tets; ++t) {
-      claim(t, deformed.xyz, report.counts);
+      claim(t, positions_[flight].data(), report.counts);
       if (progress && t % 64 == 0 && !progress(0.5 * t / tets)) throw Cancelled();
     }
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) {
@@ -120,10 +123,11 @@ class ReferenceBackend : public WarpBackend {
     report.counts.outside = report.counts.voxels - report.counts.covered;
     report.counts.tetrahedra = tets;
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    report.timings.raster = report.timings.total = passed.count();
+    report.timings.raster = passed.count();
     if (progress && !progress(1.0)) throw Cancelled();
-    return report;
   }
+
+  StepReport finish(int flight) override { return reports_[flight]; }
 
  private:
   /// Gives tetrahedron t every voxel of its closed shape that no lower one owns.
@@ -236,6 +240,8 @@ class ReferenceBackend : public WarpBackend {
   }
 
   WarpPlan plan_;
+  std::vector<double> positions_[2];
+  StepReport reports_[2];
   IndexSpace output_;
   IndexSpace source_;
   std::vector<std::int32_t> owner_;

@@ -2,6 +2,7 @@
 /// The back ends, and which of them answer on this machine.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tetwarp {
@@ -22,5 +23,9 @@ struct BackendStatus {
 
 /// Status of cuda (on device number `device`), cpu and reference, in that order. Never throws.
 std::vector<BackendStatus> available_backends(int device = 0);
+
+/// The back end that a warp runs on that asks for this one, and why, in one sentence.
+/// @throws CudaError when cuda is asked for and does not answer
+std::pair<Backend, std::string> choose_backend(Backend asked, int device = 0);
 
 }  // namespace tetwarp

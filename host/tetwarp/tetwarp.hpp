@@ -5,6 +5,7 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/page_lock.hpp>
 #include <tetwarp/report.hpp>
 #include <tetwarp/version.hpp>
 #include <tetwarp/volume.hpp>

@@ -6,6 +6,7 @@
 /// Rasterization", SCA 2013.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,7 +67,7 @@ struct WarpOptions {
 };
 
 /// Told between slabs of work with the finished fraction of the step, 0 to 1; false cancels.
-/// Called from the thread that called step().
+/// Called within step() or begin_step().
 using Progress = std::function<bool(double fraction)>;
 
 /// Where a step writes. Null pointers are outputs nobody asked for. One pointer per source volume,
@@ -119,15 +120,49 @@ class Warper {
   /// @param target    see WarpTarget
   /// @param progress  may be empty
   /// @returns timings and counts of this step
-  /// @throws std::invalid_argument, CudaError, Cancelled
+  /// @throws std::invalid_argument, CudaError, Cancelled; std::logic_error while others are in
+  /// flight
   StepReport step(const PositionsView& deformed,
                   const WarpTarget& target,
                   const Progress& progress = {});
 
+  /// The first half of step(): asks for the step and comes back. On cuda the device then works on
+  /// its own: it brings one result home while it computes the next, and takes the positions of the
+  /// one after that. Other back ends compute here. A series in two buffers, the first step begun:
+  ///
+  ///     for (std::size_t k = 1; k < steps.size(); ++k) {
+  ///       warper.begin_step(steps[k], targets[k % 2]);
+  ///       warper.finish_step();  // targets[(k - 1) % 2] holds step k - 1
+  ///     }
+  ///     warper.finish_step();
+  ///
+  /// Results are those of step(), bit for bit. Host memory should be page-locked (PageLock): else
+  /// the copy home keeps the host waiting, though not the device.
+  ///
+  /// @param deformed  as in step(); host memory may change as soon as this returns, device memory
+  ///                  not before finish_step()
+  /// @param target    as in step(); its buffers, but not the span, belong to the step until
+  ///                  finish_step()
+  /// @throws std::invalid_argument  on bad arguments; the step has not begun
+  /// @throws std::logic_error       when most_in_flight steps are in flight
+  void begin_step(const PositionsView& deformed,
+                  const WarpTarget& target,
+                  const Progress& progress = {});
+
+  /// The second half of the oldest step in flight: waits until its target holds the result.
+  /// @returns timings and counts of this step; `total` counts from its begin_step(), so that those
+  ///          of steps in flight at a time overlap
+  /// @throws std::logic_error when none is in flight; std::invalid_argument, CudaError, Cancelled:
+  ///         what went wrong with this step, told here once. The steps after it are not affected.
+  StepReport finish_step();
+
+  std::size_t steps_in_flight() const;
+  static constexpr std::size_t most_in_flight = 2;
+
   /// The same for a single source, into a new volume.
   Volume step(const PositionsView& deformed);
 
-  /// Sums over the steps so far.
+  /// Sums over the finished steps.
   const Report& report() const;
 
  private:
