@@ -2,10 +2,9 @@
 /// What reading and writing share: error texts, types, memory.
 #include "io/h5.hpp"
 
-#include <unistd.h>
-
-#include <fstream>
 #include <tetwarp/error.hpp>
+
+#include "io/memory.hpp"
 
 namespace tetwarp::h5 {
 
@@ -15,21 +14,6 @@ herr_t keep_first(unsigned depth, const H5E_error2_t* error, void* text) {
   // Walked upward, the stack begins with the call that failed first.
   if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
   return 0;
-}
-
-/// Bytes this machine can still give, without swapping where the kernel says so.
-double available_memory() {
-  std::ifstream meminfo("/proc/meminfo");
-  for (std::string line; std::getline(meminfo, line);) {
-    if (line.starts_with("MemAvailable:")) return std::stod(line.substr(13)) * 1024;
-  }
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-std::string gibibytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g GiB", bytes / 0x1p30);
-  return text;
 }
 
 }  // namespace
@@ -71,8 +55,8 @@ void check_memory(const std::string& file, const std::string& name, double bytes
   const double available = available_memory();
   if (bytes <= available) return;
   throw IoError(file, name,
-                "needs " + gibibytes(bytes) + " of memory, this machine has " +
-                    gibibytes(available) +
+                "needs " + bytes_text(bytes) + " of memory, this machine has " +
+                    bytes_text(available) +
                     " left; crop or resample the data, or mend the sizes "
                     "if they are wrong");
 }

@@ -110,12 +110,12 @@ TEST_F(BadFiles, AreRefusedBeforeAbsurdSizesAreAllocated) {
   Hdf5Editor(volume)
       .attribute<double>("VTKHDF", "WholeExtent", {0, 0xFFFFF, 0, 0xFFFFF, 0, 0xFFFF})
       .dataset("VTKHDF/PointData/values", {0x10000, 0x100000, 0x100000}, none);
-  expect_volume_error("GiB of memory");
+  expect_volume_error("TiB of memory");
   Hdf5Editor(mesh)
       .dataset<std::int64_t>("VTKHDF/NumberOfPoints", {1}, {1LL << 30})
       .dataset("VTKHDF/Points", {1ULL << 40, 3}, none)
       .dataset("VTKHDF/PointData/displacement", {1ULL << 40, 3}, none);
-  expect_mesh_error("GiB of memory");
+  expect_mesh_error("TiB of memory");
 }
 
 TEST_F(BadFiles, AreNamedWhenAnArrayDoesNotExistOrHoldsNoNumbers) {

@@ -13,7 +13,7 @@
 
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
-#include "host/cli/memory.hpp"
+#include "io/memory.hpp"
 
 namespace tetwarp::cli {
 
@@ -37,26 +37,6 @@ void check_kinds(const WarpArguments& arguments) {
     check_kind(volume, FileKind::volume, order);
   }
   check_kind(arguments.mesh_file(), FileKind::mesh, order);
-}
-
-/// The back end that will run and the reason.
-std::pair<Backend, std::string> choose_backend(const WarpOptions& options) {
-  const std::vector<BackendStatus> known = available_backends(options.device);
-  const auto status_of = [&](Backend backend) {
-    return *std::find_if(known.begin(), known.end(),
-                         [&](const BackendStatus& status) { return status.backend == backend; });
-  };
-  if (options.backend != Backend::automatic) {
-    const BackendStatus status = status_of(options.backend);
-    if (!status.usable) {
-      throw CudaError(fmt::format("--backend {}: not usable here ({}); use --backend cpu",
-                                  name_of(options.backend), status.reason));
-    }
-    return {options.backend, "asked for"};
-  }
-  const BackendStatus cuda = status_of(Backend::cuda);
-  if (cuda.usable) return {Backend::cuda, cuda.device + " answers"};
-  return {Backend::cpu, "no CUDA device answers (" + cuda.reason + ")"};
 }
 
 /// The arrays to warp: those asked for, else all but this command's own extra outputs.
@@ -229,7 +209,7 @@ std::vector<std::string> JobPlan::outputs() const {
 
 JobPlan plan_job(const WarpArguments& arguments) {
   check_kinds(arguments);
-  const auto [backend, reason] = choose_backend(arguments.warp);
+  const auto [backend, reason] = choose_backend(arguments.warp.backend, arguments.warp.device);
   JobPlan plan{.mesh = MeshReader(arguments.mesh_file(), arguments.mesh),
                .steps = {},
                .backend = backend,

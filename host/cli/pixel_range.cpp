@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "host/pixel_dispatch.hpp"
+
 namespace tetwarp::cli {
 
 namespace {
@@ -23,29 +25,9 @@ PixelRange range_of_samples(const Volume& volume) {
 }  // namespace
 
 PixelRange range_of(const Volume& volume) {
-  switch (volume.type) {
-    case PixelType::uint8:
-      return range_of_samples<std::uint8_t>(volume);
-    case PixelType::int8:
-      return range_of_samples<std::int8_t>(volume);
-    case PixelType::uint16:
-      return range_of_samples<std::uint16_t>(volume);
-    case PixelType::int16:
-      return range_of_samples<std::int16_t>(volume);
-    case PixelType::uint32:
-      return range_of_samples<std::uint32_t>(volume);
-    case PixelType::int32:
-      return range_of_samples<std::int32_t>(volume);
-    case PixelType::uint64:
-      return range_of_samples<std::uint64_t>(volume);
-    case PixelType::int64:
-      return range_of_samples<std::int64_t>(volume);
-    case PixelType::float32:
-      return range_of_samples<float>(volume);
-    case PixelType::float64:
-      break;
-  }
-  return range_of_samples<double>(volume);
+  PixelRange range;
+  with_pixel_type(volume.type, [&]<class T>(T) { range = range_of_samples<T>(volume); });
+  return range;
 }
 
 }  // namespace tetwarp::cli

@@ -1,9 +1,9 @@
 /// @file memory.hpp
-/// How much memory a job may take.
+/// How much memory an input may take.
 #pragma once
 #include <string>
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 /// Bytes that can be allocated without swapping, as the kernel estimates it.
 double available_memory();
@@ -11,4 +11,4 @@ double available_memory();
 /// "1.5 GiB".
 std::string bytes_text(double bytes);
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp

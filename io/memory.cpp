@@ -1,15 +1,15 @@
 /// @file memory.cpp
-#include "host/cli/memory.hpp"
+#include "io/memory.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <limits>
-#include <string>
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 double available_memory() {
   std::ifstream file("/proc/meminfo");
@@ -25,8 +25,9 @@ std::string bytes_text(double bytes) {
   constexpr const char* units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
   std::size_t unit = 0;
   for (; bytes >= 1024 && unit + 1 < std::size(units); ++unit) bytes /= 1024;
-  return unit == 0 ? fmt::format("{:.0f} bytes", bytes)
-                   : fmt::format("{:.1f} {}", bytes, units[unit]);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f %s", unit == 0 ? 0 : 1, bytes, units[unit]);
+  return text;
 }
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp
