@@ -197,6 +197,40 @@ TEST(Cli, SaysWhichBackEndRanAndWhy) {
   EXPECT_TRUE(result.out.starts_with("reference: asked for\n")) << result.out;
 }
 
+/// Back ends but cpu begin a step before the one before is finished; step 2 repeats step 1.
+TEST(Cli, StepsBegunEarlyMakeTheSameFiles) {
+  const Scene scene;
+  const auto warp = [&](const std::string& backend, std::vector<std::string> more) {
+    more.insert(more.end(), {"--backend", backend, "--report", "report.json"});
+    const CommandResult result = scene.warp(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(text_of(scene / "report.json"));
+  };
+  const auto expect_same = [&](const std::string& a, const std::string& b, std::int64_t step) {
+    EXPECT_EQ(read_volume(scene / a, "density", step).data,
+              read_volume(scene / b, "density", step).data)
+        << a << ' ' << step;
+  };
+  const nlohmann::json late = warp("cpu", {"-o", "late.vtkhdf"});
+  const nlohmann::json early = warp("reference", {"-o", "early.vtkhdf"});
+  warp("cpu", {"-o", "late_series.vtkhdf", "--temporal"});
+  warp("reference", {"-o", "early_series.vtkhdf", "--temporal"});
+  fs::remove(scene / "early_0001.vtkhdf");
+
+  const nlohmann::json again = warp("reference", {"-o", "early.vtkhdf", "--resume"});
+
+  EXPECT_EQ(again["outputs_skipped"], 3);
+  for (std::size_t step = 0; step < 4; ++step) {
+    const std::string suffix = "_000" + std::to_string(step) + ".vtkhdf";
+    expect_same("early" + suffix, "late" + suffix, 0);
+    expect_same("early_series.vtkhdf", "late_series.vtkhdf", static_cast<std::int64_t>(step));
+    for (const char* count : {"covered", "steps_unchanged", "bytes_read", "bytes_written"}) {
+      EXPECT_EQ(early["steps"][step]["counts"][count], late["steps"][step]["counts"][count]);
+    }
+    EXPECT_EQ(early["steps"][step]["step"], step);
+  }
+}
+
 TEST(Cli, LeadsFromAVolumeToAPicture) {
   const TemporaryFolder folder;
   const Volume phantom = make_phantom({24, 16, 12});

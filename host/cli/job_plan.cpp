@@ -164,6 +164,8 @@ VolumePlan plan_volume(const std::string& path,
   check_axes(plan);
   plan.writes_beside =
       check_memory(plan, arguments.extra) && steps.size() > 1 && leaves_time(backend, arguments);
+  // On processors beginning a step is computing it: the write of the one before starts first.
+  plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.outputs = output_names(output, steps, arguments.temporal);
   return plan;
 }

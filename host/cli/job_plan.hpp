@@ -22,7 +22,8 @@ struct VolumePlan {
   Grid written_grid;
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
   bool writes_beside =
-      false;  ///< there is time and memory to write a step while the next is computed
+      false;              ///< there is time and memory to write a step while the next is computed
+  bool overlaps = false;  ///< the next step is begun before a step is brought home and written
 };
 
 /// A whole job.

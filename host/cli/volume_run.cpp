@@ -62,21 +62,20 @@ void VolumeRun::write_each_step() {
     const bool skips = is_up_to_date(output, fingerprint.text());
     start_writing();
     if (skips) {
+      finish_computing();
+      start_writing();
       finish_writing();
       ++result_.skipped;
       finish_step(report);
       continue;
     }
-    compute(std::move(positions), report);
-    leave_to_write(report, [&output, options = write_options(fingerprint),
-                            volumes = outputs_[now_].volumes()] {
+    const auto write = [&output, options = write_options(fingerprint)](
+                           const StepReport&, const std::vector<const Volume*>& volumes) {
       return write_volumes(output, volumes, options);
-    });
+    };
+    compute(std::move(positions), report, write);
   }
-  stop_if_interrupted();
-  finish_writing();
-  start_writing();
-  finish_writing();
+  write_the_rest();
 }
 
 void VolumeRun::write_temporal() {
@@ -100,24 +99,21 @@ void VolumeRun::write_temporal() {
     report.step = step;
     std::vector<Point3> positions = read_positions(step, report);
     start_writing();
-    compute(std::move(positions), report);
-    const Counts& counts = report.counts;
-    const bool repeats =
-        counts.steps_unchanged > 0 || (counts.cells > 0 && counts.cells_unchanged == counts.cells);
     const double time = times[static_cast<std::size_t>(step)];
-    leave_to_write(report, [this, time, repeats, volumes = outputs_[now_].volumes()] {
-      if (repeats) {
+    const auto write = [this, time](const StepReport& step_report,
+                                    const std::vector<const Volume*>& volumes) {
+      const Counts& counts = step_report.counts;
+      if (counts.steps_unchanged > 0 ||
+          (counts.cells > 0 && counts.cells_unchanged == counts.cells)) {
         temporal_->repeat(time);
       } else {
         temporal_->append(time, volumes);
       }
       return WrittenFile{};
-    });
+    };
+    compute(std::move(positions), report, write);
   }
-  stop_if_interrupted();
-  finish_writing();
-  start_writing();
-  finish_writing();
+  write_the_rest();
   const Stopwatch watch;
   add_written(temporal_->finish(), result_.report.counts);
   result_.report.timings.write += watch.seconds();
@@ -140,10 +136,10 @@ bool VolumeRun::equals_last_step(const std::vector<Point3>& positions) const {
   return arguments_.warp.skip.unchanged_steps && positions == last_positions_;
 }
 
-void VolumeRun::compute(std::vector<Point3> positions, StepReport& report) {
-  const StepReport read = report;
+void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write write) {
   if (equals_last_step(positions)) {
     // The outputs hold this step already: what describes them stays, no work was done.
+    finish_computing();
     const Counts& last = last_report_.counts;
     report.counts.voxels = last.voxels;
     report.counts.covered = last.covered;
@@ -154,6 +150,7 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport& report) {
     report.counts.folded = last.folded;
     report.counts.cells = last.cells;
     report.counts.steps_unchanged = 1;
+    computed_ = Step{report, std::move(write), outputs_[now_].volumes()};
     return;
   }
   if (!warper_) start_warper();
@@ -177,12 +174,25 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport& report) {
     return !is_interrupted();
   };
   last_positions_.clear();  // an interrupted step leaves the outputs undefined
-  report = warper_->step(positions, target, progress);
+  warper_->begin_step(positions, target, progress);
   last_positions_ = std::move(positions);
-  report.step = read.step;
-  report.timings.read += read.timings.read;
-  report.counts.bytes_read += read.counts.bytes_read;
-  last_report_ = report;
+  finish_computing();
+  begun_ = Step{report, std::move(write), outputs.volumes()};
+  if (!volume_.overlaps) finish_computing();
+}
+
+/// Throws what went wrong with the step.
+void VolumeRun::finish_computing() {
+  if (!begun_) return;
+  Step step = *std::exchange(begun_, {});
+  const StepReport read = step.report;
+  step.report = warper_->finish_step();
+  step.report.step = read.step;
+  step.report.timings.read += read.timings.read;
+  step.report.counts.bytes_read += read.counts.bytes_read;
+  last_report_ = step.report;
+  computed_ = std::move(step);
+  if (volume_.overlaps) start_writing();
 }
 
 void VolumeRun::start_warper() {
@@ -204,6 +214,13 @@ void VolumeRun::make_outputs(Outputs& outputs) const {
   }
   if (arguments_.extra.mask) outputs.mask = make_volume(grid, PixelType::uint8, 1, mask_array_name);
   if (arguments_.extra.tet) outputs.tet = make_volume(grid, PixelType::int32, 1, tet_array_name);
+  if (plan_.backend != Backend::cuda) return;
+  const auto lock = [&](Volume& volume) {
+    outputs.locks.emplace_back(volume.data.data(), volume.data.size());
+  };
+  for (Volume& volume : outputs.warped) lock(volume);
+  if (outputs.mask) lock(*outputs.mask);
+  if (outputs.tet) lock(*outputs.tet);
 }
 
 std::vector<const Volume*> VolumeRun::Outputs::volumes() const {
@@ -214,19 +231,14 @@ std::vector<const Volume*> VolumeRun::Outputs::volumes() const {
   return all;
 }
 
-void VolumeRun::leave_to_write(const StepReport& report, std::function<WrittenFile()> write) {
-  computed_ = Computed{report, std::move(write)};
-}
-
 void VolumeRun::start_writing() {
   if (!computed_) return;
   writing_report_ = computed_->report;
-  writing_ = std::async(std::launch::async, [write = std::move(computed_->write)] {
+  writing_ = std::async(std::launch::async, [step = *std::exchange(computed_, {})] {
     const Stopwatch watch;
-    const WrittenFile file = write();
+    const WrittenFile file = step.write(step.report, step.volumes);
     return Written{file, watch.seconds()};
   });
-  computed_.reset();
   if (!volume_.writes_beside) finish_writing();
 }
 
@@ -238,6 +250,14 @@ void VolumeRun::finish_writing() {
   writing_report_.timings.write = written.seconds;
   if (!temporal_) ++result_.written;
   finish_step(writing_report_);
+}
+
+void VolumeRun::write_the_rest() {
+  stop_if_interrupted();
+  finish_writing();
+  finish_computing();
+  start_writing();
+  finish_writing();
 }
 
 void VolumeRun::finish_step(const StepReport& report) {

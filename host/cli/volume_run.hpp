@@ -1,5 +1,6 @@
 /// @file volume_run.hpp
-/// One volume file warped by every step of a plan; each step is written while the next is computed.
+/// One volume file warped by every step of a plan; each step is written while the next is computed,
+/// on a device beside the copy home of the one between.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include <tetwarp/io.hpp>
+#include <tetwarp/page_lock.hpp>
 #include <tetwarp/warp.hpp>
 
 #include "host/cli/fingerprint.hpp"
@@ -33,18 +35,21 @@ class VolumeRun {
   void run();
 
  private:
+  using Write = std::function<WrittenFile(const StepReport&, const std::vector<const Volume*>&)>;
+
   void read_sources();
   void write_each_step();
   void write_temporal();
   std::vector<Point3> read_positions(std::int64_t step, StepReport& report) const;
   bool is_up_to_date(const std::string& output, const std::string& fingerprint) const;
   bool equals_last_step(const std::vector<Point3>& positions) const;
-  void compute(std::vector<Point3> positions, StepReport& report);
+  void compute(std::vector<Point3> positions, StepReport report, Write write);
+  void finish_computing();
   void start_warper();
   void finish_step(const StepReport& report);
-  void leave_to_write(const StepReport& report, std::function<WrittenFile()> write);
   void start_writing();
   void finish_writing();
+  void write_the_rest();
   Fingerprint fingerprint_of_inputs() const;
   VolumeWriteOptions write_options(const Fingerprint& fingerprint) const;
 
@@ -54,22 +59,23 @@ class VolumeRun {
   ProgressBar& bar_;
   JobResult& result_;
   std::vector<Volume> sources_;
-  std::optional<Warper> warper_;        ///< made for the first step that is computed
-  std::vector<Point3> last_positions_;  ///< those of the last step that was computed
-  StepReport last_report_;
+  std::vector<Point3> last_positions_;  ///< those of the last step that was begun
+  StepReport last_report_;              ///< of the last step that was computed
 
   /// What a step writes to.
   struct Outputs {
     std::vector<Volume> warped;  ///< as sources_, on the written grid
     std::optional<Volume> mask;
     std::optional<Volume> tet;
+    std::vector<PageLock> locks;  ///< on a device, of all these
 
     std::vector<const Volume*> volumes() const;
   };
-  /// A computed step and how it gets to its file.
-  struct Computed {
-    StepReport report;
-    std::function<WrittenFile()> write;
+  /// A step, how it gets to its file, and from where.
+  struct Step {
+    StepReport report;  ///< of a step in flight: about what was read
+    Write write;
+    std::vector<const Volume*> volumes;
   };
   struct Written {
     WrittenFile file;
@@ -78,9 +84,11 @@ class VolumeRun {
   void make_outputs(Outputs& outputs) const;
 
   Outputs outputs_[2];
-  std::size_t now_ = 0;  ///< the outputs that hold the last step that was computed
+  std::size_t now_ = 0;           ///< the outputs of the last step that was begun
+  std::optional<Warper> warper_;  ///< made for the first step; its end waits for steps in flight
   std::optional<TemporalVolumeWriter> temporal_;
-  std::optional<Computed> computed_;  ///< and not written yet
+  std::optional<Step> begun_;     ///< and not computed yet
+  std::optional<Step> computed_;  ///< and not written yet
   StepReport writing_report_;
   std::future<Written> writing_;  ///< last: its end waits for the write, which uses all above
 };
