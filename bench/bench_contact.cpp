@@ -8,59 +8,20 @@
 /// contact_measure.hpp. Ends with 1 when a result was wrong.
 #include <benchmark/benchmark.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <string_view>
-#include <thread>
-#include <vector>
 
-#include <tetwarp/backend.hpp>
 #include <tetwarp/io.hpp>
 
-#include "bench/build_info.hpp"
 #include "bench/contact_cases.hpp"
 #include "bench/contact_measure.hpp"
-#include "bench/timed_row.hpp"
+#include "bench/program.hpp"
 
 namespace {
 
 using namespace tetwarp;
-
-/// What a figure is worth nothing without.
-void describe(int threads, const std::string& folder) {
-  const char* const wait = std::getenv("OMP_WAIT_POLICY");
-  benchmark::AddCustomContext("commit", bench::build_commit);
-  benchmark::AddCustomContext("compiler", bench::build_compiler);
-  benchmark::AddCustomContext("flags", bench::build_flags);
-  benchmark::AddCustomContext("processor", available_backends()[1].device);
-  benchmark::AddCustomContext("threads", std::to_string(threads));
-  benchmark::AddCustomContext("omp_wait_policy", wait != nullptr ? wait : "not set");
-  benchmark::AddCustomContext(
-      "recorded_problems", folder.empty() ? "left out: TETWARP_FCLIB_DATA is not set" : "measured");
-}
-
-/// Shows what was measured and the counters that matter most; all rows and counters are in the file
-/// of --benchmark_out.
-class ShortConsole : public benchmark::ConsoleReporter {
- public:
-  ShortConsole() : ConsoleReporter(OO_Tabular) {}
-
-  void ReportRuns(const std::vector<Run>& runs) override {
-    std::vector<Run> shown = runs;
-    std::erase_if(shown, [](const Run& run) { return run.error_message.starts_with("left out"); });
-    if (shown.empty()) return;
-    for (Run& run : shown) {
-      std::erase_if(run.counters, [](const auto& counter) {
-        constexpr std::string_view kept[] = {"error", "sweeps", "converged"};
-        return std::find(std::begin(kept), std::end(kept), counter.first) == std::end(kept);
-      });
-    }
-    benchmark::ConsoleReporter::ReportRuns(shown);
-  }
-};
 
 void export_problems(bench::Extent extent, const std::string& folder) {
   std::filesystem::create_directories(folder);
@@ -76,34 +37,21 @@ void export_problems(bench::Extent extent, const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const char* const data = std::getenv("TETWARP_FCLIB_DATA");
   const std::string recorded = data != nullptr ? data : "";
-
-  std::vector<char*> arguments(argv, argv + argc);
-  bench::Extent extent = bench::Extent::brief;
-  const auto full = [](const char* argument) { return std::string_view(argument) == "--full"; };
-  if (std::erase_if(arguments, full) > 0) extent = bench::Extent::full;
-  for (const std::string_view argument : arguments) {
-    if (argument.starts_with("--benchmark_filter")) extent = bench::Extent::full;
-    if (argument.starts_with("--export=")) {
-      export_problems(extent, std::string(argument.substr(argument.find('=') + 1)));
-      return 0;
-    }
+  const int threads = bench::processor_threads();
+  bench::Program program(argc, argv);
+  if (const std::string folder(program.take("export")); !folder.empty()) {
+    export_problems(program.extent(), folder);
+    return 0;
   }
-  int count = static_cast<int>(arguments.size());
-  benchmark::Initialize(&count, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
-
   if (recorded.empty()) std::printf("No recorded problems: TETWARP_FCLIB_DATA is not set\n");
-  for (const bench::ContactCase& row : bench::contact_cases(extent, threads, recorded)) {
+  for (const bench::ContactCase& row : bench::contact_cases(program.extent(), threads, recorded)) {
     bench::register_contact_row(row);
   }
-  describe(threads, recorded);
-  ShortConsole console;
-  benchmark::RunSpecifiedBenchmarks(&console);
-  benchmark::Shutdown();
-  if (bench::refused_rows() == 0) return 0;
-  std::fprintf(stderr, "%d rows were not timed: their results are wrong\n", bench::refused_rows());
-  return 1;
+  program.describe(threads);
+  benchmark::AddCustomContext("recorded_problems", recorded.empty()
+                                                       ? "left out: TETWARP_FCLIB_DATA is not set"
+                                                       : "measured");
+  return program.run({"error", "sweeps", "converged"});
 }

@@ -20,6 +20,8 @@ add_executable(tetwarp_bench
   bench/bench_warp.cpp
   bench/floors.cpp
   bench/measure.cpp
+  bench/overlap.cpp
+  bench/program.cpp
   bench/region.cpp
   bench/series.cpp
   bench/timed_row.cpp
@@ -47,6 +49,7 @@ if(TETWARP_IO)
     bench/contact_cases.cpp
     bench/contact_judge.cpp
     bench/contact_measure.cpp
+    bench/program.cpp
     bench/timed_row.cpp
     bench/timing.cpp
     tests/contact_scenes.cpp
