@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Print a results file as Markdown tables: table.py RESULTS.json"""
+"""Print a results file as Markdown tables."""
+import argparse
 import sys
 
+from gpu_rows import PEERS, parse_peers, rows_with_peers
 from rows import machine_of, read_rows
 
 
@@ -95,6 +97,29 @@ def series_table(rows):
     return table(header, lines)
 
 
+def overlap_table(rows):
+    lines = [
+        [row.workload, where_of(row), figure(row.time), figure(row["apart"])]
+        + [f"{100 * row['cost_share']:.1f} %"]
+        for row in rows
+        if row.kind == "overlap"
+    ]
+    header = ["workload", "where", "ms of a step in flight with others", "ms of a step alone"]
+    return table(header + ["cost"], lines)
+
+
+def peer_table(rows, peers):
+    """On the device without copies but for one column; the peers sample only, by a given map."""
+    lines = [
+        [row.workload, figure(row["kernel"]), figure(row["kernel_copies"]), figure(row["floor"])]
+        + [figure(times["floor"])]
+        + [figure(times[peer]) if peer in times else "" for peer in PEERS]
+        for row, times in rows_with_peers(rows, peers)
+    ]
+    header = ["workload", "kernels, ms", "kernels and copies", "our sampling floor", "copy floor"]
+    return table(header + ["PyTorch grid_sample", "CuPy affine_transform"], lines)
+
+
 def region_table(rows):
     lines = [
         [row.workload, where_of(row), f"{100 * row['voxel_share']:.1f} %"]
@@ -124,10 +149,11 @@ def error_table(rows):
 
 
 def main():
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    context, rows = read_rows(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("results", help="what --benchmark_out wrote")
+    parser.add_argument("--gpu-peers", metavar="FILE", help="see gpu_rows.py")
+    arguments = parser.parse_args()
+    context, rows = read_rows(arguments.results)
     rows = list(rows.values())
     print(machine_of(context) + "\n")
     sections = [
@@ -135,9 +161,14 @@ def main():
         ("Pixel types, in brackets: over float32", type_table(rows)),
         ("What skipping saves", skip_table(rows)),
         ("What updating saves", series_table(rows)),
+        ("What overlapping steps saves", overlap_table(rows)),
         ("What a region costs", region_table(rows)),
         ("Error", error_table(rows)),
     ]
+    if arguments.gpu_peers:
+        with open(arguments.gpu_peers, encoding="utf-8") as file:
+            device, peers = parse_peers(file.read())
+        sections.append((f"Beside PyTorch and CuPy on {device}", peer_table(rows, peers)))
     for title, lines in sections:
         lines = list(lines)
         if len(lines) > 3:  # header, rule, empty line

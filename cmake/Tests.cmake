@@ -226,7 +226,9 @@ if(TETWARP_IO)
     set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
     add_test(NAME bench_compare COMMAND ${TETWARP_PYTHON}
       ${PROJECT_SOURCE_DIR}/bench/compare.py --self-test)
-    set_tests_properties(bench_compare PROPERTIES
+    add_test(NAME bench_gpu_rows COMMAND ${TETWARP_PYTHON}
+      ${PROJECT_SOURCE_DIR}/bench/gpu_rows.py)
+    set_tests_properties(bench_compare bench_gpu_rows PROPERTIES
       LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
   endif()
 

@@ -1,9 +1,12 @@
 #!/bin/sh
 # All that a device has to say about this bundle, in one call: tests, memory and race checks, times.
 # Results go to FOLDER (default: results, beside this script). Ends with 1 when anything failed.
-# usage: ./run_on_device.sh [FOLDER]
+# A peer program in Python, if one is given, is timed on the same device; bench/gpu_rows.py says
+# what it prints, and bench/table.py --gpu-peers FOLDER/gpu_peers.log puts it beside ours.
+# usage: ./run_on_device.sh [FOLDER [PEERS.py]]
 here=$(cd "$(dirname "$0")" && pwd)
 results=${1:-$here/results}
+peers=${2:-}
 mkdir -p "$results" || exit 1
 status=0
 # run NAME COMMAND...: its output in FOLDER/NAME.log
@@ -18,16 +21,24 @@ run() {
   fi
 }
 nvidia-smi >"$results/device.txt" 2>&1 || echo "no nvidia-smi: tests of back end cuda may skip"
-run tests "$here/tetwarp_tests" --gtest_output="xml:$results/tests.xml"
+for program in tetwarp_tests tetwarp_stress_tests tetwarp_contact_tests; do
+  run "$program" "$here/$program" --gtest_output="xml:$results/$program.xml"
+done
 if command -v compute-sanitizer >/dev/null 2>&1; then
-  small='*/cuda.*:*Parity.Owners*waved*:*Parity.Owners*folded*'
-  for tool in memcheck racecheck; do
+  small='*/cuda.*:*InFlight*/cuda:*Parity.Owners*waved*:*Parity.Owners*folded*'
+  for tool in memcheck racecheck synccheck; do
     run "$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
       "$here/tetwarp_tests" --gtest_filter="$small"
   done
+  for tool in memcheck racecheck; do
+    run "contact-$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
+      "$here/tetwarp_contact_tests" --gtest_filter='*Cuda*'
+  done
 else
-  echo "left out memcheck and racecheck: no compute-sanitizer"
+  echo "left out memory and race checks: no compute-sanitizer"
 fi
+# Among its rows: the sampling floor of the device, what overlapping and what updating save.
 run bench "$here/tetwarp_bench" --benchmark_filter='/cuda' --benchmark_out="$results/bench.json"
 grep -h -m 1 'back end cuda is left out' "$results/bench.log"
+[ -z "$peers" ] || run gpu_peers python3 "$peers"
 exit $status
