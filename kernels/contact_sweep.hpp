@@ -135,6 +135,31 @@ struct CalmContacts {
   }
 };
 
+/// Replaces the impulse r of a contact by its answer to the velocity that all others leave it.
+/// @param velocities  DelassusView or BodiesView, with what its velocities come from
+/// @param change      out: what has been added to r, [3]
+/// @return whether tangents took part; else only the normal has changed
+template <class Velocities, class T>
+TETWARP_HD bool answer_contact(const ContactConstants<T>& contact,
+                               ContactSwitches switches,
+                               const Velocities& velocities,
+                               std::int64_t c,
+                               const T* cause,
+                               T* r,
+                               T* change) {
+  if (has_one_row(contact, r)) {
+    change[0] = solve_normal(contact, velocities.normal_velocity_at(c, cause), r);
+    change[1] = change[2] = 0;
+    return false;
+  }
+  for (int a = 0; a < 3; ++a) change[a] = -r[a];
+  T velocity[3];
+  velocities.velocity_at(c, cause, velocity);
+  solve_contact(contact, switches, velocity, r);
+  for (int a = 0; a < 3; ++a) change[a] += r[a];
+  return true;
+}
+
 /// One index = one contact of a Delassus matrix.
 template <class T>
 struct DelassusSweepBody {
@@ -146,17 +171,9 @@ struct DelassusSweepBody {
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (calm.is_asleep(c)) return;
-    const ContactConstants<T>& contact = constants[c];
+    T change[3];
     T* r = impulse.data + 3 * c;
-    T change[3] = {-r[0], -r[1], -r[2]};
-    if (has_one_row(contact, r)) {
-      change[0] = solve_normal(contact, delassus.normal_velocity_at(c, impulse.data), r);
-    } else {
-      T velocity[3];
-      delassus.velocity_at(c, impulse.data, velocity);
-      solve_contact(contact, switches, velocity, r);
-      for (int a = 0; a < 3; ++a) change[a] += r[a];
-    }
+    answer_contact(constants[c], switches, delassus, c, impulse.data, r, change);
     calm.note(c, change, r);
   }
 };
@@ -173,18 +190,12 @@ struct BodySweepBody {
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (calm.is_asleep(c)) return;
-    const ContactConstants<T>& contact = constants[c];
+    T change[3];
     T* r = impulse.data + 3 * c;
-    T change[3] = {-r[0], -r[1], -r[2]};
-    if (has_one_row(contact, r)) {
-      change[0] = solve_normal(contact, bodies.normal_velocity_at(c, body_velocity.data), r);
-      bodies.push_normal(c, change[0], body_velocity.data);
-    } else {
-      T velocity[3];
-      bodies.velocity_at(c, body_velocity.data, velocity);
-      solve_contact(contact, switches, velocity, r);
-      for (int a = 0; a < 3; ++a) change[a] += r[a];
+    if (answer_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
       bodies.push(c, change, body_velocity.data);
+    } else {
+      bodies.push_normal(c, change[0], body_velocity.data);
     }
     calm.note(c, change, r);
   }
