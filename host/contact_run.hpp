@@ -111,8 +111,10 @@ class ContactRun {
   }
 
  private:
-  static constexpr std::int64_t shared_from = 4096;  ///< contacts of an island worth all threads
-  static constexpr std::int64_t patience = 100;      ///< sweeps without a drop before a fallback
+  /// Contacts of an island worth all threads. Waking them in the middle of a sweep costs as much as
+  /// some thousand contacts do, and colors hold only a part of all.
+  static constexpr std::int64_t shared_from = 16384;
+  static constexpr std::int64_t patience = 100;  ///< sweeps without a drop before a fallback
 
   const ContactIsland& island(std::int64_t i) const {
     return structure_.islands[static_cast<std::size_t>(i)];

@@ -35,12 +35,12 @@ INSTANTIATE_TEST_SUITE_P(By, ContactThreads, ::testing::ValuesIn(methods), [](co
 /// One island, its colors wide enough to be shared among threads.
 TEST_P(ContactThreads, ShareTheContactsOfALargeIsland) {
   const ContactProblem problem =
-      scenes::random_local({.seed = 11, .contacts = 8000, .neighbors = 2});
+      scenes::random_local({.seed = 11, .contacts = 18000, .neighbors = 2});
   const ContactStructure structure = make_structure(problem, {});
   const ContactIsland& island = structure.islands[0];
   const std::int64_t* colors = structure.color_start.data() + island.color_begin;
-  ASSERT_GE(island.contact_count(), 7000);
-  ASSERT_GE(colors[1] - colors[0], 2000);
+  ASSERT_GE(island.contact_count(), 16384);
+  ASSERT_GE(colors[1] - colors[0], 4000);
 
   expect_same_bits_for_any_number(problem, 1e-2, 30);
 }
