@@ -115,7 +115,7 @@ TEST_F(BadFiles, AreRefusedBeforeAbsurdSizesAreAllocated) {
       .dataset<std::int64_t>("VTKHDF/NumberOfPoints", {1}, {1LL << 30})
       .dataset("VTKHDF/Points", {1ULL << 40, 3}, none)
       .dataset("VTKHDF/PointData/displacement", {1ULL << 40, 3}, none);
-  expect_mesh_error("TiB of memory");
+  expect_mesh_error("GiB of memory");
 }
 
 TEST_F(BadFiles, AreNamedWhenAnArrayDoesNotExistOrHoldsNoNumbers) {
