@@ -19,6 +19,11 @@ ContactInput packing(const std::string& name, const scenes::SpherePacking& choic
   return {name, [choice] { return scenes::sphere_packing(choice); }};
 }
 
+ContactInput large(ContactInput input) {
+  input.is_large = true;
+  return input;
+}
+
 ContactInput stack(const std::string& name, const scenes::BoxStack& choice) {
   return {name, [choice] { return scenes::box_stack(choice); }};
 }
@@ -91,10 +96,12 @@ class Rows {
  public:
   Rows(Extent extent, int threads) : extent_(extent), threads_(threads) {}
 
-  /// Every method, precision and tolerance.
+  /// Every method, precision and tolerance; of the largest problems only what goes that far.
   void add_work(const ContactInput& input) {
     for (const ContactMethod method : methods) {
       for (const auto precision : {ContactPrecision::float64, ContactPrecision::float32}) {
+        const bool is_tried = is_quick(method) && precision == ContactPrecision::float64;
+        if (input.is_large && extent_ == Extent::brief && !is_tried) continue;
         for (const double tolerance : tolerances(extent_, precision)) {
           ContactOptions options = options_for(tolerance);
           options.method = method;
@@ -115,6 +122,18 @@ class Rows {
         if (extent_ == Extent::full && visit == ContactVisit::first && threads == threads_)
           continue;
         add({.input = input, .options = options, .visit = visit});
+      }
+    }
+  }
+
+  void add_couplings(const ContactInput& input) {
+    for (const double tolerance : {1e-4, 1e-8}) {
+      ContactOptions options = options_for(tolerance);
+      for (const auto coupling : {ContactCoupling::iterated, ContactCoupling::condensed}) {
+        options.coupling = coupling;
+        for (const auto visit : {ContactVisit::first, ContactVisit::kept}) {
+          add({.kind = ContactKind::coupling, .input = input, .options = options, .visit = visit});
+        }
       }
     }
   }
@@ -144,6 +163,10 @@ class Rows {
   std::vector<ContactCase> take() { return std::move(rows_); }
 
  private:
+  static bool is_quick(ContactMethod method) {
+    return method == ContactMethod::automatic || method == ContactMethod::gauss_seidel ||
+           method == ContactMethod::anderson;
+  }
   std::vector<int> thread_counts() const {
     return threads_ > 1 ? std::vector<int>{1, threads_} : std::vector<int>{1};
   }
@@ -172,6 +195,10 @@ const char* name_of(ContactVisit visit) {
   return "";
 }
 
+const char* name_of(ContactCoupling coupling) {
+  return coupling == ContactCoupling::iterated ? "iterated" : "condensed";
+}
+
 const char* name_of(ContactKind kind) {
   switch (kind) {
     case ContactKind::work:
@@ -180,6 +207,8 @@ const char* name_of(ContactKind kind) {
       return "contact_skip";
     case ContactKind::scale:
       return "contact_scale";
+    case ContactKind::coupling:
+      return "contact_coupling";
   }
   return "";
 }
@@ -212,6 +241,9 @@ std::string name_of(const ContactCase& row) {
                   row.options.threads, row.options.tolerance);
   if (row.visit != ContactVisit::first) name += fmt::format("/visit:{}", name_of(row.visit));
   if (!row.without.empty()) name += "/without:" + row.without;
+  if (row.options.coupling != ContactCoupling::automatic) {
+    name += fmt::format("/coupling:{}", name_of(row.options.coupling));
+  }
   return name;
 }
 
@@ -219,13 +251,13 @@ std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib
   std::vector<ContactInput> inputs = {
       stack("stack_10", {.boxes = 10}),
       packing("packing_1k", {.edge = 6}),
+      packing("packing_10k", {.edge = 13}),
+      large(packing("packing_100k", {.edge = 28})),
       small_slab(),
   };
   if (extent == Extent::full) {
     inputs.push_back(stack("stack_30_ratio_1e4", {.boxes = 30, .mass_ratio = 1e4}));
     inputs.push_back(stack("stack_100", {.boxes = 100}));
-    inputs.push_back(packing("packing_10k", {.edge = 13}));
-    inputs.push_back(packing("packing_100k", {.edge = 28}));
     inputs.push_back(packing("packing_10k_glued", {.edge = 13, .glue = {.stiffness = 1e7}}));
     inputs.push_back(slab(151));
     inputs.push_back(slab(531));
@@ -239,11 +271,12 @@ std::vector<ContactCase> contact_cases(Extent extent,
                                        const std::string& fclib_folder) {
   Rows rows(extent, threads);
   for (const ContactInput& input : contact_inputs(extent, fclib_folder)) rows.add_work(input);
-  for (const std::int64_t contacts : {151, 531}) rows.add_visits(slab(contacts));
+  for (const std::int64_t contacts : {151, 531}) {
+    rows.add_visits(slab(contacts));
+    rows.add_couplings(slab(contacts));
+  }
   for (const SkipChoice& choice : skip_choices()) rows.add_skip(choice);
-  std::vector<std::int64_t> edges = {3, 4, 6, 9, 13};
-  if (extent == Extent::full) edges.insert(edges.end(), {19, 28});
-  for (const std::int64_t edge : edges) {
+  for (const std::int64_t edge : {3, 4, 6, 9, 13, 19, 28}) {
     rows.add_scale(packing(fmt::format("packing_edge_{}", edge), {.edge = edge}));
   }
   return rows.take();

@@ -16,13 +16,15 @@ namespace tetwarp::bench {
 struct ContactInput {
   std::string name;
   std::function<ContactProblem()> make;
+  bool is_large = false;  ///< most methods take minutes
 };
 
 /// What a row shows.
 enum class ContactKind {
-  work,  ///< time to one tolerance, by one method
-  skip,  ///< with a switch of ContactSkipOptions off, and with none off
-  scale  ///< problems of one kind, smaller and larger
+  work,      ///< time to one tolerance, by one method
+  skip,      ///< with a switch of ContactSkipOptions off, and with none off
+  scale,     ///< problems of one kind, smaller and larger
+  coupling,  ///< elastic bodies, iterated and condensed
 };
 
 /// Which solve of a solver is timed.
@@ -42,9 +44,9 @@ struct ContactCase {
   std::string without = {};      ///< the switch that is off, by its name, or nothing
 };
 
-/// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04; kinds skip and scale are
-/// contact_skip and contact_scale; then, where not the default, /visit:kept and
-/// /without:frozen_contacts.
+/// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04; other kinds are contact_skip,
+/// contact_scale and contact_coupling; then, where not the default, /visit:kept,
+/// /without:frozen_contacts and /coupling:condensed.
 std::string name_of(const ContactCase& row);
 
 /// "gauss_seidel" and so on, as in ContactMethod.

@@ -32,8 +32,9 @@ const ContactProblem& problem_of(const ContactInput& input) {
 ContactOptions options_of(const ContactCase& row, const ContactProblem& problem) {
   ContactOptions options = row.options;
   options.measure = measure_of(problem);
-  options.max_sweeps = std::clamp<std::int64_t>(
-      row.max_updates / std::max<std::int64_t>(problem.contact_count(), 1), 50, options.max_sweeps);
+  options.max_sweeps =
+      std::clamp<std::int64_t>(row.max_updates / std::max<std::int64_t>(problem.contact_count(), 1),
+                               100, options.max_sweeps);
   return options;
 }
 

@@ -68,7 +68,10 @@ def draw_profile(solves, folder, name, title):
 
 
 def draw_profiles(work, peers, folder):
-    draw_profile(work, folder, "contact_profile", "Performance profile, float64")
+    tried = {p: {s.method for s in work if s.problem == p} for p in {s.problem for s in work}}
+    most = max(map(len, tried.values()), default=0)
+    by_all = [solve for solve in work if len(tried[solve.problem]) == most]
+    draw_profile(by_all, folder, "contact_profile", "Performance profile, float64")
     shared = {solve.problem for solve in peers}
     if shared:
         both = [solve for solve in work if solve.problem in shared]

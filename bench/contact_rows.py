@@ -17,7 +17,7 @@ PEER_LINE = re.compile(
 class Solve:
     """One timed solve. The parts of its name are fields, its counters a dictionary."""
 
-    kind: str = "contact"  # contact, contact_skip or contact_scale
+    kind: str = "contact"  # contact, contact_skip, contact_scale or contact_coupling
     problem: str = ""
     method: str = ""
     precision: str = "float64"
@@ -25,6 +25,7 @@ class Solve:
     tolerance: float = 0.0
     visit: str = "first"  # first, kept or warm
     without: str = ""
+    coupling: str = "automatic"  # automatic, iterated or condensed
     time: float = 0.0  # median [ms]
     low: float = 0.0  # lower and upper quartile [ms]
     high: float = 0.0
@@ -53,6 +54,7 @@ def parse_solve(row):
         float(named["tolerance"]),
         named.get("visit", "first"),
         named.get("without", ""),
+        named.get("coupling", "automatic"),
         row.time,
         row.low,
         row.high,

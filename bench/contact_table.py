@@ -43,6 +43,18 @@ def visit_table(solves):
     return table(header + ["Newton iterations", "error"], lines)
 
 
+def coupling_table(solves):
+    """Elastic bodies: outer iterations from the start, or one factorization and fast sweeps."""
+    lines = [
+        [s.problem, f"{s.tolerance:.0e}", s.coupling, s.visit, figure(s.time)]
+        + [f"{s['outer_iterations']:.0f}", f"{s['sweeps']:.0f}", figure(s.error, 2)]
+        for s in solves
+        if s.kind == "contact_coupling"
+    ]
+    header = ["problem", "tolerance", "coupling", "solve", "ms", "outer steps", "sweeps", "error"]
+    return table(header, lines)
+
+
 def skip_table(solves):
     lines = []
     bases = skip_bases(solves)
@@ -83,6 +95,7 @@ def main():
     print(machine_of(context) + "\n")
     sections = [(f"Time to {t:.0e}", work_table(work, t)) for t in (1e-4, 1e-8)]
     sections += [("First and following solves", visit_table(solves))]
+    sections += [("Elastic bodies", coupling_table(solves))]
     sections += [("What skipping saves", skip_table(solves)), ("Size", scale_table(solves))]
     for title, lines in sections:
         print(f"### Contact: {title}\n\n" + "\n".join(lines))

@@ -1,5 +1,6 @@
 """Rows of a results file: what was measured, how long it took, how certain that is."""
 import json
+import re
 from dataclasses import dataclass, field
 
 
@@ -45,9 +46,8 @@ def parse_name(name):
             row.without = part.split(":")[1]
         elif part.startswith("moved:"):
             row.moved = int(part.split(":")[1])
-        else:
-            row.type, _, components = part.partition("x")
-            row.components = int(components or 1)
+        elif match := re.fullmatch(r"(u?int\d+|float\d+)(?:x(\d+))?", part):
+            row.type, row.components = match[1], int(match[2] or 1)
     return row
 
 
