@@ -110,6 +110,20 @@ class CpuExec {
                      View<const std::int64_t> offsets,
                      std::int64_t capacity,
                      const Body& body) {
+    for_each_span(
+        label, offsets, capacity,
+        [&](std::int64_t segment, std::int64_t first, std::int64_t past, std::int64_t item) {
+          for (; first < past; ++first, ++item) body(segment, first, item);
+        });
+  }
+
+  /// body(segment, first, past, item) for stretches of items that follow each other in a segment:
+  /// offsets[s] + first = item.
+  template <class Body>
+  void for_each_span(const char* label,
+                     View<const std::int64_t> offsets,
+                     std::int64_t capacity,
+                     const Body& body) {
     const Clock clock(*this, label);
     const std::int64_t segments = offsets.size - 1;
     const std::int64_t items = std::min(offsets[segments], capacity);
@@ -120,9 +134,10 @@ class CpuExec {
       std::int64_t item = chunk * chunk_;
       std::int64_t segment =
           std::upper_bound(offsets.data, offsets.data + offsets.size, item) - offsets.data - 1;
-      for (; item < end; ++item) {
-        while (offsets[segment + 1] <= item) ++segment;
-        body(segment, item - offsets[segment], item);
+      for (; item < end; ++segment) {
+        const std::int64_t begin = offsets[segment], past = std::min(offsets[segment + 1], end);
+        if (item < past) body(segment, item - begin, past - begin, item);
+        item = past;
       }
     }
   }

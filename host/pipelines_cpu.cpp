@@ -5,6 +5,7 @@
 #include <string>
 #include <thread>
 
+#include "host/cell_cull_cpu.hpp"
 #include "host/cell_raster_cpu.hpp"
 #include "host/exec_cpu.hpp"
 #include "host/warp_pipeline.hpp"

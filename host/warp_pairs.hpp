@@ -14,7 +14,6 @@
 #include "kernels/cell_cull.hpp"
 #include "kernels/cell_merge.hpp"
 #include "kernels/cell_pairs.hpp"
-#include "kernels/corner_mask.hpp"
 #include "kernels/node_quantize.hpp"
 #include "kernels/tet_moved.hpp"
 #include "kernels/tet_setup.hpp"
@@ -184,9 +183,8 @@ class WarpPairs {
     const CullSwitches switches{options_.skip.rejected_cells, options_.skip.accepted_cells};
     masks_.reserve(corners);
     candidates_.reserve(candidates);
-    corner_mask(exec_, setups(), corner_offsets, masks_.view(corners));
-    cell_cull(exec_, setups(), corner_offsets, masks_.const_view(corners), pair_offsets, switches,
-              geometry_.frame, candidates_.view(candidates));
+    cell_verdicts(exec_, setups(), corner_offsets, masks_.view(corners), pair_offsets, switches,
+                  geometry_.frame, candidates_.view(candidates));
     list.size = candidates;
     list.pairs.reserve(candidates);
     list.ranges.reserve(cell_count() + 1);

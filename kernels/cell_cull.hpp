@@ -101,4 +101,19 @@ void cell_cull(Exec& exec,
                      CellCullBody{setups, corner_offsets, masks, switches, frame, pairs});
 }
 
+/// Stages mask and cull in one, for an executor that has no shorter way (host/cell_cull_cpu.hpp).
+/// @param masks  scratch, as many as there are corners
+template <class Exec>
+void cell_verdicts(Exec& exec,
+                   View<const TetSetup> setups,
+                   View<const std::int64_t> corner_offsets,
+                   View<std::uint16_t> masks,
+                   View<const std::int64_t> pair_offsets,
+                   CullSwitches switches,
+                   const OutputFrame& frame,
+                   View<CellPair> pairs) {
+  corner_mask(exec, setups, corner_offsets, masks);
+  cell_cull(exec, setups, corner_offsets, masks, pair_offsets, switches, frame, pairs);
+}
+
 }  // namespace tetwarp

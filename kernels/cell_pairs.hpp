@@ -52,10 +52,17 @@ struct CellRangeBody {
   View<std::int64_t> accepted_count;
 
   TETWARP_HD void operator()(std::int64_t cell) const {
-    const std::int64_t count = min_of(pair_count[0], pairs.size);
-    const std::int64_t begin = lower_bound_of_cell(pairs, count, cell);
+    set_range(cell, lower_bound_of_cell(pairs, count(), cell));
+  }
+
+  TETWARP_HD std::int64_t count() const { return min_of(pair_count[0], pairs.size); }
+
+  /// Sets the range of a cell whose pairs start at `begin`.
+  /// @returns where those of the next cell start
+  TETWARP_HD std::int64_t set_range(std::int64_t cell, std::int64_t begin) const {
+    const std::int64_t past = count();
     std::int64_t end = begin, accepted = 0, settled = -1;
-    for (; end < count && cell_of(pairs[end]) == cell; ++end) {
+    for (; end < past && cell_of(pairs[end]) == cell; ++end) {
       if (!is_accepted(pairs[end])) continue;
       ++accepted;
       if (settled < 0) settled = end + 1;
@@ -63,8 +70,15 @@ struct CellRangeBody {
     ranges[cell] = {static_cast<std::uint32_t>(begin),
                     static_cast<std::uint32_t>(settled < 0 ? end : settled)};
     if (accepted > 0) atomic_add(&accepted_count[0], accepted);
+    return end;
   }
 };
+
+/// The range of every cell, for an executor that has no shorter way (host/cell_cull_cpu.hpp).
+template <class Exec>
+void cell_ranges(Exec& exec, const CellRangeBody& body) {
+  exec.for_each("warp/cull", body.ranges.size, body);
+}
 
 /// Compacts and sorts the pairs and finds the range of every cell.
 ///
@@ -92,7 +106,7 @@ void cell_pairs(Exec& exec,
   while (frame.cell_count() >> cell_bits != 0) ++cell_bits;
   exec.select_valid("warp/cull", candidates, candidate_count, pairs, pair_count);
   exec.sort_pairs("warp/cull", pairs, pair_count, cell_bits);
-  exec.for_each("warp/cull", ranges.size, CellRangeBody{pairs, pair_count, ranges, accepted_count});
+  cell_ranges(exec, CellRangeBody{pairs, pair_count, ranges, accepted_count});
 }
 
 }  // namespace tetwarp

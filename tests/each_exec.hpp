@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/exec_cpu.hpp"
+#include "host/cell_cull_cpu.hpp"
 #if defined(__CUDACC__)
 #include "kernels/exec_cuda.cuh"
 #endif

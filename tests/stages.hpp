@@ -100,9 +100,10 @@ class Stages {
     exec.exclusive_scan("test/setup", corner_offsets);
     exec.exclusive_scan("test/setup", pair_offsets);
     masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());
-    corner_mask(exec, setups, corner_offsets, masks);
+    corner_mask(exec, setups, corner_offsets, masks);  // some executors' verdicts need none
     candidates = arrays.template zeros<CellPair>(arrays.download(pair_offsets).back());
-    cell_cull(exec, setups, corner_offsets, masks, pair_offsets, switches, input.frame, candidates);
+    cell_verdicts(exec, setups, corner_offsets, masks, pair_offsets, switches, input.frame,
+                  candidates);
     pairs = arrays.template zeros<CellPair>(candidates.size);
     pair_count = arrays.template zeros<std::int64_t>(1);
     ranges = arrays.template zeros<CellRange>(input.frame.cell_count());

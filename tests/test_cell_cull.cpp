@@ -94,10 +94,15 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   EXPECT_EQ(far[13], rejected_pair);
 }
 
-TYPED_TEST(CellCull, NeverChangesWhoIsInside) {
+TYPED_TEST(CellCull, NeverChangesWhoIsInsideAWholeOrACutGrid) {
+  const auto scenes = scenes::adversarial_scenes(32);
   std::int64_t rejected = 0, accepted = 0;
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(32)) {
-    const StageInput input = input_of(scene);
+  for (std::size_t s = 0; s < 2 * scenes.size(); ++s) {
+    const scenes::Scene& scene = scenes[s / 2];
+    const bool is_cut = s % 2 == 1;
+    const auto& dims = scene.output_grid.dims;
+    const Region inner{{3, 5, 2}, {dims[0] - 2, dims[1] - 1, dims[2] - 4}};
+    const StageInput input = is_cut ? input_of(scene, inner) : input_of(scene);
     const Stages<TypeParam> stages = this->run(input);
     const auto setups = this->download(stages.setups);
     const auto offsets = this->download(stages.pair_offsets);
@@ -166,17 +171,43 @@ TYPED_TEST(CellCull, HasAPairPerCellForAnyNumberOfTetrahedra) {
   }
 }
 
-/// Eight cells at most: no masks, and every pair is kept, inside or outside as it may be.
-TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedra) {
+/// A tetrahedron in the first of eight cells' corner; its box touches all of them.
+StageInput small_tet() {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(11, -1, -1), node_at(-1, 11, -1),
                                    node_at(-1, -1, 11)};
-  const Stages<TypeParam> stages = this->run(one_tet(nodes, nodes, frame_of(16, 16, 16)));
+  return one_tet(nodes, nodes, frame_of(16, 16, 16));
+}
+
+/// No masks are made of eight cells, and every pair is kept, inside or outside as it may be.
+TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedraWithoutMasks) {
+  const StageInput input = small_tet();
+  const Stages<TypeParam> stages = this->run(input);
+  const auto pairs = this->template zeros<CellPair>(8);
+
+  cell_cull(this->exec(), View<const TetSetup>(stages.setups),
+            View<const std::int64_t>(stages.corner_offsets),
+            View<const std::uint16_t>(stages.masks), View<const std::int64_t>(stages.pair_offsets),
+            CullSwitches{}, input.frame, pairs);
 
   EXPECT_EQ(stages.masks.size, 0);
-  const auto pairs = this->download(stages.candidates);
-  ASSERT_EQ(pairs.size(), 8u);
+  const auto found = this->download(pairs);
   for (std::size_t c = 0; c < 8; ++c) {
-    EXPECT_EQ(pairs[c], make_pair(static_cast<std::int64_t>(c), 0, false));
+    EXPECT_EQ(found[c], make_pair(static_cast<std::int64_t>(c), 0, false));
+  }
+}
+
+/// Its far face is x + y + z = 9: the four cells that start beyond are lost.
+TEST(CellVerdicts, RejectCellsThatASmallTetrahedronMisses) {
+  CpuExec exec(1);
+  ExecArrays<CpuExec> arrays(exec);
+
+  const Stages<CpuExec> stages(arrays, small_tet());
+
+  const auto found = arrays.download(stages.candidates);
+  ASSERT_EQ(found.size(), 8u);
+  for (std::size_t c = 0; c < 8; ++c) {
+    const bool is_met = c == 0 || c == 1 || c == 2 || c == 4;
+    EXPECT_EQ(found[c], is_met ? make_pair(static_cast<std::int64_t>(c), 0, false) : rejected_pair);
   }
 }
 
