@@ -34,7 +34,6 @@ class CellLine {
         counts_(counts),
         sampler_(job),
         bounds_(job),
-        open_(static_cast<std::size_t>(longest)),
         runs_(std::make_unique_for_overwrite<RowRun[]>(
             static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge))),
         row_capacity_(longest * cell_edge) {}
@@ -42,26 +41,18 @@ class CellLine {
   /// Cells [ci_begin, ci_end) of line (cj, ck).
   void raster(int ci_begin, int ci_end, int cj, int ck) {
     sources_.clear();
+    open_.clear();
     for (auto& slice : run_counts_) std::fill_n(slice, cell_edge, 0);
     first_ = ci_begin;
-    bool is_empty = true, is_kept = true;
+    bool is_kept = true;
     for (int ci = ci_begin; ci < ci_end; ++ci) {
       const std::int64_t cell = job_.frame.cell_index(ci, cj, ck);
-      const bool keeps = work_of(job_, cell) == keep_cell;
-      const CellRange range = job_.ranges[cell];
-      is_kept = is_kept && keeps;
-      is_empty = is_empty && !keeps && range.begin >= range.end;
-      if (keeps) {
-        open_[static_cast<std::size_t>(ci - first_)] = {};
-      } else {
-        find(make_cell_box(job_.frame, ci, cj, ck), range, cell);
-      }
+      if (work_of(job_, cell) == keep_cell) continue;
+      is_kept = false;
+      find(make_cell_box(job_.frame, ci, cj, ck), job_.ranges[cell], cell);
     }
     if (is_kept) return;
     const CellBox first = make_cell_box(job_.frame, ci_begin, cj, ck);
-    const CellBox last = make_cell_box(job_.frame, ci_end - 1, cj, ck);
-    line_begin_ = first.begin[0];
-    line_end_ = cell_edge * (ci_end - 1 - ci_begin) + last.end[0];
     for (int k = first.begin[2]; k < first.end[2]; ++k) {
       for (int j = first.begin[1]; j < first.end[1]; ++j) {
         const std::int64_t row =
@@ -70,16 +61,19 @@ class CellLine {
         const int count = run_counts_[k][j];
         write_extra(runs, count, row);
         if (count > 0) sampler_.write(sources_.data(), runs, count, j, k, row);
-        if (is_empty) {
-          write_outside(line_begin_, line_end_, first, j, k, row);
-        } else {
-          write_open(ci_end - ci_begin, first, j, k, row);
-        }
+        write_open(first, j, k, row);
       }
     }
   }
 
  private:
+  /// Cells of the line with voxels that nobody owns.
+  struct OpenCells {
+    int first, past;
+    bool is_whole;  ///< all voxels of all cells; else `bits` of one
+    CellBits bits;
+  };
+
   RowRun* row_runs(int j, int k) {
     return runs_.get() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
   }
@@ -89,22 +83,36 @@ class CellLine {
     const int cell = box.corner[0] / cell_edge - first_;
     const std::int64_t work = work_of(job_, cell_index);
     const std::int64_t covered_before = counts_.covered;
-    CellBits& open = open_[static_cast<std::size_t>(cell)];
     const SliceBits whole =
         rows_between(box.begin[1], box.end[1], (1u << box.end[0]) - (1u << box.begin[0]));
-    open = {};
+    CellBits open = {};
     for (int k = box.begin[2]; k < box.end[2]; ++k) open.slice[k] = whole;
     find_owners(job_, box, range, open, counts_, [&](std::uint32_t p, const CellBits& bits) {
       const int t = tet_of(job_.pairs[p]);
       const int voxels = count_of(bits);
       counts_.covered += voxels;
       if (is_copied(job_, job_.setups[t])) counts_.copied += voxels;
-      if (work >= 0) return fill(box, bits, t, work);
+      if (work >= 0) return write_extra(box, bits, t);
       sources_.emplace_back(job_, bounds_, job_.setups[t], box.corner, t);
       add_runs(bits, cell);
     });
     if (job_.cell_covered.size > 0) {
       job_.cell_covered[cell_index] = static_cast<std::uint16_t>(counts_.covered - covered_before);
+    }
+    if (work >= 0) {
+      CellBits covered;
+      for (int k = 0; k < cell_edge; ++k) {
+        const bool is_in = k >= box.begin[2] && k < box.end[2];
+        covered.slice[k] = is_in ? whole & ~open.slice[k] : 0;
+      }
+      fill(box, covered, work);
+    }
+    const bool is_whole =
+        counts_.covered == covered_before && box.end[0] - box.begin[0] == cell_edge;
+    if (is_whole && !open_.empty() && open_.back().is_whole && open_.back().past == cell) {
+      ++open_.back().past;
+    } else if (any_of(open)) {
+      open_.push_back({cell, cell + 1, is_whole, open});
     }
   }
 
@@ -120,48 +128,57 @@ class CellLine {
     }
   }
 
-  /// Voxels of a cell whose samples all equal source voxel `constant`.
-  void fill(const CellBox& box, const CellBits& bits, int tet, std::int64_t constant) {
-    const int components = job_.source.components;
-    const T* value = job_.source.data + constant * components;
+  /// calls with(bits, first voxel of the row) for the rows of a cell that have any of `bits`.
+  template <class With>
+  void for_rows(const CellBox& box, const CellBits& bits, With&& with) const {
     const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
     for (std::uint64_t left = rows_of(bits); left != 0; left &= left - 1) {
-      const int j = std::countr_zero(left) % cell_edge, k = std::countr_zero(left) / cell_edge;
-      unsigned row = rows[cell_edge * k + j];
-      const std::int64_t voxel =
-          job_.frame.offset_of(box.corner[0], box.corner[1] + j, box.corner[2] + k);
-      if (job_.mask != nullptr || job_.tet != nullptr) write_extra(row, voxel, tet);
-      if (row == 0xff && components == 1) {
-        std::fill_n(job_.volume + voxel, cell_edge, *value);
-        continue;
-      }
-      for (; row != 0; row &= row - 1) {
-        std::copy_n(value, components, job_.volume + (voxel + std::countr_zero(row)) * components);
-      }
+      const int row = std::countr_zero(left), j = row % cell_edge, k = row / cell_edge;
+      with(unsigned{rows[row]},
+           job_.frame.offset_of(box.corner[0], box.corner[1] + j, box.corner[2] + k));
     }
   }
 
+  /// The covered voxels of a cell whose samples all equal source voxel `constant`.
+  void fill(const CellBox& box, const CellBits& covered, std::int64_t constant) {
+    const int components = job_.source.components;
+    const T* value = job_.source.data + constant * components;
+    for_rows(box, covered, [&](unsigned bits, std::int64_t voxel) {
+      if (bits == 0xff && components == 1) {
+        std::fill_n(job_.volume + voxel, cell_edge, *value);
+        return;
+      }
+      for (; bits != 0; bits &= bits - 1) {
+        T* out = job_.volume + (voxel + std::countr_zero(bits)) * components;
+        for (int c = 0; c < components; ++c) out[c] = value[c];
+      }
+    });
+  }
+
   /// Writes what no tetrahedron covers in row (j, k), run by run.
-  void write_open(int cells, const CellBox& first, int j, int k, std::int64_t row) {
-    int begin = -1;
-    for (int cell = 0; cell < cells; ++cell) {
-      auto bits = static_cast<unsigned>(
-          open_[static_cast<std::size_t>(cell)].slice[k] >> (cell_edge * j) & 0xff);
-      if (bits == (begin < 0 ? 0u : 0xffu)) continue;
-      int at = 0;  // runs of equal bits, from the lowest voxel on
-      while (at < cell_edge) {
-        const bool is_open = bits & 1;
-        const int length = std::countr_zero(is_open ? ~bits : bits | 1u << (cell_edge - at));
-        if (is_open && begin < 0) begin = cell_edge * cell + at;
-        if (!is_open && begin >= 0) {
-          write_outside(begin, cell_edge * cell + at, first, j, k, row);
-          begin = -1;
-        }
-        bits >>= length;
-        at += length;
+  void write_open(const CellBox& first, int j, int k, std::int64_t row) {
+    int begin = 0, end = 0;  // a run that may go on
+    const auto add = [&](int from, int to) {
+      if (from != end) {
+        if (begin < end) write_outside(begin, end, first, j, k, row);
+        begin = from;
+      }
+      end = to;
+    };
+    for (const OpenCells& cells : open_) {
+      const int at = cell_edge * cells.first;
+      if (cells.is_whole) {
+        add(at, cell_edge * cells.past);
+        continue;
+      }
+      unsigned bits = cells.bits.slice[k] >> (cell_edge * j) & 0xff;
+      while (bits != 0) {
+        const int from = std::countr_zero(bits), past = from + std::countr_one(bits >> from);
+        add(at + from, at + past);
+        bits &= ~0u << past;
       }
     }
-    if (begin >= 0) write_outside(begin, line_end_, first, j, k, row);
+    if (begin < end) write_outside(begin, end, first, j, k, row);
   }
 
   /// Voxels [begin, end) of the line's row (j, k): the background, or the source in place.
@@ -181,12 +198,19 @@ class CellLine {
     }
   }
 
+  /// The outputs beside the volume of the runs of a row.
   void write_extra(const RowRun* runs, int count, std::int64_t row) {
     if (job_.mask == nullptr && job_.tet == nullptr) return;
     for (int r = 0; r < count; ++r) {
       const int tet = sources_[static_cast<std::size_t>(runs[r].source)].tet();
       write_extra(runs[r].bits, row + cell_edge * runs[r].cell, tet);
     }
+  }
+
+  /// The same for the voxels of a cell that `tet` owns.
+  void write_extra(const CellBox& box, const CellBits& bits, int tet) {
+    if (job_.mask == nullptr && job_.tet == nullptr) return;
+    for_rows(box, bits, [&](unsigned row, std::int64_t voxel) { write_extra(row, voxel, tet); });
   }
 
   /// The outputs beside the volume of the voxels `bits`, of which `tet` is the owner.
@@ -203,13 +227,11 @@ class CellLine {
   RowSampler<T> sampler_;
   SourceBounds bounds_;
   std::vector<RowSource> sources_;  ///< of the pairs that own voxels of this line
-  std::vector<CellBits> open_;      ///< [cell], voxels without an owner
+  std::vector<OpenCells> open_;     ///< ascending
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;
   int run_counts_[cell_edge][cell_edge] = {};
-  int first_ = 0;       ///< first cell of the line
-  int line_begin_ = 0;  ///< voxels of the line in the output
-  int line_end_ = 0;
+  int first_ = 0;  ///< first cell of the line
 };
 
 }  // namespace HWY_NAMESPACE
