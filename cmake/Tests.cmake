@@ -73,6 +73,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_report.cpp
     tests/test_skip_constant.cpp
     tests/test_skip_far_memory.cpp
+    tests/test_source_end.cpp
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp

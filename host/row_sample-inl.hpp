@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "host/row_components-inl.hpp"
 #include "host/row_store-inl.hpp"
 #include "host/row_vector-inl.hpp"
 #include "kernels/cell_raster.hpp"
@@ -102,14 +103,24 @@ class RowSampler {
   void flush(RowTaps<Rim>& taps, std::int64_t row) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (taps.count == 0) return;
-      sample_units(job_.source, nearest_, taps, values_);
+      const int components = job_.source.components;
+      if (components == 1) {
+        sample_units(job_.source, nearest_, taps, values_);
+      } else {
+        sample_components(job_.source, nearest_, taps, values_);
+      }
       for (int u = 0; u < taps.count; ++u) {
         const RowUnit& unit = taps.unit[u];
-        T* out = job_.volume + (row + cell_edge * unit.cell);
-        store_values(values_ + cell_edge * u, unit.inside, out);
+        const float* values = values_ + cell_edge * components * u;
+        T* out = job_.volume + (row + cell_edge * unit.cell) * components;
+        if (components == 1) {
+          store_values(values, unit.inside, out);
+        } else {
+          store_components(values, unit.inside, components, out);
+        }
         if constexpr (Rim) {
           for (unsigned bits = unit.bits & ~unsigned{unit.inside}; bits != 0; bits &= bits - 1) {
-            out[std::countr_zero(bits)] = job_.background;
+            std::fill_n(out + std::countr_zero(bits) * components, components, job_.background);
           }
         }
       }
@@ -122,7 +133,7 @@ class RowSampler {
   RunCopier<T> copier_;
   RowTaps<false> inner_;
   RowTaps<true> rim_;
-  alignas(64) float values_[cell_edge * RowTaps<false>::row_units];
+  alignas(64) float values_[cell_edge * RowTaps<false>::row_units * most_components + 4];
 };
 
 }  // namespace HWY_NAMESPACE

@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 enum class RowKind {
   inner,  ///< a vector of float32 positions, none near the source's rim
   rim,    ///< the same, but positions may lie outside and neighbours are clamped
-  alone,  ///< voxel by voxel: steep maps, float64, several components, huge sources
+  alone,  ///< voxel by voxel: steep maps, float64, huge sources
   copied  ///< moved by whole voxels
 };
 
@@ -33,16 +33,17 @@ struct SourceBounds {
   template <class T>
   explicit SourceBounds(const RasterJob<T>& job) {
     const SourceView<T>& source = job.source;
-    const double samples = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
-    is_vectored = sizeof(ArithmeticOf<T>) == 4 && source.components == 1 &&
-                  samples <= std::numeric_limits<std::int32_t>::max();
-    // Eight bytes are read where two neighbours along x are wanted: up to `spare` samples more.
-    constexpr int spare = 8 / static_cast<int>(sizeof(T)) - 1;
+    const double voxels = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
+    is_vectored =
+        sizeof(ArithmeticOf<T>) == 4 && voxels <= std::numeric_limits<std::int32_t>::max();
+    // Eight bytes are read where two neighbours along x are wanted, or both of these and, by fours,
+    // components behind them: up to `spare` voxels more.
+    const int spare = source.components == 1 ? 8 / static_cast<int>(sizeof(T)) - 1 : 2;
     constexpr double slack = 0.51;  // nearest rounds up
     for (int axis = 0; axis < 3; ++axis) {
       inner_low[axis] = 0.01;
       inner_high[axis] = source.dims[axis] - 1 - slack;
-      end[axis] = inner_high[axis] - (axis == 0 ? spare : 0);
+      end[axis] = inner_high[axis] - (axis == 0 ? spare : 1);
     }
   }
 

@@ -41,7 +41,7 @@ struct RowTaps {
 
   int count = 0;
   RowUnit unit[row_units];
-  /// Of the lower neighbour along x [sample], on lines (y, z) or with Rim (y, z), (y+1, z),
+  /// Of the lower neighbour along x [voxel], on lines (y, z) or with Rim (y, z), (y+1, z),
   /// (y, z+1), (y+1, z+1).
   alignas(64) std::int32_t offset[Rim ? 4 : 1][cell_edge * row_units];
   alignas(64) float fraction[3][cell_edge * row_units];
@@ -168,9 +168,9 @@ inline void add_unit(const SourceView<T>& view,
   }
   // What this row will need one slice further up: rows jump too much for the hardware to guess.
   for (const int voxel : {0, cell_edge / 2}) {
-    const T* ahead = view.data + taps.offset[0][at + voxel] + first.slice_ahead();
-    hwy::Prefetch(ahead);
-    hwy::Prefetch(ahead + stride[1]);
+    const std::int64_t ahead = taps.offset[0][at + voxel] + first.slice_ahead();
+    hwy::Prefetch(view.data + ahead * view.components);
+    hwy::Prefetch(view.data + (ahead + stride[1]) * view.components);
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};
