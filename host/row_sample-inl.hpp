@@ -18,6 +18,7 @@
 #include "host/row_components-inl.hpp"
 #include "host/row_store-inl.hpp"
 #include "host/row_vector-inl.hpp"
+#include "host/row_wide-inl.hpp"
 #include "kernels/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -63,10 +63,9 @@ class RowSource {
             const int* corner,
             int number)
       : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
-    const bool is_moved = is_copied(job, tet);
-    if (!is_moved && (!bounds.is_vectored || tet.kind == MapKind::steep)) return;
     set_map(bounds);
-    if (is_moved) kind_ = RowKind::copied;
+    if (!bounds.is_vectored || tet.kind == MapKind::steep) kind_ = RowKind::alone;
+    if (is_copied(job, tet)) kind_ = RowKind::copied;
     for (int axis = 2; axis >= 0; --axis) {
       origin_ = origin_ * job.source.dims[axis] + whole[axis];
       slice_ahead_ = slice_ahead_ * job.source.dims[axis] + slice_step_[axis];
@@ -79,12 +78,12 @@ class RowSource {
   const TetSetup& setup() const { return *setup_; }
   const int* corner() const { return corner_; }
 
-  /// The sample at the map's whole part, unless kind() is alone; it may lie outside the source.
+  /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// From a sample to the upper neighbour along z of the one in the next slice, about.
+  /// From a voxel to the upper neighbour along z of the one in the next slice, about.
   std::int64_t slice_ahead() const { return slice_ahead_; }
 
-  // The parts of SourceMap<float>, unless kind() is alone.
+  // The parts of SourceMap<float>.
   alignas(16) float base[4];
   alignas(16) float axis[3][4];
   alignas(16) std::int32_t whole[4];
@@ -129,15 +128,6 @@ class RowSource {
   std::int64_t slice_ahead_ = 0;
   alignas(16) std::int32_t slice_step_[4];
 };
-
-/// The same as one voxel at a time needs it.
-template <class Real>
-SourceMap<Real> source_map(const RowSource& source) {
-  double start[3], linear[3][3];
-  const int* corner = source.corner();
-  map_start(source.setup(), corner[0], corner[1], corner[2], start, linear);
-  return make_source_map<Real>(start, linear);
-}
 
 /// Voxels of one row of a cell that one source serves.
 struct RowRun {

@@ -141,36 +141,6 @@ inline void copy_run(const RasterJob<T>& job,
   }
 }
 
-/// The voxels `bits` of a row one by one, positions in `Real`.
-template <class Real, class T>
-inline void sample_each(const RasterJob<T>& job,
-                        const RowSource& source,
-                        unsigned bits,
-                        int j,
-                        int k,
-                        std::int64_t row) {
-  const SourceMap<Real> map = source_map<Real>(source);
-  for (; bits != 0; bits &= bits - 1) {
-    const int i = std::countr_zero(bits);
-    store_sample(job, job.filter, map, i, j, k, row + i);
-  }
-}
-
-/// The same in the pixel type's own arithmetic where the map allows.
-template <class T>
-inline void sample_alone(const RasterJob<T>& job,
-                         const RowSource& source,
-                         unsigned bits,
-                         int j,
-                         int k,
-                         std::int64_t row) {
-  if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
-    sample_each<float>(job, source, bits, j, k, row);
-  } else {
-    sample_each<double>(job, source, bits, j, k, row);
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace tetwarp
 HWY_AFTER_NAMESPACE();
