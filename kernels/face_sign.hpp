@@ -28,18 +28,21 @@ TETWARP_HD TetNodes tet_nodes(View<const Node> nodes, const std::int32_t* tet) {
   return result;
 }
 
-/// Normal of the face opposite node `face` and one node on it; not yet turned inward.
+/// Normal of the face opposite node `face` and one node on it; not yet turned inward. `Integer`
+/// must hold twice the square of the tetrahedron's extent.
+template <class Integer = Int128>
 struct ExactPlane {
-  Int128 normal[3];
+  Integer normal[3];
   std::int64_t on[3];
 };
 
-TETWARP_HD ExactPlane exact_plane(const TetNodes& tet, int face) {
+template <class Integer = Int128>
+TETWARP_HD ExactPlane<Integer> exact_plane(const TetNodes& tet, int face) {
   const std::int64_t* o = tet.x[face == 0 ? 1 : 0];
   const std::int64_t* p = tet.x[face <= 1 ? 2 : 1];
   const std::int64_t* q = tet.x[face == 3 ? 2 : 3];
   std::int64_t u[3], v[3];
-  ExactPlane plane;
+  ExactPlane<Integer> plane;
   for (int axis = 0; axis < 3; ++axis) {
     u[axis] = p[axis] - o[axis];
     v[axis] = q[axis] - o[axis];
@@ -48,20 +51,24 @@ TETWARP_HD ExactPlane exact_plane(const TetNodes& tet, int face) {
   for (int axis = 0; axis < 3; ++axis) {
     const int b = axis == 2 ? 0 : axis + 1;
     const int c = axis == 0 ? 2 : axis - 1;
-    plane.normal[axis] = Int128{u[b]} * v[c] - Int128{u[c]} * v[b];
+    plane.normal[axis] = Integer{u[b]} * v[c] - Integer{u[c]} * v[b];
   }
   return plane;
 }
 
 /// Plane value at a point in quanta: positive on the side the normal points to.
-TETWARP_HD Int128 plane_value(const ExactPlane& plane, const std::int64_t* point) {
-  return plane.normal[0] * (point[0] - plane.on[0]) + plane.normal[1] * (point[1] - plane.on[1]) +
-         plane.normal[2] * (point[2] - plane.on[2]);
+template <class Integer>
+TETWARP_HD Int128 plane_value(const ExactPlane<Integer>& plane, const std::int64_t* point) {
+  Int128 value = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    value += Int128{plane.normal[axis]} * (point[axis] - plane.on[axis]);
+  }
+  return value;
 }
 
 /// Turns the plane's normal towards the opposite node.
 /// @returns six times the tetrahedron's volume [quantum^3]; zero: flat
-TETWARP_HD Int128 turn_inward(ExactPlane& plane, const TetNodes& tet, int face) {
+TETWARP_HD Int128 turn_inward(ExactPlane<>& plane, const TetNodes& tet, int face) {
   const Int128 value = plane_value(plane, tet.x[face]);
   if (value >= 0) return value;
   for (int axis = 0; axis < 3; ++axis) plane.normal[axis] = -plane.normal[axis];
@@ -79,7 +86,7 @@ TETWARP_HD_RARE bool is_inside_exact(
     if (point[axis] > max_of(max_of(x[0], x[1]), max_of(x[2], x[3]))) return false;
   }
   for (int face = 0; face < 4; ++face) {
-    ExactPlane plane = exact_plane(tet, face);
+    ExactPlane<> plane = exact_plane(tet, face);
     if (turn_inward(plane, tet, face) == 0) return false;
     const Int128 value = plane_value(plane, point);
     if (value < 0 || (strictly && value == 0)) return false;

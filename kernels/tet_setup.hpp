@@ -37,6 +37,9 @@ struct TetSetup {
 /// be kept anyway, and testing the few others costs less than masks for all.
 constexpr std::int64_t fewest_masked_cells = 27;
 
+/// Up to here 64 bits hold the normals of a tetrahedron's faces [quantum].
+constexpr std::int64_t short_extent = std::int64_t{1} << 30;
+
 constexpr double steep_threshold = 4.0;  ///< largest map entry that float32 may evaluate
 
 /// Cells along `axis` that the tetrahedron's box touches: [first, last].
@@ -50,16 +53,17 @@ TETWARP_HD bool is_empty(const TetSetup& tet) {
   return tet.begin[0] >= tet.end[0] || tet.begin[1] >= tet.end[1] || tet.begin[2] >= tet.end[2];
 }
 
-/// Box in whole voxels, clipped to the frame, and the anchor. False when the extent is too large.
-TETWARP_HD bool set_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
-  bool fits = true;
+/// Box in whole voxels, clipped to the frame, and the anchor.
+/// @returns the extent along the longest axis [quantum]
+TETWARP_HD std::int64_t set_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
+  std::int64_t extent = 0;
   for (int axis = 0; axis < 3; ++axis) {
     std::int64_t low = tet.x[0][axis], high = low;
     for (int a = 1; a < 4; ++a) {
       low = min_of(low, tet.x[a][axis]);
       high = max_of(high, tet.x[a][axis]);
     }
-    fits = fits && high - low <= longest_extent;
+    extent = max_of(extent, high - low);
     setup.anchor[axis] = low >> quantum_bits;  // floor
     const std::int64_t first = (low + quanta_per_voxel - 1) >> quantum_bits;
     const std::int64_t past = (high >> quantum_bits) + 1;
@@ -67,7 +71,7 @@ TETWARP_HD bool set_box(const TetNodes& tet, const OutputFrame& frame, TetSetup&
     setup.begin[axis] = static_cast<int>(min_of(max_of(first, frame_begin), frame_end));
     setup.end[axis] = static_cast<int>(max_of(min_of(past, frame_end), frame_begin));
   }
-  return fits;
+  return extent;
 }
 
 /// Whole-voxel shift from output to source, when every node moves by it to within a quantum.
@@ -97,6 +101,10 @@ TETWARP_HD double as_double(Int128 value) {
   return sign * (static_cast<double>(high) * 0x1p62 + static_cast<double>(low));
 }
 
+TETWARP_HD double as_double(std::int64_t value) {
+  return static_cast<double>(value);
+}
+
 /// Sign of the volume, in the order of the nodes.
 TETWARP_HD int orientation(const TetNodes& tet) {
   const Int128 value = plane_value(exact_plane(tet, 0), tet.x[0]);
@@ -106,18 +114,19 @@ TETWARP_HD int orientation(const TetNodes& tet) {
 /// Planes of the four faces and gradients of the barycentric coordinates [1/voxel]; barycentric
 /// coordinates at the anchor. From exact integers: no cancellation, however thin the tetrahedron.
 /// @returns orientation(); 0, and nothing set, when flat
+template <class Integer>
 TETWARP_HD int set_planes(const TetNodes& tet,
                           TetSetup& setup,
                           double (*gradient)[3],
                           double* at_anchor) {
-  const Int128 signed_volume6 = plane_value(exact_plane(tet, 0), tet.x[0]);
+  const Int128 signed_volume6 = plane_value(exact_plane<Integer>(tet, 0), tet.x[0]);
   if (signed_volume6 == 0) return 0;
   const int sign = signed_volume6 > 0 ? 1 : -1;
   const double volume6 = fabs(as_double(signed_volume6)), per_volume = 1.0 / volume6;
   std::int64_t anchor[3];
   for (int axis = 0; axis < 3; ++axis) anchor[axis] = setup.anchor[axis] * quanta_per_voxel;
   for (int face = 0; face < 4; ++face) {
-    const ExactPlane exact = exact_plane(tet, face);
+    const auto exact = exact_plane<Integer>(tet, face);
     const double inward = face % 2 == 0 ? sign : -sign;  // the normals of exact_plane() alternate
     const double value = inward * as_double(plane_value(exact, anchor));
     double normal[3], square = 0;
@@ -175,9 +184,12 @@ struct TetSetupBody {
     }
     const TetNodes output = tet_nodes(deformed, tets.data + 4 * t);
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
-    if (!set_box(output, frame, setup)) return TetClass::too_large;
+    const std::int64_t extent = set_box(output, frame, setup);
+    if (extent > longest_extent) return TetClass::too_large;
     double gradient[4][3], at_anchor[4];
-    const int turned = set_planes(output, setup, gradient, at_anchor);
+    const int turned = extent <= short_extent
+                           ? set_planes<std::int64_t>(output, setup, gradient, at_anchor)
+                           : set_planes<Int128>(output, setup, gradient, at_anchor);
     if (turned == 0) return TetClass::flat;
     std::int64_t shift[3];
     for (auto& column : setup.map) column[3] = 0;

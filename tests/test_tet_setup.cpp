@@ -217,5 +217,32 @@ TYPED_TEST(TetSetupStage, TreatsEveryTetrahedronAlone) {
   }
 }
 
+/// Normals in 64 bits, for extents up to short_extent, its corners included.
+TEST(SetPlanes, HaveTheSameBitsWithShortAndLongIntegers) {
+  const OutputFrame frame = frame_of(1024, 1024, 1024);
+  std::uint64_t draw = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const double extent = std::ldexp(1.0, n % 31);
+    TetNodes tet;
+    for (auto& node : tet.x) {
+      for (std::int64_t& x : node) {
+        const double u = scenes::uniform(91, draw++);
+        x = std::llrint(extent * (n % 2 == 0 ? u : std::round(u)));
+      }
+    }
+    TetSetup shorter = {}, longer = {};
+    ASSERT_LE(set_box(tet, frame, shorter), short_extent);
+    set_box(tet, frame, longer);
+    double gradient[2][4][3] = {}, at_anchor[2][4] = {};
+
+    const int turned = set_planes<std::int64_t>(tet, shorter, gradient[0], at_anchor[0]);
+
+    ASSERT_EQ(set_planes<Int128>(tet, longer, gradient[1], at_anchor[1]), turned);
+    EXPECT_EQ(std::memcmp(&shorter, &longer, sizeof(TetSetup)), 0) << n;
+    EXPECT_EQ(std::memcmp(gradient[0], gradient[1], sizeof(gradient[0])), 0) << n;
+    EXPECT_EQ(std::memcmp(at_anchor[0], at_anchor[1], sizeof(at_anchor[0])), 0) << n;
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp::test
