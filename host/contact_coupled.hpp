@@ -90,14 +90,15 @@ class CoupledJudge {
     rule_ = {options_.measure, tolerance, tolerance * std::sqrt(scale)};
   }
 
-  /// Roughly the velocities that impulses cause, from nothing; see body_velocity(). More digits
-  /// would cost more than the outer steps that they save.
+  /// The velocities that impulses cause, from nothing, to half the digits of the tolerance: more
+  /// would cost more than the outer steps that they save; see body_velocity().
   void find_body_velocity(const Vector& impulse) {
     impulse_ = impulse;
     std::fill(body_velocity_.begin(), body_velocity_.end(), 0.0);
     find_rest();
+    const double share = std::sqrt(options_.tolerance);
     linear_.solve(body_velocity_, rest_,
-                  [](const LinearProgress& now) { return is_within(0.1, now); });
+                  [&](const LinearProgress& now) { return is_within(share, now); });
   }
 
   /// Judges impulses and keeps them if they are the best so far.
