@@ -118,8 +118,20 @@ void ContactEngine::iterate(const ContactProblem& problem,
     judge.find_body_velocity(r);
     v = judge.body_velocity();
   }
-  OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
-  outer.solve(most, std::move(r), std::move(v), outcome);
+  if (options_.precision == ContactPrecision::float32) {
+    const ContactSystem<float> rounded = make_float32(system);
+    OuterIteration<CpuContactExec, float> coarse(exec, options_, structure_, rounded, island,
+                                                 judge);
+    coarse.solve(most, r, v, outcome);
+    if (!coarse.is_lost()) {
+      r = coarse.impulse();
+      v = coarse.body_velocity();
+    }
+  }
+  if (outcome.reason != StopReason::converged) {
+    OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
+    outer.solve(most, r, v, outcome);
+  }
   name_largest(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
   scatter_impulses(structure_, island, judge.best_impulse().data() + 3 * island.slot_begin,

@@ -155,5 +155,23 @@ TEST(ContactSolver, WithoutContactsBodiesMoveFreely) {
   }
 }
 
+/// Bodies that A couples start in float32 and end, where that is not enough, in float64.
+TEST(ContactSolver, IteratesInFloat32FirstWhenAskedTo) {
+  const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
+  ContactOptions options = {.max_sweeps = 100000, .coupling = ContactCoupling::iterated};
+  for (const double tolerance : {1e-3, 1e-9}) {
+    options.tolerance = tolerance;
+    options.precision = ContactPrecision::float64;
+    const ContactSolution fine = solve_contacts(problem, options);
+    options.precision = ContactPrecision::float32;
+
+    const ContactSolution coarse = solve_contacts(problem, options);
+
+    EXPECT_TRUE(coarse.converged()) << tolerance;
+    EXPECT_LE(residual_of(problem, coarse.impulse, coarse.body_velocity).eta, tolerance);
+    EXPECT_NE(coarse.impulse, fine.impulse) << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp::test
