@@ -10,6 +10,7 @@
 
 #include <hwy/highway.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -39,11 +40,14 @@ struct SourceBounds {
     // Eight bytes are read where two neighbours along x are wanted, or both of these and, by fours,
     // components behind them: up to `spare` voxels more.
     const int spare = source.components == 1 ? 8 / static_cast<int>(sizeof(T)) - 1 : 2;
+    // Narrow sources have them only in several rows or slices.
     constexpr double slack = 0.51;  // nearest rounds up
+    double voxels_per_step = 1;
     for (int axis = 0; axis < 3; ++axis) {
       inner_low[axis] = 0.01;
       inner_high[axis] = source.dims[axis] - 1 - slack;
-      end[axis] = inner_high[axis] - (axis == 0 ? spare : 1);
+      end[axis] = inner_high[axis] - std::ceil(spare / voxels_per_step);
+      voxels_per_step *= source.dims[axis];
     }
   }
 

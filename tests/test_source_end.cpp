@@ -49,7 +49,7 @@ class FencedBytes {
 /// Shifts by less than a voxel, so that some positions lie before, on and behind the last samples.
 TEST(SourceEnd, IsNotReadBeyond) {
   for (const std::array<std::int64_t, 3>& dims :
-       {std::array<std::int64_t, 3>{8, 9, 8}, {9, 8, 9}, {17, 16, 10}}) {
+       {std::array<std::int64_t, 3>{8, 9, 8}, {9, 8, 9}, {17, 16, 10}, {3, 10, 9}, {2, 2, 10}}) {
     for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::float32}) {
       for (const int components : {1, 2, 3, 5}) {
         Grid grid;
