@@ -108,6 +108,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_bad_options.cpp
     tests/test_contact_bound.cpp
     tests/test_contact_color.cpp
+    tests/test_contact_coupled.cpp
     tests/test_contact_device.cpp
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp

@@ -54,12 +54,14 @@ class CoupledJudge {
     }
   }
 
-  /// The velocities without impulses and the scale they set.
+  /// The velocities without impulses and the scale they set. Where they break no contact's law,
+  /// that is the solution: the outcome has converged.
   void start(IslandOutcome& outcome) {
     impulse_.assign(system_.offset.size(), 0.0);
     rest_ = system_.load;
     const auto is_zero = [](double value) { return value == 0; };
-    const bool is_still = std::all_of(rest_.begin(), rest_.end(), is_zero);
+    const bool is_still =
+        std::all_of(rest_.begin() + island_.dof_begin, rest_.begin() + island_.dof_end, is_zero);
     if (is_still) {  // nothing would be learned of A; a push on every contact shows it
       for (std::size_t row = 0; row < impulse_.size(); row += 3) impulse_[row] = 1;
       find_rest();
@@ -71,23 +73,21 @@ class CoupledJudge {
     if (is_still) {
       impulse_.assign(system_.offset.size(), 0.0);
       body_velocity_.assign(system_.load.size(), 0.0);
-      find_velocity(velocity_);
+      rest_ = system_.load;
     }
-    free_velocity_ = velocity_;
-    outcome.free = outcome.sums =
-        exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        CoupledFreeBody{natural(free_velocity_)});
     outcome.reason = StopReason::exhausted;
+    find_free(outcome);
+    if (rule_.error_of(outcome.free) == 0) {  // a scale of zero: nothing else could be judged by it
+      linear_.solve(body_velocity_, rest_, [&](const LinearProgress&) { return is_balanced(); });
+      find_free(outcome);
+      if (rule_.error_of(outcome.free) == 0 && is_balanced()) {
+        outcome.reason = StopReason::converged;
+        outcome.events.push_back({outcome.sweeps, 0.0});
+      }
+    }
+    outcome.sums = outcome.free;
     best_impulse_ = impulse_;
     best_body_velocity_ = body_velocity_;
-    outcome.free_square = 0;
-    for (std::int64_t k = 3 * island_.slot_begin; k < 3 * island_.slot_end; ++k) {
-      outcome.free_square += square_of(free_velocity_[static_cast<std::size_t>(k)]);
-    }
-    const double scale =
-        options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
-    const double tolerance = margin * options_.tolerance;
-    rule_ = {options_.measure, tolerance, tolerance * std::sqrt(scale)};
   }
 
   /// The velocities that impulses cause, from nothing, to half the digits of the tolerance: more
@@ -129,7 +129,7 @@ class CoupledJudge {
       seen = velocity_;
       moved = progress.moved;
       const bool is_bad = !is_last && excess > 0.8;  // soon over 1, or only after many steps below
-      const bool is_good = excess + doubt <= 1 && imbalance() <= options_.tolerance;
+      const bool is_good = excess + doubt <= 1 && is_balanced();
       return is_bad || is_good || doubt <= settled * excess;
     });
     const bool is_settled = is_last || excess + doubt <= 1 || doubt <= settled * excess;
@@ -193,6 +193,24 @@ class CoupledJudge {
                     view_of(rest_)});
     const double scale = std::max(sums.value[1], sums.value[2]);
     return std::sqrt(sums.value[0] / std::max(scale, std::numeric_limits<double>::min()));
+  }
+
+  bool is_balanced() const { return imbalance() <= options_.tolerance; }
+
+  /// What the velocities at hand, those without impulses, leave to the contacts.
+  void find_free(IslandOutcome& outcome) {
+    find_velocity(free_velocity_);
+    outcome.free =
+        exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
+                                        CoupledFreeBody{natural(free_velocity_)});
+    outcome.free_square = 0;
+    for (std::int64_t k = 3 * island_.slot_begin; k < 3 * island_.slot_end; ++k) {
+      outcome.free_square += square_of(free_velocity_[static_cast<std::size_t>(k)]);
+    }
+    const double scale =
+        options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
+    const double tolerance = margin * options_.tolerance;
+    rule_ = {options_.measure, tolerance, tolerance * std::sqrt(scale)};
   }
 
   /// b + J^T r - A v.

@@ -109,28 +109,30 @@ void ContactEngine::iterate(const ContactProblem& problem,
   CoupledJudge<CpuContactExec> judge(exec, options_, structure_, system, island);
   IslandOutcome& outcome = result.outcomes[index_of(i)];
   judge.start(outcome);
-  std::vector<double> v(system.load.size(), 0.0);
-  std::vector<double> r = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
-                                   problem.contact_count());
-  if (r.empty()) {
-    r.assign(system.offset.size(), 0.0);
-  } else {
-    judge.find_body_velocity(r);
-    v = judge.body_velocity();
-  }
-  if (options_.precision == ContactPrecision::float32) {
-    const ContactSystem<float> rounded = make_float32(system);
-    OuterIteration<CpuContactExec, float> coarse(exec, options_, structure_, rounded, island,
-                                                 judge);
-    coarse.solve(most, r, v, outcome);
-    if (!coarse.is_lost()) {
-      r = coarse.impulse();
-      v = coarse.body_velocity();
-    }
-  }
   if (outcome.reason != StopReason::converged) {
-    OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
-    outer.solve(most, r, v, outcome);
+    std::vector<double> v(system.load.size(), 0.0);
+    std::vector<double> r = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
+                                     problem.contact_count());
+    if (r.empty()) {
+      r.assign(system.offset.size(), 0.0);
+    } else {
+      judge.find_body_velocity(r);
+      v = judge.body_velocity();
+    }
+    if (options_.precision == ContactPrecision::float32) {
+      const ContactSystem<float> rounded = make_float32(system);
+      OuterIteration<CpuContactExec, float> coarse(exec, options_, structure_, rounded, island,
+                                                   judge);
+      coarse.solve(most, r, v, outcome);
+      if (!coarse.is_lost()) {
+        r = coarse.impulse();
+        v = coarse.body_velocity();
+      }
+    }
+    if (outcome.reason != StopReason::converged) {
+      OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
+      outer.solve(most, r, v, outcome);
+    }
   }
   name_largest(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
