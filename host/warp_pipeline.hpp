@@ -37,6 +37,7 @@ class WarpPipeline : public WarpBackend {
 
   void upload(int number, const PositionsView& deformed) override {
     exec_.select(number);
+    if (std::exchange(flights_[number].is_open, true)) exec_.times().clear();
     const std::int64_t size = 3 * deformed.node_count;
     flights_[number].positions =
         deformed.memory == Memory::device
@@ -86,6 +87,7 @@ class WarpPipeline : public WarpBackend {
     StepReport report = flights_[number].report;
     add_stages(times, report.timings);
     times.clear();
+    flights_[number].is_open = false;
     return report;
   }
 
@@ -116,6 +118,7 @@ class WarpPipeline : public WarpBackend {
     int slot = 0;  ///< of outputs_
     CellWindow window{};
     bool is_delivered = false;
+    bool is_open = false;  ///< not finished: where another is begun, it failed
     StepReport report;
   };
 

@@ -114,7 +114,11 @@ class CudaExec {
   }
   /// There are no more of them: what deliver() brings home is there when they have run.
   void end_compute() { flight().computed.record(stream()); }
-  void wait_computed() { flight().computed.wait(); }
+  /// From then on the caller may end his stream.
+  void wait_computed() {
+    flight().computed.wait();
+    state_->stream = state_->own_stream;
+  }
 
   /// Waits for all that was asked for, whatever became of it.
   void drain() noexcept {
@@ -122,6 +126,7 @@ class CudaExec {
          {cudaStream_t{state_->upload}, state_->stream, cudaStream_t{state_->download}}) {
       cudaStreamSynchronize(stream);
     }
+    state_->stream = state_->own_stream;
   }
 
   /// Seconds per label of the selected step since the last clear(); waits for all it was charged.

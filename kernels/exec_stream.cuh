@@ -72,11 +72,12 @@ class DeviceFlight {
   template <class Work>
   void timed(const char* label, cudaStream_t stream, Work&& work) {
     if (used_ == spans_.size()) spans_.emplace_back();
-    Span& span = spans_[used_++];
+    Span& span = spans_[used_];
     span.label = label;
     span.begin.record(stream);
     work();
     span.end.record(stream);
+    ++used_;  // not if work throws: there is no end then
   }
 
   /// Seconds per label since the last clear(); waits for all that was charged.

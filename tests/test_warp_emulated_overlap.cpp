@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,26 @@ TEST_F(EmulatedOverlap, KernelsAreAskedForBeforeTheLastStepIsHome) {
     warper.finish_step();
     EXPECT_FALSE(buffers[(s + 1) % 2].bits() == before);
   }
+}
+
+/// Every span of work takes a millisecond here, so that times count spans.
+TEST_F(EmulatedOverlap, AFailedStepIsNotChargedToTheNext) {
+  const Steps steps = shaken(2);
+  std::vector<Point3> bad = steps[0];
+  bad.front()[0] = 1e300;
+  const StepBuffers buffer(sources, scene.output_grid, Pages::locked);
+  WarpOptions anew = options;
+  anew.skip.unchanged_tets = false;
+  Warper warper = make_warper(sources, scene, anew);
+  warper.step(steps[0], buffer.target(false));
+  const Timings expected = warper.step(steps[1], buffer.target(false)).timings;
+
+  EXPECT_THROW(warper.step(bad, buffer.target(false)), std::invalid_argument);
+  const Timings timings = warper.step(steps[1], buffer.target(false)).timings;
+
+  EXPECT_EQ(timings.upload, expected.upload);
+  EXPECT_EQ(timings.setup, expected.setup);
+  EXPECT_EQ(timings.raster, expected.raster);
 }
 
 }  // namespace
