@@ -126,8 +126,15 @@ std::string text_of(double value) {
 void set_status(const EngineResult& result, const ContactOptions& options, ContactReport& report) {
   const bool by_eta = options.measure == ContactMeasure::eta;
   const double residual = by_eta ? report.residual.eta : report.residual.fclib;
+  constexpr double rounding = 1e-10;  // of A v, where A is badly conditioned
   const bool is_within = residual <= options.tolerance;
-  report.status = is_within ? ContactStatus::converged : ContactStatus::not_converged;
+  const bool is_balanced = report.residual.balance <= std::max(options.tolerance, rounding);
+  report.status =
+      is_within && is_balanced ? ContactStatus::converged : ContactStatus::not_converged;
+  if (!is_balanced) {
+    report.status_reason = "A v - J^T r - b is " + text_of(report.residual.balance) +
+                           " of its terms, asked for " + text_of(options.tolerance);
+  }
   if (!is_within) {
     report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
                            text_of(residual) + " after " + std::to_string(report.sweeps) +
@@ -247,11 +254,11 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
                                                                 : std::sqrt(whole.sums.fclib);
   const double residual = s.options.measure == ContactMeasure::eta ? whole.eta() : whole.fclib();
   report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
-  set_status(result, s.options, report);
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);
   report.residual.balance = imbalance(problem, solution);
+  set_status(result, s.options, report);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;

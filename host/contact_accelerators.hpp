@@ -1,6 +1,6 @@
 /// @file contact_accelerators.hpp
-/// Accelerators of a fixed-point iteration x -> g(x), for any executor. They see vectors and a
-/// diagonal metric and know nothing of contacts. All have
+/// Accelerators of a fixed-point iteration x -> g(x) on the host. They see vectors and a diagonal
+/// metric and know nothing of contacts. All have
 ///
 ///     double observe(x, image)             looks at image = g(x); the size of image - x
 ///     bool advance(x, image, that size)    may replace image by the next x; whether it did
@@ -130,8 +130,9 @@ class AndersonMixer {
 
     GramSums operator()(std::int64_t first, std::int64_t last) const {
       const auto count = static_cast<int>(last - first);
-      T* const newest_defect = defect_changes + newest * x.size + first;
-      T* const newest_image = image_changes + newest * x.size + first;
+      const std::int64_t column = newest < 0 ? 0 : newest * x.size;
+      T* const newest_defect = defect_changes + column + first;
+      T* const newest_image = image_changes + column + first;
       double change[Exec::run_length] = {}, weighted[Exec::run_length];
       GramSums sums;
       for (int i = 0; i < count; ++i) {

@@ -29,8 +29,8 @@ CoupledRoute coupled_route(const ContactOptions& options, const ContactIsland& i
   constexpr std::int64_t cheap = 300'000;       // numbers of A^-1 J^T that cost about a millisecond
   constexpr std::int64_t most_contacts = 2000;  // 290 MB for the Delassus matrix
   constexpr std::int64_t patience = 1000;
-  const std::int64_t budget =
-      (options.max_sweeps + options.inner_sweeps - 1) / options.inner_sweeps;
+  const int sweeps = sweeps_per_step(options, island);
+  const std::int64_t budget = (options.max_sweeps + sweeps - 1) / sweeps;
   if (options.method == ContactMethod::mass_splitting || options.method == ContactMethod::newton ||
       options.coupling == ContactCoupling::condensed) {
     return {0, true};

@@ -13,6 +13,11 @@
 
 namespace tetwarp {
 
+/// Sweeps of one outer step. One is enough where no two contacts share a body: there is one color.
+inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& island) {
+  return island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1;
+}
+
 /// With D the diagonal blocks of A and q = J v_f + w, one outer step is
 ///
 ///     v_f = v - omega D^-1 (A v - b)
@@ -41,7 +46,7 @@ class OuterIteration {
         options_(options),
         pipeline_(exec, structure, system, island, switches_of(options), state_),
         judge_(judge),
-        inner_sweeps_(island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1),
+        inner_sweeps_(sweeps_per_step(options, island)),
         weights_(diagonal_of(structure, system, island)),
         before_(system.load.size()) {}
 
@@ -84,6 +89,7 @@ class OuterIteration {
   template <class Accelerator>
   void iterate(std::int64_t most, IslandOutcome& outcome) {
     Accelerator accelerator(exec_, weights_);
+    const std::int64_t first = outcome.outer_iterations + 1;
     double start = size_of_velocity();
     while (outcome.outer_iterations < most) {
       std::swap(before_, state_.body_velocity);
@@ -94,7 +100,7 @@ class OuterIteration {
       const View<const T> before = {before_.data() + pipeline_.island().dof_begin,
                                     pipeline_.body_velocity().size};
       const double defect = accelerator.observe(before, pipeline_.body_velocity());
-      if (aim_ == 0) {
+      if (outcome.outer_iterations == first) {
         start += defect;
         aim_ = options_.tolerance * start;
       }
@@ -158,7 +164,7 @@ class OuterIteration {
   ContactState<T> state_;
   ContactPipeline<Exec, T> pipeline_;
   CoupledJudge<Exec>& judge_;
-  int inner_sweeps_;  ///< one is enough where no two contacts share a body: there is one color
+  int inner_sweeps_;
   std::vector<double> weights_;
   std::vector<T> before_;  ///< v of the step before, [dofs]
   double aim_ = 0;
