@@ -1,9 +1,10 @@
 /// @file bench_warp.cpp
-/// Time and error of one warp step, memory to memory, setup included, no files.
+/// Time and error of one warp step, memory to memory, setup included, no files but for chunks.hpp.
 ///
 /// `tetwarp_bench` runs the short list of rows; with --full, or with Google Benchmark's own
 /// --benchmark_filter, all of them are there. Rows and columns: warp_cases.hpp, measure.hpp,
-/// series.hpp, overlap.hpp, region.hpp, analytic.hpp. Ends with 1 when a result was wrong.
+/// series.hpp, overlap.hpp, region.hpp, chunks.hpp, analytic.hpp. Ends with 1 when a result was
+/// wrong.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include <tetwarp/tetwarp.hpp>
 
 #include "bench/analytic.hpp"
+#include "bench/chunks.hpp"
 #include "bench/floors.hpp"
 #include "bench/measure.hpp"
 #include "bench/overlap.hpp"
@@ -65,6 +67,7 @@ int main(int argc, char** argv) {
   bench::register_series_rows(extent, threads, cuda.usable);
   bench::register_overlap_rows(extent, threads, cuda.usable);
   bench::register_region_rows(threads, cuda.usable);
+  bench::register_chunk_rows(threads);
   bench::register_analytic_rows(extent, threads);
   describe(program, cuda, cuda_seconds, threads);
   return program.run({"floor_ratio", "ns_per_covered", "cost_share", "cells_touched", "max_error",

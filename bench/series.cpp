@@ -106,7 +106,7 @@ void run(benchmark::State& state, const SeriesCase& row) {
 }  // namespace
 
 void register_series_rows(Extent extent, int threads, bool with_cuda) {
-  std::vector<int> percents = {5};
+  std::vector<int> percents = {0, 5};
   if (extent == Extent::full) percents = {0, 1, 5, 20, 60, 100};
   std::vector<Backend> backends = {Backend::cpu};
   if (with_cuda) backends.push_back(Backend::cuda);

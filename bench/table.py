@@ -132,6 +132,17 @@ def region_table(rows):
     return table(header + ["ms", "ms of the whole", "cost"], lines)
 
 
+def chunk_table(rows):
+    lines = [
+        [row.workload, f"{100 * row['background_share']:.0f} %", figure(row.time)]
+        + [figure(row["whole"]), figure(row["megabytes"]), figure(row["whole_megabytes"])]
+        for row in rows
+        if row.kind == "chunks"
+    ]
+    header = ["workload", "chunks of background", "ms to write", "ms with all chunks", "MB"]
+    return table(header + ["MB with all"], lines)
+
+
 def error_table(rows):
     lines = []
     for row in rows:
@@ -163,6 +174,7 @@ def main():
         ("What updating saves", series_table(rows)),
         ("What overlapping steps saves", overlap_table(rows)),
         ("What a region costs", region_table(rows)),
+        ("What chunks of background save", chunk_table(rows)),
         ("Error", error_table(rows)),
     ]
     if arguments.gpu_peers:

@@ -36,6 +36,12 @@ if(TETWARP_HAS_CUDA)
 else()
   target_sources(tetwarp_bench PRIVATE bench/device_floors_nocuda.cpp)
 endif()
+if(TETWARP_IO)
+  target_sources(tetwarp_bench PRIVATE bench/chunks.cpp)
+  target_link_libraries(tetwarp_bench PRIVATE tetwarp_io)
+else()
+  target_sources(tetwarp_bench PRIVATE bench/chunks_noio.cpp)
+endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
 target_link_libraries(tetwarp_bench PRIVATE
