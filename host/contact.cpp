@@ -73,25 +73,27 @@ WholeResidual whole_residual(const std::vector<IslandOutcome>& outcomes) {
 std::vector<double> merged_history(const std::vector<IslandOutcome>& outcomes, double scale) {
   struct Step {
     std::int64_t sweep;
-    double change;
+    std::size_t island;
+    double square;
   };
   std::vector<Step> steps;
-  for (const IslandOutcome& outcome : outcomes) {
-    double last = 0;
-    for (const ContactEvent& event : outcome.events) {
-      const double square = event.error * event.error;
-      steps.push_back({event.sweep, square - last});
-      last = square;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (const ContactEvent& event : outcomes[i].events) {
+      steps.push_back({event.sweep, i, event.error * event.error});
     }
   }
   std::stable_sort(steps.begin(), steps.end(),
                    [](const Step& a, const Step& b) { return a.sweep < b.sweep; });
+  // A tree of sums, its root at 1: adding differences up would leave the rounding of the first,
+  // large squares in the last, small ones.
+  std::vector<double> sums(2 * outcomes.size(), 0.0);
   std::vector<double> history;
-  double sum = 0;
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    sum += steps[k].change;
+    std::size_t node = outcomes.size() + steps[k].island;
+    sums[node] = steps[k].square;
+    for (node /= 2; node > 0; node /= 2) sums[node] = sums[2 * node] + sums[2 * node + 1];
     if (k + 1 < steps.size() && steps[k + 1].sweep == steps[k].sweep) continue;
-    history.push_back(std::sqrt(std::max(sum, 0.0)) / std::max(scale, 1e-300));
+    history.push_back(std::sqrt(sums[1]) / std::max(scale, 1e-300));
   }
   return history;
 }

@@ -164,7 +164,7 @@ TEST(OuterIteration, ReportsWhatItDid) {
   EXPECT_GT(report.outer_iterations, 10);
   EXPECT_EQ(report.contact_updates, 30 * report.sweeps);
   ASSERT_GE(report.residual_history.size(), 1U);
-  EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 1e-9 * report.residual.eta);
+  EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 1e-12 * report.residual.eta);
 }
 
 TEST(OuterIteration, HasTheSameBitsForAnyNumberOfThreads) {

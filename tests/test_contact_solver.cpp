@@ -155,6 +155,22 @@ TEST(ContactSolver, WithoutContactsBodiesMoveFreely) {
   }
 }
 
+/// Ten digits and more below where it began, of one island and of several.
+TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
+  const ContactProblem one = local_problem(93, 12);
+  const ContactProblem several = scenes::sphere_packing({.edge = 5, .friction = 0, .kept = 0.15});
+  for (const ContactProblem* problem : {&one, &several}) {
+    const ContactReport report =
+        solve_contacts(*problem, {.method = ContactMethod::gauss_seidel, .tolerance = 1e-12})
+            .report;
+
+    ASSERT_GE(report.residual_history.size(), 2U);
+    EXPECT_GT(report.residual_history.front(), 1e-3);
+    // The report measures velocities once more; at this depth their rounding shows.
+    EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 0.01 * report.residual.eta);
+  }
+}
+
 /// Bodies that A couples start in float32 and end, where that is not enough, in float64.
 TEST(ContactSolver, IteratesInFloat32FirstWhenAskedTo) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
