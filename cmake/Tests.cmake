@@ -109,7 +109,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_bound.cpp
     tests/test_contact_color.cpp
     tests/test_contact_coupled.cpp
-    tests/test_contact_device.cpp
+    tests/test_contact_cuda.cpp
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
     tests/test_contact_linear.cpp
@@ -151,15 +151,17 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
-  # Back end cuda on an emulated device: whole warps through the public calls.
+  # Back end cuda on an emulated device: whole warps and contacts through the public calls.
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emulated_backend.cpp
+    tests/emulated_contact.cpp
+    tests/test_contact_cuda.cpp
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
     tests/test_warp_in_flight.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*")
+    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "host/contact_linear.hpp"
-#include "host/contact_monitor.hpp"
-#include "host/contact_pipeline.hpp"
 #include "host/contact_run.hpp"
 #include "kernels/contact_bound.hpp"
+#include "kernels/contact_judge.hpp"
+#include "kernels/contact_monitor.hpp"
+#include "kernels/vector_bodies.hpp"
 
 namespace tetwarp {
 
@@ -25,60 +26,51 @@ namespace tetwarp {
 template <class Exec>
 class CoupledJudge {
  public:
-  using Vector = std::vector<double>;
+  using Vector = typename Exec::template Vector<double>;
 
   CoupledJudge(Exec& exec,
                const ContactOptions& options,
-               const ContactStructure& structure,
-               const ContactSystem<double>& system,
+               const ContactNumbers<double>& numbers,
                const ContactIsland& island)
       : exec_(exec),
         options_(options),
-        structure_(structure),
-        system_(system),
+        numbers_(numbers),
         island_(island),
-        linear_(exec, structure, system, island),
-        constants_(system.constants),
-        body_velocity_(system.load.size(), 0.0),
-        velocity_(system.offset.size(), 0.0),
-        obedient_velocity_(system.offset.size(), 0.0),
-        free_velocity_(system.offset.size(), 0.0) {
-    // There the blocks are those of omega J D^-1 J^T. Diagonal blocks of A^-1 are at least those of
-    // D^-1; as a whole A^-1 is at least D^-1 over the largest eigenvalue of D^-1 A, which is below
-    // 2 / omega where the outer iteration converges.
-    for (std::size_t s = 0; s < constants_.size(); ++s) {
-      const bool is_one_block = structure.pair_start[s + 1] - structure.pair_start[s] == 1;
-      const double factor = is_one_block ? 1 / options.relaxation : 0.5;
-      for (double& entry : constants_[s].block) entry *= factor;
-      constants_[s].tangent_metric *= factor;
+        linear_(exec, numbers, island) {
+    for (Vector* dofs : {&body_velocity_, &rest_, &best_body_velocity_}) {
+      exec.resize(*dofs, numbers.load.size);
     }
+    for (Vector* rows :
+         {&velocity_, &obedient_velocity_, &free_velocity_, &seen_, &impulse_, &best_impulse_}) {
+      exec.resize(*rows, numbers.bodies.offset.size);
+    }
+    exec.resize(constants_, numbers.constants.size);
+    exec.for_each("contact/setup", numbers.constants.size,
+                  LowerBlocksBody{numbers.bodies.pairs.pair_start, numbers.constants,
+                                  options.relaxation, view_of(constants_)});
   }
 
   /// The velocities without impulses and the scale they set. Where they break no contact's law,
   /// that is the solution: the outcome has converged.
   void start(IslandOutcome& outcome) {
-    impulse_.assign(system_.offset.size(), 0.0);
-    rest_ = system_.load;
-    const auto is_zero = [](double value) { return value == 0; };
-    const bool is_still =
-        std::all_of(rest_.begin() + island_.dof_begin, rest_.begin() + island_.dof_end, is_zero);
+    be_without_impulses();
+    const bool is_still = is_zero(numbers_.load);
     if (is_still) {  // nothing would be learned of A; a push on every contact shows it
-      for (std::size_t row = 0; row < impulse_.size(); row += 3) impulse_[row] = 1;
+      exec_.for_each("contact/setup", island_.contact_count(),
+                     FromContact<UnitPushBody>{{view_of(impulse_)}, island_.slot_begin});
       find_rest();
     }
-    const LinearProgress progress = linear_.solve(
-        body_velocity_, rest_, [](const LinearProgress& now) { return is_within(0.1, now); });
+    const LinearProgress progress =
+        linear_.solve(view_of(body_velocity_), view_of(rest_),
+                      [](const LinearProgress& now) { return is_within(0.1, now); });
     find_velocity(velocity_);
-    seen_share_ = progress.moved > 0 ? distance(system_.offset) / progress.moved : 0;
-    if (is_still) {
-      impulse_.assign(system_.offset.size(), 0.0);
-      body_velocity_.assign(system_.load.size(), 0.0);
-      rest_ = system_.load;
-    }
+    seen_share_ = progress.moved > 0 ? distance(numbers_.bodies.offset) / progress.moved : 0;
+    if (is_still) be_without_impulses();
     outcome.reason = StopReason::exhausted;
     find_free(outcome);
     if (rule_.error_of(outcome.free) == 0) {  // a scale of zero: nothing else could be judged by it
-      linear_.solve(body_velocity_, rest_, [&](const LinearProgress&) { return is_balanced(); });
+      linear_.solve(view_of(body_velocity_), view_of(rest_),
+                    [&](const LinearProgress&) { return is_balanced(); });
       find_free(outcome);
       if (rule_.error_of(outcome.free) == 0 && is_balanced()) {
         outcome.reason = StopReason::converged;
@@ -86,18 +78,18 @@ class CoupledJudge {
       }
     }
     outcome.sums = outcome.free;
-    best_impulse_ = impulse_;
-    best_body_velocity_ = body_velocity_;
+    keep_best();
   }
 
   /// The velocities that impulses cause, from nothing, to half the digits of the tolerance: more
   /// would cost more than the outer steps that they save; see body_velocity().
-  void find_body_velocity(const Vector& impulse) {
-    impulse_ = impulse;
-    std::fill(body_velocity_.begin(), body_velocity_.end(), 0.0);
+  /// @param impulse  [3 slots]
+  void find_body_velocity(View<const double> impulse) {
+    copy(impulse, impulse_);
+    fill(exec_, view_of(body_velocity_), 0.0);
     find_rest();
     const double share = std::sqrt(options_.tolerance);
-    linear_.solve(body_velocity_, rest_,
+    linear_.solve(view_of(body_velocity_), view_of(rest_),
                   [&](const LinearProgress& now) { return is_within(share, now); });
   }
 
@@ -107,26 +99,27 @@ class CoupledJudge {
   ///                       contacts obey their law
   /// @param is_last        false: impulses far from a solution are told so early
   /// @returns  at most 1 when done: residual and imbalance over the tolerance
-  double judge(const Vector& impulse,
-               const Vector& body_velocity,
+  double judge(View<const double> impulse,
+               View<const double> body_velocity,
                bool is_last,
                IslandOutcome& outcome) {
-    impulse_ = impulse;
-    body_velocity_ = body_velocity;
+    copy(impulse, impulse_);
+    copy(body_velocity, body_velocity_);
     find_rest();
     find_velocity(obedient_velocity_);
-    Vector seen = obedient_velocity_;
+    copy(view_of(std::as_const(obedient_velocity_)), seen_);
     ContactSums sums = bounded_sums();
     double excess = rule_.excess_of(sums), doubt = 0, moved = 0;
-    linear_.solve(body_velocity_, rest_, [&](const LinearProgress& progress) {
+    linear_.solve(view_of(body_velocity_), view_of(rest_), [&](const LinearProgress& progress) {
       sums = bounded_sums();
       excess = rule_.excess_of(sums);
       if (options_.measure == ContactMeasure::fclib) return is_within(0.1, progress);
       // What is left moves the contacts as much as the free motion did, or the last steps.
       const double step = std::sqrt(square_of(progress.moved) - square_of(moved));
-      const double share = std::max(step > 0 ? distance(seen) / step : 0, seen_share_);
+      const double apart = distance(view_of(std::as_const(seen_)));
+      const double share = std::max(step > 0 ? apart / step : 0, seen_share_);
       doubt = share * progress.left / rule_.allowed_at(sums);
-      seen = velocity_;
+      copy(view_of(std::as_const(velocity_)), seen_);
       moved = progress.moved;
       const bool is_bad = !is_last && excess > 0.8;  // soon over 1, or only after many steps below
       const bool is_good = excess + doubt <= 1 && is_balanced();
@@ -141,8 +134,7 @@ class CoupledJudge {
     outcome.events.push_back({outcome.sweeps, rule_.error_of(sums)});
     if (is_settled && excess < best_excess_) {
       best_excess_ = excess;
-      best_impulse_ = impulse_;
-      best_body_velocity_ = body_velocity_;
+      keep_best();
       outcome.sums = sums;
       outcome.reason = excess <= 1 ? StopReason::converged : StopReason::exhausted;
     }
@@ -150,47 +142,22 @@ class CoupledJudge {
   }
 
   /// v of the impulses judged last, [dofs].
-  const Vector& body_velocity() const { return body_velocity_; }
+  View<const double> body_velocity() const { return view_of(body_velocity_); }
 
   /// The best pair judged: r, [3 slots], and v, [dofs], of the whole problem; set in the island.
-  const Vector& best_impulse() const { return best_impulse_; }
-  const Vector& best_body_velocity() const { return best_body_velocity_; }
+  View<const double> best_impulse() const { return view_of(best_impulse_); }
+  View<const double> best_body_velocity() const { return view_of(best_body_velocity_); }
 
  private:
   static constexpr double margin = 0.8;   ///< of the tolerance: velocities have errors, too
   static constexpr double settled = 0.1;  ///< doubt that leaves an excess worth its name
 
-  /// One index = one block: squares of rest, load and J^T r.
-  struct BalanceBody {
-    BlockContacts contacts;
-    View<const std::int64_t> dof_start;
-    View<const double> jacobian, load, impulse, rest;
-
-    TETWARP_HD PlainSums<3> operator()(std::int64_t b) const {
-      PlainSums<3> sums;
-      const std::int64_t size = dof_start[b + 1] - dof_start[b];
-      for (std::int64_t k = 0; k < size; ++k) {
-        double push = 0;
-        for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
-          const double* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
-          const double* j = jacobian.data + contacts.value[p] + k;
-          push += j[0] * r[0] + j[size] * r[1] + j[2 * size] * r[2];
-        }
-        sums.value[0] += square_of(rest[dof_start[b] + k]);
-        sums.value[1] += square_of(load[dof_start[b] + k]);
-        sums.value[2] += square_of(push);
-      }
-      return sums;
-    }
-  };
-
   /// |A v - J^T r - b| relative to the larger of |b| and |J^T r|.
   double imbalance() const {
     const PlainSums<3> sums = exec_.template sum<PlainSums<3>>(
         "contact/residual", island_.block_begin, island_.block_end,
-        BalanceBody{structure_.block_contacts(), view_of(structure_.dof_start),
-                    view_of(system_.jacobian), view_of(system_.load), view_of(impulse_),
-                    view_of(rest_)});
+        BalanceBody{numbers_.block_contacts, numbers_.system.dof_start, numbers_.bodies.jacobian,
+                    numbers_.load, view_of(impulse_), view_of(rest_)});
     const double scale = std::max(sums.value[1], sums.value[2]);
     return std::sqrt(sums.value[0] / std::max(scale, std::numeric_limits<double>::min()));
   }
@@ -202,11 +169,12 @@ class CoupledJudge {
     find_velocity(free_velocity_);
     outcome.free =
         exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        CoupledFreeBody{natural(free_velocity_)});
-    outcome.free_square = 0;
-    for (std::int64_t k = 3 * island_.slot_begin; k < 3 * island_.slot_end; ++k) {
-      outcome.free_square += square_of(free_velocity_[static_cast<std::size_t>(k)]);
-    }
+                                        CoupledFreeBody{natural(view_of(free_velocity_))});
+    outcome.free_square = exec_
+                              .template sum<PlainSums<1>>(
+                                  "contact/residual", 3 * island_.slot_begin, 3 * island_.slot_end,
+                                  SquareBody<double>{view_of(std::as_const(free_velocity_))})
+                              .value[0];
     const double scale =
         options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
     const double tolerance = margin * options_.tolerance;
@@ -216,41 +184,28 @@ class CoupledJudge {
   /// b + J^T r - A v.
   void find_rest() {
     body_relax(exec_, island_.block_begin, island_.block_end,
-               BodyDefectBody<double>{structure_.system(view_of(system_.system)),
-                                      structure_.block_contacts(), view_of(system_.jacobian),
-                                      view_of(system_.load), view_of(std::as_const(impulse_)),
-                                      view_of(std::as_const(body_velocity_)), view_of(rest_)});
+               BodyDefectBody<double>{numbers_.system, numbers_.block_contacts,
+                                      numbers_.bodies.jacobian, numbers_.load, view_of(impulse_),
+                                      view_of(body_velocity_), view_of(rest_)});
   }
 
   /// u = J v + w.
-  void find_velocity(Vector& velocity) const {
+  void find_velocity(Vector& velocity) {
     using Body = ContactVelocityBody<BodiesView<double>, double>;
-    const Body body{system_.bodies_view(structure_), body_velocity_.data(), view_of(velocity)};
+    const Body body{numbers_.bodies, view_of(body_velocity_).data, view_of(velocity)};
     exec_.for_each("contact/residual", island_.contact_count(),
                    FromContact<Body>{body, island_.slot_begin});
   }
 
-  /// One index = one contact: squared difference of two velocities, weighed as eta does.
-  struct DistanceBody {
-    View<const ContactConstants<double>> constants;
-    const double *a, *b;
-
-    TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
-      const double* x = a + 3 * c;
-      const double* y = b + 3 * c;
-      return {{normal_weight(constants[c]) * square_of(x[0] - y[0]) +
-               tangent_weight(constants[c]) * (square_of(x[1] - y[1]) + square_of(x[2] - y[2]))}};
-    }
-  };
-
   /// From other velocities to those at hand, in the weights of eta: springs much stiffer than the
   /// body they hold feel errors that the norm of A does not.
-  double distance(const Vector& velocity) const {
-    return std::sqrt(exec_
-                         .template sum<PlainSums<1>>(
-                             "contact/residual", island_.slot_begin, island_.slot_end,
-                             DistanceBody{view_of(constants_), velocity_.data(), velocity.data()})
-                         .value[0]);
+  double distance(View<const double> velocity) const {
+    return std::sqrt(
+        exec_
+            .template sum<PlainSums<1>>(
+                "contact/residual", island_.slot_begin, island_.slot_end,
+                DistanceBody{view_of(constants_), view_of(velocity_).data, velocity.data})
+            .value[0]);
   }
 
   /// Of the impulses and the velocities of the bodies at hand, against the obedient velocities.
@@ -258,7 +213,7 @@ class CoupledJudge {
     find_velocity(velocity_);
     return exec_.template sum<ContactSums>(
         "contact/residual", island_.slot_begin, island_.slot_end,
-        CoupledBoundBody{natural(velocity_), view_of(std::as_const(obedient_velocity_))});
+        CoupledBoundBody{natural(view_of(velocity_)), view_of(std::as_const(obedient_velocity_))});
   }
 
   static bool is_within(double share, const LinearProgress& progress) {
@@ -266,19 +221,39 @@ class CoupledJudge {
   }
 
   /// The natural map of the impulses at hand.
-  ContactResidualBody<double> natural(const Vector& velocity) const {
-    return {view_of(constants_), switches_of(options_), view_of(impulse_), view_of(velocity),
+  ContactResidualBody<double> natural(View<const double> velocity) const {
+    return {view_of(constants_), switches_of(options_), view_of(impulse_), velocity,
             view_of(free_velocity_)};
+  }
+
+  void copy(View<const double> from, Vector& to) { exec_.copy("contact/mix", from, view_of(to)); }
+
+  void keep_best() {
+    copy(view_of(std::as_const(impulse_)), best_impulse_);
+    copy(view_of(std::as_const(body_velocity_)), best_body_velocity_);
+  }
+
+  /// No impulses, no velocities; the load is what is left.
+  void be_without_impulses() {
+    fill(exec_, view_of(impulse_), 0.0);
+    fill(exec_, view_of(body_velocity_), 0.0);
+    copy(numbers_.load, rest_);
+  }
+
+  bool is_zero(View<const double> dofs) const {
+    return exec_
+               .template sum<PlainSums<1>>("contact/setup", island_.dof_begin, island_.dof_end,
+                                           NonzeroBody<double>{dofs})
+               .value[0] == 0;
   }
 
   Exec& exec_;
   const ContactOptions& options_;
-  const ContactStructure& structure_;
-  const ContactSystem<double>& system_;
+  ContactNumbers<double> numbers_;
   const ContactIsland& island_;
   CoupledLinear<Exec> linear_;
-  std::vector<ContactConstants<double>> constants_;
-  Vector body_velocity_, velocity_, obedient_velocity_, free_velocity_, impulse_, rest_;
+  typename Exec::template Vector<ContactConstants<double>> constants_;
+  Vector body_velocity_, velocity_, obedient_velocity_, free_velocity_, seen_, impulse_, rest_;
   StopRule rule_;
   Vector best_impulse_, best_body_velocity_;
   double best_excess_ = std::numeric_limits<double>::infinity();

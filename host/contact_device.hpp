@@ -1,6 +1,6 @@
 /// @file contact_device.hpp
-/// What the contact solver asks of a device: sweeps. Structure, stopping shares, polish and the
-/// final judgement stay with the host.
+/// What the contact solver asks of a device: islands, from their numbers to impulses. Structure and
+/// what is left to Newton's method stay with the host.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,65 +9,54 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact_monitor.hpp"
 #include "host/contact_structure.hpp"
 #include "host/contact_system.hpp"
-#include "kernels/contact_progress.hpp"
+#include "kernels/contact_monitor.hpp"
 
 namespace tetwarp {
 
 struct IslandOutcome;
 
-/// Islands to sweep: places in structure and system, largest first.
-struct SweepTask {
-  std::vector<SweepIsland> islands;
-  SweepLimit limit;
-  ContactSwitches switches;
-};
-
-/// Colored projected Gauss-Seidel sweeps on a device.
+/// Islands on a device. Every executor runs the same methods; see kernels/contact_methods.hpp.
 class ContactDevice {
  public:
   virtual ~ContactDevice() = default;
 
-  /// Sweeps each island to its end; other contacts keep their impulses. Every contact is visited in
-  /// every sweep.
-  /// @param impulse  [3 slots]; in: to start from; out: the best seen
-  /// @return one per island of the task
+  /// The numbers of a problem, for the calls that follow.
+  /// @param structure  kept by the caller until the next set_problem()
   /// @throws CudaError
-  virtual std::vector<SweepProgress> sweep(const SweepTask& task,
-                                           const ContactStructure& structure,
-                                           const ContactSystem<double>& system,
-                                           std::vector<double>& impulse) = 0;
-  virtual std::vector<SweepProgress> sweep(const SweepTask& task,
-                                           const ContactStructure& structure,
-                                           const ContactSystem<float>& system,
-                                           std::vector<float>& impulse) = 0;
+  virtual void set_problem(const ContactOptions& options,
+                           const ContactStructure& structure,
+                           const ContactSystem<double>& system) = 0;
+
+  /// Solves all islands whose blocks A does not couple, in the precision of the options.
+  /// @param rules     of each island with contacts
+  /// @param impulse   [3 slots]; in: to start from; out: the best seen
+  /// @param outcomes  what it took
+  /// @return visits of contacts left out
+  virtual std::int64_t solve_uncoupled(const ContactOptions& options,
+                                       const std::vector<StopRule>& rules,
+                                       std::vector<double>& impulse,
+                                       std::vector<IslandOutcome>& outcomes) = 0;
+
+  /// Iterates one island whose blocks A couples.
+  /// @param guess          [3 slots], or empty: none
+  /// @param most           outer iterations
+  /// @param impulse        out: the best, [3 slots], set in the island
+  /// @param body_velocity  out: what it causes, [dofs], set in the island
+  virtual void solve_coupled(const ContactOptions& options,
+                             const ContactIsland& island,
+                             const std::vector<double>& guess,
+                             std::int64_t most,
+                             std::vector<double>& impulse,
+                             std::vector<double>& body_velocity,
+                             IslandOutcome& outcome) = 0;
+
   /// The device's name.
   virtual std::string name() const = 0;
 };
 
 /// @throws CudaError  no such device answers; the text is the runtime's reason
 std::unique_ptr<ContactDevice> make_contact_device(int device);
-
-/// Whether a method starts with colored sweeps, which a device can do; others stay on the host.
-inline bool starts_with_sweeps(ContactMethod method) {
-  return method == ContactMethod::automatic || method == ContactMethod::gauss_seidel ||
-         method == ContactMethod::newton;
-}
-
-/// Runs the sweeps of all islands whose blocks A does not couple on a device, in the precision of
-/// the options, and notes in `outcomes` what they took. What follows (polish, other methods, the
-/// final measure) starts from the impulses returned, in float64 on the host: method `automatic`
-/// leaves it half of its sweeps, and an island that no longer gets better after 100.
-/// @param rules    of each island with contacts
-/// @param impulse  [3 slots], or empty: none
-std::vector<double> sweep_on_device(ContactDevice& device,
-                                    const ContactOptions& options,
-                                    const ContactStructure& structure,
-                                    const ContactSystem<double>& system,
-                                    const std::vector<StopRule>& rules,
-                                    std::vector<double> impulse,
-                                    std::vector<IslandOutcome>& outcomes);
 
 }  // namespace tetwarp

@@ -64,6 +64,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
     const ContactProblem& problem = changed ? *changed : given;
     EngineResult result;
     const ContactSystem<double> system = prepare(problem, result);
+    is_on_device_ = false;
     result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     result.impulse.assign(3 * problem.friction.size(), 0.0);
     result.body_velocity.assign(index_of(problem.dof_count()), 0.0);
@@ -98,9 +99,11 @@ void ContactEngine::solve_uncoupled(const ContactProblem& problem,
   std::vector<double> start = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
                                        problem.contact_count());
   ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
-  if (device_ != nullptr && starts_with_sweeps(options_.method)) {
-    start = sweep_on_device(*device_, options_, structure_, system, run.rules(), std::move(start),
-                            result.outcomes);
+  if (device_ != nullptr) {
+    take_to_device(system);
+    if (start.empty()) start.assign(system.free_velocity.size(), 0.0);
+    result.updates_skipped =
+        device_->solve_uncoupled(options_, run.rules(), start, result.outcomes);
   } else if (options_.precision == ContactPrecision::float32) {
     const ContactSystem<float> rounded = make_float32(system);
     ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes);
@@ -110,7 +113,7 @@ void ContactEngine::solve_uncoupled(const ContactProblem& problem,
     result.updates_skipped = coarse.updates_skipped();
   }
   run.start_from(start);
-  if (options_.precision == ContactPrecision::float64) {
+  if (device_ == nullptr && options_.precision == ContactPrecision::float64) {
     run.solve();
     result.updates_skipped = run.updates_skipped();
   }
@@ -129,6 +132,11 @@ void ContactEngine::solve_uncoupled(const ContactProblem& problem,
     scatter_velocities(structure_, island, run.state().body_velocity.data() + island.dof_begin,
                        result.body_velocity);
   }
+}
+
+void ContactEngine::take_to_device(const ContactSystem<double>& system) {
+  if (!is_on_device_) device_->set_problem(options_, structure_, system);
+  is_on_device_ = true;
 }
 
 void ContactEngine::fall_back(const ContactProblem& problem,

@@ -46,7 +46,7 @@ struct KeptSystem {
 
 class ContactEngine {
  public:
-  /// @param device  runs the sweeps, kept by the caller; null: the host does
+  /// @param device  solves the islands, kept by the caller; null: the host does
   ContactEngine(const ContactOptions& options, int threads, ContactDevice* device = nullptr);
 
   /// @pre check(problem) has passed
@@ -55,6 +55,7 @@ class ContactEngine {
 
  private:
   ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
+  void take_to_device(const ContactSystem<double>& system);
   void solve_coupled(const ContactProblem& problem,
                      const ContactSystem<double>& system,
                      EngineResult& result);
@@ -83,6 +84,7 @@ class ContactEngine {
   ContactOptions options_;
   int threads_;
   ContactDevice* device_;
+  bool is_on_device_ = false;  ///< the device has the system at hand
   std::optional<ContactPattern> pattern_;
   ContactStructure structure_;
   KeptSystem kept_;

@@ -105,40 +105,29 @@ void ContactEngine::iterate(const ContactProblem& problem,
                             std::int64_t most,
                             EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
-  CpuContactExec exec(threads_);
-  CoupledJudge<CpuContactExec> judge(exec, options_, structure_, system, island);
   IslandOutcome& outcome = result.outcomes[index_of(i)];
-  judge.start(outcome);
-  if (outcome.reason != StopReason::converged) {
-    std::vector<double> v(system.load.size(), 0.0);
-    std::vector<double> r = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
-                                     problem.contact_count());
-    if (r.empty()) {
-      r.assign(system.offset.size(), 0.0);
-    } else {
-      judge.find_body_velocity(r);
-      v = judge.body_velocity();
-    }
-    if (options_.precision == ContactPrecision::float32) {
-      const ContactSystem<float> rounded = make_float32(system);
-      OuterIteration<CpuContactExec, float> coarse(exec, options_, structure_, rounded, island,
-                                                   judge);
-      coarse.solve(most, r, v, outcome);
-      if (!coarse.is_lost()) {
-        r = coarse.impulse();
-        v = coarse.body_velocity();
-      }
-    }
-    if (outcome.reason != StopReason::converged) {
-      OuterIteration<CpuContactExec> outer(exec, options_, structure_, system, island, judge);
-      outer.solve(most, r, v, outcome);
-    }
+  const std::vector<double> guess = gathered(
+      problem.impulse_guess, 3, structure_.contact_of_slot.data(), problem.contact_count());
+  std::vector<double> impulse(system.offset.size()), body_velocity(system.load.size());
+  if (device_ != nullptr) {
+    take_to_device(system);
+    device_->solve_coupled(options_, island, guess, most, impulse, body_velocity, outcome);
+  } else {
+    CpuContactExec exec(threads_);
+    const ContactNumbers<double> numbers = system.numbers(structure_);
+    ContactSystem<float> rounded;
+    if (options_.precision == ContactPrecision::float32) rounded = make_float32(system);
+    CoupledJudge<CpuContactExec> judge(exec, options_, numbers, island);
+    solve_coupled_island(exec, options_, numbers, rounded.numbers(structure_),
+                         view_of(structure_.color_start), island, view_of(guess), most, judge,
+                         outcome);
+    exec.get(judge.best_impulse(), impulse.data());
+    exec.get(judge.best_body_velocity(), body_velocity.data());
   }
   name_largest(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
-  scatter_impulses(structure_, island, judge.best_impulse().data() + 3 * island.slot_begin,
-                   result.impulse);
-  scatter_velocities(structure_, island, judge.best_body_velocity().data() + island.dof_begin,
+  scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
+  scatter_velocities(structure_, island, body_velocity.data() + island.dof_begin,
                      result.body_velocity);
 }
 
@@ -154,6 +143,7 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
     kept->problem.update(part);
     ++result.condensations_kept;
   }
+  is_on_device_ = false;  // the contacts alone take its place there
   const EngineResult inner = kept->engine.solve(kept->problem.local());
   const std::vector<double> v = kept->problem.body_velocity(inner.impulse);
   scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);

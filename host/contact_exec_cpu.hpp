@@ -7,13 +7,32 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/view.hpp"
+
 namespace tetwarp {
 
 class CpuContactExec {
  public:
   explicit CpuContactExec(int threads) : threads_(threads) {}
 
+  template <class T>
+  using Vector = std::vector<T>;
+
   int threads() const { return threads_; }
+
+  /// All become zeros.
+  template <class T>
+  void resize(std::vector<T>& values, std::int64_t size) const {
+    values.assign(static_cast<std::size_t>(size), T{});
+  }
+  template <class T>
+  void put(const T* host, std::int64_t size, std::vector<T>& values) const {
+    values.assign(host, host + size);
+  }
+  template <class T>
+  void get(View<const T> values, T* host) const {
+    std::copy_n(values.data, values.size, host);
+  }
 
   /// body(i) for i in [0, count), any order.
   template <class Body>
@@ -26,19 +45,35 @@ class CpuContactExec {
     for (std::int64_t i = 0; i < count; ++i) body(i);
   }
 
+  template <class T>
+  void copy(const char*, View<const T> from, View<T> to) const {
+    std::copy_n(from.data, from.size, to.data);
+  }
+
   /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
   template <class Sum, class Body>
-  Sum sum(const char* stage, std::int64_t first, std::int64_t last, const Body& body) const {
-    return sum_runs<Sum>(stage, first, last, [&](std::int64_t begin, std::int64_t end) {
+  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    return add_runs<Sum>(first, last, [&](std::int64_t begin, std::int64_t end) {
       Sum sum{};
       for (std::int64_t i = begin; i < end; ++i) sum += body(i);
       return sum;
     });
   }
 
-  /// Sum of body(begin, end) over runs of 64 indices of [first, last), in sequence.
+  /// Sum of body.run(begin, end) over runs of at most 64 indices of [first, last), in sequence.
   template <class Sum, class Body>
   Sum sum_runs(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    return add_runs<Sum>(first, last, [&](std::int64_t begin, std::int64_t end) {
+      return body.template run<run_length>(begin, end);
+    });
+  }
+
+ private:
+  static constexpr int run_length = 64;
+  static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
+
+  template <class Sum, class Run>
+  Sum add_runs(std::int64_t first, std::int64_t last, const Run& body) const {
     const std::int64_t runs = (last - first + run_length - 1) / run_length;
     const auto run_sum = [&](std::int64_t run) {
       const std::int64_t begin = first + run * run_length;
@@ -56,11 +91,6 @@ class CpuContactExec {
     for (const Sum& sum : sums) total += sum;
     return total;
   }
-
-  static constexpr std::int64_t run_length = 64;
-
- private:
-  static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
 
   int threads_;
 };

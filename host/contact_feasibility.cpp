@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "host/contact_exec_cpu.hpp"
-#include "host/contact_pipeline.hpp"
+#include "host/contact_memory.hpp"
+#include "kernels/contact_pipeline.hpp"
 
 namespace tetwarp {
 
@@ -30,12 +31,10 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   const std::int64_t sweeps = std::min<std::int64_t>(budget, 4096);
   constexpr double far = 1e7;  // times the distance that the contacts ask for one by one
   const ContactSystem<double> bare = make_bare(system);
-  ContactState<double> state;
-  state.impulse.assign(bare.free_velocity.size(), 0.0);
-  state.velocity = bare.free_velocity;
-  state.body_velocity = bare.body_free;
+  HostContactState<double> state(bare);
   CpuContactExec exec(1);
-  ContactPipeline<CpuContactExec, double> pipeline(exec, structure, bare, island, {}, state);
+  ContactPipeline<CpuContactExec, double> pipeline(
+      exec, bare.numbers(structure), view_of(structure.color_start), island, {}, state.view());
   double wanted = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);

@@ -1,5 +1,5 @@
 /// @file contact_nocuda.cpp
-/// Contact sweeps of a build without the CUDA toolkit: it says so.
+/// The contact solver's device in a build without the CUDA toolkit: it says so.
 #include <tetwarp/error.hpp>
 
 #include "host/contact_device.hpp"

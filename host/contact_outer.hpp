@@ -2,14 +2,17 @@
 /// Contacts of bodies that A couples, by an outer block-Jacobi iteration around sweeps.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
-#include "host/contact_accelerators.hpp"
 #include "host/contact_coupled.hpp"
+#include "kernels/contact_accelerators.hpp"
+#include "kernels/contact_pipeline.hpp"
+#include "kernels/vector_bodies.hpp"
 
 namespace tetwarp {
 
@@ -35,43 +38,86 @@ inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& i
 template <class Exec, class T = double>
 class OuterIteration {
  public:
-  /// @param judge  has been started
+  /// @param numbers      of the whole problem, where the executor reads them
+  /// @param color_start  on the host
+  /// @param judge        has been started
   OuterIteration(Exec& exec,
                  const ContactOptions& options,
-                 const ContactStructure& structure,
-                 const ContactSystem<T>& system,
+                 const ContactNumbers<T>& numbers,
+                 View<const std::int64_t> color_start,
                  const ContactIsland& island,
                  CoupledJudge<Exec>& judge)
       : exec_(exec),
         options_(options),
-        pipeline_(exec, structure, system, island, switches_of(options), state_),
         judge_(judge),
         inner_sweeps_(sweeps_per_step(options, island)),
-        weights_(diagonal_of(structure, system, island)),
-        before_(system.load.size()) {}
+        memory_(exec, numbers, island),
+        pipeline_(exec, numbers, color_start, island, switches_of(options), memory_.state()),
+        now_(view_of(memory_.body_velocity)),
+        before_(view_of(memory_.before)) {
+    body_relax(exec_, island.block_begin, island.block_end,
+               DiagonalBody<T>{numbers.system.dof_start, numbers.diagonal_value,
+                               numbers.system.values, island.dof_begin, view_of(memory_.weights)});
+  }
 
   /// Goes on until judged done, out of budget, or far off.
   /// @param most           outer iterations
   /// @param impulse        to start from, [3 slots]
   /// @param body_velocity  to start from, [dofs]
   void solve(std::int64_t most,
-             const std::vector<double>& impulse,
-             const std::vector<double>& body_velocity,
+             View<const double> impulse,
+             View<const double> body_velocity,
              IslandOutcome& outcome) {
-    state_.impulse.assign(impulse.begin(), impulse.end());
-    state_.body_velocity.assign(body_velocity.begin(), body_velocity.end());
-    state_.defect.resize(state_.body_velocity.size());
+    convert(exec_, impulse, view_of(memory_.impulse));
+    convert(exec_, body_velocity, now_);
     iterate(most, outcome);
     outcome.contact_updates = outcome.sweeps * pipeline_.island().contact_count();
   }
 
   bool is_lost() const { return is_lost_; }
-  std::vector<double> impulse() const { return {state_.impulse.begin(), state_.impulse.end()}; }
-  std::vector<double> body_velocity() const {
-    return {state_.body_velocity.begin(), state_.body_velocity.end()};
+  /// Where it has come to, in float64: r, [3 slots].
+  View<const double> impulse() {
+    return memory_.in_double(exec_, view_of(memory_.impulse), memory_.double_impulse);
+  }
+  /// v, [dofs].
+  View<const double> body_velocity() {
+    return memory_.in_double(exec_, now_, memory_.double_body_velocity);
   }
 
  private:
+  template <class U>
+  using Vector = typename Exec::template Vector<U>;
+
+  struct Memory {
+    Vector<T> impulse, velocity, body_velocity, before, defect;
+    Vector<double> weights;  ///< the diagonal of A, nearly the metric of the iteration
+    Vector<T> mixed;
+    Vector<double> double_impulse, double_body_velocity;  ///< for float32
+
+    Memory(Exec& exec, const ContactNumbers<T>& numbers, const ContactIsland& island) {
+      const std::int64_t rows = numbers.bodies.offset.size, dofs = numbers.load.size;
+      for (Vector<T>* values : {&impulse, &velocity}) exec.resize(*values, rows);
+      for (Vector<T>* values : {&body_velocity, &before, &defect}) exec.resize(*values, dofs);
+      const std::int64_t size = island.dof_end - island.dof_begin;
+      exec.resize(weights, size);
+      exec.resize(mixed, AndersonMixer<Exec, T>::columns * size);
+      if (std::is_same_v<T, double>) return;
+      exec.resize(double_impulse, rows);
+      exec.resize(double_body_velocity, dofs);
+    }
+    ContactState<T> state() {
+      return {view_of(impulse), view_of(velocity), view_of(body_velocity), view_of(defect), {}, {}};
+    }
+    View<const double> in_double(Exec& exec, View<const T> values, Vector<double>& wide) {
+      if constexpr (std::is_same_v<T, double>) {
+        return values;
+      } else {
+        convert(exec, values, view_of(wide));
+        return view_of(std::as_const(wide));
+      }
+    }
+  };
+
   void iterate(std::int64_t most, IslandOutcome& outcome) {
     switch (options_.method) {
       case ContactMethod::gauss_seidel:
@@ -88,17 +134,19 @@ class OuterIteration {
 
   template <class Accelerator>
   void iterate(std::int64_t most, IslandOutcome& outcome) {
-    Accelerator accelerator(exec_, weights_);
+    const View<const double> weights = view_of(std::as_const(memory_.weights));
+    Accelerator accelerator(exec_, weights, view_of(memory_.mixed));
     const std::int64_t first = outcome.outer_iterations + 1;
     double start = size_of_velocity();
     while (outcome.outer_iterations < most) {
-      std::swap(before_, state_.body_velocity);
+      std::swap(before_, now_);
+      pipeline_.use_body_velocity(now_);
       pipeline_.step_bodies(before_, static_cast<T>(options_.relaxation));
       for (int sweep = 0; sweep < inner_sweeps_; ++sweep) pipeline_.sweep({});
       outcome.sweeps += inner_sweeps_;
       ++outcome.outer_iterations;
-      const View<const T> before = {before_.data() + pipeline_.island().dof_begin,
-                                    pipeline_.body_velocity().size};
+      const View<const T> before =
+          part_of(before_, pipeline_.island().dof_begin, pipeline_.island().dof_end);
       const double defect = accelerator.observe(before, pipeline_.body_velocity());
       if (outcome.outer_iterations == first) {
         start += defect;
@@ -115,9 +163,9 @@ class OuterIteration {
   }
 
   double size_of_velocity() {
-    const std::vector<T> rest(weights_.size(), T(0));
-    const View<const T> v = pipeline_.body_velocity();
-    return defect_of(exec_, weights_, view_of(rest), v);
+    const SizeBody<T> body = {view_of(std::as_const(memory_.weights)), pipeline_.body_velocity()};
+    return std::sqrt(
+        exec_.template sum<PlainSums<1>>("contact/mix", 0, body.x.size, body).value[0]);
   }
 
   /// Whether rounding is, or may be, what keeps the defect from falling.
@@ -140,38 +188,61 @@ class OuterIteration {
     return excess;
   }
 
-  /// The diagonal of A: nearly the metric of the iteration.
-  static std::vector<double> diagonal_of(const ContactStructure& structure,
-                                         const ContactSystem<T>& system,
-                                         const ContactIsland& island) {
-    std::vector<double> diagonal;
-    for (std::int64_t b = island.block_begin; b < island.block_end; ++b) {
-      const auto block = static_cast<std::size_t>(b);
-      const std::int64_t size = structure.dof_start[block + 1] - structure.dof_start[block];
-      for (std::int64_t k = 0; k < size; ++k) {
-        diagonal.push_back(system.system[static_cast<std::size_t>(structure.diagonal_value[block] +
-                                                                  k * (size + 1))]);
-      }
-    }
-    return diagonal;
-  }
-
   static constexpr std::int64_t first_check = 32;
   static constexpr double divergence = 1e8;  ///< of the velocities: nothing comes back from there
 
   Exec& exec_;
   const ContactOptions& options_;
-  ContactState<T> state_;
-  ContactPipeline<Exec, T> pipeline_;
   CoupledJudge<Exec>& judge_;
   int inner_sweeps_;
-  std::vector<double> weights_;
-  std::vector<T> before_;  ///< v of the step before, [dofs]
+  Memory memory_;
+  ContactPipeline<Exec, T> pipeline_;
+  View<T> now_, before_;  ///< v, and that of the step before; change places
   double aim_ = 0;
   std::int64_t next_ = 2 * first_check;
   double lowest_ = std::numeric_limits<double>::infinity();
   std::int64_t lowest_at_ = 0;
   bool is_lost_ = false;
 };
+
+/// One coupled island by the outer iteration, from impulses or from nothing.
+/// @param rounded  the numbers in float32 where the options ask for that; else not read
+/// @param guess    [3 slots] of the whole problem, where the executor reads it; empty: none
+/// @param judge    of the island; has the best pair in the end
+template <class Exec>
+void solve_coupled_island(Exec& exec,
+                          const ContactOptions& options,
+                          const ContactNumbers<double>& numbers,
+                          const ContactNumbers<float>& rounded,
+                          View<const std::int64_t> color_start,
+                          const ContactIsland& island,
+                          View<const double> guess,
+                          std::int64_t most,
+                          CoupledJudge<Exec>& judge,
+                          IslandOutcome& outcome) {
+  judge.start(outcome);
+  if (outcome.reason == StopReason::converged) return;
+  typename Exec::template Vector<double> nothing_r, nothing_v;
+  exec.resize(nothing_r, numbers.bodies.offset.size);
+  exec.resize(nothing_v, numbers.load.size);
+  View<const double> r = view_of(std::as_const(nothing_r)), v = view_of(std::as_const(nothing_v));
+  if (guess.size > 0) {
+    judge.find_body_velocity(guess);
+    r = guess;
+    v = judge.body_velocity();
+  }
+  std::optional<OuterIteration<Exec, float>> coarse;
+  if (options.precision == ContactPrecision::float32) {
+    coarse.emplace(exec, options, rounded, color_start, island, judge);
+    coarse->solve(most, r, v, outcome);
+    if (outcome.reason == StopReason::converged) return;
+    if (!coarse->is_lost()) {
+      r = coarse->impulse();
+      v = coarse->body_velocity();
+    }
+  }
+  OuterIteration<Exec> outer(exec, options, numbers, color_start, island, judge);
+  outer.solve(most, r, v, outcome);
+}
 
 }  // namespace tetwarp

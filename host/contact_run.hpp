@@ -1,17 +1,15 @@
 /// @file contact_run.hpp
-/// All islands whose blocks A does not couple, in one scalar type.
+/// All islands whose blocks A does not couple, in one scalar type, on the host.
 #pragma once
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
 #include "host/contact_exec_cpu.hpp"
-#include "host/contact_methods.hpp"
-#include "host/contact_monitor.hpp"
-#include "host/contact_pipeline.hpp"
+#include "host/contact_memory.hpp"
+#include "kernels/contact_methods.hpp"
 
 namespace tetwarp {
 
@@ -27,11 +25,30 @@ struct IslandOutcome {
   ContactSums sums;        ///< of what is returned
   ContactSums free;        ///< of no impulses at all
   double free_square = 0;  ///< |q|^2
+
+  /// Takes the end of an island's solve by solve_island().
+  void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
 };
 
 inline ContactSwitches switches_of(const ContactOptions& options) {
   return {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
 }
+
+inline MethodPlan plan_of(const ContactOptions& options) {
+  return {options.method, options.tolerance / 100, options.max_sweeps};
+}
+
+/// Whether contacts that have come to rest may be left out of sweeps.
+inline bool freezes_contacts(const ContactOptions& options) {
+  return options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts;
+}
+
+/// What each island may leave over: half by its share in the error without impulses, half by its
+/// number of contacts, so that none has to be solved to nothing.
+/// @param outcomes  with `free` and `free_square` of islands that are not coupled
+std::vector<StopRule> stop_rules(const ContactOptions& options,
+                                 const ContactStructure& structure,
+                                 const std::vector<IslandOutcome>& outcomes);
 
 template <class T>
 class ContactRun {
@@ -45,18 +62,21 @@ class ContactRun {
         threads_(threads),
         structure_(structure),
         system_(system),
+        numbers_(system.numbers(structure)),
+        state_(system),
+        work_(system.constants.size()),
         outcomes_(outcomes) {
-    state_.impulse.assign(system.free_velocity.size(), T(0));
-    state_.velocity = system.free_velocity;
-    state_.body_velocity = system.body_free;
-    if (options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts) {
+    if (freezes_contacts(options)) {
       state_.calm.assign(system.constants.size(), 0);
       state_.left_out.assign(system.constants.size(), 0);
     }
-    find_rules();
+    for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
+      if (!island(i).is_coupled) measure_free(i);
+    }
+    rules_ = stop_rules(options, structure, outcomes);
   }
 
-  ContactState<T>& state() { return state_; }
+  HostContactState<T>& state() { return state_; }
   const ContactSystem<T>& system() const { return system_; }
   std::int64_t updates_skipped() const {
     std::int64_t sum = 0;
@@ -75,21 +95,19 @@ class ContactRun {
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
       if (island(i).is_coupled) continue;
       if (threads_ > 1 && island(i).contact_count() >= shared_from) {
-        solve_island(i, threads_);
+        go_on(i, threads_, options_.method);
       } else {
         small.push_back(i);
       }
     }
     const bool is_worth_it = threads_ > 1 && small.size() > 1 && system_.constants.size() > 128;
 #pragma omp parallel for schedule(dynamic) num_threads(threads_) if (is_worth_it)
-    for (std::size_t k = 0; k < small.size(); ++k) solve_island(small[k], 1);
+    for (std::size_t k = 0; k < small.size(); ++k) go_on(small[k], 1, options_.method);
   }
 
   /// More sweeps on one island, to the end of the budget.
   void insist(std::int64_t i) {
-    continue_island(i, threads_, [&](ContactMethods<CpuContactExec, T>& methods) {
-      methods.conjugate_directions(std::numeric_limits<std::int64_t>::max());
-    });
+    go_on(i, threads_, ContactMethod::nonlinear_cg);
   }
 
   /// Sums of an island, of the impulses at hand.
@@ -114,106 +132,46 @@ class ContactRun {
   /// Contacts of an island worth all threads. Waking them in the middle of a sweep costs as much as
   /// some thousand contacts do, and colors hold only a part of all.
   static constexpr std::int64_t shared_from = 16384;
-  static constexpr std::int64_t patience = 100;  ///< sweeps without a drop before a fallback
 
   const ContactIsland& island(std::int64_t i) const {
     return structure_.islands[static_cast<std::size_t>(i)];
   }
   ContactPipeline<CpuContactExec, T> pipeline_of(std::int64_t i, CpuContactExec& exec) {
-    return {exec, structure_, system_, island(i), switches_of(options_), state_};
+    return {
+        exec,         numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
+        state_.view()};
   }
 
-  /// What each island may leave over: half by its share in the error without impulses, half by its
-  /// number of contacts, so that none has to be solved to nothing.
-  void find_rules() {
+  void measure_free(std::int64_t i) {
     CpuContactExec exec(1);
-    std::vector<double> squares;
-    double total = 0;
-    std::int64_t contacts = 0;
-    for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
-      squares.push_back(0);
-      if (island(i).is_coupled) continue;
-      IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
-      outcome.free = pipeline_of(i, exec).measure();
-      outcome.free_square = 0;
-      for (std::int64_t k = 3 * island(i).slot_begin; k < 3 * island(i).slot_end; ++k) {
-        outcome.free_square +=
-            square_of(double{system_.free_velocity[static_cast<std::size_t>(k)]});
-      }
-      squares.back() =
-          options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
-      total += squares.back();
-      contacts += island(i).contact_count();
-    }
-    for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
-      const double share =
-          static_cast<double>(island(i).contact_count()) / static_cast<double>(contacts);
-      const double square = (squares[static_cast<std::size_t>(i)] + total * share) / 2;
-      rules_.push_back(
-          {options_.measure, options_.tolerance, options_.tolerance * std::sqrt(square)});
+    IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
+    outcome.free = pipeline_of(i, exec).measure();
+    outcome.free_square = 0;
+    for (std::int64_t k = 3 * island(i).slot_begin; k < 3 * island(i).slot_end; ++k) {
+      outcome.free_square += square_of(double{system_.free_velocity[static_cast<std::size_t>(k)]});
     }
   }
 
-  void solve_island(std::int64_t i, int threads) {
-    continue_island(i, threads, [&](ContactMethods<CpuContactExec, T>& methods) {
-      run_methods(methods, outcomes_[static_cast<std::size_t>(i)]);
-    });
-  }
-
-  template <class Run>
-  void continue_island(std::int64_t i, int threads, const Run& run) {
+  void go_on(std::int64_t i, int threads, ContactMethod method) {
     CpuContactExec exec(threads);
     ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
-    ContactMonitor<T> monitor(rules_[static_cast<std::size_t>(i)], outcome.sweeps,
-                              options_.max_sweeps);
-    ContactMethods<CpuContactExec, T> methods(pipeline, monitor);
-    if (!methods.is_done_at_start()) {
-      run(methods);
-      methods.restore_best();
-    }
-    outcome.reason = monitor.reason();
-    outcome.sweeps = monitor.sweeps();
-    outcome.contact_updates = monitor.sweeps() * pipeline.island().contact_count();
-    outcome.events.insert(outcome.events.end(), monitor.events().begin(), monitor.events().end());
-  }
-
-  void run_methods(ContactMethods<CpuContactExec, T>& methods, IslandOutcome& outcome) {
-    constexpr std::int64_t forever = std::numeric_limits<std::int64_t>::max();
-    switch (options_.method) {
-      case ContactMethod::gauss_seidel:
-        outcome.methods = {"gauss_seidel"};
-        methods.gauss_seidel(forever, {view_of(state_.calm), view_of(state_.left_out), true,
-                                       static_cast<T>(options_.tolerance / 100)});
-        return;
-      case ContactMethod::nonlinear_cg:
-        outcome.methods = {"nonlinear_cg"};
-        methods.conjugate_directions(forever);
-        return;
-      case ContactMethod::anderson:
-        outcome.methods = {"anderson"};
-        methods.anderson(forever);
-        return;
-      case ContactMethod::mass_splitting:
-        outcome.methods = {"mass_splitting"};
-        methods.mass_splitting(forever);
-        return;
-      case ContactMethod::automatic:
-      case ContactMethod::newton:
-        break;
-    }
-    outcome.methods = {"anderson"};
-    if (methods.anderson(patience) != StopReason::stalled) return;
-    methods.restore_best();
-    outcome.methods.push_back("nonlinear_cg");
-    methods.conjugate_directions(2 * patience);
+    HostEventLog log;
+    MethodPlan plan = plan_of(options_);
+    plan.method = method;
+    const IslandEnd end = solve_island(pipeline, rules_[static_cast<std::size_t>(i)], plan,
+                                       outcome.sweeps, work_.view(), log);
+    outcome.take(end, method, island(i).contact_count());
+    outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
   }
 
   const ContactOptions& options_;
   int threads_;
   const ContactStructure& structure_;
   const ContactSystem<T>& system_;
-  ContactState<T> state_;
+  ContactNumbers<T> numbers_;
+  HostContactState<T> state_;
+  HostMethodWork<T> work_;
   std::vector<StopRule> rules_;
   std::vector<IslandOutcome>& outcomes_;
 };

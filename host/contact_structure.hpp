@@ -8,21 +8,9 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact_islands.hpp"
-#include "kernels/body_relax.hpp"
-#include "kernels/contact_setup.hpp"
+#include "kernels/contact_numbers.hpp"
 
 namespace tetwarp {
-
-/// Contacts that influence each other, with the blocks of dofs they move.
-struct ContactIsland {
-  std::int64_t slot_begin = 0, slot_end = 0;    ///< its contacts
-  std::int64_t color_begin = 0, color_end = 0;  ///< its entries of color_start
-  std::int64_t block_begin = 0, block_end = 0;
-  std::int64_t dof_begin = 0, dof_end = 0;
-  bool is_coupled = false;  ///< A couples its blocks
-
-  std::int64_t contact_count() const { return slot_end - slot_begin; }
-};
 
 /// Contacts are kept in slots sorted by (island, color, index), blocks and dofs by island; the dofs
 /// of blocks that no contact reaches come last, in islands without contacts.

@@ -31,6 +31,7 @@ struct ContactSystem {
 
   DelassusView<T> delassus_view(const ContactStructure& structure) const;
   BodiesView<T> bodies_view(const ContactStructure& structure) const;
+  ContactNumbers<T> numbers(const ContactStructure& structure) const;
 };
 
 /// What was left out of a system because it cannot matter.
@@ -60,6 +61,27 @@ DelassusView<T> ContactSystem<T>::delassus_view(const ContactStructure& structur
 template <class T>
 BodiesView<T> ContactSystem<T>::bodies_view(const ContactStructure& structure) const {
   return {structure.pairs(), view_of(jacobian), view_of(response), view_of(offset)};
+}
+
+template <class T>
+ContactNumbers<T> ContactSystem<T>::numbers(const ContactStructure& structure) const {
+  ContactNumbers<T> numbers;
+  numbers.is_local = structure.is_local;
+  numbers.constants = view_of(constants);
+  numbers.free_velocity = view_of(free_velocity);
+  if (structure.is_local) {
+    numbers.delassus = delassus_view(structure);
+    return numbers;
+  }
+  numbers.bodies = bodies_view(structure);
+  numbers.block_contacts = structure.block_contacts();
+  numbers.body_free = view_of(body_free);
+  numbers.system = structure.system(view_of(system));
+  numbers.load = view_of(load);
+  numbers.diagonal_value = view_of(structure.diagonal_value);
+  numbers.inverse_start = view_of(structure.inverse_start);
+  numbers.inverse = view_of(inverse);
+  return numbers;
 }
 
 }  // namespace tetwarp

@@ -172,6 +172,23 @@ struct BodyStepBody {
   }
 };
 
+/// One index = one block: the diagonal of A in its dofs.
+template <class T>
+struct DiagonalBody {
+  View<const std::int64_t> dof_start;
+  View<const std::int64_t> diagonal_value;
+  View<const T> system;
+  std::int64_t first_dof;  ///< whose entry comes first
+  View<double> diagonal;
+
+  TETWARP_HD void operator()(std::int64_t b) const {
+    const std::int64_t size = dof_start[b + 1] - dof_start[b];
+    for (std::int64_t k = 0; k < size; ++k) {
+      diagonal[dof_start[b] + k - first_dof] = system[diagonal_value[b] + k * (size + 1)];
+    }
+  }
+};
+
 /// A run of blocks, shifted: index 0 is block `first`.
 template <class Body>
 struct FromBlock {
@@ -184,7 +201,10 @@ struct FromBlock {
 /// Any of the bodies above for blocks [first, last).
 /// Determinism: same bits on every back end with contraction off; contacts are gathered in order.
 template <class Exec, class Body>
-void body_relax(Exec& exec, std::int64_t first, std::int64_t last, const Body& body) {
+TETWARP_ANY_EXEC void body_relax(Exec& exec,
+                                 std::int64_t first,
+                                 std::int64_t last,
+                                 const Body& body) {
   exec.for_each("contact/relax", last - first, FromBlock<Body>{body, first});
 }
 

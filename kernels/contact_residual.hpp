@@ -139,12 +139,13 @@ struct ContactResidualBody {
 };
 
 /// Residual of contacts [first, last).
-/// Determinism: a fixed tree, same bits for any number of threads. Cost: 9 numbers per contact.
+/// Determinism: a fixed tree, same bits for any number of threads; each executor has its own.
+/// Cost: 9 numbers per contact.
 template <class Exec, class T>
-ContactSums contact_residual(Exec& exec,
-                             std::int64_t first,
-                             std::int64_t last,
-                             const ContactResidualBody<T>& body) {
+TETWARP_ANY_EXEC ContactSums contact_residual(Exec& exec,
+                                              std::int64_t first,
+                                              std::int64_t last,
+                                              const ContactResidualBody<T>& body) {
   return exec.template sum<ContactSums>("contact/residual", first, last, body);
 }
 

@@ -230,7 +230,9 @@ struct FromContact {
 /// Determinism: same bits for any number of threads. Cost: per contact its row of W, or J and the
 /// responses of its blocks once each.
 template <class Exec, class Body>
-void contact_sweep(Exec& exec, View<const std::int64_t> color_start, const Body& body) {
+TETWARP_ANY_EXEC void contact_sweep(Exec& exec,
+                                    View<const std::int64_t> color_start,
+                                    const Body& body) {
   for (std::int64_t k = 0; k + 1 < color_start.size; ++k) {
     exec.for_each("contact/sweep", color_start[k + 1] - color_start[k],
                   FromContact<Body>{body, color_start[k]});

@@ -5,13 +5,15 @@
 #include <math.h>  // not <cmath>: floor() and others for float, in the global namespace too
 
 // TETWARP_HD marks a function for both; TETWARP_HD_RARE keeps one out of line, whose registers a
-// hot loop should not pay for.
+// hot loop should not pay for. TETWARP_ANY_EXEC marks what runs where its executor does.
 #if defined(__CUDACC__)
 #define TETWARP_HD __host__ __device__ __forceinline__
 #define TETWARP_HD_RARE __host__ __device__ __noinline__ inline
+#define TETWARP_ANY_EXEC __host__ __device__
 #else
 #define TETWARP_HD inline __attribute__((always_inline))
 #define TETWARP_HD_RARE inline __attribute__((noinline))
+#define TETWARP_ANY_EXEC
 #endif
 
 namespace tetwarp {

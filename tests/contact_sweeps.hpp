@@ -7,11 +7,11 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact_device.hpp"
 #include "host/contact_exec_cpu.hpp"
-#include "host/contact_pipeline.hpp"
+#include "host/contact_memory.hpp"
 #include "host/contact_structure.hpp"
 #include "host/contact_system.hpp"
+#include "kernels/contact_pipeline.hpp"
 #include "tests/contact_scenes.hpp"
 
 namespace tetwarp::test {
@@ -25,17 +25,6 @@ struct SweepScene {
       : structure(make_structure(problem, {.converged_islands = separates_islands})) {
     ContactSavings savings;
     fill_system(problem, {}, structure, system, savings);
-  }
-
-  /// All islands, with what error may remain in each.
-  SweepTask task(const SweepLimit& limit, ContactSwitches switches, double allowed) const {
-    SweepTask task{{}, limit, switches};
-    for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
-      const ContactIsland& island = structure.islands[static_cast<std::size_t>(i)];
-      task.islands.push_back({island.slot_begin, island.slot_end, island.color_begin,
-                              island.color_end, island.dof_begin, island.dof_end, allowed});
-    }
-    return task;
   }
 };
 
@@ -73,11 +62,11 @@ HostSweeps<T> sweep_on_host(const ContactStructure& structure,
                             const std::vector<T>& start,
                             std::int64_t sweeps) {
   CpuContactExec exec(1);
-  ContactState<T> state;
+  HostContactState<T> state(system);
   state.impulse = start;
-  state.velocity = system.free_velocity;
-  state.body_velocity = system.body_free;
-  ContactPipeline<CpuContactExec, T> pipeline(exec, structure, system, island, switches, state);
+  ContactPipeline<CpuContactExec, T> pipeline(exec, system.numbers(structure),
+                                              view_of(structure.color_start), island, switches,
+                                              state.view());
   pipeline.follow_impulses();
   for (std::int64_t s = 0; s < sweeps; ++s) pipeline.sweep({});
   const View<T> r = pipeline.impulse();

@@ -58,7 +58,7 @@ LinearCase bodies(double coupling) {
 using Linear = CoupledLinear<CpuContactExec>;
 
 Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
-  return Linear(exec, c.stages.structure, c.stages.system, c.stages.island());
+  return Linear(exec, c.stages.system.numbers(c.stages.structure), c.stages.island());
 }
 
 TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
@@ -70,8 +70,9 @@ TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
   for (const double share : {1e-1, 1e-4, 1e-8}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
-    const LinearProgress progress = linear.solve(
-        x, rest, [&](const LinearProgress& now) { return now.left <= share * now.moved; });
+    const LinearProgress progress =
+        linear.solve(view_of(x), view_of(rest),
+                     [&](const LinearProgress& now) { return now.left <= share * now.moved; });
 
     EXPECT_LE(c.size_of(samples::vector_of(x) - exact), share * size) << share;
     EXPECT_NEAR(progress.moved, size, share * size);
@@ -92,13 +93,13 @@ TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
     const auto dofs = c.goal.size();
     std::vector<double> rough(static_cast<std::size_t>(dofs), 0.0);
     std::vector<double> first = samples::list_of(samples::random_vector(random, dofs));
-    linear.solve(rough, first,
+    linear.solve(view_of(rough), view_of(first),
                  [](const LinearProgress& now) { return now.left <= 0.1 * now.moved; });
     const VectorXd exact = c.matrix.llt().solve(c.goal);
     std::vector<double> x(rough.size(), 0.0), rest = samples::list_of(c.goal);
     int questions = 0;
 
-    linear.solve(x, rest, [&](const LinearProgress& now) {
+    linear.solve(view_of(x), view_of(rest), [&](const LinearProgress& now) {
       const double error = c.size_of(samples::vector_of(x) - exact);
       ++questions;
       EXPECT_GE(now.left, error) << dofs << " dofs, question " << questions;
@@ -117,7 +118,7 @@ TEST(CoupledLinear, StopsWhereItIsToldTo) {
   Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
-  linear.solve(x, rest, [](const LinearProgress&) { return true; });
+  linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) { return true; });
 
   EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
@@ -130,7 +131,7 @@ TEST(CoupledLinear, RefusesASystemThatIsNotPositiveDefinite) {
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
   EXPECT_LT(c.matrix.selfadjointView<Eigen::Lower>().eigenvalues()(0), 0);
-  EXPECT_THROW(linear.solve(x, rest, [](const LinearProgress&) { return false; }),
+  EXPECT_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) { return false; }),
                ContactProblemError);
 }
 

@@ -97,15 +97,16 @@ TEST(OuterIteration, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
-  CoupledJudge<CpuContactExec> judge(exec, options, stages.structure, stages.system,
-                                     stages.island());
-  OuterIteration<CpuContactExec> outer(exec, options, stages.structure, stages.system,
-                                       stages.island(), judge);
+  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure);
+  CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island());
+  OuterIteration<CpuContactExec> outer(
+      exec, options, numbers, view_of(stages.structure.color_start), stages.island(), judge);
+  const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
+  const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;
   judge.start(outcome);
 
-  outer.solve(1, std::vector<double>(problem.velocity_offset.size(), 0.0),
-              std::vector<double>(problem.load.size(), 0.0), outcome);
+  outer.solve(1, view_of(no_impulse), view_of(no_velocity), outcome);
 
   EXPECT_EQ(outcome.reason, StopReason::converged);
   EXPECT_EQ(outcome.outer_iterations, 1);

@@ -1,25 +1,22 @@
 /// @file test_contact_simt.cpp
-/// The hand-mapped contact sweeps, run by emulation in several thread orders, give the bits of the
-/// host's sweeps.
+/// Islands solved by one block each, run by emulation in several thread orders on the host's own
+/// arrays: sweeps have the bits of the host, accelerated methods its answers.
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <string>
 #include <vector>
 
-#include <tetwarp/error.hpp>
-
 #include "host/contact_run.hpp"
+#include "tests/contact_methods.hpp"
+#include "tests/contact_stages.hpp"
 #include "tests/contact_sweeps.hpp"
 
-#include "tests/emulated_device.hpp"
+#include "kernels/contact_grid.cuh"
 
 namespace tetwarp::test {
 namespace {
-
-constexpr std::int64_t forever = std::numeric_limits<std::int64_t>::max();
 
 ContactSystem<double> system_in(const SweepScene& scene, double) {
   return scene.system;
@@ -33,32 +30,98 @@ bool has_bits_of(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/// 11 sweeps, not a multiple of how often the kernel looks, of all islands: in shared memory under
-/// every schedule, in place under one.
+enum class Place { shared, global };
+
+/// All islands of a scene, from small impulses.
+template <class T>
+class IslandSolves {
+ public:
+  IslandSolves(const SweepScene& scene, const MethodPlan& plan, const StopRule& rule)
+      : scene_(scene), system_(system_in(scene, T{})), plan_(plan), rule_(rule) {}
+
+  ContactSwitches switches;
+  std::int64_t events = 32;  ///< room for each island
+  bool freezes = false;
+
+  /// Impulses by blocks; `results` and `logs` of each island.
+  std::vector<T> by_blocks(Place place) {
+    HostContactState<T> state = start();
+    HostMethodWork<T> work(system_.constants.size());
+    std::vector<IslandTask> tasks;
+    for (const ContactIsland& island : scene_.structure.islands) tasks.push_back({island, rule_});
+    results.assign(tasks.size(), {});
+    logs.assign(tasks.size() * static_cast<std::size_t>(events), {-1, -1});
+    contact_solve_islands<T>(
+        nullptr,
+        {system_.numbers(scene_.structure), state.view(), work.view(),
+         view_of(scene_.structure.color_start), switches, plan_, view_of(std::as_const(tasks)),
+         place == Place::shared ? shared_values_for<T>(view_of(std::as_const(tasks))) : 0,
+         view_of(results), view_of(logs), events});
+    return state.impulse;
+  }
+
+  /// By the host, one island after the other.
+  std::vector<T> by_host() {
+    HostContactState<T> state = start();
+    HostMethodWork<T> work(system_.constants.size());
+    CpuContactExec exec(1);
+    host_ends.clear();
+    host_logs.clear();
+    for (const ContactIsland& island : scene_.structure.islands) {
+      ContactPipeline<CpuContactExec, T> pipeline(exec, system_.numbers(scene_.structure),
+                                                  view_of(scene_.structure.color_start), island,
+                                                  switches, state.view());
+      HostEventLog log;
+      host_ends.push_back(solve_island(pipeline, rule_, plan_, 0, work.view(), log));
+      host_sums.push_back(pipeline.measure());
+      host_logs.push_back(log.events);
+    }
+    return state.impulse;
+  }
+
+  std::vector<IslandResult> results;
+  std::vector<ContactEvent> logs;
+  std::vector<IslandEnd> host_ends;
+  std::vector<ContactSums> host_sums;
+  std::vector<std::vector<ContactEvent>> host_logs;
+
+ private:
+  HostContactState<T> start() const {
+    HostContactState<T> state(system_);
+    state.impulse.assign(state.impulse.size(), T(0.001));
+    if (freezes) {
+      state.calm.assign(system_.constants.size(), 0);
+      state.left_out.assign(system_.constants.size(), 0);
+    }
+    return state;
+  }
+
+  const SweepScene& scene_;
+  ContactSystem<T> system_;
+  MethodPlan plan_;
+  StopRule rule_;
+};
+
+/// 11 sweeps of all islands: in shared memory under every schedule, in place under one.
 template <class T>
 void expect_equal_bits(const ContactProblem& problem,
                        ContactSwitches switches = {},
-                       bool separates_islands = false) {
-  constexpr std::int64_t sweeps = 11;
+                       bool separates_islands = false,
+                       bool freezes = false) {
   const SweepScene scene(problem, separates_islands);
-  const ContactSystem<T> system = system_in(scene, T{});
-  const SweepTask task = scene.task({true, 0, sweeps, forever}, switches, 0);
-  const std::vector<T> start(system.free_velocity.size(), T(0.001));
+  const MethodPlan plan = {ContactMethod::gauss_seidel, 1e-3, freezes ? 60 : 11};
+  IslandSolves<T> solves(scene, plan, {ContactMeasure::eta, 0, 0});
+  solves.switches = switches;
+  solves.freezes = freezes;
+  const std::vector<T> host = solves.by_host();
   const auto expect_host_bits = [&](Place place) {
-    std::vector<T> best = start;
-    const std::vector<SweepProgress> progress =
-        EmulatedDevice(place).sweep(task, scene.structure, system, best);
-    for (std::size_t i = 0; i < progress.size(); ++i) {
-      const ContactIsland& island = scene.structure.islands[i];
-      const HostSweeps<T> host =
-          sweep_on_host(scene.structure, system, island, switches, start, progress[i].best_sweep);
-      ASSERT_TRUE(has_bits_of(part_of(best, island), host.impulse))
-          << "island " << i << " of " << island.contact_count() << " contacts";
+    EXPECT_TRUE(has_bits_of(solves.by_blocks(place), host));
+    for (std::size_t i = 0; i < solves.results.size(); ++i) {
+      EXPECT_EQ(solves.results[i].end.sweeps, solves.host_ends[i].sweeps);
       // Same terms, another tree.
-      EXPECT_NEAR(progress[i].sums.eta, host.sums.eta, 1e-12 * host.sums.eta);
-      EXPECT_EQ(progress[i].sums.largest, host.sums.largest);
-      EXPECT_TRUE(progress[i].excess == 0 || progress[i].sweeps == sweeps);
-      EXPECT_GE(progress[i].best_sweep, sweeps_per_look);
+      const ContactSums& sums = solves.results[i].sums;
+      EXPECT_NEAR(sums.eta, solves.host_sums[i].eta, 1e-12 * solves.host_sums[i].eta);
+      EXPECT_EQ(sums.largest, solves.host_sums[i].largest);
     }
   };
   simt::for_each_schedule([&](const simt::Schedule&) { expect_host_bits(Place::shared); });
@@ -71,31 +134,31 @@ ContactProblem packed_spheres(std::int64_t contacts, const scenes::Glue& glue = 
   return first_contacts(scenes::sphere_packing({.seed = 3, .edge = 4, .glue = glue}), contacts);
 }
 
-TEST(ContactSweepSimt, LocalProblemsHaveTheBitsOfTheHost) {
+TEST(ContactIslandSimt, LocalProblemsHaveTheBitsOfTheHost) {
   for (const std::int64_t contacts : sizes) {
     expect_equal_bits<double>(scenes::random_local({.seed = 5, .contacts = contacts}));
     expect_equal_bits<float>(scenes::random_local({.seed = 6, .contacts = contacts}));
   }
 }
 
-TEST(ContactSweepSimt, RigidBodiesHaveTheBitsOfTheHost) {
+TEST(ContactIslandSimt, RigidBodiesHaveTheBitsOfTheHost) {
   for (const std::int64_t contacts : sizes) {
     expect_equal_bits<double>(packed_spheres(contacts));
     expect_equal_bits<float>(packed_spheres(contacts));
-    expect_equal_bits<double>(first_contacts(scenes::box_stack({.boxes = 25}), contacts));
   }
+  expect_equal_bits<double>(first_contacts(scenes::box_stack({.boxes = 25}), 33));
 }
 
 /// More contacts of one color than a block has threads.
-TEST(ContactSweepSimt, WideColorsHaveTheBitsOfTheHost) {
+TEST(ContactIslandSimt, WideColorsHaveTheBitsOfTheHost) {
   const ContactProblem problem = scenes::random_local({.seed = 7, .contacts = 700});
   const ContactStructure structure = make_structure(problem, {.converged_islands = false});
-  EXPECT_GT(structure.color_start[1] - structure.color_start[0], sweep_threads);
+  EXPECT_GT(structure.color_start[1] - structure.color_start[0], island_threads);
 
   expect_equal_bits<double>(problem);
 }
 
-TEST(ContactSweepSimt, EveryLawAndRuleHasTheBitsOfTheHost) {
+TEST(ContactIslandSimt, EveryLawAndRuleHasTheBitsOfTheHost) {
   const scenes::Glue glue = {1e6, 0.7};
   for (const ContactSwitches switches :
        {ContactSwitches{true, false}, ContactSwitches{false, true}, ContactSwitches{true, true}}) {
@@ -106,7 +169,7 @@ TEST(ContactSweepSimt, EveryLawAndRuleHasTheBitsOfTheHost) {
   }
 }
 
-TEST(ContactSweepSimt, IslandsSideBySideHaveTheBitsOfTheHost) {
+TEST(ContactIslandSimt, IslandsSideBySideHaveTheBitsOfTheHost) {
   const ContactProblem spheres = scenes::sphere_packing({.seed = 9, .edge = 5, .kept = 0.2});
   EXPECT_GT(make_structure(spheres, {}).contact_islands, 5);
 
@@ -114,118 +177,101 @@ TEST(ContactSweepSimt, IslandsSideBySideHaveTheBitsOfTheHost) {
   expect_equal_bits<float>(spheres, {}, true);
 }
 
-TEST(ContactSweepSimt, AnIslandStopsWhereItsRuleHolds) {
-  const SweepScene scene(scenes::random_local({.seed = 10, .contacts = 60}), true);
-  for (const ContactMeasure measure : {ContactMeasure::eta, ContactMeasure::fclib}) {
-    const StopRule rule{measure, 1e-7, 1e-7};
-    const SweepTask task =
-        scene.task({measure == ContactMeasure::eta, 1e-7, 5000, forever}, {}, rule.allowed);
-    std::vector<double> best(scene.system.free_velocity.size(), 0.0);
+TEST(ContactIslandSimt, FrozenContactsAreTheSameOnes) {
+  expect_equal_bits<double>(packed_spheres(100), {}, false, true);
+}
 
-    const auto progress = EmulatedDevice().sweep(task, scene.structure, scene.system, best);
-
-    for (std::size_t i = 0; i < progress.size(); ++i) {
-      const HostSweeps<double> host =
-          sweep_on_host(scene.structure, scene.system, scene.structure.islands[i], {}, best, 0);
-      EXPECT_LE(rule.excess_of(host.sums), 1.0 + 1e-6);
-      EXPECT_NEAR(rule.excess_of(host.sums), progress[i].excess, 1e-6);
-      EXPECT_LT(progress[i].sweeps, 5000);
-      EXPECT_EQ(progress[i].sweeps, progress[i].best_sweep);
+/// Every method, to a tolerance: the same answer but for the order of sums.
+TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
+  const ContactProblem problems[] = {
+      scenes::random_local({.seed = 10, .contacts = 60, .neighbors = 2}), packed_spheres(100)};
+  for (const ContactProblem& problem : problems) {
+    const SweepScene scene(problem, true);
+    for (const ContactMethod method : methods) {
+      IslandSolves<double> solves(scene, {method, 0, 5000}, {ContactMeasure::eta, 1e-9, 1e-9});
+      const std::vector<double> host = solves.by_host();
+      for (const Place place : {Place::shared, Place::global}) {
+        solves.by_blocks(place);
+        for (std::size_t i = 0; i < solves.results.size(); ++i) {
+          const IslandResult& result = solves.results[i];
+          EXPECT_EQ(result.end.reason, StopReason::converged) << name_of(method);
+          EXPECT_LE(StopRule({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(result.sums), 1.001);
+          EXPECT_NEAR(static_cast<double>(result.end.sweeps),
+                      static_cast<double>(solves.host_ends[i].sweeps),
+                      5 + 0.2 * static_cast<double>(solves.host_ends[i].sweeps))
+              << name_of(method);
+        }
+      }
     }
   }
 }
 
 /// Rounding ends every progress towards no error at all.
-TEST(ContactSweepSimt, AnIslandThatGetsNoBetterGivesUp) {
+TEST(ContactIslandSimt, AnIslandThatGetsNoBetterGivesUp) {
   const SweepScene scene(scenes::random_local({.seed = 11, .contacts = 20}), false);
-  std::vector<float> best(scene.system.free_velocity.size(), 0.0f);
+  IslandSolves<float> solves(scene, {ContactMethod::automatic, 0, 100000},
+                             {ContactMeasure::eta, 0, 0});
 
-  const auto progress = EmulatedDevice().sweep(scene.task({true, 0, 100000, 40}, {}, 0),
-                                               scene.structure, make_float32(scene.system), best);
+  solves.by_blocks(Place::shared);
 
-  EXPECT_LT(progress[0].sweeps, 100000);
-  EXPECT_GE(progress[0].sweeps, progress[0].drop_sweep + (progress[0].excess > 1 ? 40 : 0));
+  EXPECT_LT(solves.results[0].end.sweeps, 100000);
+  EXPECT_TRUE(solves.results[0].end.has_turned || solves.results[0].sums.eta == 0);
 }
 
-TEST(ContactSweepSimt, LargeIslandsAreSummedInAFixedTree) {
-  const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
-  const ContactIsland& island = scene.structure.islands[0];
-  std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);
-  const HostSweeps<double> host =
-      sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
-  std::vector<double> velocity(impulse.size());
-  const DelassusSweepBody<double> body = {scene.system.delassus_view(scene.structure),
-                                          view_of(scene.system.constants),
-                                          {},
-                                          {},
-                                          view_of(impulse)};
-  const auto term = term_of(body, view_of(scene.system.free_velocity), view_of(velocity));
-  std::vector<ContactSums> first;
+/// With room for few events: even spaces, rising, the last one kept.
+TEST(ContactIslandSimt, EventsAreThinnedOutEvenly) {
+  const SweepScene scene(packed_spheres(100), false);
+  IslandSolves<double> solves(scene, {ContactMethod::gauss_seidel, 0, 300},
+                              {ContactMeasure::eta, 0, 0});
+  solves.events = 8;
+  solves.by_host();
+  const std::vector<ContactEvent>& all = solves.host_logs[0];
+  ASSERT_GT(all.size(), 16U);
 
-  simt::for_each_schedule([&](const simt::Schedule&) {
-    std::vector<ContactSums> sums(static_cast<std::size_t>(sums_needed(island.contact_count())));
-    contact_sums(nullptr, island.slot_begin, island.slot_end, term, view_of(sums));
-    if (first.empty()) first = sums;
-    EXPECT_EQ(sums.back().eta, first.back().eta);
-    EXPECT_NEAR(sums.back().eta, host.sums.eta, 1e-12 * host.sums.eta);
-    EXPECT_NEAR(sums.back().fclib, host.sums.fclib, 1e-12 * host.sums.fclib);
-    EXPECT_EQ(sums.back().deepest, host.sums.deepest);
-    EXPECT_EQ(sums.back().largest_contact, host.sums.largest_contact);
-  });
-}
+  solves.by_blocks(Place::shared);
 
-TEST(SweepProgress, NeverTakesANanForTheBest) {
-  SweepProgress progress;
-  ContactSums sums;
-  sums.eta = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(progress.take(sums, 0, {true, 0, 100, 50}, 1));
-  sums.eta = 4;
-  EXPECT_TRUE(progress.take(sums, 8, {true, 0, 100, 50}, 1));
-  EXPECT_FALSE(progress.is_done);
-  sums.eta = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(progress.take(sums, 16, {true, 0, 100, 50}, 1));
-
-  EXPECT_EQ(progress.excess, 2);
-  EXPECT_EQ(progress.best_sweep, 8);
-}
-
-/// Both precisions end within what was asked, judged on the host in float64.
-TEST(SweepOnDevice, SolvesEveryIslandToItsRule) {
-  const SweepScene scene(scenes::random_local({.seed = 13, .contacts = 40, .neighbors = 2}), true);
-  const std::size_t islands = static_cast<std::size_t>(scene.structure.contact_islands);
-  for (const ContactPrecision precision : {ContactPrecision::float64, ContactPrecision::float32}) {
-    ContactOptions options;
-    options.precision = precision;
-    options.tolerance = 1e-4;
-    const std::vector<StopRule> rules(islands, {ContactMeasure::eta, 1e-4, 1e-4});
-    std::vector<IslandOutcome> outcomes(islands);
-    EmulatedDevice device;
-
-    const std::vector<double> impulse =
-        sweep_on_device(device, options, scene.structure, scene.system, rules, {}, outcomes);
-
-    for (std::size_t i = 0; i < islands; ++i) {
-      const ContactIsland& island = scene.structure.islands[i];
-      const HostSweeps<double> host =
-          sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
-      EXPECT_LE(rules[i].excess_of(host.sums), 1.01);  // float32 judged itself a little otherwise
-      EXPECT_EQ(outcomes[i].reason, StopReason::converged);
-      EXPECT_EQ(outcomes[i].contact_updates, outcomes[i].sweeps * island.contact_count());
-    }
+  const std::int64_t kept = solves.results[0].events;
+  ASSERT_GE(kept, 4);
+  ASSERT_LE(kept, 8);
+  EXPECT_EQ(solves.logs[0].sweep, all[0].sweep);
+  EXPECT_EQ(solves.logs[static_cast<std::size_t>(kept) - 1].sweep, all.back().sweep);
+  std::size_t stride = 0;
+  while (stride < all.size() && all[stride].sweep != solves.logs[1].sweep) ++stride;
+  for (std::int64_t k = 0; k + 1 < kept; ++k) {
+    EXPECT_EQ(solves.logs[static_cast<std::size_t>(k)].sweep,
+              all[static_cast<std::size_t>(k) * stride].sweep);
   }
 }
 
-TEST(SweepOnDevice, LeavesCoupledIslandsAlone) {
-  const SweepScene scene(scenes::elastic_slab({.cubes = {3, 3, 2}, .contacts = 9}), true);
-  std::vector<IslandOutcome> outcomes(1);
-  EmulatedDevice device;
-  const std::vector<double> start(scene.system.free_velocity.size(), 0.5);
-
-  EXPECT_EQ(
-      sweep_on_device(device, {}, scene.structure, scene.system, {StopRule{}}, start, outcomes),
-      start);
-
-  EXPECT_TRUE(outcomes[0].methods.empty());
+/// The sums of a whole device: its own fixed tree, whatever the order of threads.
+TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
+  const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
+  std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);
+  const ContactIsland& island = scene.structure.islands[0];
+  const HostSweeps<double> host =
+      sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
+  std::vector<double> velocity(impulse.size());
+  CpuContactExec cpu(1);
+  cpu.for_each("", island.contact_count(),
+               ContactVelocityBody<DelassusView<double>, double>{
+                   scene.system.delassus_view(scene.structure), impulse.data(), view_of(velocity)});
+  const ContactResidualBody<double> body = {view_of(scene.system.constants),
+                                            {},
+                                            view_of(std::as_const(impulse)),
+                                            view_of(std::as_const(velocity)),
+                                            view_of(scene.system.free_velocity)};
+  std::vector<double> first;
+  simt::for_each_schedule([&](const simt::Schedule&) {
+    CudaExec exec(0);
+    GridContactExec grid(exec);
+    const auto sums = grid.sum<ContactSums>("", 0, island.contact_count(), body);
+    if (first.empty()) first = {sums.eta};
+    EXPECT_EQ(sums.eta, first[0]);
+    EXPECT_NEAR(sums.eta, host.sums.eta, 1e-12 * host.sums.eta);
+    EXPECT_NEAR(sums.fclib, host.sums.fclib, 1e-12 * host.sums.fclib);
+    EXPECT_EQ(sums.deepest, host.sums.deepest);
+    EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
+  });
 }
 
 }  // namespace

@@ -31,8 +31,7 @@ enum class AdhesionRule {
 };
 
 enum class ContactMethod {
-  automatic,       ///< accelerated sweeps, and others in turn when the residual stops dropping;
-                   ///< back end cuda: plain sweeps there, the others on the host after them
+  automatic,       ///< accelerated sweeps, and others in turn when the residual stops dropping
   gauss_seidel,    ///< projected Gauss-Seidel over colors
   nonlinear_cg,    ///< nonsmooth nonlinear conjugate gradients over sweeps
   anderson,        ///< Anderson acceleration of sweeps, window 8

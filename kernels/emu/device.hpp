@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,9 @@
 namespace tetwarp::simt {
 
 struct Stream;
+
+/// What was put on a stream while it was captured.
+using Recording = std::vector<std::function<void()>>;
 
 /// A place in a stream.
 struct Event {
@@ -39,8 +43,10 @@ struct Stream {
   std::deque<Item> work;
   std::uint64_t queued = 0;
   std::uint64_t done = 0;
+  std::optional<Recording> recording;  ///< takes what is put on the stream, which does not run
 
   void enqueue(std::function<void()> run, const Event& after = {}) {
+    if (recording) return recording->push_back(std::move(run));
     work.push_back({after, std::move(run)});
     ++queued;
   }

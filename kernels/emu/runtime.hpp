@@ -181,3 +181,5 @@ inline cudaError_t cudaMemsetAsync(void* data, int value, std::size_t size, cuda
   return cudaSuccess;
 }
 // NOLINTEND(readability-identifier-naming)
+
+#include "kernels/emu/graph.hpp"  // IWYU pragma: export: reads the names above
