@@ -23,29 +23,58 @@ class CudaContactDevice final : public ContactDevice {
   CudaContactDevice(int device, std::string name)
       : exec_(device), grid_(exec_), name_(std::move(name)) {}
 
-  void set_problem(const ContactOptions& options,
-                   const ContactStructure& structure,
-                   const ContactSystem<double>& system) override {
+  ContactSavings set_problem(const ContactOptions& options,
+                             const ContactStructure& structure,
+                             const ContactInput& input) override {
     exec_.use_stream(nullptr);  // makes the device current on this thread
     grid_.forget_sweeps();
+    if (serial_ != structure.serial) indices_ = indices_there(grid_, structure.indices(), arrays_);
+    serial_ = structure.serial;
     structure_ = &structure;
-    indices_.put(grid_, structure);
-    float64_.put(grid_, structure, indices_, system);
+    float64_.resize(grid_, indices_);
+    const ContactSavings savings = fill_numbers(grid_, input_there(grid_, input, given_), indices_,
+                                                choices_of(options), float64_.views());
+    numbers_ = float64_.numbers(indices_);
     if (options.precision == ContactPrecision::float32) {
-      float32_.put(grid_, structure, indices_, make_float32(system));
+      convert_system(grid_, indices_, float64_, float32_);
+      rounded_ = float32_.numbers(indices_);
     }
+    return savings;
   }
 
   std::int64_t solve_uncoupled(const ContactOptions& options,
-                               const std::vector<StopRule>& rules,
                                std::vector<double>& impulse,
+                               std::vector<double>& body_velocity,
                                std::vector<IslandOutcome>& outcomes) override {
+    state64_.reset(grid_, numbers_, freezes_contacts(options));
+    sort_islands();
+    grid_.resize(state64_.impulse, numbers_.free_velocity.size);
+    measure(options, [&](std::size_t i, const IslandSums& sums) {
+      outcomes[i].free = sums.sums;
+      outcomes[i].free_square = sums.free_square;
+    });
+    const std::vector<StopRule> rules = stop_rules(options, *structure_, outcomes);
+    put(impulse, state64_.impulse);
+    std::int64_t skipped = 0;
     if (options.precision == ContactPrecision::float64) {
-      return solve(options, rules, impulse, float64_, outcomes);
+      skipped = solve(options, rules, numbers_, state64_, outcomes);
+    } else {
+      state32_.reset(grid_, rounded_, freezes_contacts(options));
+      state32_.impulse.resize(numbers_.free_velocity.size);
+      convert(grid_, View<const double>(view_of(state64_.impulse)), view_of(state32_.impulse));
+      skipped = solve(options, rules, rounded_, state32_, outcomes);
+      convert(grid_, View<const float>(view_of(state32_.impulse)), view_of(state64_.impulse));
     }
-    std::vector<float> rounded(impulse.begin(), impulse.end());
-    const std::int64_t skipped = solve(options, rules, rounded, float32_, outcomes);
-    impulse.assign(rounded.begin(), rounded.end());
+    measure(options, [&](std::size_t i, const IslandSums& sums) {
+      IslandOutcome& outcome = outcomes[i];
+      outcome.sums = sums.sums;
+      const bool is_done = rules[i].excess_of(sums.sums) <= 1;
+      if (is_done != (outcome.reason == StopReason::converged)) {
+        outcome.reason = is_done ? StopReason::converged : StopReason::exhausted;
+      }
+    });
+    get(state64_.impulse, impulse);
+    get(state64_.body_velocity, body_velocity);
     return skipped;
   }
 
@@ -58,11 +87,10 @@ class CudaContactDevice final : public ContactDevice {
                      IslandOutcome& outcome) override {
     grid_.forget_sweeps();
     DeviceVector<double> guess_there;
-    grid_.put(guess.data(), static_cast<std::int64_t>(guess.size()), guess_there);
-    CoupledJudge<GridContactExec> judge(grid_, options, float64_.numbers, island);
-    solve_coupled_island(grid_, options, float64_.numbers, float32_.numbers,
-                         view_of(structure_->color_start), island,
-                         view_of(std::as_const(guess_there)), most, judge, outcome);
+    put(guess, guess_there);
+    CoupledJudge<GridContactExec> judge(grid_, options, numbers_, island);
+    solve_coupled_island(grid_, options, numbers_, rounded_, view_of(structure_->color_start),
+                         island, view_of(std::as_const(guess_there)), most, judge, outcome);
     grid_.get(judge.best_impulse(), impulse.data());
     grid_.get(judge.best_body_velocity(), body_velocity.data());
   }
@@ -73,87 +101,113 @@ class CudaContactDevice final : public ContactDevice {
   static constexpr std::int64_t events_per_island = 32;
 
   template <class T>
-  std::int64_t solve(const ContactOptions& options,
-                     const std::vector<StopRule>& rules,
-                     std::vector<T>& impulse,
-                     DeviceSystem<T>& system,
-                     std::vector<IslandOutcome>& outcomes) {
-    std::vector<std::int64_t> large, small;
+  void put(const std::vector<T>& host, DeviceVector<T>& there) {
+    grid_.put(host.data(), static_cast<std::int64_t>(host.size()), there);
+  }
+  template <class T>
+  void get(const DeviceVector<T>& there, std::vector<T>& host) {
+    host.resize(static_cast<std::size_t>(view_of(there).size));
+    grid_.get(view_of(there), host.data());
+  }
+
+  /// Those for blocks, the longest first, so that none of them is begun last; and the large ones.
+  void sort_islands() {
+    small_.clear();
+    large_.clear();
     for (std::int64_t i = 0; i < structure_->contact_islands; ++i) {
       if (island(i).is_coupled) continue;
-      (island(i).contact_count() > block_contacts ? large : small).push_back(i);
+      (island(i).contact_count() > block_contacts ? large_ : small_).push_back(i);
     }
-    if (large.empty() && small.empty()) return 0;
-    // Long ones first, so that none of them is begun last.
-    std::stable_sort(small.begin(), small.end(), [&](std::int64_t a, std::int64_t b) {
+    std::stable_sort(small_.begin(), small_.end(), [&](std::int64_t a, std::int64_t b) {
       return island(a).contact_count() > island(b).contact_count();
     });
-    grid_.put(impulse.data(), static_cast<std::int64_t>(impulse.size()), system.impulse);
-    system.reset(grid_, freezes_contacts(options));
-    if (!small.empty()) solve_small(options, rules, small, system, outcomes);
-    for (const std::int64_t i : large) solve_large(options, rules, i, system, outcomes);
-    grid_.get(view_of(std::as_const(system.impulse)), impulse.data());
-    const View<const std::int32_t> left_out = view_of(std::as_const(system.left_out));
-    std::vector<std::int32_t> visits(static_cast<std::size_t>(left_out.size));
-    grid_.get(left_out, visits.data());
+  }
+
+  /// Sums of the impulses at hand, in float64, told to `take(island, sums)`.
+  template <class Take>
+  void measure(const ContactOptions& options, const Take& take) {
+    if (!small_.empty()) {
+      std::vector<ContactIsland> islands;
+      for (const std::int64_t i : small_) islands.push_back(island(i));
+      put(islands, islands_);
+      measured_.resize(static_cast<std::int64_t>(islands.size()));
+      contact_measure_islands<double>(
+          exec_.stream(), {numbers_, state64_.state(), indices_.color_start, switches_of(options),
+                           view_of(std::as_const(islands_)), view_of(measured_)});
+      std::vector<IslandSums> sums;
+      get(measured_, sums);
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        take(static_cast<std::size_t>(small_[k]), sums[k]);
+      }
+    }
+    for (const std::int64_t i : large_) {
+      take(static_cast<std::size_t>(i),
+           measure_island(pipeline_of(options, i, numbers_, state64_)));
+    }
+  }
+
+  /// @return visits left out
+  template <class T>
+  std::int64_t solve(const ContactOptions& options,
+                     const std::vector<StopRule>& rules,
+                     const ContactNumbers<T>& numbers,
+                     DeviceState<T>& state,
+                     std::vector<IslandOutcome>& outcomes) {
+    if (!small_.empty()) solve_small(options, rules, numbers, state, outcomes);
+    for (const std::int64_t i : large_) {
+      auto pipeline = pipeline_of(options, i, numbers, state);
+      HostEventLog log;
+      const auto k = static_cast<std::size_t>(i);
+      const IslandEnd end =
+          solve_island(pipeline, rules[k], plan_of(options), 0, state.work(), log);
+      outcomes[k].take(end, options.method, island(i).contact_count());
+      outcomes[k].events = std::move(log.events);
+    }
+    std::vector<std::int32_t> visits;
+    get(state.left_out, visits);
     return std::accumulate(visits.begin(), visits.end(), std::int64_t{0});
   }
 
   template <class T>
   void solve_small(const ContactOptions& options,
                    const std::vector<StopRule>& rules,
-                   const std::vector<std::int64_t>& islands,
-                   DeviceSystem<T>& system,
+                   const ContactNumbers<T>& numbers,
+                   DeviceState<T>& state,
                    std::vector<IslandOutcome>& outcomes) {
     std::vector<IslandTask> tasks;
-    for (const std::int64_t i : islands) {
+    for (const std::int64_t i : small_) {
       tasks.push_back({island(i), rules[static_cast<std::size_t>(i)]});
     }
     const auto count = static_cast<std::int64_t>(tasks.size());
-    IslandJob<T> job;
-    job.numbers = system.numbers;
-    job.state = system.state();
-    job.work = system.work();
-    job.color_start = indices_.color_start();
-    job.switches = switches_of(options);
-    job.plan = plan_of(options);
-    grid_.put(tasks.data(), count, tasks_);
-    job.tasks = view_of(std::as_const(tasks_));
-    job.shared_values = shared_values_for<T>(view_of(std::as_const(tasks)));
+    put(tasks, tasks_);
     results_.resize(count);
-    job.results = results_.view();
     events_.resize(count * events_per_island);
-    job.events = events_.view();
-    job.events_per_island = events_per_island;
-    contact_solve_islands(exec_.stream(), job);
+    contact_solve_islands<T>(
+        exec_.stream(), {numbers, state.state(), state.work(), indices_.color_start,
+                         switches_of(options), plan_of(options), view_of(std::as_const(tasks_)),
+                         shared_values_for<T>(view_of(std::as_const(tasks))), view_of(results_),
+                         view_of(events_), events_per_island});
 
-    std::vector<IslandResult> results(tasks.size());
-    std::vector<ContactEvent> events(static_cast<std::size_t>(job.events.size));
-    grid_.get(View<const IslandResult>(job.results), results.data());
-    grid_.get(View<const ContactEvent>(job.events), events.data());
+    std::vector<IslandResult> results;
+    std::vector<ContactEvent> events;
+    get(results_, results);
+    get(events_, events);
     for (std::size_t k = 0; k < tasks.size(); ++k) {
-      IslandOutcome& outcome = outcomes[static_cast<std::size_t>(islands[k])];
+      IslandOutcome& outcome = outcomes[static_cast<std::size_t>(small_[k])];
       outcome.take(results[k].end, options.method, tasks[k].island.contact_count());
       const auto first = events.begin() + static_cast<std::ptrdiff_t>(k) * events_per_island;
-      outcome.events.insert(outcome.events.end(), first, first + results[k].events);
+      outcome.events.assign(first, first + results[k].events);
     }
   }
 
   template <class T>
-  void solve_large(const ContactOptions& options,
-                   const std::vector<StopRule>& rules,
-                   std::int64_t i,
-                   DeviceSystem<T>& system,
-                   std::vector<IslandOutcome>& outcomes) {
-    IslandOutcome& outcome = outcomes[static_cast<std::size_t>(i)];
-    ContactPipeline<GridContactExec, T> pipeline(grid_, system.numbers,
-                                                 view_of(structure_->color_start), island(i),
-                                                 switches_of(options), system.state());
-    HostEventLog log;
-    const IslandEnd end = solve_island(pipeline, rules[static_cast<std::size_t>(i)],
-                                       plan_of(options), outcome.sweeps, system.work(), log);
-    outcome.take(end, options.method, island(i).contact_count());
-    outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
+  ContactPipeline<GridContactExec, T> pipeline_of(const ContactOptions& options,
+                                                  std::int64_t i,
+                                                  const ContactNumbers<T>& numbers,
+                                                  DeviceState<T>& state) {
+    return {
+        grid_,        numbers, view_of(structure_->color_start), island(i), switches_of(options),
+        state.state()};
   }
 
   const ContactIsland& island(std::int64_t i) const {
@@ -164,9 +218,18 @@ class CudaContactDevice final : public ContactDevice {
   GridContactExec grid_;
   std::string name_;
   const ContactStructure* structure_ = nullptr;
-  DeviceIndices indices_;
-  DeviceSystem<double> float64_;
-  DeviceSystem<float> float32_;
+  std::int64_t serial_ = 0;  ///< of the structure whose indices are there
+  DeviceArrays arrays_, given_;
+  ContactIndices indices_;
+  SystemMemory<GridContactExec, double> float64_;
+  SystemMemory<GridContactExec, float> float32_;
+  ContactNumbers<double> numbers_;
+  ContactNumbers<float> rounded_;
+  DeviceState<double> state64_;
+  DeviceState<float> state32_;
+  std::vector<std::int64_t> small_, large_;
+  DeviceVector<ContactIsland> islands_;
+  DeviceVector<IslandSums> measured_;
   DeviceVector<IslandTask> tasks_;
   DeviceVector<IslandResult> results_;
   DeviceVector<ContactEvent> events_;

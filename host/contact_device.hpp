@@ -1,6 +1,6 @@
 /// @file contact_device.hpp
-/// What the contact solver asks of a device: islands, from their numbers to impulses. Structure and
-/// what is left to Newton's method stay with the host.
+/// What the contact solver asks of a device: islands, from the numbers of a problem to impulses.
+/// What is left to Newton's method stays with the host.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -11,7 +11,6 @@
 
 #include "host/contact_structure.hpp"
 #include "host/contact_system.hpp"
-#include "kernels/contact_monitor.hpp"
 
 namespace tetwarp {
 
@@ -24,19 +23,22 @@ class ContactDevice {
 
   /// The numbers of a problem, for the calls that follow.
   /// @param structure  kept by the caller until the next set_problem()
+  /// @return what was left out
   /// @throws CudaError
-  virtual void set_problem(const ContactOptions& options,
-                           const ContactStructure& structure,
-                           const ContactSystem<double>& system) = 0;
+  virtual ContactSavings set_problem(const ContactOptions& options,
+                                     const ContactStructure& structure,
+                                     const ContactInput& input) = 0;
 
-  /// Solves all islands whose blocks A does not couple, in the precision of the options.
-  /// @param rules     of each island with contacts
-  /// @param impulse   [3 slots]; in: to start from; out: the best seen
-  /// @param outcomes  what it took
+  /// Solves all islands whose blocks A does not couple, in the precision of the options, and judges
+  /// them in float64.
+  /// @param impulse        [3 slots]; in: to start from; out: the best seen
+  /// @param body_velocity  out: what they cause, [dofs], without contacts the free motion; not set
+  ///                       in coupled islands
+  /// @param outcomes       what it took; the reason says `converged` where nothing is left to do
   /// @return visits of contacts left out
   virtual std::int64_t solve_uncoupled(const ContactOptions& options,
-                                       const std::vector<StopRule>& rules,
                                        std::vector<double>& impulse,
+                                       std::vector<double>& body_velocity,
                                        std::vector<IslandOutcome>& outcomes) = 0;
 
   /// Iterates one island whose blocks A couples.

@@ -1,127 +1,123 @@
 /// @file contact_device_memory.cuh
-/// A contact problem in the memory of a device: indices, numbers, what a solve changes.
+/// A contact problem in the memory of a device: indices, what the problem gives, what a solve
+/// changes.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <utility>
 #include <vector>
 
-#include "host/contact_structure.hpp"
-#include "host/contact_system.hpp"
 #include "kernels/contact_grid.cuh"
+#include "kernels/contact_indices.hpp"
 #include "kernels/contact_methods.hpp"
+#include "kernels/contact_system.hpp"
 
 namespace tetwarp {
 
-/// Puts a vector there.
-template <class T>
-View<const T> put_there(const GridContactExec& exec,
-                        const std::vector<T>& host,
-                        DeviceVector<T>& there) {
-  exec.put(host.data(), static_cast<std::int64_t>(host.size()), there);
-  return view_of(std::as_const(there));
-}
-
-/// The index arrays of a structure.
-class DeviceIndices {
+/// Arrays of the host, copied to a device in the same order time after time.
+class DeviceArrays {
  public:
-  void put(const GridContactExec& exec, const ContactStructure& s) {
-    put_there(exec, s.color_start, color_start_);
-    if (s.is_local) {
-      delassus_row = put_there(exec, s.delassus_row, delassus_row_);
-      delassus_column = put_there(exec, s.delassus_column, delassus_column_);
-      return;
-    }
-    const View<const std::int64_t> dof_start = put_there(exec, s.dof_start, dof_start_);
-    pairs = {put_there(exec, s.pair_start, pair_start_), put_there(exec, s.pair_block, pair_block_),
-             put_there(exec, s.pair_value, pair_value_), dof_start};
-    block_contacts = {put_there(exec, s.block_start, block_start_),
-                      put_there(exec, s.block_contact, block_contact_),
-                      put_there(exec, s.block_value, block_value_)};
-    system_row = put_there(exec, s.system_row, system_row_);
-    system_column = put_there(exec, s.system_column, system_column_);
-    system_value = put_there(exec, s.system_value, system_value_);
-    diagonal_value = put_there(exec, s.diagonal_value, diagonal_value_);
-    inverse_start = put_there(exec, s.inverse_start, inverse_start_);
+  void restart() { used_ = 0; }
+
+  template <class T>
+  View<const T> put(const GridContactExec& exec, View<const T> host) {
+    if (used_ == arrays_.size()) arrays_.emplace_back();
+    DeviceVector<std::byte>& array = arrays_[used_++];
+    const auto bytes = host.size * static_cast<std::int64_t>(sizeof(T));
+    exec.put(reinterpret_cast<const std::byte*>(host.data), bytes, array);
+    return {reinterpret_cast<const T*>(view_of(array).data), host.size};
   }
-
-  View<const std::int64_t> color_start() const { return view_of(color_start_); }
-
-  PairView pairs;
-  BlockContacts block_contacts;
-  View<const std::int64_t> delassus_row, system_row, system_value, diagonal_value, inverse_start;
-  View<const std::int32_t> delassus_column, system_column;
 
  private:
-  DeviceVector<std::int64_t> color_start_, delassus_row_, dof_start_, pair_start_, pair_value_,
-      block_start_, block_value_, system_row_, system_value_, diagonal_value_, inverse_start_;
-  DeviceVector<std::int32_t> delassus_column_, pair_block_, block_contact_, system_column_;
+  std::deque<DeviceVector<std::byte>> arrays_;
+  std::size_t used_ = 0;
 };
 
-/// The numbers of a system, and what a solve changes.
+/// The same indices there.
+inline ContactIndices indices_there(const GridContactExec& exec,
+                                    const ContactIndices& host,
+                                    DeviceArrays& arrays) {
+  arrays.restart();
+  ContactIndices there = host;
+  const auto move = [&](auto& view) { view = arrays.put(exec, view); };
+  move(there.contact_of_slot);
+  move(there.color_start);
+  move(there.delassus_row);
+  move(there.delassus_column);
+  move(there.delassus_target);
+  move(there.delassus_diagonal);
+  move(there.pairs.pair_start);
+  move(there.pairs.block);
+  move(there.pairs.value_start);
+  move(there.pairs.dof_start);
+  move(there.block_contacts.start);
+  move(there.block_contacts.contact);
+  move(there.block_contacts.value);
+  move(there.dof_of_place);
+  move(there.block_is_coupled);
+  move(there.inverse_start);
+  move(there.diagonal_value);
+  move(there.jacobian_target);
+  move(there.system_row);
+  move(there.system_column);
+  move(there.system_value);
+  move(there.system_target);
+  return there;
+}
+
+/// The same numbers there.
+inline ContactInput input_there(const GridContactExec& exec,
+                                const ContactInput& host,
+                                DeviceArrays& arrays) {
+  arrays.restart();
+  ContactInput there = host;
+  for (const auto values :
+       {&ContactInput::matrix, &ContactInput::jacobian, &ContactInput::load,
+        &ContactInput::given_velocity, &ContactInput::friction, &ContactInput::area,
+        &ContactInput::stiffness, &ContactInput::tangential_stiffness, &ContactInput::intensity,
+        &ContactInput::gap}) {
+    there.*values = arrays.put(exec, host.*values);
+  }
+  return there;
+}
+
+/// What a solve changes and works with.
 template <class T>
-struct DeviceSystem {
-  ContactNumbers<T> numbers;
+struct DeviceState {
   DeviceVector<T> impulse;              ///< [3 slots]
+  DeviceVector<T> body_velocity;        ///< [dofs]
   DeviceVector<std::int32_t> left_out;  ///< [slots], or empty
 
-  void put(const GridContactExec& exec,
-           const ContactStructure& structure,
-           const DeviceIndices& indices,
-           const ContactSystem<T>& system) {
-    numbers = {};
-    numbers.is_local = structure.is_local;
-    numbers.constants = put_there(exec, system.constants, constants_);
-    numbers.free_velocity = put_there(exec, system.free_velocity, free_velocity_);
-    if (structure.is_local) {
-      numbers.delassus = {indices.delassus_row, indices.delassus_column,
-                          put_there(exec, system.delassus, delassus_), numbers.free_velocity};
-      body_velocity_.resize(0);
-      return;
-    }
-    numbers.bodies = {indices.pairs, put_there(exec, system.jacobian, jacobian_),
-                      put_there(exec, system.response, response_),
-                      put_there(exec, system.offset, offset_)};
-    numbers.block_contacts = indices.block_contacts;
-    numbers.body_free = put_there(exec, system.body_free, body_free_);
-    numbers.system = {indices.system_row,      indices.system_column,
-                      indices.system_value,    put_there(exec, system.system, system_),
-                      indices.pairs.dof_start, structure.has_only_nodes};
-    numbers.load = put_there(exec, system.load, load_);
-    numbers.diagonal_value = indices.diagonal_value;
-    numbers.inverse_start = indices.inverse_start;
-    numbers.inverse = put_there(exec, system.inverse, inverse_);
-  }
-
-  /// Velocities without impulses, nothing calm.
-  void reset(GridContactExec& exec, bool freezes) {
+  /// Velocities without impulses, which are not touched; nothing calm.
+  void reset(GridContactExec& exec, const ContactNumbers<T>& numbers, bool freezes) {
     velocity_.resize(numbers.free_velocity.size);
     exec.copy("contact/setup", numbers.free_velocity, view_of(velocity_));
-    body_velocity_.resize(numbers.body_free.size);
-    exec.copy("contact/setup", numbers.body_free, view_of(body_velocity_));
+    body_velocity.resize(numbers.body_free.size);
+    exec.copy("contact/setup", numbers.body_free, view_of(body_velocity));
     exec.resize(calm_, freezes ? numbers.constants.size : 0);
     exec.resize(left_out, freezes ? numbers.constants.size : 0);
   }
 
   ContactState<T> state() {
-    return {view_of(impulse), view_of(velocity_), view_of(body_velocity_), {},
+    return {view_of(impulse), view_of(velocity_), view_of(body_velocity), {},
             view_of(calm_),   view_of(left_out)};
   }
 
   /// Memory that methods work with.
   MethodWork<T> work() {
-    const std::int64_t slots = numbers.constants.size;
-    for (DeviceVector<T>* rows : {&before_, &best_}) rows->resize(3 * slots);
-    weights_.resize(3 * slots);
-    mixed_.resize(MethodWork<T>::columns * 3 * slots);
-    metric_.resize(slots);
+    const std::int64_t rows = velocity_.view().size;
+    for (DeviceVector<T>* values : {&before_, &best_}) values->resize(rows);
+    weights_.resize(rows);
+    mixed_.resize(MethodWork<T>::columns * rows);
+    metric_.resize(rows / 3);
     return {view_of(weights_), view_of(before_), view_of(best_), view_of(mixed_), view_of(metric_)};
   }
 
  private:
-  DeviceVector<ContactConstants<T>> constants_, metric_;
-  DeviceVector<T> free_velocity_, delassus_, jacobian_, response_, offset_, body_free_, system_,
-      load_, inverse_, velocity_, body_velocity_, before_, best_, mixed_;
+  DeviceVector<T> velocity_, before_, best_, mixed_;
   DeviceVector<double> weights_;
+  DeviceVector<ContactConstants<T>> metric_;
   DeviceVector<std::uint8_t> calm_;
 };
 

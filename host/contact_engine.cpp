@@ -39,16 +39,42 @@ bool exceeds(const ContactProblem& problem, double speed) {
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)
     : options_(options), threads_(threads), device_(device) {}
 
-ContactSystem<double> ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
+void ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
   if (!pattern_ || !has_pattern(problem, *pattern_)) {
     structure_ = make_structure(problem, options_.skip);
     pattern_ = pattern_of(problem);
     kept_ = {};
   }
   forget_unless_same(problem);
-  ContactSystem<double> system;
-  fill_system(problem, options_, structure_, system, result.savings);
-  return system;
+  has_host_system_ = has_device_system_ = false;
+  if (device_ != nullptr) {
+    take_to_device(problem, result);
+  } else {
+    fill_system(problem, options_, structure_, system_, result.savings, threads_);
+    has_host_system_ = true;
+  }
+}
+
+/// The system on the host; of a device's solve only what it leaves to the host needs it.
+ContactSystem<double>& ContactEngine::host_system(const ContactProblem& problem) {
+  ContactSavings counted;
+  if (!has_host_system_) {
+    fill_system(problem, options_, structure_, system_, counted, threads_);
+    has_host_system_ = true;
+  }
+  return system_;
+}
+
+void ContactEngine::take_to_device(const ContactProblem& problem, EngineResult& result) {
+  if (!has_device_system_) {
+    result.savings = device_->set_problem(options_, structure_, input_of(problem));
+  }
+  has_device_system_ = true;
+}
+
+std::vector<double> ContactEngine::guess_of(const ContactProblem& problem) const {
+  return gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
+                  problem.contact_count());
 }
 
 EngineResult ContactEngine::solve(const ContactProblem& given) {
@@ -63,15 +89,14 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
   for (;;) {
     const ContactProblem& problem = changed ? *changed : given;
     EngineResult result;
-    const ContactSystem<double> system = prepare(problem, result);
-    is_on_device_ = false;
+    prepare(problem, result);
     result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     result.impulse.assign(3 * problem.friction.size(), 0.0);
     result.body_velocity.assign(index_of(problem.dof_count()), 0.0);
     result.outcomes.resize(index_of(structure_.contact_islands));
-    solve_uncoupled(problem, system, result);
-    solve_coupled(problem, system, result);
-    solve_contactless(problem, system, result);
+    solve_uncoupled(problem, result);
+    solve_coupled(problem, result);
+    solve_contactless(problem, result);
     if (result.clamped.empty()) {
       result.clamped = std::move(clamped);
       return result;
@@ -93,50 +118,82 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
   }
 }
 
-void ContactEngine::solve_uncoupled(const ContactProblem& problem,
-                                    const ContactSystem<double>& system,
-                                    EngineResult& result) {
-  std::vector<double> start = gathered(problem.impulse_guess, 3, structure_.contact_of_slot.data(),
-                                       problem.contact_count());
+void ContactEngine::solve_uncoupled(const ContactProblem& problem, EngineResult& result) {
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    const ContactIsland& island = structure_.islands[index_of(i)];
+    if (island.is_coupled) continue;
+    result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
+  }
+  device_ != nullptr ? solve_on_device(problem, result) : solve_on_host(problem, result);
+}
+
+void ContactEngine::solve_on_host(const ContactProblem& problem, EngineResult& result) {
+  ContactSystem<double>& system = host_system(problem);
+  free_motion_ = system.body_free;
+  std::vector<double> start = guess_of(problem);
   ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
-  if (device_ != nullptr) {
-    take_to_device(system);
-    if (start.empty()) start.assign(system.free_velocity.size(), 0.0);
-    result.updates_skipped =
-        device_->solve_uncoupled(options_, run.rules(), start, result.outcomes);
-  } else if (options_.precision == ContactPrecision::float32) {
-    const ContactSystem<float> rounded = make_float32(system);
+  if (options_.precision == ContactPrecision::float32) {
+    const ContactSystem<float> rounded = make_float32(structure_, system);
     ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes);
     coarse.start_from({start.begin(), start.end()});
     coarse.solve();
     start.assign(coarse.state().impulse.begin(), coarse.state().impulse.end());
     result.updates_skipped = coarse.updates_skipped();
-  }
-  run.start_from(start);
-  if (device_ == nullptr && options_.precision == ContactPrecision::float64) {
+    run.start_from(start);
+  } else {
+    run.start_from(start);
     run.solve();
     result.updates_skipped = run.updates_skipped();
   }
   for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    if (!structure_.islands[index_of(i)].is_coupled) take_from_run(problem, i, run, result);
+  }
+}
+
+/// What the device does not solve goes on from its impulses on the host.
+void ContactEngine::solve_on_device(const ContactProblem& problem, EngineResult& result) {
+  std::vector<double> impulse = guess_of(problem);
+  impulse.resize(3 * structure_.contact_of_slot.size(), 0.0);
+  free_motion_.resize(structure_.dof_of_place.size());
+  result.updates_skipped =
+      device_->solve_uncoupled(options_, impulse, free_motion_, result.outcomes);
+  std::optional<ContactRun<double>> run;
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
     const ContactIsland& island = structure_.islands[index_of(i)];
-    result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
     if (island.is_coupled) continue;
     IslandOutcome& outcome = result.outcomes[index_of(i)];
-    outcome.sums = run.measure(i);
-    outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
-    if (!run.is_done(i, outcome.sums)) fall_back(problem, i, run, result);
+    if (outcome.reason != StopReason::converged) {
+      if (!run) {
+        run.emplace(options_, threads_, structure_, host_system(problem), result.outcomes);
+        run->start_from(impulse);
+      }
+      take_from_run(problem, i, *run, result);
+      continue;
+    }
     name_largest(structure_, 0, outcome.sums);
-    scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
-                     result.impulse);
+    scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
     if (structure_.is_local) continue;
-    scatter_velocities(structure_, island, run.state().body_velocity.data() + island.dof_begin,
+    scatter_velocities(structure_, island, free_motion_.data() + island.dof_begin,
                        result.body_velocity);
   }
 }
 
-void ContactEngine::take_to_device(const ContactSystem<double>& system) {
-  if (!is_on_device_) device_->set_problem(options_, structure_, system);
-  is_on_device_ = true;
+/// Judges an island in float64 and takes it, or falls back.
+void ContactEngine::take_from_run(const ContactProblem& problem,
+                                  std::int64_t i,
+                                  ContactRun<double>& run,
+                                  EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  outcome.sums = run.measure(i);
+  outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
+  if (!run.is_done(i, outcome.sums)) fall_back(problem, i, run, result);
+  name_largest(structure_, 0, outcome.sums);
+  scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
+                   result.impulse);
+  if (structure_.is_local) return;
+  scatter_velocities(structure_, island, run.state().body_velocity.data() + island.dof_begin,
+                     result.body_velocity);
 }
 
 void ContactEngine::fall_back(const ContactProblem& problem,
@@ -181,14 +238,12 @@ void ContactEngine::polish(const ContactProblem& problem,
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
 }
 
-void ContactEngine::solve_contactless(const ContactProblem& problem,
-                                      const ContactSystem<double>& system,
-                                      EngineResult& result) {
+void ContactEngine::solve_contactless(const ContactProblem& problem, EngineResult& result) {
   for (std::size_t i = index_of(structure_.contact_islands); i < structure_.islands.size(); ++i) {
     const ContactIsland& island = structure_.islands[i];
     result.bodies_skipped += island.block_end - island.block_begin;
     if (!island.is_coupled) {
-      scatter_velocities(structure_, island, system.body_free.data() + island.dof_begin,
+      scatter_velocities(structure_, island, free_motion_.data() + island.dof_begin,
                          result.body_velocity);
       continue;
     }

@@ -54,21 +54,18 @@ class ContactEngine {
   EngineResult solve(const ContactProblem& problem);
 
  private:
-  ContactSystem<double> prepare(const ContactProblem& problem, EngineResult& result);
-  void take_to_device(const ContactSystem<double>& system);
-  void solve_coupled(const ContactProblem& problem,
-                     const ContactSystem<double>& system,
-                     EngineResult& result);
-  void iterate(const ContactProblem& problem,
-               const ContactSystem<double>& system,
-               std::int64_t island,
-               std::int64_t most,
-               EngineResult& result);
-  void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+  void prepare(const ContactProblem& problem, EngineResult& result);
+  ContactSystem<double>& host_system(const ContactProblem& problem);
+  void take_to_device(const ContactProblem& problem, EngineResult& result);
   void forget_unless_same(const ContactProblem& problem);
-  void solve_uncoupled(const ContactProblem& problem,
-                       const ContactSystem<double>& system,
-                       EngineResult& result);
+
+  void solve_uncoupled(const ContactProblem& problem, EngineResult& result);
+  void solve_on_host(const ContactProblem& problem, EngineResult& result);
+  void solve_on_device(const ContactProblem& problem, EngineResult& result);
+  void take_from_run(const ContactProblem& problem,
+                     std::int64_t island,
+                     ContactRun<double>& run,
+                     EngineResult& result);
   void fall_back(const ContactProblem& problem,
                  std::int64_t island,
                  ContactRun<double>& run,
@@ -77,16 +74,26 @@ class ContactEngine {
               std::int64_t island,
               ContactRun<double>& run,
               IslandOutcome& outcome);
-  void solve_contactless(const ContactProblem& problem,
-                         const ContactSystem<double>& system,
-                         EngineResult& result);
+
+  void solve_coupled(const ContactProblem& problem, EngineResult& result);
+  void iterate(const ContactProblem& problem,
+               std::int64_t island,
+               std::int64_t most,
+               EngineResult& result);
+  void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
+
+  void solve_contactless(const ContactProblem& problem, EngineResult& result);
+  std::vector<double> guess_of(const ContactProblem& problem) const;
 
   ContactOptions options_;
   int threads_;
   ContactDevice* device_;
-  bool is_on_device_ = false;  ///< the device has the system at hand
   std::optional<ContactPattern> pattern_;
   ContactStructure structure_;
+  ContactSystem<double> system_;     ///< kept for its memory
+  bool has_host_system_ = false;     ///< it is that of the problem at hand
+  bool has_device_system_ = false;   ///< the device has that
+  std::vector<double> free_motion_;  ///< v without contacts, [dofs]; of coupled islands not set
   KeptSystem kept_;
 };
 

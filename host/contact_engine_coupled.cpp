@@ -76,9 +76,7 @@ void ContactEngine::forget_unless_same(const ContactProblem& problem) {
   kept_.islands.assign(structure_.islands.size(), {});
 }
 
-void ContactEngine::solve_coupled(const ContactProblem& problem,
-                                  const ContactSystem<double>& system,
-                                  EngineResult& result) {
+void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& result) {
   for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
     const ContactIsland& island = structure_.islands[index_of(i)];
     if (!island.is_coupled) continue;
@@ -89,7 +87,7 @@ void ContactEngine::solve_coupled(const ContactProblem& problem,
         kept_.islands[index_of(i)].outer_iterations >= condensing_costs * rows) {
       route.outer_iterations = 0;  // where A and J stay, condensing once pays at last
     }
-    if (route.outer_iterations > 0) iterate(problem, system, i, route.outer_iterations, result);
+    if (route.outer_iterations > 0) iterate(problem, i, route.outer_iterations, result);
     const bool is_solved =
         route.outer_iterations > 0 && result.outcomes[index_of(i)].reason == StopReason::converged;
     if (!is_solved && route.condenses) condense(problem, i, result);
@@ -100,27 +98,27 @@ void ContactEngine::solve_coupled(const ContactProblem& problem,
 }
 
 void ContactEngine::iterate(const ContactProblem& problem,
-                            const ContactSystem<double>& system,
                             std::int64_t i,
                             std::int64_t most,
                             EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   IslandOutcome& outcome = result.outcomes[index_of(i)];
-  const std::vector<double> guess = gathered(
-      problem.impulse_guess, 3, structure_.contact_of_slot.data(), problem.contact_count());
-  std::vector<double> impulse(system.offset.size()), body_velocity(system.load.size());
+  const std::vector<double> guess = guess_of(problem);
+  std::vector<double> impulse(3 * structure_.contact_of_slot.size());
+  std::vector<double> body_velocity(structure_.dof_of_place.size());
   if (device_ != nullptr) {
-    take_to_device(system);
+    take_to_device(problem, result);
     device_->solve_coupled(options_, island, guess, most, impulse, body_velocity, outcome);
   } else {
     CpuContactExec exec(threads_);
-    const ContactNumbers<double> numbers = system.numbers(structure_);
+    ContactSystem<double>& system = host_system(problem);
+    const ContactIndices indices = structure_.indices();
+    const ContactNumbers<double> numbers = system.numbers(indices);
     ContactSystem<float> rounded;
-    if (options_.precision == ContactPrecision::float32) rounded = make_float32(system);
+    if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
     CoupledJudge<CpuContactExec> judge(exec, options_, numbers, island);
-    solve_coupled_island(exec, options_, numbers, rounded.numbers(structure_),
-                         view_of(structure_.color_start), island, view_of(guess), most, judge,
-                         outcome);
+    solve_coupled_island(exec, options_, numbers, rounded.numbers(indices), indices.color_start,
+                         island, view_of(guess), most, judge, outcome);
     exec.get(judge.best_impulse(), impulse.data());
     exec.get(judge.best_body_velocity(), body_velocity.data());
   }
@@ -143,7 +141,7 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
     kept->problem.update(part);
     ++result.condensations_kept;
   }
-  is_on_device_ = false;  // the contacts alone take its place there
+  has_device_system_ = false;  // the contacts alone take its place there
   const EngineResult inner = kept->engine.solve(kept->problem.local());
   const std::vector<double> v = kept->problem.body_velocity(inner.impulse);
   scatter_impulses(structure_, island, inner.impulse.data(), result.impulse);

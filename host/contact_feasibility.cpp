@@ -33,8 +33,9 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   const ContactSystem<double> bare = make_bare(system);
   HostContactState<double> state(bare);
   CpuContactExec exec(1);
-  ContactPipeline<CpuContactExec, double> pipeline(
-      exec, bare.numbers(structure), view_of(structure.color_start), island, {}, state.view());
+  ContactPipeline<CpuContactExec, double> pipeline(exec, bare.numbers(structure.indices()),
+                                                   view_of(structure.color_start), island, {},
+                                                   state.view());
   double wanted = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);

@@ -62,7 +62,7 @@ class ContactRun {
         threads_(threads),
         structure_(structure),
         system_(system),
-        numbers_(system.numbers(structure)),
+        numbers_(system.numbers(structure.indices())),
         state_(system),
         work_(system.constants.size()),
         outcomes_(outcomes) {
@@ -113,9 +113,7 @@ class ContactRun {
   /// Sums of an island, of the impulses at hand.
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
-    ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
-    pipeline.follow_impulses();
-    return pipeline.measure();
+    return measure_island(pipeline_of(i, exec)).sums;
   }
   /// The error of an island over what it may leave.
   double excess(std::int64_t i, const ContactSums& sums) const {
@@ -145,11 +143,9 @@ class ContactRun {
   void measure_free(std::int64_t i) {
     CpuContactExec exec(1);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
-    outcome.free = pipeline_of(i, exec).measure();
-    outcome.free_square = 0;
-    for (std::int64_t k = 3 * island(i).slot_begin; k < 3 * island(i).slot_end; ++k) {
-      outcome.free_square += square_of(double{system_.free_velocity[static_cast<std::size_t>(k)]});
-    }
+    const IslandSums sums = measure_island(pipeline_of(i, exec));
+    outcome.free = sums.sums;
+    outcome.free_square = sums.free_square;
   }
 
   void go_on(std::int64_t i, int threads, ContactMethod method) {

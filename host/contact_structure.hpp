@@ -8,6 +8,7 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact_islands.hpp"
+#include "kernels/contact_indices.hpp"
 #include "kernels/contact_numbers.hpp"
 
 namespace tetwarp {
@@ -15,6 +16,7 @@ namespace tetwarp {
 /// Contacts are kept in slots sorted by (island, color, index), blocks and dofs by island; the dofs
 /// of blocks that no contact reaches come last, in islands without contacts.
 struct ContactStructure {
+  std::int64_t serial = 0;  ///< another for every structure made
   bool is_local = false;
   std::vector<std::int32_t> contact_of_slot;
   std::vector<std::int64_t> color_start;
@@ -22,10 +24,11 @@ struct ContactStructure {
   std::int64_t contact_islands = 0;  ///< the first so many have contacts
 
   // Global form.
-  std::vector<std::int32_t> dof_of_place;  ///< dof of the problem at each place here
-  std::vector<std::int64_t> dof_start;     ///< [blocks + 1]
-  bool has_only_nodes = false;             ///< all blocks have three dofs
-  std::vector<std::int64_t> pair_start;    ///< [slots + 1]
+  std::vector<std::int32_t> dof_of_place;      ///< dof of the problem at each place here
+  std::vector<std::int64_t> dof_start;         ///< [blocks + 1]
+  std::vector<std::uint8_t> block_is_coupled;  ///< [blocks]: in a coupled island
+  bool has_only_nodes = false;                 ///< all blocks have three dofs
+  std::vector<std::int64_t> pair_start;        ///< [slots + 1]
   std::vector<std::int32_t> pair_block;
   std::vector<std::int64_t> pair_value;
   std::vector<std::int64_t> block_start;  ///< [blocks + 1]: the pairs of each block
@@ -47,11 +50,11 @@ struct ContactStructure {
   std::vector<std::int64_t> delassus_target;
   std::vector<std::int64_t> delassus_diagonal;  ///< [slots]: entry of the diagonal block
 
-  PairView pairs() const;
-  BlockContacts block_contacts() const;
-  /// A as the kernels read it.
-  template <class T>
-  SystemView<T> system(View<const T> values) const;
+  /// No two stored numbers go to the same place: in W or A, in J.
+  bool matrix_is_unique = true, jacobian_is_unique = true;
+
+  /// As the stages read it.
+  ContactIndices indices() const;
 };
 
 template <class T>
@@ -61,12 +64,6 @@ View<const T> view_of(const std::vector<T>& values) {
 template <class T>
 View<T> view_of(std::vector<T>& values) {
   return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-
-template <class T>
-SystemView<T> ContactStructure::system(View<const T> values) const {
-  return {view_of(system_row), view_of(system_column), view_of(system_value), values,
-          view_of(dof_start),  has_only_nodes};
 }
 
 /// @param skip  without `converged_islands` all contacts are one island; without

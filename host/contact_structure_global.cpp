@@ -237,6 +237,10 @@ void fill_global_structure(const ContactProblem& problem,
   const std::vector<std::int32_t> order = order_blocks(blocks, skip, structure);
   const std::vector<std::int32_t> place_of_block = places_of(order);
   fill_dofs(blocks, order, structure);
+  for (const ContactIsland& island : structure.islands) {
+    structure.block_is_coupled.insert(structure.block_is_coupled.end(),
+                                      index_of(island.block_count()), island.is_coupled);
+  }
   fill_pairs(problem, blocks, place_of_block, structure);
   fill_system(problem, blocks, order, place_of_block, structure);
 }

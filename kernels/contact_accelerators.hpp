@@ -78,14 +78,13 @@ class AndersonMixer {
   using GramSums = PlainSums<2 * window + 1>;
 
   /// One run of entries: stores the iterate and its changes in column `newest`, multiplies them
-  /// with the columns in use.
+  /// with all columns.
   struct ObserveBody {
     const double* weights;
     View<const T> x, image;
     const T *last_defect, *last_image;
     T *now_defect, *now_image, *defect_changes, *image_changes;
     int newest;  ///< -1: there is no last one yet
-    int used;    ///< columns of changes, the newest among them
 
     /// @tparam most  entries of a run: scratch numbers
     template <int most>
@@ -108,7 +107,7 @@ class AndersonMixer {
         now_defect[first + i] = defect;
         now_image[first + i] = image[first + i];
       }
-      for (int k = 0; k < used; ++k) {
+      for (int k = 0; k < window; ++k) {
         const T* const changes = defect_changes + k * x.size + first;
         sums.value[k] = product(change, changes, count);
         sums.value[window + k] = product(weighted, changes, count);
@@ -127,14 +126,18 @@ class AndersonMixer {
     }
   };
 
+  struct ZeroBody {
+    T* values;
+    TETWARP_HD void operator()(std::int64_t i) const { values[i] = 0; }
+  };
+
   struct CombineBody {
     const T* image_changes;
     T factor[window];
-    int used;
     View<T> image;
     TETWARP_HD void operator()(std::int64_t i) const {
       T sum = 0;
-      for (int k = 0; k < used; ++k) sum += factor[k] * image_changes[k * image.size + i];
+      for (int k = 0; k < window; ++k) sum += factor[k] * image_changes[k * image.size + i];
       image[i] -= sum;
     }
   };
@@ -142,7 +145,10 @@ class AndersonMixer {
   /// @param weights  diagonal of the metric, [size]
   /// @param work     [columns][size]
   TETWARP_ANY_EXEC AndersonMixer(Exec& exec, View<const double> weights, View<T> work)
-      : exec_(exec), weights_(weights), work_(work.data) {}
+      : exec_(exec), weights_(weights), work_(work.data) {
+    // All columns of changes take part, those not yet written with a factor of zero.
+    exec_.for_each("contact/mix", 2 * window * weights.size, ZeroBody{column(4)});
+  }
 
   TETWARP_ANY_EXEC double observe(View<const T> x, View<const T> image) {
     newest_ = has_last_ ? (newest_ + 1) % window : -1;
@@ -155,8 +161,7 @@ class AndersonMixer {
                            column(2 * now_ + 1),
                            column(4),
                            column(4 + window),
-                           newest_,
-                           has_last_ ? min_of(depth_ + 1, window) : 0};
+                           newest_};
     sums_ = exec_.template sum_runs<GramSums>("contact/mix", 0, x.size, body);
     return sqrt(sums_.value[2 * window]);
   }
@@ -198,7 +203,7 @@ class AndersonMixer {
       gram[i][i] = scale[i] * gram_[i][i] * scale[i] + 1e-12;
       factors[i] = scale[i] * sums_.value[window + i];
     }
-    CombineBody body{column(4 + window), {}, depth_, image};
+    CombineBody body{column(4 + window), {}, image};
     bool is_finite = solve_small_spd(gram, depth_, factors);
     for (int k = 0; k < depth_; ++k) {
       body.factor[k] = static_cast<T>(scale[k] * factors[k]);

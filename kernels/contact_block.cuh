@@ -139,7 +139,6 @@ struct IslandTask {
 /// What became of it.
 struct IslandResult {
   IslandEnd end;
-  ContactSums sums;  ///< of the impulses that are left
   std::int64_t events = 0;
 };
 
@@ -190,7 +189,6 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
                       threadIdx.x == 0);
   IslandResult result;
   result.end = solve_island(pipeline, job.tasks[which].rule, job.plan, 0, job.work, log);
-  result.sums = pipeline.measure();
   result.events = log.end();
   if (is_shared) {
     exec.copy("contact/sweep", View<const T>(pipeline.impulse()), home);
@@ -227,6 +225,36 @@ void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
          dim3(island_threads),
          BlockContactExec::shared_bytes + static_cast<std::size_t>(job.shared_values) * sizeof(T),
          job);
+}
+
+/// Islands to look at.
+template <class T>
+struct MeasureJob {
+  ContactNumbers<T> numbers;
+  ContactState<T> state;  ///< velocities follow the impulses
+  View<const std::int64_t> color_start;
+  ContactSwitches switches;
+  View<const ContactIsland> islands;
+  View<IslandSums> sums;  ///< out, [islands]
+};
+
+/// Blocks: one per island. Threads: island_threads. Shared: BlockContactExec::shared_bytes,
+/// dynamic. Registers: up to 128.
+template <class T>
+__global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(MeasureJob<T> job) {
+  const auto which = static_cast<std::int64_t>(blockIdx.x);
+  BlockContactExec exec(dynamic_shared<unsigned char>());
+  const IslandSums sums = measure_island(ContactPipeline<BlockContactExec, T>(
+      exec, job.numbers, job.color_start, job.islands[which], job.switches, job.state));
+  if (threadIdx.x == 0) job.sums[which] = sums;
+}
+
+/// Sums of every island of the job, at least one.
+/// Determinism: fixed trees.
+template <class T>
+void contact_measure_islands(cudaStream_t stream, const MeasureJob<T>& job) {
+  launch(stream, contact_measure_kernel<T>, dim3(static_cast<unsigned>(job.islands.size)),
+         dim3(island_threads), BlockContactExec::shared_bytes, job);
 }
 
 }  // namespace tetwarp

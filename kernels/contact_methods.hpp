@@ -231,4 +231,20 @@ TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
   return {monitor.reason(), monitor.sweeps(), has_turned};
 }
 
+/// Where an island stands.
+struct IslandSums {
+  ContactSums sums;
+  double free_square = 0;  ///< |q|^2
+};
+
+/// Of the impulses at hand, which bodies follow.
+template <class Exec, class T>
+TETWARP_ANY_EXEC IslandSums measure_island(ContactPipeline<Exec, T> pipeline) {
+  pipeline.follow_impulses();
+  IslandSums result;
+  result.sums = pipeline.measure();
+  result.free_square = pipeline.free_square();
+  return result;
+}
+
 }  // namespace tetwarp

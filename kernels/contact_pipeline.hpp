@@ -10,6 +10,7 @@
 #include "kernels/contact_residual.hpp"
 #include "kernels/contact_split.hpp"
 #include "kernels/contact_sweep.hpp"
+#include "kernels/vector_bodies.hpp"
 
 namespace tetwarp {
 
@@ -111,6 +112,14 @@ class ContactPipeline {
     return contact_residual(exec_, island_.slot_begin, island_.slot_end,
                             ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
                                                    state_.velocity, numbers_.free_velocity});
+  }
+
+  /// |q|^2 of the island.
+  TETWARP_ANY_EXEC double free_square() {
+    return exec_
+        .template sum<PlainSums<1>>("contact/residual", 3 * island_.slot_begin,
+                                    3 * island_.slot_end, SquareBody<T>{numbers_.free_velocity})
+        .value[0];
   }
 
  private:

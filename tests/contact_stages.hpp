@@ -23,6 +23,7 @@ struct ContactStages {
   }
 
   const ContactIsland& island() const { return structure.islands.front(); }
+  ContactNumbers<double> numbers() const { return system.numbers(structure.indices()); }
   View<const std::int64_t> colors() const {
     return {structure.color_start.data() + island().color_begin,
             island().color_end - island().color_begin};

@@ -64,7 +64,7 @@ HostSweeps<T> sweep_on_host(const ContactStructure& structure,
   CpuContactExec exec(1);
   HostContactState<T> state(system);
   state.impulse = start;
-  ContactPipeline<CpuContactExec, T> pipeline(exec, system.numbers(structure),
+  ContactPipeline<CpuContactExec, T> pipeline(exec, system.numbers(structure.indices()),
                                               view_of(structure.color_start), island, switches,
                                               state.view());
   pipeline.follow_impulses();

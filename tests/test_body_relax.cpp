@@ -64,10 +64,9 @@ struct Relaxation {
     Numbers result(body_velocity.size());
     const ContactSystem<double>& s = stages.system;
     body_relax(exec, 0, block_count(),
-               BodyDefectBody<double>{stages.structure.system(view_of(s.system)),
-                                      stages.structure.block_contacts(), view_of(s.jacobian),
-                                      view_of(s.load), view_of(r), view_of(body_velocity),
-                                      view_of(result)});
+               BodyDefectBody<double>{stages.numbers().system, stages.numbers().block_contacts,
+                                      view_of(s.jacobian), view_of(s.load), view_of(r),
+                                      view_of(body_velocity), view_of(result)});
     return result;
   }
   template <class Exec>
@@ -89,7 +88,7 @@ struct Relaxation {
     const Numbers r = by_slot(impulse);
     Numbers result(stages.system.load.size());
     body_relax(exec, 0, block_count(),
-               BodyVelocityBody<double>{stages.structure.block_contacts(),
+               BodyVelocityBody<double>{stages.numbers().block_contacts,
                                         view_of(stages.structure.dof_start),
                                         view_of(stages.system.response), view_of(r),
                                         view_of(stages.system.body_free), view_of(result)});
@@ -108,7 +107,7 @@ const CpuContactExec exec(1);
 /// Nodes among nodes take a way of their own.
 TEST(BodyRelax, ProductsAreTheSameWhetherOnlyNodesAreKnownOrNot) {
   const Relaxation c(96, 40, 3, 0.5);
-  SystemView<double> known = c.stages.structure.system(view_of(c.stages.system.system));
+  SystemView<double> known = c.stages.numbers().system;
   SystemView<double> looked_up = known;
   EXPECT_TRUE(known.has_only_nodes);
   looked_up.has_only_nodes = false;
@@ -134,7 +133,7 @@ TEST(BodyRelax, AStepIsTheDefectAndItsRelaxation) {
 
     body_relax(
         exec, 0, c.block_count(),
-        BodyStepBody<double>{{s.system(view_of(c.stages.system.system)), s.block_contacts(),
+        BodyStepBody<double>{{c.stages.numbers().system, c.stages.numbers().block_contacts,
                               view_of(c.stages.system.jacobian), view_of(c.stages.system.load),
                               view_of(r), view_of(x), view_of(defect)},
                              view_of(s.inverse_start),

@@ -33,7 +33,7 @@ struct LinearCase {
       std::vector<double> unit(problem.load.size(), 0.0), image(problem.load.size());
       unit[static_cast<std::size_t>(column)] = 1;
       for (std::int64_t b = 0; b < stages.island().block_end; ++b) {
-        multiply_block_row(s.system(view_of(std::as_const(stages.system.system))), b, unit.data(),
+        multiply_block_row(stages.numbers().system, b, unit.data(),
                            image.data() + s.dof_start[static_cast<std::size_t>(b)]);
       }
       matrix.col(column) = samples::vector_of(image);
@@ -58,7 +58,7 @@ LinearCase bodies(double coupling) {
 using Linear = CoupledLinear<CpuContactExec>;
 
 Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
-  return Linear(exec, c.stages.system.numbers(c.stages.structure), c.stages.island());
+  return Linear(exec, c.stages.system.numbers(c.stages.structure.indices()), c.stages.island());
 }
 
 TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {

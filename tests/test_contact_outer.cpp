@@ -97,7 +97,7 @@ TEST(OuterIteration, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
-  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure);
+  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure.indices());
   CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island());
   OuterIteration<CpuContactExec> outer(
       exec, options, numbers, view_of(stages.structure.color_start), stages.island(), judge);

@@ -62,14 +62,13 @@ Swept sweep(const Exec& exec,
   for (int s = 0; s < sweeps; ++s) {
     if (stages.structure.is_local) {
       contact_sweep(exec, colors,
-                    DelassusSweepBody<double>{system.delassus_view(stages.structure),
-                                              view_of(system.constants), switches_of(options), calm,
-                                              view_of(swept.impulse)});
+                    DelassusSweepBody<double>{stages.numbers().delassus, view_of(system.constants),
+                                              switches_of(options), calm, view_of(swept.impulse)});
     } else {
       contact_sweep(exec, colors,
-                    BodySweepBody<double>{system.bodies_view(stages.structure),
-                                          view_of(system.constants), switches_of(options), calm,
-                                          view_of(swept.impulse), view_of(swept.body_velocity)});
+                    BodySweepBody<double>{stages.numbers().bodies, view_of(system.constants),
+                                          switches_of(options), calm, view_of(swept.impulse),
+                                          view_of(swept.body_velocity)});
     }
   }
   return swept;
