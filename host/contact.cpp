@@ -203,7 +203,7 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
 struct ContactSolver::State {
   ContactOptions options;
   int threads = 1;
-  std::unique_ptr<ContactDevice> device;  ///< null: the host sweeps
+  std::unique_ptr<ContactDevice> device;  ///< null: the host solves
   ContactEngine engine;
 };
 
@@ -265,6 +265,12 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;
   return solution;
+}
+
+AdhesionStep ContactSolver::evolve(const ContactProblem& problem,
+                                   const ContactSolution& solution,
+                                   const EvolutionOptions& options) {
+  return evolve_adhesion(problem, solution, options, state_->device.get());
 }
 
 ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {

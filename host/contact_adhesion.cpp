@@ -6,20 +6,13 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact_checks.hpp"
+#include "host/contact_device.hpp"
 #include "host/contact_exec_cpu.hpp"
 #include "kernels/contact_adhesion.hpp"
 
 namespace tetwarp {
 
 namespace {
-
-View<const double> view_of(const std::vector<double>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-
-View<double> view_of(std::vector<double>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
 
 void check_adhesion(const AdhesionState& adhesion, std::int64_t contact_count) {
   if (!(adhesion.time_step > 0)) {
@@ -64,6 +57,13 @@ void check_arguments(const ContactProblem& problem,
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const EvolutionOptions& options) {
+  return evolve_adhesion(problem, solution, options, nullptr);
+}
+
+AdhesionStep evolve_adhesion(const ContactProblem& problem,
+                             const ContactSolution& solution,
+                             const EvolutionOptions& options,
+                             ContactDevice* device) {
   const AdhesionState& adhesion = problem.adhesion;
   if (adhesion.empty()) return {};
   check_arguments(problem, solution, options);
@@ -84,16 +84,20 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
                             .saturation_pressure = view_of(adhesion.saturation_pressure),
                             .impulse = view_of(solution.impulse),
                             .velocity = view_of(solution.velocity)};
-  contact_adhesion(CpuContactExec(1),
-                   ContactAdhesionBody{
-                       .in = views,
-                       .euler = options.integrator == AdhesionIntegrator::explicit_euler,
-                       .debond_gap_factor = options.debond_gap_factor,
-                       .debond_intensity = options.debond_intensity,
-                       .next_intensity = view_of(step.intensity),
-                       .next_gap = view_of(step.gap),
-                       .debonded = {step.debonded.data(), problem.contact_count()},
-                   });
+  const ContactAdhesionBody body = {
+      .in = views,
+      .euler = options.integrator == AdhesionIntegrator::explicit_euler,
+      .debond_gap_factor = options.debond_gap_factor,
+      .debond_intensity = options.debond_intensity,
+      .next_intensity = view_of(step.intensity),
+      .next_gap = view_of(step.gap),
+      .debonded = {step.debonded.data(), problem.contact_count()},
+  };
+  if (device != nullptr) {
+    device->evolve(body);
+  } else {
+    contact_adhesion(CpuContactExec(1), body);
+  }
   return step;
 }
 

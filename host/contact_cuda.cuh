@@ -14,6 +14,8 @@
 #include "host/contact_outer.hpp"
 #include "host/contact_run.hpp"
 #include "kernels/contact_block.cuh"
+#include "kernels/contact_color.hpp"
+#include "kernels/contact_components.hpp"
 #include "kernels/contact_grid.cuh"
 
 namespace tetwarp {
@@ -95,6 +97,42 @@ class CudaContactDevice final : public ContactDevice {
     grid_.get(judge.best_body_velocity(), body_velocity.data());
   }
 
+  std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
+    exec_.use_stream(nullptr);
+    given_.restart();
+    const View<const std::int64_t> start = there(lists.start);
+    const View<const std::int32_t> item = there(lists.item);
+    labels_.resize(item_count);
+    contact_components(grid_, start, item, view_of(labels_));
+    return labels();
+  }
+
+  std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override {
+    exec_.use_stream(nullptr);
+    given_.restart();
+    const ContactGroups views = {there(groups.start), there(groups.item), there(members.start),
+                                 there(members.item)};
+    labels_.resize(groups.size());
+    contact_color(grid_, views, view_of(labels_));
+    return labels();
+  }
+
+  void evolve(const ContactAdhesionBody& body) override {
+    exec_.use_stream(nullptr);
+    ContactAdhesionBody there = body;
+    there.in = adhesion_there(grid_, body.in, given_);
+    next_intensity_.resize(body.next_intensity.size);
+    next_gap_.resize(body.next_gap.size);
+    debonded_.resize(body.debonded.size);
+    there.next_intensity = view_of(next_intensity_);
+    there.next_gap = view_of(next_gap_);
+    there.debonded = view_of(debonded_);
+    contact_adhesion(grid_, there);
+    grid_.get(view_of(std::as_const(next_intensity_)), body.next_intensity.data);
+    grid_.get(view_of(std::as_const(next_gap_)), body.next_gap.data);
+    grid_.get(view_of(std::as_const(debonded_)), body.debonded.data);
+  }
+
   std::string name() const override { return name_; }
 
  private:
@@ -108,6 +146,16 @@ class CudaContactDevice final : public ContactDevice {
   void get(const DeviceVector<T>& there, std::vector<T>& host) {
     host.resize(static_cast<std::size_t>(view_of(there).size));
     grid_.get(view_of(there), host.data());
+  }
+
+  template <class T>
+  View<const T> there(const std::vector<T>& host) {
+    return given_.put(grid_, view_of(host));
+  }
+  std::vector<std::int32_t> labels() {
+    std::vector<std::int32_t> result;
+    get(labels_, result);
+    return result;
   }
 
   /// Those for blocks, the longest first, so that none of them is begun last; and the large ones.
@@ -227,6 +275,9 @@ class CudaContactDevice final : public ContactDevice {
   ContactNumbers<float> rounded_;
   DeviceState<double> state64_;
   DeviceState<float> state32_;
+  DeviceVector<std::int32_t> labels_;
+  DeviceVector<double> next_intensity_, next_gap_;
+  DeviceVector<std::uint8_t> debonded_;
   std::vector<std::int64_t> small_, large_;
   DeviceVector<ContactIsland> islands_;
   DeviceVector<IslandSums> measured_;

@@ -11,16 +11,15 @@
 
 #include "host/contact_structure.hpp"
 #include "host/contact_system.hpp"
+#include "kernels/contact_adhesion.hpp"
 
 namespace tetwarp {
 
 struct IslandOutcome;
 
 /// Islands on a device. Every executor runs the same methods; see kernels/contact_methods.hpp.
-class ContactDevice {
+class ContactDevice : public StructureStages {
  public:
-  virtual ~ContactDevice() = default;
-
   /// The numbers of a problem, for the calls that follow.
   /// @param structure  kept by the caller until the next set_problem()
   /// @return what was left out
@@ -54,9 +53,20 @@ class ContactDevice {
                              std::vector<double>& body_velocity,
                              IslandOutcome& outcome) = 0;
 
+  /// The stage "adhesion".
+  /// @param body  views of the host: what it reads, and [contacts] that it writes
+  virtual void evolve(const ContactAdhesionBody& body) = 0;
+
   /// The device's name.
   virtual std::string name() const = 0;
 };
+
+/// As the public call.
+/// @param device  runs the stage; null: the host does
+AdhesionStep evolve_adhesion(const ContactProblem& problem,
+                             const ContactSolution& solution,
+                             const EvolutionOptions& options,
+                             ContactDevice* device);
 
 /// @throws CudaError  no such device answers; the text is the runtime's reason
 std::unique_ptr<ContactDevice> make_contact_device(int device);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/contact_adhesion.hpp"
 #include "kernels/contact_grid.cuh"
 #include "kernels/contact_indices.hpp"
 #include "kernels/contact_methods.hpp"
@@ -77,6 +78,21 @@ inline ContactInput input_there(const GridContactExec& exec,
         &ContactInput::given_velocity, &ContactInput::friction, &ContactInput::area,
         &ContactInput::stiffness, &ContactInput::tangential_stiffness, &ContactInput::intensity,
         &ContactInput::gap}) {
+    there.*values = arrays.put(exec, host.*values);
+  }
+  return there;
+}
+
+inline AdhesionViews adhesion_there(const GridContactExec& exec,
+                                    const AdhesionViews& host,
+                                    DeviceArrays& arrays) {
+  arrays.restart();
+  AdhesionViews there = host;
+  for (const auto values :
+       {&AdhesionViews::area, &AdhesionViews::stiffness, &AdhesionViews::tangential_stiffness,
+        &AdhesionViews::intensity, &AdhesionViews::gap, &AdhesionViews::energy,
+        &AdhesionViews::viscosity, &AdhesionViews::bonding_rate,
+        &AdhesionViews::saturation_pressure, &AdhesionViews::impulse, &AdhesionViews::velocity}) {
     there.*values = arrays.put(exec, host.*values);
   }
   return there;

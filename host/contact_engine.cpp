@@ -41,7 +41,8 @@ ContactEngine::ContactEngine(const ContactOptions& options, int threads, Contact
 
 void ContactEngine::prepare(const ContactProblem& problem, EngineResult& result) {
   if (!pattern_ || !has_pattern(problem, *pattern_)) {
-    structure_ = make_structure(problem, options_.skip);
+    structure_ = device_ != nullptr ? make_structure(problem, options_.skip, *device_)
+                                    : make_structure(problem, options_.skip);
     pattern_ = pattern_of(problem);
     kept_ = {};
   }

@@ -6,23 +6,17 @@
 
 #include "host/contact_exec_cpu.hpp"
 #include "kernels/contact_color.hpp"
+#include "kernels/contact_components.hpp"
 
 namespace tetwarp {
 
 namespace {
 
-/// Root of a tree of parents, paths halved on the way.
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::int32_t item) {
-  auto i = static_cast<std::size_t>(item);
-  while (parent[i] != static_cast<std::int32_t>(i)) {
-    parent[i] = parent[static_cast<std::size_t>(parent[i])];
-    i = static_cast<std::size_t>(parent[i]);
-  }
-  return static_cast<std::int32_t>(i);
-}
-
 template <class T>
 View<const T> view_of(const std::vector<T>& values) {
+  return {values.data(), static_cast<std::int64_t>(values.size())};
+}
+View<std::int32_t> view_of(std::vector<std::int32_t>& values) {
   return {values.data(), static_cast<std::int64_t>(values.size())};
 }
 
@@ -44,37 +38,43 @@ Lists make_transposed(const Lists& lists, std::int64_t item_count) {
   return result;
 }
 
-std::vector<std::int32_t> components_of(const Lists& lists, std::int64_t item_count) {
-  std::vector<std::int32_t> parent(static_cast<std::size_t>(item_count));
-  std::iota(parent.begin(), parent.end(), 0);
-  for (std::int64_t list = 0; list < lists.size(); ++list) {
-    const std::span<const std::int32_t> items = lists.of(list);
-    for (std::size_t k = 1; k < items.size(); ++k) {
-      const std::int32_t a = root_of(parent, items[0]);
-      const std::int32_t b = root_of(parent, items[k]);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  }
-  std::int32_t count = 0;
-  std::vector<std::int32_t> component(parent.size());
-  for (std::size_t i = 0; i < parent.size(); ++i) {
-    const std::int32_t root = root_of(parent, static_cast<std::int32_t>(i));
-    component[i] =
-        root == static_cast<std::int32_t>(i) ? count++ : component[static_cast<std::size_t>(root)];
-  }
-  return component;
+std::vector<std::int32_t> HostStages::lowest_connected(const Lists& lists,
+                                                       std::int64_t item_count) {
+  std::vector<std::int32_t> lowest(static_cast<std::size_t>(item_count));
+  CpuContactExec exec(1);
+  contact_components(exec, view_of(lists.start), view_of(lists.item), view_of(lowest));
+  return lowest;
 }
 
-ContactOrder make_contact_order(const Lists& groups, std::span<const std::int32_t> island) {
-  const std::int64_t group_count =
-      groups.item.empty() ? 0 : *std::max_element(groups.item.begin(), groups.item.end()) + 1;
-  const Lists members = make_transposed(groups, group_count);
-  std::vector<std::int32_t> colors(island.size(), uncolored);
+std::vector<std::int32_t> HostStages::colors_of(const Lists& groups, const Lists& members) {
+  std::vector<std::int32_t> colors(static_cast<std::size_t>(groups.size()));
   CpuContactExec exec(1);
   contact_color(exec,
                 ContactGroups{view_of(groups.start), view_of(groups.item), view_of(members.start),
                               view_of(members.item)},
-                View<std::int32_t>{colors.data(), static_cast<std::int64_t>(colors.size())});
+                view_of(colors));
+  return colors;
+}
+
+std::vector<std::int32_t> components_of(const Lists& lists,
+                                        std::int64_t item_count,
+                                        StructureStages& stages) {
+  std::vector<std::int32_t> component = stages.lowest_connected(lists, item_count);
+  std::int32_t count = 0;
+  for (std::size_t i = 0; i < component.size(); ++i) {
+    const auto lowest = static_cast<std::size_t>(component[i]);
+    component[i] = lowest == i ? count++ : component[lowest];
+  }
+  return component;
+}
+
+ContactOrder make_contact_order(const Lists& groups,
+                                std::span<const std::int32_t> island,
+                                StructureStages& stages) {
+  const std::int64_t group_count =
+      groups.item.empty() ? 0 : *std::max_element(groups.item.begin(), groups.item.end()) + 1;
+  const std::vector<std::int32_t> colors =
+      stages.colors_of(groups, make_transposed(groups, group_count));
 
   ContactOrder order;
   order.contact_of_slot.resize(island.size());

@@ -81,15 +81,22 @@ void take_order(ContactStructure& structure, ContactOrder order) {
 }
 
 ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip) {
+  HostStages stages;
+  return make_structure(problem, skip, stages);
+}
+
+ContactStructure make_structure(const ContactProblem& problem,
+                                const ContactSkipOptions& skip,
+                                StructureStages& stages) {
   static std::atomic<std::int64_t> made = 0;
   ContactStructure structure;
   structure.serial = ++made;
   structure.is_local = problem.is_local();
   if (structure.is_local) {
-    fill_local_structure(problem, skip, structure);
+    fill_local_structure(problem, skip, stages, structure);
     structure.matrix_is_unique = is_unique(problem.delassus);
   } else {
-    fill_global_structure(problem, skip, structure);
+    fill_global_structure(problem, skip, stages, structure);
     structure.matrix_is_unique = is_unique(problem.system);
     structure.jacobian_is_unique = is_unique(problem.jacobian);
   }

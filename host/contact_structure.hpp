@@ -70,6 +70,9 @@ View<T> view_of(std::vector<T>& values) {
 ///              `contactless_bodies` the blocks that no contact reaches join the first island
 /// @pre check(problem) has passed
 ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip);
+ContactStructure make_structure(const ContactProblem& problem,
+                                const ContactSkipOptions& skip,
+                                StructureStages& stages);
 
 /// What a structure follows from: the index arrays of a problem, and which of the numbers of A are
 /// zero, since blocks and couplings are made of the others.

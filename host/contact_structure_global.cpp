@@ -60,6 +60,7 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
 /// contact reaches form the islands behind, or join the first.
 std::vector<std::int32_t> order_blocks(const Blocks& blocks,
                                        const ContactSkipOptions& skip,
+                                       StructureStages& stages,
                                        ContactStructure& s) {
   Lists links = blocks.coupled;
   for (std::int64_t c = 0; c < blocks.touched.size(); ++c) {
@@ -67,7 +68,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
     links.item.insert(links.item.end(), touched.begin(), touched.end());
     links.close_list();
   }
-  const std::vector<std::int32_t> component = components_of(links, blocks.count());
+  const std::vector<std::int32_t> component = components_of(links, blocks.count(), stages);
   std::vector<std::int32_t> island_of(index_of(blocks.count()), -1);  // of each component
   std::vector<std::int32_t> contact_island;
   std::int32_t count = 0;
@@ -76,7 +77,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
     if (island < 0) island = skip.converged_islands || count == 0 ? count++ : 0;
     contact_island.push_back(island);
   }
-  take_order(s, make_contact_order(blocks.touched, contact_island));
+  take_order(s, make_contact_order(blocks.touched, contact_island, stages));
   for (const std::int32_t c : component) {
     if (island_of[index_of(c)] >= 0) continue;
     if (!skip.contactless_bodies && s.contact_islands > 0) {
@@ -227,6 +228,7 @@ void fill_system(const ContactProblem& problem,
 
 void fill_global_structure(const ContactProblem& problem,
                            const ContactSkipOptions& skip,
+                           StructureStages& stages,
                            ContactStructure& structure) {
   const std::vector<std::int32_t> starts = blocks_of(problem);
   Blocks blocks = make_blocks(problem, {starts.begin(), starts.end()});
@@ -234,7 +236,7 @@ void fill_global_structure(const ContactProblem& problem,
     std::vector<std::int64_t> merged = merged_starts(blocks);
     if (merged.size() != blocks.start.size()) blocks = make_blocks(problem, std::move(merged));
   }
-  const std::vector<std::int32_t> order = order_blocks(blocks, skip, structure);
+  const std::vector<std::int32_t> order = order_blocks(blocks, skip, stages, structure);
   const std::vector<std::int32_t> place_of_block = places_of(order);
   fill_dofs(blocks, order, structure);
   for (const ContactIsland& island : structure.islands) {

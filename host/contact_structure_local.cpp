@@ -9,6 +9,7 @@ namespace tetwarp {
 
 void fill_local_structure(const ContactProblem& problem,
                           const ContactSkipOptions& skip,
+                          StructureStages& stages,
                           ContactStructure& structure) {
   ContactStructure& s = structure;
   const SparseMatrix& w = problem.delassus;
@@ -32,9 +33,9 @@ void fill_local_structure(const ContactProblem& problem,
     groups.close_list();
   }
   const std::vector<std::int32_t> islands = skip.converged_islands
-                                                ? components_of(groups, contacts)
+                                                ? components_of(groups, contacts, stages)
                                                 : std::vector<std::int32_t>(index_of(contacts), 0);
-  take_order(s, make_contact_order(make_transposed(groups, contacts), islands));
+  take_order(s, make_contact_order(make_transposed(groups, contacts), islands, stages));
 
   const std::vector<std::int32_t> slot_of = places_of(s.contact_of_slot);
   s.delassus_row = {0};

@@ -64,9 +64,11 @@ void take_order(ContactStructure& structure, ContactOrder order);
 
 void fill_local_structure(const ContactProblem& problem,
                           const ContactSkipOptions& skip,
+                          StructureStages& stages,
                           ContactStructure& structure);
 void fill_global_structure(const ContactProblem& problem,
                            const ContactSkipOptions& skip,
+                           StructureStages& stages,
                            ContactStructure& structure);
 
 }  // namespace tetwarp

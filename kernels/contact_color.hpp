@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/vector_bodies.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
@@ -48,14 +49,29 @@ struct ContactColorBody {
   }
 };
 
-/// One round of coloring. In sequence from the first contact, one round colors all.
-/// @param colors  in: uncolored; out: from 0
+/// One index = 1 for a contact that waits for its color.
+struct UncoloredBody {
+  View<const std::int32_t> colors;
+  TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
+    return {{colors[c] == uncolored ? 1.0 : 0.0}};
+  }
+};
+
+/// Colors all contacts, in rounds: in sequence from the first contact, one is enough.
+/// @param colors  out: from 0
 ///
-/// Determinism: greedy in order of index, the same on every back end. Cost: per contact the lower
-/// contacts of its groups.
+/// Determinism: greedy in order of index, the same on every back end. Cost: per round and contact
+/// the lower contacts of its groups.
 template <class Exec>
 void contact_color(Exec& exec, const ContactGroups& groups, View<std::int32_t> colors) {
-  exec.for_each("contact/color", colors.size, ContactColorBody{groups, colors});
+  constexpr const char* label = "contact/color";
+  exec.for_each(label, colors.size, FillBody<std::int32_t>{uncolored, colors});
+  double waiting = 0;
+  do {
+    exec.for_each(label, colors.size, ContactColorBody{groups, colors});
+    waiting =
+        exec.template sum<PlainSums<1>>(label, 0, colors.size, UncoloredBody{colors}).value[0];
+  } while (waiting > 0);
 }
 
 }  // namespace tetwarp

@@ -39,6 +39,12 @@ struct ReversedExec {
   void for_each(const char*, std::int64_t count, const Body& body) const {
     for (std::int64_t i = count; i-- > 0;) body(i);
   }
+  template <class Sum, class Body>
+  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    Sum sum{};
+    for (std::int64_t i = last; i-- > first;) sum += body(i);
+    return sum;
+  }
 };
 
 /// Values of the problem, `width` at each item, taken to the places that hold them.

@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "host/contact_exec_cpu.hpp"
 #include "host/contact_islands.hpp"
 #include "kernels/contact_color.hpp"
+#include "kernels/contact_components.hpp"
 #include "tests/contact_samples.hpp"
 #include "tests/contact_stages.hpp"
 
@@ -21,34 +23,41 @@ namespace {
 
 using Colors = std::vector<std::int32_t>;
 
-struct InOrder {
+/// Another executor, passes counted.
+template <class Exec>
+struct Counting {
+  Exec exec;
+  int passes = 0;
+
   template <class Body>
-  void for_each(const char*, std::int64_t count, const Body& body) const {
-    for (std::int64_t i = 0; i < count; ++i) body(i);
+  void for_each(const char* label, std::int64_t count, const Body& body) {
+    ++passes;
+    exec.for_each(label, count, body);
+  }
+  template <class Sum, class Body>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+    return exec.template sum<Sum>(label, first, last, body);
   }
 };
 
-/// Rounds until all are colored.
+/// @param rounds  out: passes over the contacts, the one that prepares them left out
 template <class Exec>
 Colors colors_of(const Exec& exec, const Lists& groups, std::int64_t group_count, int& rounds) {
   const Lists members = make_transposed(groups, group_count);
-  Colors colors(static_cast<std::size_t>(groups.size()), uncolored);
-  const auto is_waiting = [&] {
-    return std::find(colors.begin(), colors.end(), uncolored) != colors.end();
-  };
-  for (rounds = 0; is_waiting() && rounds <= groups.size(); ++rounds) {
-    contact_color(exec,
-                  ContactGroups{view_of(groups.start), view_of(groups.item), view_of(members.start),
-                                view_of(members.item)},
-                  view_of(colors));
-  }
+  Colors colors(static_cast<std::size_t>(groups.size()));
+  Counting<Exec> counting{exec};
+  contact_color(counting,
+                ContactGroups{view_of(groups.start), view_of(groups.item), view_of(members.start),
+                              view_of(members.item)},
+                view_of(colors));
+  rounds = counting.passes - 1;
   return colors;
 }
 
 Colors colors_of(const Lists& groups, std::int64_t group_count) {
   int rounds = 0;
-  const Colors colors = colors_of(InOrder{}, groups, group_count, rounds);
-  EXPECT_LE(rounds, 1);
+  const Colors colors = colors_of(CpuContactExec(1), groups, group_count, rounds);
+  EXPECT_EQ(rounds, 1);
   return colors;
 }
 
@@ -135,9 +144,10 @@ TEST(ContactColor, EveryContactOfOneBodyHasAColorOfItsOwn) {
 TEST(ContactColor, ContactsAreSortedByIslandThenColorThenIndex) {
   const Lists groups = random_groups(53, 60, 90);
   const Colors colors = colors_of(groups, 90);
-  const std::vector<std::int32_t> islands = components_of(make_transposed(groups, 90), 60);
+  HostStages stages;
+  const std::vector<std::int32_t> islands = components_of(make_transposed(groups, 90), 60, stages);
 
-  const ContactOrder order = make_contact_order(groups, islands);
+  const ContactOrder order = make_contact_order(groups, islands, stages);
 
   std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t>> expected;
   for (std::int32_t c = 0; c < 60; ++c) {
@@ -178,6 +188,57 @@ TEST(ContactColor, BodiesOnOneFloorDoNotConflict) {
   ASSERT_GE(stages.colors().size, 3);
   EXPECT_EQ(stages.colors()[1], 10);
   for (std::int32_t c = 0; c < 10; ++c) EXPECT_EQ(slots[static_cast<std::size_t>(c)], c);
+}
+
+/// By breadth-first search.
+std::vector<std::int32_t> searched_components(const Lists& lists, std::int64_t items) {
+  const Lists of_item = make_transposed(lists, items);
+  std::vector<std::int32_t> lowest(static_cast<std::size_t>(items), -1);
+  for (std::int32_t seed = 0; seed < items; ++seed) {
+    std::vector<std::int32_t> open = {seed};
+    while (!open.empty()) {
+      const std::int32_t item = open.back();
+      open.pop_back();
+      if (lowest[static_cast<std::size_t>(item)] >= 0) continue;
+      lowest[static_cast<std::size_t>(item)] = seed;
+      for (const std::int32_t list : of_item.of(item)) {
+        for (const std::int32_t other : lists.of(list)) open.push_back(other);
+      }
+    }
+  }
+  return lowest;
+}
+
+TEST(ContactComponents, AreThoseOfASearchInAnyOrder) {
+  for (const std::int64_t size : sizes) {
+    const Lists lists = random_groups(53, size, 700);
+    const std::vector<std::int32_t> expected = searched_components(lists, 700);
+    CpuContactExec in_order(1), in_parallel(3);
+    ReversedExec reversed;
+    const auto expect_found = [&](auto& exec) {
+      std::vector<std::int32_t> lowest(700);
+      contact_components(exec, view_of(lists.start), view_of(lists.item), view_of(lowest));
+      EXPECT_EQ(lowest, expected) << size << " lists";
+    };
+    expect_found(in_order);
+    expect_found(in_parallel);
+    expect_found(reversed);
+  }
+}
+
+/// The worst case of joining from the wrong end.
+TEST(ContactComponents, AChainIsOne) {
+  Lists lists;
+  for (std::int32_t i = 2000; i-- > 0;) {
+    lists.item.insert(lists.item.end(), {i, i + 1});
+    lists.close_list();
+  }
+  std::vector<std::int32_t> lowest(2001);
+  ReversedExec exec;
+
+  contact_components(exec, view_of(lists.start), view_of(lists.item), view_of(lowest));
+
+  EXPECT_EQ(lowest, std::vector<std::int32_t>(2001, 0));
 }
 
 }  // namespace

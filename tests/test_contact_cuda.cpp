@@ -12,6 +12,7 @@
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
 
+#include "host/contact_device.hpp"
 #include "host/contact_structure.hpp"
 #include "host/warp_backend.hpp"
 #include "tests/contact_methods.hpp"
@@ -211,6 +212,39 @@ TEST_F(ContactCuda, ContradictionsAreFoundAndClamped) {
   const ContactSolution solution = solve_contacts(pressed, on_device({}));
 
   EXPECT_EQ(solution.report.status, ContactStatus::infeasible);
+}
+
+/// Islands and colors are found there, too.
+TEST_F(ContactCuda, HasTheStructureOfTheHost) {
+  const std::unique_ptr<ContactDevice> device = make_contact_device(0);
+  for (const ContactProblem& problem :
+       {scenes::sphere_packing({.seed = 314, .edge = 6, .kept = 0.3}),
+        scenes::random_local({.seed = 315, .contacts = 700, .neighbors = 2}),
+        make_elastic_problem({}), ContactProblem(global_problem(316, 9, 0.4))}) {
+    const ContactStructure here = make_structure(problem, {});
+    const ContactStructure there = make_structure(problem, {}, *device);
+
+    EXPECT_EQ(there.contact_of_slot, here.contact_of_slot);
+    EXPECT_EQ(there.color_start, here.color_start);
+    EXPECT_EQ(there.islands.size(), here.islands.size());
+    EXPECT_EQ(there.dof_of_place, here.dof_of_place);
+  }
+}
+
+/// The device may fuse products and sums.
+TEST_F(ContactCuda, EvolvesAdhesionAsTheHostDoes) {
+  const ContactProblem problem = global_problem(317, 8, 0);
+  ContactSolver solver(on_device({}));
+  const ContactSolution solution = solver.solve(problem);
+  for (const AdhesionIntegrator integrator :
+       {AdhesionIntegrator::exact, AdhesionIntegrator::explicit_euler}) {
+    const AdhesionStep here = evolve_adhesion(problem, solution, {.integrator = integrator});
+    const AdhesionStep there = solver.evolve(problem, solution, {.integrator = integrator});
+
+    EXPECT_LE(relative_distance(there.intensity, here.intensity), 1e-14);
+    EXPECT_LE(relative_distance(there.gap, here.gap), 1e-14);
+    EXPECT_EQ(there.debonded, here.debonded);
+  }
 }
 
 TEST(ContactCudaMissing, IsNamed) {

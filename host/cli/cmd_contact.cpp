@@ -47,9 +47,11 @@ ContactProblem read_problem(const ContactArguments& arguments) {
 }
 
 /// A problem that passed the reader's checks can still turn out unsolvable when it is factorized.
-ContactSolution solve(const ContactProblem& problem, const ContactArguments& arguments) {
+ContactSolution solve(ContactSolver& solver,
+                      const ContactProblem& problem,
+                      const ContactArguments& arguments) {
   try {
-    return solve_contacts(problem, arguments.options);
+    return solver.solve(problem);
   } catch (const ContactProblemError& error) {
     throw IoError(arguments.problem, "", error.what());
   }
@@ -100,10 +102,11 @@ int run_contact(const ContactArguments& arguments) {
   const Stopwatch reading;
   const ContactProblem problem = read_problem(arguments);
   seconds.read = reading.seconds();
-  const ContactSolution solution = solve(problem, arguments);
+  ContactSolver solver(arguments.options);
+  const ContactSolution solution = solve(solver, problem, arguments);
   const Stopwatch writing;
   std::optional<AdhesionStep> next;
-  if (arguments.evolve) next = evolve_adhesion(problem, solution);
+  if (arguments.evolve) next = solver.evolve(problem, solution);
   write_contact_solution(arguments.output, arguments.problem, solution, next ? &*next : nullptr);
   seconds.write = writing.seconds();
   if (!arguments.report.empty()) write_report(arguments.report, solution.report, seconds);

@@ -161,36 +161,6 @@ struct ContactSolution {
   bool converged() const { return report.status == ContactStatus::converged; }
 };
 
-/// Solves problem after problem, keeping buffers, and as long as the structure stays the same the
-/// colors and islands too. Same inputs in the same order, same bits, whatever the number of
-/// threads. Not safe for concurrent calls.
-class ContactSolver {
- public:
-  /// @throws std::invalid_argument  on options out of range, naming them
-  /// @throws CudaError              when cuda was asked for and no device answers
-  explicit ContactSolver(const ContactOptions& options = {});
-  ContactSolver(ContactSolver&&) noexcept;
-  ContactSolver& operator=(ContactSolver&&) noexcept;
-  ~ContactSolver();
-
-  /// @throws ContactProblemError  see check(); never for a problem that is merely hard
-  ContactSolution solve(const ContactProblem& problem);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
-/// One problem. For several keep a ContactSolver.
-ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options = {});
-
-/// Residuals of a given pair, in float64, with the true A. Empty `body_velocity`: computed from the
-/// impulses (local form: u = W r + q).
-ContactResidual residual_of(const ContactProblem& problem,
-                            std::span<const double> impulse,
-                            std::span<const double> body_velocity,
-                            const ContactOptions& options = {});
-
 /// How the adhesion intensity is stepped.
 enum class AdhesionIntegrator {
   exact,          ///< the piecewise linear law in closed form
@@ -210,7 +180,43 @@ struct AdhesionStep {
   std::vector<std::uint8_t> debonded;  ///< 1 where the contact let go in this step
 };
 
-/// One step of adhesion intensity and anchor gaps after a solve (beta is frozen within it).
+/// Solves problem after problem, keeping buffers, and as long as the structure stays the same the
+/// colors and islands too. Same inputs in the same order, same bits, whatever the number of
+/// threads. Not safe for concurrent calls.
+class ContactSolver {
+ public:
+  /// @throws std::invalid_argument  on options out of range, naming them
+  /// @throws CudaError              when cuda was asked for and no device answers
+  explicit ContactSolver(const ContactOptions& options = {});
+  ContactSolver(ContactSolver&&) noexcept;
+  ContactSolver& operator=(ContactSolver&&) noexcept;
+  ~ContactSolver();
+
+  /// @throws ContactProblemError  see check(); never for a problem that is merely hard
+  ContactSolution solve(const ContactProblem& problem);
+
+  /// evolve_adhesion() where this solver runs.
+  AdhesionStep evolve(const ContactProblem& problem,
+                      const ContactSolution& solution,
+                      const EvolutionOptions& options = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// One problem. For several keep a ContactSolver.
+ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options = {});
+
+/// Residuals of a given pair, in float64, with the true A. Empty `body_velocity`: computed from the
+/// impulses (local form: u = W r + q).
+ContactResidual residual_of(const ContactProblem& problem,
+                            std::span<const double> impulse,
+                            std::span<const double> body_velocity,
+                            const ContactOptions& options = {});
+
+/// One step of adhesion intensity and anchor gaps after a solve (beta is frozen within it), on the
+/// host.
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const EvolutionOptions& options = {});
