@@ -124,6 +124,21 @@ TEST(CoupledLinear, StopsWhereItIsToldTo) {
 }
 
 /// Couplings twice as strong as the blocks they join: these stay positive, the whole does not.
+TEST(CoupledLinear, DoesNotBlameTheSystemForSquaresThatUnderflow) {
+  LinearCase c = bodies(0.4);
+  for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
+    std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);
+    CpuContactExec exec(1);
+    Linear linear = make_linear(exec, c);
+
+    EXPECT_NO_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) {
+      return false;
+    })) << scale;
+
+    for (const double entry : x) EXPECT_TRUE(std::isfinite(entry)) << scale;
+  }
+}
+
 TEST(CoupledLinear, RefusesASystemThatIsNotPositiveDefinite) {
   const LinearCase c = bodies(2);
   CpuContactExec exec(1);
