@@ -155,6 +155,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emulated_backend.cpp
     tests/emulated_contact.cpp
+    tests/test_contact_emulated.cpp
     tests/test_contact_cuda.cpp
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp

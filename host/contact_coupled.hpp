@@ -17,6 +17,17 @@
 
 namespace tetwarp {
 
+/// What a judge works with.
+template <class Exec>
+struct JudgeMemory {
+  using Vector = typename Exec::template Vector<double>;
+
+  LinearMemory<Exec> linear;
+  typename Exec::template Vector<ContactConstants<double>> constants;              ///< [slots]
+  Vector body_velocity, rest, best_body_velocity;                                  ///< [dofs]
+  Vector velocity, obedient_velocity, free_velocity, seen, impulse, best_impulse;  ///< [3 slots]
+};
+
 /// Judges the impulses of one coupled island by the velocities they cause, A v = b + J^T r solved
 /// by conjugate gradients, and keeps the best pair.
 ///
@@ -28,15 +39,27 @@ class CoupledJudge {
  public:
   using Vector = typename Exec::template Vector<double>;
 
+  /// @param memory  kept by the caller
   CoupledJudge(Exec& exec,
                const ContactOptions& options,
                const ContactNumbers<double>& numbers,
-               const ContactIsland& island)
+               const ContactIsland& island,
+               JudgeMemory<Exec>& memory)
       : exec_(exec),
         options_(options),
         numbers_(numbers),
         island_(island),
-        linear_(exec, numbers, island) {
+        linear_(exec, numbers, island, memory.linear),
+        constants_(memory.constants),
+        body_velocity_(memory.body_velocity),
+        rest_(memory.rest),
+        best_body_velocity_(memory.best_body_velocity),
+        velocity_(memory.velocity),
+        obedient_velocity_(memory.obedient_velocity),
+        free_velocity_(memory.free_velocity),
+        seen_(memory.seen),
+        impulse_(memory.impulse),
+        best_impulse_(memory.best_impulse) {
     for (Vector* dofs : {&body_velocity_, &rest_, &best_body_velocity_}) {
       exec.resize(*dofs, numbers.load.size);
     }
@@ -252,10 +275,10 @@ class CoupledJudge {
   ContactNumbers<double> numbers_;
   const ContactIsland& island_;
   CoupledLinear<Exec> linear_;
-  typename Exec::template Vector<ContactConstants<double>> constants_;
-  Vector body_velocity_, velocity_, obedient_velocity_, free_velocity_, seen_, impulse_, rest_;
+  typename Exec::template Vector<ContactConstants<double>>& constants_;
+  Vector &body_velocity_, &rest_, &best_body_velocity_, &velocity_, &obedient_velocity_,
+      &free_velocity_, &seen_, &impulse_, &best_impulse_;
   StopRule rule_;
-  Vector best_impulse_, best_body_velocity_;
   double best_excess_ = std::numeric_limits<double>::infinity();
   double seen_share_ = 0;  ///< distance() per size in the norm of A, of smooth motion
 };

@@ -29,9 +29,11 @@ class CudaContactDevice final : public ContactDevice {
                              const ContactStructure& structure,
                              const ContactInput& input) override {
     exec_.use_stream(nullptr);  // makes the device current on this thread
-    grid_.forget_sweeps();
-    if (serial_ != structure.serial) indices_ = indices_there(grid_, structure.indices(), arrays_);
-    serial_ = structure.serial;
+    if (serial_ != structure.serial) {
+      grid_.forget_sweeps();  // with the same structure they find everything in its place
+      indices_ = indices_there(grid_, structure.indices(), arrays_);
+      serial_ = structure.serial;
+    }
     structure_ = &structure;
     float64_.resize(grid_, indices_);
     const ContactSavings savings = fill_numbers(grid_, input_there(grid_, input, given_), indices_,
@@ -87,12 +89,10 @@ class CudaContactDevice final : public ContactDevice {
                      std::vector<double>& impulse,
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
-    grid_.forget_sweeps();
-    DeviceVector<double> guess_there;
-    put(guess, guess_there);
-    CoupledJudge<GridContactExec> judge(grid_, options, numbers_, island);
+    put(guess, guess_);
+    CoupledJudge<GridContactExec> judge(grid_, options, numbers_, island, coupled_.judge);
     solve_coupled_island(grid_, options, numbers_, rounded_, view_of(structure_->color_start),
-                         island, view_of(std::as_const(guess_there)), most, judge, outcome);
+                         island, view_of(std::as_const(guess_)), most, judge, coupled_, outcome);
     grid_.get(judge.best_impulse(), impulse.data());
     grid_.get(judge.best_body_velocity(), body_velocity.data());
   }
@@ -275,6 +275,8 @@ class CudaContactDevice final : public ContactDevice {
   ContactNumbers<float> rounded_;
   DeviceState<double> state64_;
   DeviceState<float> state32_;
+  CoupledMemory<GridContactExec> coupled_;
+  DeviceVector<double> guess_;
   DeviceVector<std::int32_t> labels_;
   DeviceVector<double> next_intensity_, next_gap_;
   DeviceVector<std::uint8_t> debonded_;

@@ -31,6 +31,8 @@ struct EngineResult {
 };
 
 struct Condensation;
+template <class Exec>
+struct CoupledMemory;
 
 /// What a series of problems with the same A and J has of its coupled islands.
 struct KeptSystem {
@@ -94,6 +96,7 @@ class ContactEngine {
   bool has_host_system_ = false;     ///< it is that of the problem at hand
   bool has_device_system_ = false;   ///< the device has that
   std::vector<double> free_motion_;  ///< v without contacts, [dofs]; of coupled islands not set
+  std::shared_ptr<CoupledMemory<CpuContactExec>> coupled_;  ///< null: not needed so far
   KeptSystem kept_;
 };
 

@@ -111,14 +111,15 @@ void ContactEngine::iterate(const ContactProblem& problem,
     device_->solve_coupled(options_, island, guess, most, impulse, body_velocity, outcome);
   } else {
     CpuContactExec exec(threads_);
+    if (coupled_ == nullptr) coupled_ = std::make_shared<CoupledMemory<CpuContactExec>>();
     ContactSystem<double>& system = host_system(problem);
     const ContactIndices indices = structure_.indices();
     const ContactNumbers<double> numbers = system.numbers(indices);
     ContactSystem<float> rounded;
     if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
-    CoupledJudge<CpuContactExec> judge(exec, options_, numbers, island);
+    CoupledJudge<CpuContactExec> judge(exec, options_, numbers, island, coupled_->judge);
     solve_coupled_island(exec, options_, numbers, rounded.numbers(indices), indices.color_start,
-                         island, view_of(guess), most, judge, outcome);
+                         island, view_of(guess), most, judge, *coupled_, outcome);
     exec.get(judge.best_impulse(), impulse.data());
     exec.get(judge.best_body_velocity(), body_velocity.data());
   }

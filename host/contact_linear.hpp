@@ -49,17 +49,30 @@ class GradientError {
   double smallest_ = 1;      ///< eigenvalue of D^-1 A known
 };
 
+/// Vectors that conjugate gradients work with, [dofs].
+template <class Exec>
+struct LinearMemory {
+  typename Exec::template Vector<double> direction, product, image;
+};
+
 /// Linear systems of one island, preconditioned by the inverse diagonal blocks of A (Hestenes and
 /// Stiefel 1952). Vectors are [dofs] of the whole problem; only the island's part is touched.
 template <class Exec>
 class CoupledLinear {
  public:
-  CoupledLinear(Exec& exec, const ContactNumbers<double>& numbers, const ContactIsland& island)
+  /// @param memory  kept by the caller
+  CoupledLinear(Exec& exec,
+                const ContactNumbers<double>& numbers,
+                const ContactIsland& island,
+                LinearMemory<Exec>& memory)
       : exec_(exec),
         island_(island),
+        memory_(memory),
         matrix_(numbers.system),
         inverse_{numbers.system.dof_start, numbers.inverse_start, numbers.inverse} {
-    for (auto* values : {&direction_, &product_, &image_}) exec.resize(*values, numbers.load.size);
+    for (auto* values : {&memory.direction, &memory.product, &memory.image}) {
+      exec.resize(*values, numbers.load.size);
+    }
   }
 
   /// Moves x towards the solution until `enough`, asked now and then, or as far as rounding lets
@@ -70,9 +83,9 @@ class CoupledLinear {
   LinearProgress solve(View<double> x, View<double> rest, const Enough& enough) {
     constexpr std::size_t most_products = 1000, first_ask = 4;
     constexpr double vanishing = 1e-200;  // squares that underflow tell nothing of A
-    double* const direction = view_of(direction_).data;
-    double* const product = view_of(product_).data;
-    double* const image = view_of(image_).data;
+    double* const direction = view_of(memory_.direction).data;
+    double* const product = view_of(memory_.product).data;
+    double* const image = view_of(memory_.image).data;
     double size = sum(GradientStartBody{inverse_, rest.data, image, direction});
     LinearProgress progress;
     double gained = 0;
@@ -111,9 +124,9 @@ class CoupledLinear {
 
   Exec& exec_;
   const ContactIsland& island_;
+  LinearMemory<Exec>& memory_;
   SystemView<double> matrix_;
   InverseBlocks inverse_;
-  typename Exec::template Vector<double> direction_, product_, image_;
   GradientError error_;
 };
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -38,20 +37,49 @@ inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& i
 template <class Exec, class T = double>
 class OuterIteration {
  public:
+  template <class U>
+  using Vector = typename Exec::template Vector<U>;
+
+  /// What it works with.
+  struct Memory {
+    Vector<T> impulse, velocity;                          ///< [3 slots]
+    Vector<T> body_velocity, before, defect;              ///< [dofs]
+    Vector<double> weights;                               ///< the diagonal of A, nearly its metric
+    Vector<T> mixed;                                      ///< of accelerators
+    Vector<double> double_impulse, double_body_velocity;  ///< for float32
+
+    void resize(Exec& exec, const ContactNumbers<T>& numbers, const ContactIsland& island) {
+      const std::int64_t rows = numbers.bodies.offset.size, dofs = numbers.load.size;
+      for (Vector<T>* values : {&impulse, &velocity}) exec.resize(*values, rows);
+      for (Vector<T>* values : {&body_velocity, &before, &defect}) exec.resize(*values, dofs);
+      const std::int64_t size = island.dof_end - island.dof_begin;
+      exec.resize(weights, size);
+      exec.resize(mixed, AndersonMixer<Exec, T>::columns * size);
+      if (std::is_same_v<T, double>) return;
+      exec.resize(double_impulse, rows);
+      exec.resize(double_body_velocity, dofs);
+    }
+    ContactState<T> state() {
+      return {view_of(impulse), view_of(velocity), view_of(body_velocity), view_of(defect), {}, {}};
+    }
+  };
+
   /// @param numbers      of the whole problem, where the executor reads them
   /// @param color_start  on the host
   /// @param judge        has been started
+  /// @param memory       kept by the caller
   OuterIteration(Exec& exec,
                  const ContactOptions& options,
                  const ContactNumbers<T>& numbers,
                  View<const std::int64_t> color_start,
                  const ContactIsland& island,
-                 CoupledJudge<Exec>& judge)
+                 CoupledJudge<Exec>& judge,
+                 Memory& memory)
       : exec_(exec),
         options_(options),
         judge_(judge),
         inner_sweeps_(sweeps_per_step(options, island)),
-        memory_(exec, numbers, island),
+        memory_((memory.resize(exec, numbers, island), memory)),
         pipeline_(exec, numbers, color_start, island, switches_of(options), memory_.state()),
         now_(view_of(memory_.body_velocity)),
         before_(view_of(memory_.before)) {
@@ -77,46 +105,20 @@ class OuterIteration {
   bool is_lost() const { return is_lost_; }
   /// Where it has come to, in float64: r, [3 slots].
   View<const double> impulse() {
-    return memory_.in_double(exec_, view_of(memory_.impulse), memory_.double_impulse);
+    return in_double(view_of(memory_.impulse), memory_.double_impulse);
   }
   /// v, [dofs].
-  View<const double> body_velocity() {
-    return memory_.in_double(exec_, now_, memory_.double_body_velocity);
-  }
+  View<const double> body_velocity() { return in_double(now_, memory_.double_body_velocity); }
 
  private:
-  template <class U>
-  using Vector = typename Exec::template Vector<U>;
-
-  struct Memory {
-    Vector<T> impulse, velocity, body_velocity, before, defect;
-    Vector<double> weights;  ///< the diagonal of A, nearly the metric of the iteration
-    Vector<T> mixed;
-    Vector<double> double_impulse, double_body_velocity;  ///< for float32
-
-    Memory(Exec& exec, const ContactNumbers<T>& numbers, const ContactIsland& island) {
-      const std::int64_t rows = numbers.bodies.offset.size, dofs = numbers.load.size;
-      for (Vector<T>* values : {&impulse, &velocity}) exec.resize(*values, rows);
-      for (Vector<T>* values : {&body_velocity, &before, &defect}) exec.resize(*values, dofs);
-      const std::int64_t size = island.dof_end - island.dof_begin;
-      exec.resize(weights, size);
-      exec.resize(mixed, AndersonMixer<Exec, T>::columns * size);
-      if (std::is_same_v<T, double>) return;
-      exec.resize(double_impulse, rows);
-      exec.resize(double_body_velocity, dofs);
+  View<const double> in_double(View<const T> values, Vector<double>& wide) {
+    if constexpr (std::is_same_v<T, double>) {
+      return values;
+    } else {
+      convert(exec_, values, view_of(wide));
+      return view_of(std::as_const(wide));
     }
-    ContactState<T> state() {
-      return {view_of(impulse), view_of(velocity), view_of(body_velocity), view_of(defect), {}, {}};
-    }
-    View<const double> in_double(Exec& exec, View<const T> values, Vector<double>& wide) {
-      if constexpr (std::is_same_v<T, double>) {
-        return values;
-      } else {
-        convert(exec, values, view_of(wide));
-        return view_of(std::as_const(wide));
-      }
-    }
-  };
+  }
 
   void iterate(std::int64_t most, IslandOutcome& outcome) {
     switch (options_.method) {
@@ -195,7 +197,7 @@ class OuterIteration {
   const ContactOptions& options_;
   CoupledJudge<Exec>& judge_;
   int inner_sweeps_;
-  Memory memory_;
+  Memory& memory_;
   ContactPipeline<Exec, T> pipeline_;
   View<T> now_, before_;  ///< v, and that of the step before; change places
   double aim_ = 0;
@@ -205,10 +207,19 @@ class OuterIteration {
   bool is_lost_ = false;
 };
 
+/// Memory for islands whose blocks A couples, one after the other.
+template <class Exec>
+struct CoupledMemory {
+  JudgeMemory<Exec> judge;
+  typename OuterIteration<Exec, double>::Memory fine;
+  typename OuterIteration<Exec, float>::Memory coarse;
+  typename Exec::template Vector<double> no_impulse, no_velocity;
+};
+
 /// One coupled island by the outer iteration, from impulses or from nothing.
 /// @param rounded  the numbers in float32 where the options ask for that; else not read
 /// @param guess    [3 slots] of the whole problem, where the executor reads it; empty: none
-/// @param judge    of the island; has the best pair in the end
+/// @param judge    of the island, in `memory`; has the best pair in the end
 template <class Exec>
 void solve_coupled_island(Exec& exec,
                           const ContactOptions& options,
@@ -219,29 +230,29 @@ void solve_coupled_island(Exec& exec,
                           View<const double> guess,
                           std::int64_t most,
                           CoupledJudge<Exec>& judge,
+                          CoupledMemory<Exec>& memory,
                           IslandOutcome& outcome) {
   judge.start(outcome);
   if (outcome.reason == StopReason::converged) return;
-  typename Exec::template Vector<double> nothing_r, nothing_v;
-  exec.resize(nothing_r, numbers.bodies.offset.size);
-  exec.resize(nothing_v, numbers.load.size);
-  View<const double> r = view_of(std::as_const(nothing_r)), v = view_of(std::as_const(nothing_v));
+  exec.resize(memory.no_impulse, numbers.bodies.offset.size);
+  exec.resize(memory.no_velocity, numbers.load.size);
+  View<const double> r = view_of(memory.no_impulse), v = view_of(memory.no_velocity);
   if (guess.size > 0) {
     judge.find_body_velocity(guess);
     r = guess;
     v = judge.body_velocity();
   }
-  std::optional<OuterIteration<Exec, float>> coarse;
   if (options.precision == ContactPrecision::float32) {
-    coarse.emplace(exec, options, rounded, color_start, island, judge);
-    coarse->solve(most, r, v, outcome);
+    OuterIteration<Exec, float> coarse(exec, options, rounded, color_start, island, judge,
+                                       memory.coarse);
+    coarse.solve(most, r, v, outcome);
     if (outcome.reason == StopReason::converged) return;
-    if (!coarse->is_lost()) {
-      r = coarse->impulse();
-      v = coarse->body_velocity();
+    if (!coarse.is_lost()) {
+      r = coarse.impulse();
+      v = coarse.body_velocity();
     }
   }
-  OuterIteration<Exec> outer(exec, options, numbers, color_start, island, judge);
+  OuterIteration<Exec> outer(exec, options, numbers, color_start, island, judge, memory.fine);
   outer.solve(most, r, v, outcome);
 }
 

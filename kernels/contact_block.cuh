@@ -72,6 +72,7 @@ class BlockContactExec {
   template <class Sum, class Body>
   __device__ __forceinline__ Sum
   sum(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
+    static_assert(sizeof(Sum) <= sizeof(LargestSum));
     Sum mine{};
     for (std::int64_t i = begin + first(); i < end; i += island_threads) mine += body(i);
     return block_sum(mine, static_cast<Sum*>(shared_));
@@ -79,6 +80,7 @@ class BlockContactExec {
   template <class Sum, class Body>
   __device__ __forceinline__ Sum
   sum_runs(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
+    static_assert(sizeof(Sum) <= sizeof(LargestSum));
     Sum mine{};
     for (std::int64_t i = begin + first(); i < end; i += island_threads) {
       mine += body.template run<1>(i, i + 1);

@@ -47,6 +47,7 @@ struct LinearCase {
   std::mt19937 random;
   Eigen::MatrixXd matrix;
   VectorXd goal;
+  mutable LinearMemory<CpuContactExec> memory;  ///< of one solver at a time
 };
 
 /// Coupled bodies of six dofs.
@@ -58,7 +59,7 @@ LinearCase bodies(double coupling) {
 using Linear = CoupledLinear<CpuContactExec>;
 
 Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
-  return Linear(exec, c.stages.system.numbers(c.stages.structure.indices()), c.stages.island());
+  return Linear(exec, c.stages.numbers(), c.stages.island(), c.memory);
 }
 
 TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {

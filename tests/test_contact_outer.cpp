@@ -98,9 +98,11 @@ TEST(OuterIteration, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
   const ContactNumbers<double> numbers = stages.system.numbers(stages.structure.indices());
-  CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island());
-  OuterIteration<CpuContactExec> outer(
-      exec, options, numbers, view_of(stages.structure.color_start), stages.island(), judge);
+  CoupledMemory<CpuContactExec> memory;
+  CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island(), memory.judge);
+  OuterIteration<CpuContactExec> outer(exec, options, numbers,
+                                       view_of(stages.structure.color_start), stages.island(),
+                                       judge, memory.fine);
   const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
   const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;
