@@ -3,8 +3,9 @@
 /// fixed tree, so nothing depends on how many threads there are.
 #pragma once
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <new>
 #include <vector>
 
 #include "kernels/view.hpp"
@@ -50,6 +51,56 @@ class CpuContactExec {
     std::copy_n(from.data, from.size, to.data);
   }
 
+  /// body.run(begin, end) over runs of [0, count), any order.
+  template <class Body>
+  void for_runs(const char*, std::int64_t count, const Body& body) const {
+    const std::int64_t runs = (count + run_length - 1) / run_length;
+    const auto run = [&](std::int64_t i) {
+      body.template run<run_length>(i * run_length, std::min((i + 1) * run_length, count));
+    };
+    if (threads_ == 1 || count < serial_below) {
+      for (std::int64_t i = 0; i < runs; ++i) run(i);
+      return;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t i = 0; i < runs; ++i) run(i);
+  }
+  template <class Body>
+  void once(const char*, const Body& body) const {
+    body(0);
+  }
+
+  /// Memory for one thing at a time, made anew.
+  template <class State>
+  State* state() {
+    static_assert(sizeof(State) <= sizeof(state_) && alignof(State) <= 16);
+    return new (state_) State{};
+  }
+  /// What those who decide may read, and when. Here all, always.
+  template <class T>
+  T load(const T* value) const {
+    return *value;
+  }
+  template <class T>
+  T load_if_free(const T* value, T) const {
+    return *value;
+  }
+  bool is_look(std::int64_t) const {
+    return true;
+  }
+  static constexpr bool reads_are_free = true;
+
+  template <class Sum, class Body>
+  void sum_to(
+      const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
+    *out = sum<Sum>(stage, first, last, body);
+  }
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
+    *out = sum_runs<Sum>(stage, first, last, body);
+  }
+
   /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
   template <class Sum, class Body>
   Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
@@ -93,6 +144,7 @@ class CpuContactExec {
   }
 
   int threads_;
+  alignas(16) std::byte state_[1024];
 };
 
 }  // namespace tetwarp

@@ -13,6 +13,7 @@
 #include "host/contact_structure.hpp"
 #include "kernels/conjugate_gradients.hpp"
 #include "kernels/contact_numbers.hpp"
+#include "kernels/vector_bodies.hpp"
 
 namespace tetwarp {
 
@@ -53,6 +54,11 @@ class GradientError {
 template <class Exec>
 struct LinearMemory {
   typename Exec::template Vector<double> direction, product, image;
+
+  // Of each step, [most_products + 1]: g . D^-1 g before it, p . A p, their quotient a, and what
+  // the first has shrunk by.
+  typename Exec::template Vector<PlainSums<1>> sizes, curvatures;
+  typename Exec::template Vector<double> factors, shrinks;
 };
 
 /// Linear systems of one island, preconditioned by the inverse diagonal blocks of A (Hestenes and
@@ -73,6 +79,12 @@ class CoupledLinear {
     for (auto* values : {&memory.direction, &memory.product, &memory.image}) {
       exec.resize(*values, numbers.load.size);
     }
+    for (auto* values : {&memory.sizes, &memory.curvatures}) {
+      exec.resize(*values, most_products + 1);
+    }
+    for (auto* values : {&memory.factors, &memory.shrinks}) {
+      exec.resize(*values, most_products + 1);
+    }
   }
 
   /// Moves x towards the solution until `enough`, asked now and then, or as far as rounding lets
@@ -81,45 +93,72 @@ class CoupledLinear {
   /// @param enough  (LinearProgress) -> bool
   template <class Enough>
   LinearProgress solve(View<double> x, View<double> rest, const Enough& enough) {
-    constexpr std::size_t most_products = 1000, first_ask = 4;
-    constexpr double vanishing = 1e-200;  // squares that underflow tell nothing of A
+    constexpr std::int64_t first_ask = 4;
     double* const direction = view_of(memory_.direction).data;
     double* const product = view_of(memory_.product).data;
     double* const image = view_of(memory_.image).data;
-    double size = sum(GradientStartBody{inverse_, rest.data, image, direction});
+    PlainSums<1>* const size = view_of(memory_.sizes).data;
+    PlainSums<1>* const curvature = view_of(memory_.curvatures).data;
+    double* const factor = view_of(memory_.factors).data;
+    double* const shrink = view_of(memory_.shrinks).data;
+    sum_to(GradientStartBody{inverse_, rest.data, image, direction}, size);
     LinearProgress progress;
-    double gained = 0;
-    std::size_t next_ask = first_ask;
     error_.start_solve();
-    while (size > 0 && error_.steps() < most_products) {
-      const double curvature = sum(GradientProductBody{matrix_, direction, product});
-      if (!(curvature > 0)) {
-        if (size < vanishing) break;
-        throw ContactProblemError("system",
-                                  ": not positive definite although its diagonal blocks are; give "
-                                  "mass to every dof");
-      }
-      const double last = size, factor = size / curvature;
-      size = sum(GradientStepBody{inverse_, factor, direction, product, x.data, rest.data, image});
+    gained_ = 0;
+    std::int64_t next_ask = first_ask;
+    for (std::int64_t k = 0; k < most_products; ++k) {
+      if (Exec::reads_are_free && !(size[k].value[0] > 0)) break;
+      sum_to(GradientProductBody{matrix_, direction, product}, curvature + k);
+      exec_.once("contact/relax", GradientQuotientBody{size + k, curvature + k, factor + k});
+      sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, rest.data, image},
+             size + k + 1);
+      exec_.once("contact/relax", GradientQuotientBody{size + k + 1, size + k, shrink + k});
       body_relax(exec_, island_.block_begin, island_.block_end,
-                 GradientTurnBody{inverse_.dof_start, size / last, image, direction});
-      error_.add_step(factor, size / last);
-      gained += last * factor;
-      progress.moved = std::sqrt(gained);
-      if (size > 0 && error_.steps() < std::min(next_ask, most_products)) continue;
-      progress.left = std::sqrt(size * error_.left_factor());
-      if (enough(progress)) break;
+                 GradientTurnBody{inverse_.dof_start, shrink + k, image, direction});
+      const bool is_over = Exec::reads_are_free && !(size[k + 1].value[0] > 0);
+      if (!is_over && k + 1 < std::min(next_ask, most_products)) continue;
+      const double left = take_steps(k + 1);
+      progress.moved = std::sqrt(gained_);
+      if (error_.steps() == 0) break;
+      progress.left = std::sqrt(left * error_.left_factor());
+      if (enough(progress) || left == 0) break;
       next_ask += std::max(first_ask, next_ask / 8);
     }
     return progress;
   }
 
  private:
+  static constexpr std::int64_t most_products = 1000;
+
   template <class Body>
-  double sum(const Body& body) {
-    return exec_
-        .template sum<PlainSums<1>>("contact/relax", island_.block_begin, island_.block_end, body)
-        .value[0];
+  void sum_to(const Body& body, PlainSums<1>* out) {
+    exec_.sum_to("contact/relax", island_.block_begin, island_.block_end, body, out);
+  }
+
+  /// Tells `error_` and `gained_` of the steps up to `end`.
+  /// @return g . D^-1 g then; 0: nothing was left, or squares have underflowed
+  double take_steps(std::int64_t end) {
+    constexpr double vanishing = 1e-200;  // squares that underflow tell nothing of A
+    const auto first = static_cast<std::int64_t>(error_.steps());
+    const auto count = static_cast<std::size_t>(end - first);
+    std::vector<PlainSums<1>> sizes(count + 1), curvatures(count);
+    exec_.get(part_of(View<const PlainSums<1>>(view_of(memory_.sizes)), first, end + 1),
+              sizes.data());
+    exec_.get(part_of(View<const PlainSums<1>>(view_of(memory_.curvatures)), first, end),
+              curvatures.data());
+    for (std::size_t k = 0; k < count; ++k) {
+      const double size = sizes[k].value[0], curvature = curvatures[k].value[0];
+      if (!(size > 0)) return 0;
+      if (!(curvature > 0)) {
+        if (size < vanishing) return 0;
+        throw ContactProblemError("system",
+                                  ": not positive definite although its diagonal blocks are; give "
+                                  "mass to every dof");
+      }
+      error_.add_step(size / curvature, sizes[k + 1].value[0] / size);
+      gained_ += size * size / curvature;
+    }
+    return sizes[count].value[0];
   }
 
   Exec& exec_;
@@ -128,6 +167,7 @@ class CoupledLinear {
   SystemView<double> matrix_;
   InverseBlocks inverse_;
   GradientError error_;
+  double gained_ = 0;  ///< square of how far the solve at hand has come, in the norm of A
 };
 
 }  // namespace tetwarp

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/contact_coupled.hpp"
+#include "kernels/anderson.hpp"
 #include "kernels/contact_accelerators.hpp"
 #include "kernels/contact_pipeline.hpp"
 #include "kernels/vector_bodies.hpp"
@@ -149,18 +150,24 @@ class OuterIteration {
       ++outcome.outer_iterations;
       const View<const T> before =
           part_of(before_, pipeline_.island().dof_begin, pipeline_.island().dof_end);
-      const double defect = accelerator.observe(before, pipeline_.body_velocity());
-      if (outcome.outer_iterations == first) {
+      accelerator.observe(before, pipeline_.body_velocity());
+      const bool is_last = outcome.outer_iterations == most;
+      const bool is_first = outcome.outer_iterations == first;
+      if (!is_last && !is_first && !exec_.is_look(outcome.outer_iterations)) {
+        accelerator.advance(before, pipeline_.body_velocity());
+        continue;
+      }
+      const double defect = accelerator.defect();
+      if (is_first) {
         start += defect;
         aim_ = options_.tolerance * start;
       }
       is_lost_ = !(defect <= divergence * start);
       if (is_lost_) return;
-      const bool is_last = outcome.outer_iterations == most;
       const bool is_due = is_last || defect <= aim_ || outcome.outer_iterations >= next_;
       if (is_due && judge(defect, is_last, outcome) <= 1) return;
       if (std::is_same_v<T, float> && is_as_close_as_float32(defect / start, outcome)) return;
-      accelerator.advance(before, pipeline_.body_velocity(), defect);
+      accelerator.advance(before, pipeline_.body_velocity());
     }
   }
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "kernels/body_relax.hpp"
-#include "kernels/contact_accelerators.hpp"
+#include "kernels/plain_sums.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
@@ -53,10 +53,11 @@ struct GradientProductBody {
 };
 struct GradientStepBody {
   InverseBlocks inverse;
-  double factor;
+  const double* a;
   const double *p, *q;
   double *x, *g, *z;
   TETWARP_HD PlainSums<1> operator()(std::int64_t b) const {
+    const double factor = *a;
     for (std::int64_t d = inverse.dof_start[b]; d < inverse.dof_start[b + 1]; ++d) {
       x[d] += factor * p[d];
       g[d] -= factor * q[d];
@@ -66,11 +67,22 @@ struct GradientStepBody {
 };
 struct GradientTurnBody {
   View<const std::int64_t> dof_start;
-  double factor;
+  const double* c;
   const double* z;
   double* p;
   TETWARP_HD void operator()(std::int64_t b) const {
+    const double factor = *c;
     for (std::int64_t d = dof_start[b]; d < dof_start[b + 1]; ++d) p[d] = z[d] + factor * p[d];
+  }
+};
+
+/// One index: the quotient of two numbers; zero where it would be none.
+struct GradientQuotientBody {
+  const PlainSums<1>*above, *below;
+  double* quotient;
+  TETWARP_HD void operator()(std::int64_t) const {
+    const double divisor = below->value[0];
+    *quotient = divisor > 0 && above->value[0] > 0 ? above->value[0] / divisor : 0;
   }
 };
 

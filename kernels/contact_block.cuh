@@ -51,8 +51,9 @@ __device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
 /// ask, and all get the same answers.
 class BlockContactExec {
  public:
-  using LargestSum = PlainSums<2 * AndersonMixer<BlockContactExec, double>::window + 1>;
-  static constexpr std::size_t shared_bytes = sum_warps * sizeof(LargestSum);
+  using LargestSum = PlainSums<2 * anderson_window + 1>;
+  static constexpr std::size_t state_bytes = 1024;
+  static constexpr std::size_t shared_bytes = state_bytes + sum_warps * sizeof(LargestSum);
 
   /// @param shared  [shared_bytes]
   __device__ explicit BlockContactExec(void* shared) : shared_(shared) {}
@@ -64,6 +65,38 @@ class BlockContactExec {
     for (std::int64_t i = first(); i < count; i += island_threads) body(i);
     __syncthreads();
   }
+  template <class Body>
+  __device__ __forceinline__ void for_runs(const char*,
+                                           std::int64_t count,
+                                           const Body& body) const {
+    for (std::int64_t i = first(); i < count; i += island_threads) body.template run<1>(i, i + 1);
+    __syncthreads();
+  }
+  template <class Body>
+  __device__ __forceinline__ void once(const char*, const Body& body) const {
+    if (threadIdx.x == 0) body(0);
+    __syncthreads();
+  }
+
+  /// Shared memory for one thing at a time, made anew.
+  template <class State>
+  __device__ __forceinline__ State* state() const {
+    static_assert(sizeof(State) <= state_bytes && alignof(State) <= 16);
+    State* const state = static_cast<State*>(shared_);
+    if (threadIdx.x == 0) *state = State{};
+    __syncthreads();
+    return state;
+  }
+  template <class T>
+  __device__ __forceinline__ T load(const T* value) const {
+    return *value;
+  }
+  template <class T>
+  __device__ __forceinline__ T load_if_free(const T* value, T) const {
+    return *value;
+  }
+  __device__ __forceinline__ bool is_look(std::int64_t) const { return true; }
+
   template <class T>
   __device__ __forceinline__ void copy(const char*, View<const T> from, View<T> to) const {
     for (std::int64_t i = first(); i < from.size; i += island_threads) to[i] = from[i];
@@ -75,7 +108,7 @@ class BlockContactExec {
     static_assert(sizeof(Sum) <= sizeof(LargestSum));
     Sum mine{};
     for (std::int64_t i = begin + first(); i < end; i += island_threads) mine += body(i);
-    return block_sum(mine, static_cast<Sum*>(shared_));
+    return block_sum(mine, sums<Sum>());
   }
   template <class Sum, class Body>
   __device__ __forceinline__ Sum
@@ -85,10 +118,29 @@ class BlockContactExec {
     for (std::int64_t i = begin + first(); i < end; i += island_threads) {
       mine += body.template run<1>(i, i + 1);
     }
-    return block_sum(mine, static_cast<Sum*>(shared_));
+    return block_sum(mine, sums<Sum>());
+  }
+
+  template <class Sum, class Body>
+  __device__ __forceinline__ void sum_to(
+      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
+    const Sum total = sum<Sum>(stage, begin, end, body);
+    if (threadIdx.x == 0) *out = total;
+    __syncthreads();
+  }
+  template <class Sum, class Body>
+  __device__ __forceinline__ void sum_runs_to(
+      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
+    const Sum total = sum_runs<Sum>(stage, begin, end, body);
+    if (threadIdx.x == 0) *out = total;
+    __syncthreads();
   }
 
  private:
+  template <class Sum>
+  __device__ Sum* sums() const {
+    return reinterpret_cast<Sum*>(static_cast<unsigned char*>(shared_) + state_bytes);
+  }
   __device__ static std::int64_t first() { return static_cast<std::int64_t>(threadIdx.x); }
 
   void* shared_;

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/contact_accelerators.hpp"
+#include "kernels/plain_sums.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {

@@ -4,10 +4,10 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/contact_accelerators.hpp"
 #include "kernels/contact_indices.hpp"
 #include "kernels/contact_numbers.hpp"
 #include "kernels/contact_setup.hpp"
+#include "kernels/plain_sums.hpp"
 
 namespace tetwarp {
 

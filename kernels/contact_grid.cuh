@@ -118,24 +118,63 @@ class GridContactExec {
            dim3(each_threads), 0, count, body);
   }
 
-  template <class Sum, class Body>
-  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) {
-    if (first == last) return {};
-    const std::int64_t runs = (last - first + sum_run - 1) / sum_run;
-    const auto bytes = static_cast<std::int64_t>(sizeof(Sum));
-    sums_.reserve((runs + 1) * bytes);
-    home_.reserve(bytes);
-    const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view(0).data), runs};
-    const View<Sum> total = {sums.data + runs, 1};
-    launch_sums(first, last, sum_run, body, sums);
-    launch_sums(0, runs, runs, ReadySums<Sum>{sums}, total);
-    Sum* const home = reinterpret_cast<Sum*>(home_.view(0).data);
-    exec_->read(View<const Sum>(total), home);
+  template <class Body>
+  void for_runs(const char* label, std::int64_t count, const Body& body) const {
+    for_each(label, count, SingleRuns<Body>{body});
+  }
+  template <class Body>
+  void once(const char* label, const Body& body) const {
+    for_each(label, 1, body);
+  }
+
+  /// Memory of the device for one thing at a time, made anew.
+  template <class State>
+  State* state() {
+    static_assert(sizeof(State) <= state_bytes);
+    state_.resize(state_bytes);
+    const State fresh{};
+    check_cuda(cudaMemcpyAsync(state_.view().data, &fresh, sizeof(State), cudaMemcpyHostToDevice,
+                               exec_->stream()),
+               "cudaMemcpyAsync to device");
+    return reinterpret_cast<State*>(state_.view().data);
+  }
+  /// Waits for the device.
+  template <class T>
+  T load(const T* value) {
+    home_.reserve(sizeof(T));
+    T* const home = reinterpret_cast<T*>(home_.view(0).data);
+    exec_->read(View<const T>{value, 1}, home);
     return *home;
   }
+  template <class T>
+  T load_if_free(const T*, T otherwise) const {
+    return otherwise;
+  }
+  /// The device would stand still at every look.
+  bool is_look(std::int64_t step) const { return step % 8 == 0; }
+  static constexpr bool reads_are_free = false;
+
   template <class Sum, class Body>
-  Sum sum_runs(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
-    return sum<Sum>(label, first, last, SingleRuns<Body>{body});
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+    if (first == last) return {};
+    total_.resize(sizeof(Sum));
+    Sum* const total = reinterpret_cast<Sum*>(total_.view().data);
+    sum_to(label, first, last, body, total);
+    return load(total);
+  }
+  /// @param out  on the device
+  template <class Sum, class Body>
+  void sum_to(const char*, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    const std::int64_t runs = (last - first + sum_run - 1) / sum_run;
+    sums_.resize(runs * static_cast<std::int64_t>(sizeof(Sum)));
+    const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view().data), runs};
+    if (runs > 0) launch_sums(first, last, sum_run, body, sums);
+    launch_sums(0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
+  }
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    sum_to(label, first, last, SingleRuns<Body>{body}, out);
   }
 
   /// A pass over colors, recorded once and launched again and again.
@@ -158,8 +197,10 @@ class GridContactExec {
            dim3(sum_threads), sum_warps * sizeof(Sum), first, last, run, term, sums);
   }
 
+  static constexpr std::int64_t state_bytes = 1024;
+
   CudaExec* exec_;
-  DeviceBuffer<std::byte> sums_;
+  DeviceVector<std::byte> state_, sums_, total_;
   PinnedBuffer<std::byte> home_;
   SweepGraphs graphs_;
 };

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "kernels/body_relax.hpp"
-#include "kernels/contact_accelerators.hpp"
 #include "kernels/contact_residual.hpp"
+#include "kernels/plain_sums.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {

@@ -5,6 +5,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "kernels/anderson.hpp"
 #include "kernels/contact_accelerators.hpp"
 #include "kernels/contact_monitor.hpp"
 #include "kernels/contact_pipeline.hpp"
@@ -106,14 +107,18 @@ class ContactMethods {
     const View<T> last = {work_.mixed.data, x.size};
     exec().copy("contact/mix", View<const T>(x), last);
     double momentum = 1;
+    PlainSteps<Exec, T> steps(exec(), work_.weights, {});
     while (!monitor_.is_exhausted()) {
       exec().copy("contact/mix", View<const T>(x), work_.before);
       pipeline_.split(work_.metric);
       monitor_.count_sweep();
-      const double defect = defect_of<Exec, T>(exec(), work_.weights, work_.before, x);
-      if (monitor_.is_due(defect)) {
-        pipeline_.follow_impulses();
-        if (measure(defect)) break;
+      if (is_look()) {
+        steps.observe(work_.before, x);
+        const double defect = steps.defect();
+        if (monitor_.is_due(defect)) {
+          pipeline_.follow_impulses();
+          if (measure(defect)) break;
+        }
       }
       const double uphill =
           exec()
@@ -178,11 +183,19 @@ class ContactMethods {
       calm.all_awake = calm.visits.size == 0 || monitor_.sweeps() % CalmContacts<T>::pause == 0;
       pipeline_.sweep(calm);
       monitor_.count_sweep();
-      const double defect = accelerator.observe(before, x);
-      if (monitor_.is_due(defect) && measure(defect)) break;
-      if (accelerator.advance(before, x, defect)) pipeline_.follow_impulses();
+      accelerator.observe(before, x);
+      if (is_look()) {
+        const double defect = accelerator.defect();
+        if (monitor_.is_due(defect) && measure(defect)) break;
+      }
+      if (accelerator.advance(before, x)) pipeline_.follow_impulses();
     }
     return monitor_.reason();
+  }
+
+  /// Whether the executor lets those who decide look now.
+  TETWARP_ANY_EXEC bool is_look() const {
+    return exec().is_look(monitor_.sweeps()) || monitor_.is_exhausted();
   }
 
   TETWARP_ANY_EXEC bool measure(double defect) {

@@ -3,8 +3,8 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/contact_accelerators.hpp"
 #include "kernels/contact_law.hpp"
+#include "kernels/plain_sums.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
