@@ -20,8 +20,7 @@ struct BodySplitMetricBody {
   View<ContactConstants<T>> constants;
 
   TETWARP_HD void operator()(std::int64_t c) const {
-    T* own = constants[c].block;
-    for (int e = 0; e < 9; ++e) own[e] = 0;
+    T own[9] = {};
     for (std::int64_t p = bodies.pairs.pair_start[c]; p < bodies.pairs.pair_start[c + 1]; ++p) {
       const std::int32_t b = bodies.pairs.block[p];
       const int size = static_cast<int>(bodies.pairs.dof_start[b + 1] - bodies.pairs.dof_start[b]);
@@ -35,6 +34,7 @@ struct BodySplitMetricBody {
         }
       }
     }
+    for (int e = 0; e < 9; ++e) constants[c].block[e] = own[e];
   }
 };
 
