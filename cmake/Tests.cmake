@@ -113,7 +113,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_contact_law.cpp
     tests/test_contact_limits.cpp
     tests/test_contact_linear.cpp
+    tests/test_contact_associated.cpp
     tests/test_contact_newton.cpp
+    tests/test_lorentz_cone.cpp
     tests/test_contact_outer.cpp
     tests/test_contact_problem.cpp
     tests/test_contact_reference.cpp

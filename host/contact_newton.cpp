@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "host/contact_associated.hpp"
 #include "host/contact_delassus.hpp"
 #include "host/contact_measure.hpp"
 #include "host/contact_natural_map.hpp"
@@ -27,12 +28,16 @@ constexpr double first_epsilon = 1e-3;
 constexpr double least_epsilon = 1e-12;
 constexpr double most_epsilon = 100;
 constexpr double epsilon_drop = 0.3;
+constexpr double rounding_error = 1e-13;
 constexpr int inner_limit = 12;     ///< Newton steps to a proximal point
 constexpr int halving_limit = 12;   ///< of one step's length
 constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop again
 /// A map of steepness epsilon^-p; where Newton misses one proximal point, the next is sought with
 /// the other p.
 constexpr double steepness_powers[] = {0.5, 0.75};
+constexpr int lift_limit = 8;          ///< associated problems solved
+constexpr double lift_epsilon = 1e-6;  ///< of the proximal points that follow them
+constexpr std::int64_t lift_steps = 20;
 
 std::int64_t iteration_limit(std::size_t contacts) {
   return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
@@ -60,6 +65,13 @@ class NewtonPolish {
     free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
   }
 
+  void run(const VectorXd& start);
+
+  const Iterate& best() const { return best_; }
+  bool is_done(const Iterate& iterate) const { return error_of(iterate) <= options_.tolerance; }
+  std::int64_t iterations() const { return iterations_; }
+
+ private:
   Iterate make_iterate(const VectorXd& impulse) const {
     const VectorXd change = delassus_.velocity_change(impulse);
     Iterate iterate{impulse, change + delassus_.free_velocity(), 0, 0};
@@ -80,14 +92,13 @@ class NewtonPolish {
     return options_.measure == ContactMeasure::eta ? iterate.eta : iterate.fclib;
   }
 
-  bool is_done(const Iterate& iterate) const { return error_of(iterate) <= options_.tolerance; }
+  /// What is left is rounding.
+  bool is_settled() const { return is_done(best_) || error_of(best_) < rounding_error; }
 
-  void run(const VectorXd& start);
+  void keep(const Iterate& iterate) {
+    if (error_of(iterate) < error_of(best_)) best_ = iterate;
+  }
 
-  const Iterate& best() const { return best_; }
-  std::int64_t iterations() const { return iterations_; }
-
- private:
   static std::vector<MeasuredContact> make_contacts(const ContactProblem& problem,
                                                     const Delassus& delassus) {
     std::vector<MeasuredContact> contacts = measured_contacts(problem);
@@ -99,6 +110,13 @@ class NewtonPolish {
   double residual_of(const Iterate& iterate) const {
     return map_.value(iterate.impulse, iterate.velocity, 1).norm();
   }
+
+  /// Proximal points, one after the other, until done or after a number of linear systems.
+  void approach(Iterate center, double epsilon, std::int64_t limit);
+
+  /// De Saxce's fixed point iteration on the lifts: convex problems, the solution of each of which
+  /// approach() tries to complete.
+  void solve_associated();
 
   /// Newton steps on F(r, u + epsilon / rho (r - center)) = 0 from the center.
   /// @return whether |F| has dropped to a tenth, or the whole problem is solved on the way
@@ -116,14 +134,21 @@ class NewtonPolish {
 };
 
 void NewtonPolish::run(const VectorXd& start) {
-  Iterate center = make_iterate(start);
-  best_ = center;
-  double epsilon = first_epsilon;
+  best_ = make_iterate(start);
+  const std::int64_t limit = iteration_limit(contacts_.size());
+  approach(best_, first_epsilon, limit / 4);
+  if (is_settled()) return;
+  solve_associated();
+  if (is_settled()) return;
+  approach(best_, first_epsilon, limit);
+}
+
+void NewtonPolish::approach(Iterate center, double epsilon, std::int64_t limit) {
   int misses = 0;
   int hold = 0;
   int idle = 0;
-  const std::int64_t limit = iteration_limit(contacts_.size());
-  while (!is_done(best_) && iterations_ < limit) {
+  const std::int64_t end = iterations_ + limit;
+  while (!is_done(best_) && iterations_ < end) {
     const double best_before = error_of(best_);
     const double steepness = std::pow(epsilon, -steepness_powers[misses % 2]);
     Iterate iterate = center;
@@ -141,10 +166,21 @@ void NewtonPolish::run(const VectorXd& start) {
       hold = hold_after_miss;
       epsilon = std::min(epsilon / epsilon_drop, most_epsilon);
     }
-    // What is left is rounding.
     idle = error_of(best_) < 0.9 * best_before ? 0 : idle + 1;
-    if (best_.eta < 1e-13 && idle > 5) return;
+    if (best_.eta < rounding_error && idle > 5) return;
   }
+}
+
+void NewtonPolish::solve_associated() {
+  AssociatedContact associated(contacts_, options_.law, delassus_, system_);
+  VectorXd lift = VectorXd::Zero(static_cast<Index>(contacts_.size()));
+  for (int pass = 0; pass < lift_limit && !is_settled(); ++pass) {
+    const Iterate iterate = make_iterate(associated.solve(lift));
+    lift = associated.lift_of(iterate.velocity);
+    keep(iterate);
+    approach(iterate, lift_epsilon, lift_steps);
+  }
+  iterations_ += associated.iterations();
 }
 
 bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, Iterate& iterate) {
@@ -178,7 +214,7 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
     }
     norm = next;
     iterate = make_iterate(iterate.impulse + length * impulse_step);
-    if (error_of(iterate) < error_of(best_)) best_ = iterate;
+    keep(iterate);
     if (norm <= goal || is_done(iterate)) return true;
   }
   return false;

@@ -17,7 +17,9 @@ struct NewtonResult {
 
 /// Improves impulses by semismooth Newton steps on the natural map, inside a proximal point
 /// iteration: each outer step solves the problem with a compliance epsilon / rho added to every
-/// contact, pulled towards the impulses at hand, and epsilon falls as long as that succeeds.
+/// contact, pulled towards the impulses at hand, and epsilon falls as long as that succeeds. Where
+/// it does not succeed soon, the solutions of some convex problems of associated friction, each
+/// lifted by what the last one slides, are tried as starts.
 ///
 /// Redundant contacts, which make the Jacobian of the problem itself singular, do no harm. Returns
 /// the best impulses met, never worse than the start. Unconnected contacts are better polished one
@@ -30,7 +32,8 @@ struct NewtonResult {
 ///
 /// Determinism: serial; same bits. Cost: a sparse LU factorization per iteration, of (3 contacts)^2
 /// in local form, of (dofs)^2 in global form.
-/// Sources: Alart, Curnier 1991 (the map); Rockafellar 1976 (the proximal point iteration).
+/// Sources: Alart, Curnier 1991 (the map); Rockafellar 1976 (the proximal point iteration); De
+/// Saxce, Feng 1998 (the lifts).
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,
                            std::vector<double>& impulse,

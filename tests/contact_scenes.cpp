@@ -30,6 +30,17 @@ class Dice {
   std::uint64_t counter_;
 };
 
+Vector direction(Dice& dice) {
+  Vector v;
+  double length = 0;
+  do {
+    v = {dice.next(), dice.next(), dice.next()};
+    length = std::hypot(v[0], v[1], v[2]);
+  } while (length > 1 || length < 0.1);
+  for (double& x : v) x /= length;
+  return v;
+}
+
 /// Rigid bodies and contacts between them, one after the other.
 class RigidScene {
  public:
@@ -227,6 +238,30 @@ ContactProblem sphere_packing(const SpherePacking& choice) {
   }
   ContactProblem problem = scene.take();
   add_glue(problem, choice.glue, choice.time_step, 1e-4, choice.seed + 1);
+  return problem;
+}
+
+ContactProblem jam(const Jam& choice) {
+  constexpr double time_step = 0.01;
+  Dice dice(choice.seed);
+  RigidScene scene;
+  for (std::int64_t b = 0; b < choice.bodies; ++b) {
+    const double mass = std::pow(choice.mass_ratio, (1 + dice.next()) / 2);
+    const double pull = mass * gravity * time_step;
+    scene.add_body(mass, 0.4 * mass,
+                   {pull * dice.next(), pull * dice.next(), pull * (dice.next() - 1)});
+  }
+  for (std::int64_t c = 0; c < choice.contacts; ++c) {
+    const std::int64_t a = c % choice.bodies;
+    const auto step = static_cast<std::int64_t>((1 + dice.next()) / 2 * 1.4 *
+                                                static_cast<double>(choice.bodies - 1));
+    const bool is_free = step + 1 < choice.bodies;  // else it touches the world
+    const Vector arm_a = direction(dice), arm_b = direction(dice);
+    scene.add_contact(a, arm_a, is_free ? (a + 1 + step) % choice.bodies : -1, arm_b,
+                      direction(dice), 0, choice.friction);
+  }
+  ContactProblem problem = scene.take();
+  add_glue(problem, choice.glue, time_step, 1e-4, choice.seed + 1);
   return problem;
 }
 

@@ -63,6 +63,18 @@ struct SpherePacking {
 };
 ContactProblem sphere_packing(const SpherePacking& choice);
 
+/// Light and heavy bodies jammed by contacts anywhere between them and the world, many more than
+/// their motions: the impulses are anything but unique.
+struct Jam {
+  std::uint32_t seed = 1;
+  std::int64_t bodies = 8;
+  std::int64_t contacts = 48;
+  double mass_ratio = 1e6;  ///< heaviest body over lightest, at most
+  double friction = 1;
+  Glue glue = {};
+};
+ContactProblem jam(const Jam& choice);
+
 /// A linear elastic slab of five tetrahedra per cube, lifted at one end from the plane it sticks
 /// to.
 struct ElasticSlab {

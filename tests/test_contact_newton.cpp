@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <utility>
 
 #include <tetwarp/contact.hpp>
 
@@ -47,6 +48,19 @@ TEST(ContactNewton, SolvesDensePackings) {
   const ContactProblem large = scenes::sphere_packing({.edge = 4, .friction = 0.3, .gaps = 0});
   expect_polish(small, 1e-6, FrictionLaw::cone);
   expect_polish(large, 1e-6, FrictionLaw::cone);
+}
+
+/// More than half of all jams that neither sweeps nor proximal points alone solve slide nowhere,
+/// and in others little does: there the associated problem shows the way.
+TEST(ContactNewton, SolvesJams) {
+  for (const auto& [seed, friction] : {std::pair{12u, 1.0}, {13u, 2.0}, {17u, 2.0}, {58u, 1.0}}) {
+    const ContactProblem problem = scenes::jam({.seed = seed, .friction = friction});
+    for (const FrictionLaw law : {FrictionLaw::cone, FrictionLaw::pyramid}) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", friction " << friction << ", law "
+                                      << static_cast<int>(law));
+      expect_polish(problem, 1e-5, law);
+    }
+  }
 }
 
 }  // namespace
