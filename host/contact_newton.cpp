@@ -35,8 +35,8 @@ constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop
 /// A map of steepness epsilon^-p; where Newton misses one proximal point, the next is sought with
 /// the other p.
 constexpr double steepness_powers[] = {0.5, 0.75};
-constexpr int lift_limit = 8;          ///< associated problems solved
-constexpr double lift_epsilon = 1e-6;  ///< of the proximal points that follow them
+/// Of proximal points that start from an associated problem's solution.
+constexpr double lift_epsilon = 1e-6;
 constexpr std::int64_t lift_steps = 20;
 
 std::int64_t iteration_limit(std::size_t contacts) {
@@ -49,6 +49,14 @@ struct Iterate {
   VectorXd velocity;
   double eta = 0;
   double fclib = 0;
+};
+
+/// A proximal point iteration, to go on with.
+struct Approach {
+  Iterate center;
+  double epsilon = first_epsilon;
+  int misses = 0;
+  int hold = 0;
 };
 
 class NewtonPolish {
@@ -112,11 +120,11 @@ class NewtonPolish {
   }
 
   /// Proximal points, one after the other, until done or after a number of linear systems.
-  void approach(Iterate center, double epsilon, std::int64_t limit);
+  void advance(Approach& approach, std::int64_t limit);
 
   /// De Saxce's fixed point iteration on the lifts: convex problems, the solution of each of which
-  /// approach() tries to complete.
-  void solve_associated();
+  /// proximal points try to complete.
+  void solve_associated(std::int64_t limit);
 
   /// Newton steps on F(r, u + epsilon / rho (r - center)) = 0 from the center.
   /// @return whether |F| has dropped to a tenth, or the whole problem is solved on the way
@@ -136,34 +144,37 @@ class NewtonPolish {
 void NewtonPolish::run(const VectorXd& start) {
   best_ = make_iterate(start);
   const std::int64_t limit = iteration_limit(contacts_.size());
-  approach(best_, first_epsilon, limit / 4);
+  Approach approach{.center = best_};
+  advance(approach, limit / 4);
   if (is_settled()) return;
-  solve_associated();
+  solve_associated(limit / 2);
   if (is_settled()) return;
-  approach(best_, first_epsilon, limit);
+  advance(approach, limit - limit / 4);
+  if (is_settled()) return;
+  Approach again{.center = best_};
+  advance(again, limit / 2);
 }
 
-void NewtonPolish::approach(Iterate center, double epsilon, std::int64_t limit) {
-  int misses = 0;
-  int hold = 0;
+void NewtonPolish::advance(Approach& approach, std::int64_t limit) {
+  double& epsilon = approach.epsilon;
   int idle = 0;
   const std::int64_t end = iterations_ + limit;
   while (!is_done(best_) && iterations_ < end) {
     const double best_before = error_of(best_);
-    const double steepness = std::pow(epsilon, -steepness_powers[misses % 2]);
-    Iterate iterate = center;
+    const double steepness = std::pow(epsilon, -steepness_powers[approach.misses % 2]);
+    Iterate iterate = approach.center;
     const std::int64_t before = iterations_;
     if (find_proximal_point(epsilon * map_.compliance(), steepness, iterate)) {
-      center = std::move(iterate);
-      if (hold > 0) {
-        --hold;
+      approach.center = std::move(iterate);
+      if (approach.hold > 0) {
+        --approach.hold;
       } else if (iterations_ - before <= 8) {
         epsilon *= iterations_ - before <= 3 ? epsilon_drop : std::sqrt(epsilon_drop);
         epsilon = std::max(epsilon, least_epsilon);
       }
     } else {
-      ++misses;
-      hold = hold_after_miss;
+      ++approach.misses;
+      approach.hold = hold_after_miss;
       epsilon = std::min(epsilon / epsilon_drop, most_epsilon);
     }
     idle = error_of(best_) < 0.9 * best_before ? 0 : idle + 1;
@@ -171,16 +182,18 @@ void NewtonPolish::approach(Iterate center, double epsilon, std::int64_t limit) 
   }
 }
 
-void NewtonPolish::solve_associated() {
+void NewtonPolish::solve_associated(std::int64_t limit) {
   AssociatedContact associated(contacts_, options_.law, delassus_, system_);
   VectorXd lift = VectorXd::Zero(static_cast<Index>(contacts_.size()));
-  for (int pass = 0; pass < lift_limit && !is_settled(); ++pass) {
-    const Iterate iterate = make_iterate(associated.solve(lift));
-    lift = associated.lift_of(iterate.velocity);
-    keep(iterate);
-    approach(iterate, lift_epsilon, lift_steps);
+  const std::int64_t end = iterations_ + limit;
+  while (!is_settled() && iterations_ < end) {
+    const std::int64_t before = associated.iterations();
+    Approach approach{.center = make_iterate(associated.solve(lift)), .epsilon = lift_epsilon};
+    iterations_ += associated.iterations() - before;
+    keep(approach.center);
+    lift = associated.lift_of(approach.center.velocity);
+    advance(approach, lift_steps);
   }
-  iterations_ += associated.iterations();
 }
 
 bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, Iterate& iterate) {
