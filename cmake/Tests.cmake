@@ -68,6 +68,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_volume_sample.cpp
     tests/test_lattice_mesh.cpp
     tests/test_deform_mesh.cpp
+    tests/test_output_edges.cpp
     tests/test_phantom.cpp
     tests/test_render_volume.cpp
     tests/test_report.cpp

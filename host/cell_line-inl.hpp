@@ -14,11 +14,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
 #include "host/cell_owners-inl.hpp"
 #include "host/row_sample-inl.hpp"
+#include "host/row_stream-inl.hpp"
 #include "kernels/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,53 +34,79 @@ class CellLine {
   CellLine(const RasterJob<T>& job, int longest, RasterCounts& counts)
       : job_(job),
         counts_(counts),
-        sampler_(job),
+        row_job_(job),
+        sampler_(row_job_),
         bounds_(job),
+        stream_(std::ptrdiff_t{longest} * cell_edge * job.source.components,
+                std::ptrdiff_t{cell_edge} * job.source.components),
+        lists_open_(job.outside.use_source || job.mask != nullptr || job.tet != nullptr),
         runs_(std::make_unique_for_overwrite<RowRun[]>(
             static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge))),
         row_capacity_(longest * cell_edge) {}
 
-  /// Cells [ci_begin, ci_end) of line (cj, ck).
+  /// Cells [ci_begin, ci_end) of line (cj, ck), stretch by stretch of those that are not kept.
   void raster(int ci_begin, int ci_end, int cj, int ck) {
+    const auto is_kept = [&](int ci) {
+      return work_of(job_, job_.frame.cell_index(ci, cj, ck)) == keep_cell;
+    };
+    for (int ci = ci_begin; ci < ci_end;) {
+      int past = ci;
+      while (past < ci_end && !is_kept(past)) ++past;
+      if (ci < past) raster_stretch(ci, past, cj, ck);
+      ci = past + 1;
+    }
+  }
+
+ private:
+  /// Cells of the line with voxels that are not sampled.
+  struct FlatCells {
+    int first, past;
+    bool is_whole;   ///< all voxels of all cells; else `bits` of one
+    const T* value;  ///< what they get, one per component; null where nobody owns them
+    CellBits bits;
+  };
+
+  /// Cells [ci_begin, ci_end) of line (cj, ck), of which none is kept.
+  void raster_stretch(int ci_begin, int ci_end, int cj, int ck) {
     sources_.clear();
-    open_.clear();
+    flat_.clear();
+    has_open_ = false;
     for (auto& slice : run_counts_) std::fill_n(slice, cell_edge, 0);
     first_ = ci_begin;
-    bool is_kept = true;
     for (int ci = ci_begin; ci < ci_end; ++ci) {
       const std::int64_t cell = job_.frame.cell_index(ci, cj, ck);
-      if (work_of(job_, cell) == keep_cell) continue;
-      is_kept = false;
       find(make_cell_box(job_.frame, ci, cj, ck), job_.ranges[cell], cell);
     }
-    if (is_kept) return;
+    const int components = job_.source.components;
     const CellBox first = make_cell_box(job_.frame, ci_begin, cj, ck);
+    const int begin = first.begin[0];
+    const int end = std::min(job_.frame.end[0], cell_edge * ci_end) - first.corner[0];
     for (int k = first.begin[2]; k < first.end[2]; ++k) {
       for (int j = first.begin[1]; j < first.end[1]; ++j) {
         const std::int64_t row =
             job_.frame.offset_of(first.corner[0], first.corner[1] + j, first.corner[2] + k);
         RowRun* runs = row_runs(j, k);
         const int count = run_counts_[k][j];
+        row_job_.volume =
+            stream_.begin_row(job_.volume + (row + begin) * components) - begin * components;
+        if (has_open_) {
+          std::fill_n(row_job_.volume + begin * components, (end - begin) * components,
+                      job_.background);
+        }
+        write_flat(first, j, k, row);
         write_extra(runs, count, row);
-        if (count > 0) sampler_.write(sources_.data(), runs, count, j, k, row);
-        write_open(first, j, k, row);
+        if (count > 0) sampler_.write(sources_.data(), runs, count, j, k);
+        stream_.end_row(std::ptrdiff_t{end - begin} * components);
       }
     }
+    stream_.flush();
   }
-
- private:
-  /// Cells of the line with voxels that nobody owns.
-  struct OpenCells {
-    int first, past;
-    bool is_whole;  ///< all voxels of all cells; else `bits` of one
-    CellBits bits;
-  };
 
   RowRun* row_runs(int j, int k) {
     return runs_.get() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
   }
 
-  /// Owners of one cell, the runs that they serve, and at once what needs no sample.
+  /// Owners of one cell, the runs that they serve, and what needs no sample.
   void find(const CellBox& box, const CellRange& range, std::int64_t cell_index) {
     const int cell = box.corner[0] / cell_edge - first_;
     const std::int64_t work = work_of(job_, cell_index);
@@ -105,15 +133,32 @@ class CellLine {
         const bool is_in = k >= box.begin[2] && k < box.end[2];
         covered.slice[k] = is_in ? whole & ~open.slice[k] : 0;
       }
-      fill(box, covered, work);
+      add_flat(box, cell, covered, job_.source.data + work * job_.source.components);
     }
-    const bool is_whole =
-        counts_.covered == covered_before && box.end[0] - box.begin[0] == cell_edge;
-    if (is_whole && !open_.empty() && open_.back().is_whole && open_.back().past == cell) {
-      ++open_.back().past;
-    } else if (any_of(open)) {
-      open_.push_back({cell, cell + 1, is_whole, open});
+    has_open_ = has_open_ || any_of(open);
+    if (lists_open_) add_flat(box, cell, open, nullptr);
+  }
+
+  /// Voxels of a cell that get `value`, or what nobody owns.
+  void add_flat(const CellBox& box, int cell, const CellBits& bits, const T* value) {
+    const int voxels = count_of(bits);
+    if (voxels == 0) return;
+    const bool is_whole = voxels == (box.end[0] - box.begin[0]) * (box.end[1] - box.begin[1]) *
+                                        (box.end[2] - box.begin[2]) &&
+                          box.end[0] - box.begin[0] == cell_edge;
+    if (is_whole && !flat_.empty()) {
+      FlatCells& before = flat_.back();
+      if (before.is_whole && before.past == cell && is_equal(before.value, value)) {
+        ++before.past;
+        return;
+      }
     }
+    flat_.push_back({cell, cell + 1, is_whole, value, bits});
+  }
+
+  bool is_equal(const T* a, const T* b) const {
+    if (a == nullptr || b == nullptr) return a == b;
+    return std::memcmp(a, b, sizeof(T) * static_cast<std::size_t>(job_.source.components)) == 0;
   }
 
   /// The rows that the latest source serves in a cell.
@@ -139,62 +184,48 @@ class CellLine {
     }
   }
 
-  /// The covered voxels of a cell whose samples all equal source voxel `constant`.
-  void fill(const CellBox& box, const CellBits& covered, std::int64_t constant) {
-    const int components = job_.source.components;
-    const T* value = job_.source.data + constant * components;
-    for_rows(box, covered, [&](unsigned bits, std::int64_t voxel) {
-      if (bits == 0xff && components == 1) {
-        std::fill_n(job_.volume + voxel, cell_edge, *value);
-        return;
-      }
-      for (; bits != 0; bits &= bits - 1) {
-        T* out = job_.volume + (voxel + std::countr_zero(bits)) * components;
-        for (int c = 0; c < components; ++c) out[c] = value[c];
-      }
-    });
-  }
-
-  /// Writes what no tetrahedron covers in row (j, k), run by run.
-  void write_open(const CellBox& first, int j, int k, std::int64_t row) {
-    int begin = 0, end = 0;  // a run that may go on
-    const auto add = [&](int from, int to) {
-      if (from != end) {
-        if (begin < end) write_outside(begin, end, first, j, k, row);
-        begin = from;
-      }
-      end = to;
-    };
-    for (const OpenCells& cells : open_) {
+  /// Writes what is not sampled in row (j, k), run by run.
+  void write_flat(const CellBox& first, int j, int k, std::int64_t row) {
+    for (const FlatCells& cells : flat_) {
       const int at = cell_edge * cells.first;
       if (cells.is_whole) {
-        add(at, cell_edge * cells.past);
+        write_run(at, cell_edge * cells.past, cells.value, first, j, k, row);
         continue;
       }
       unsigned bits = cells.bits.slice[k] >> (cell_edge * j) & 0xff;
       while (bits != 0) {
         const int from = std::countr_zero(bits), past = from + std::countr_one(bits >> from);
-        add(at + from, at + past);
+        write_run(at + from, at + past, cells.value, first, j, k, row);
         bits &= ~0u << past;
       }
     }
-    if (begin < end) write_outside(begin, end, first, j, k, row);
   }
 
-  /// Voxels [begin, end) of the line's row (j, k): the background, or the source in place.
+  /// Voxels [begin, end) of the line's row (j, k).
+  void write_run(
+      int begin, int end, const T* value, const CellBox& first, int j, int k, std::int64_t row) {
+    const int components = job_.source.components;
+    T* out = row_job_.volume + begin * components;
+    if (value == nullptr) {
+      write_outside(begin, end, first, j, k, row);
+    } else if (components == 1) {
+      std::fill_n(out, end - begin, *value);
+    } else {
+      for (int voxel = begin; voxel < end; ++voxel, out += components) {
+        std::copy_n(value, components, out);
+      }
+    }
+  }
+
+  /// Voxels [begin, end) of the line's row (j, k), which hold the background.
   void write_outside(int begin, int end, const CellBox& first, int j, int k, std::int64_t row) {
     if (job_.mask != nullptr) std::fill_n(job_.mask + row + begin, end - begin, std::uint8_t{0});
     if (job_.tet != nullptr) std::fill_n(job_.tet + row + begin, end - begin, -1);
-    if (!job_.outside.use_source) {
-      const int components = job_.source.components;
-      fill_run(job_.background, job_.volume + (row + begin) * components,
-               std::int64_t{end - begin} * components);
-      return;
-    }
+    if (!job_.outside.use_source) return;
     for (int voxel = begin; voxel < end; ++voxel) {
       const int cell = voxel / cell_edge * cell_edge;
-      store_outside(job_, first.corner[0] + cell, first.corner[1], first.corner[2], voxel - cell, j,
-                    k, row + voxel);
+      store_outside(row_job_, first.corner[0] + cell, first.corner[1], first.corner[2],
+                    voxel - cell, j, k, voxel);
     }
   }
 
@@ -224,10 +255,14 @@ class CellLine {
 
   const RasterJob<T>& job_;
   RasterCounts& counts_;
+  RasterJob<T> row_job_;  ///< whose volume is the row at work
   RowSampler<T> sampler_;
   SourceBounds bounds_;
+  RowStream<T> stream_;
   std::vector<RowSource> sources_;  ///< of the pairs that own voxels of this line
-  std::vector<OpenCells> open_;     ///< ascending
+  std::vector<FlatCells> flat_;     ///< ascending
+  bool lists_open_;                 ///< voxels without owner get more than the background
+  bool has_open_ = false;           ///< the line has some
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;
   int run_counts_[cell_edge][cell_edge] = {};

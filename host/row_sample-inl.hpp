@@ -25,16 +25,17 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Writes rows of a line of cells. Keeps its buffers of taps from row to row.
+/// Writes rows of a line of cells. Keeps its buffers of taps from row to row. The job's volume is
+/// the row to be written, from voxel 0 of the line's cell 0 on.
 template <class T>
 class RowSampler {
  public:
   explicit RowSampler(const RasterJob<T>& job)
       : job_(job), nearest_(job.filter == Interpolation::nearest) {}
 
-  /// Writes the covered voxels of row (j, k); voxel 0 of the line's cell 0 is at `row` of the
-  /// output. Runs of a cell stand side by side; their order within it is lost.
-  void write(const RowSource* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
+  /// Writes the covered voxels of row (j, k). Runs of a cell stand side by side; their order within
+  /// it is lost.
+  void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     for (int r = 0; r < count;) {
       int past = r;
       RowKind kind = RowKind::inner;
@@ -42,26 +43,25 @@ class RowSampler {
         kind = std::max(kind, sources[runs[past].source].kind());
       }
       if (kind >= RowKind::alone) {
-        write_mixed(sources, runs + r, past - r, j, k, row);
+        write_mixed(sources, runs + r, past - r, j, k);
       } else {
-        add(kind, sources, runs + r, past - r, j, k, row);
+        add(kind, sources, runs + r, past - r, j, k);
       }
       r = past;
     }
-    flush(inner_, row);
-    flush(rim_, row);
+    flush(inner_);
+    flush(rim_);
     copier_.flush();
   }
 
  private:
   /// A cell's row of which some runs go voxel by voxel.
-  void write_mixed(
-      const RowSource* sources, RowRun* runs, int count, int j, int k, std::int64_t row) {
+  void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int vectored_count = 0;  // those move to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
-      const std::int64_t cell_row = row + cell_edge * runs[r].cell;
+      const int cell_row = cell_edge * runs[r].cell;
       if (source.kind() == RowKind::alone) {
         sample_alone(job_, source, runs[r].bits, j, k, cell_row);
       } else if (source.kind() == RowKind::copied) {
@@ -69,39 +69,34 @@ class RowSampler {
         for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
           bits |= runs[r + 1].bits;
         }
-        copy_run(job_, source, bits, j, k, cell_row, copier_);
+        copy_run(job_, source, bits, j, k, job_.volume + cell_row * job_.source.components,
+                 copier_);
       } else {
         kind = std::max(kind, source.kind());
         std::swap(runs[vectored_count++], runs[r]);
       }
     }
-    if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k, row);
+    if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
   }
 
   static bool moves_alike(const RowSource& a, const RowSource& b) {
     return b.kind() == RowKind::copied && std::equal(a.whole, a.whole + 3, b.whole);
   }
 
-  void add(RowKind kind,
-           const RowSource* sources,
-           const RowRun* runs,
-           int count,
-           int j,
-           int k,
-           std::int64_t row) {
+  void add(RowKind kind, const RowSource* sources, const RowRun* runs, int count, int j, int k) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (kind == RowKind::inner) {
         add_unit(job_.source, nearest_, sources, runs, count, j, k, inner_);
-        if (inner_.count == inner_.row_units) flush(inner_, row);
+        if (inner_.count == inner_.row_units) flush(inner_);
       } else {
         add_unit(job_.source, nearest_, sources, runs, count, j, k, rim_);
-        if (rim_.count == rim_.row_units) flush(rim_, row);
+        if (rim_.count == rim_.row_units) flush(rim_);
       }
     }
   }
 
   template <bool Rim>
-  void flush(RowTaps<Rim>& taps, std::int64_t row) {
+  void flush(RowTaps<Rim>& taps) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (taps.count == 0) return;
       const int components = job_.source.components;
@@ -113,7 +108,7 @@ class RowSampler {
       for (int u = 0; u < taps.count; ++u) {
         const RowUnit& unit = taps.unit[u];
         const float* values = values_ + cell_edge * components * u;
-        T* out = job_.volume + (row + cell_edge * unit.cell) * components;
+        T* out = job_.volume + cell_edge * unit.cell * components;
         if (components == 1) {
           store_values(values, unit.inside, out);
         } else {

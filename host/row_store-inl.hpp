@@ -1,5 +1,5 @@
 /// @file row_store-inl.hpp
-/// Puts values into a row of the output: samples rounded to the pixel type, copies, the background.
+/// Puts values into a row of the output: samples rounded to the pixel type, and copies.
 /// Included once per vector instruction set (the name and the toggled guard are Highway's
 /// convention).
 #if defined(TETWARP_ROW_STORE_INL) == defined(HWY_TARGET_TOGGLE)
@@ -9,7 +9,6 @@
 #define TETWARP_ROW_STORE_INL
 #endif
 
-#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -58,33 +57,6 @@ inline void store_values(const float* values, unsigned bits, T* out) {
   }
 }
 
-/// Fills `count` entries with a value. Long runs bypass the caches: nobody reads them soon, and
-/// their lines need not be fetched first.
-template <class T>
-inline void fill_run(T value, T* out, std::int64_t count) {
-  constexpr std::int64_t long_run = 1024;  // bytes
-  const hn::ScalableTag<T> d;
-  const std::int64_t lanes = static_cast<std::int64_t>(hn::Lanes(d));
-  const std::int64_t vector_bytes = lanes * static_cast<std::int64_t>(sizeof(T));
-  if (count * static_cast<std::int64_t>(sizeof(T)) < long_run) {
-    std::fill_n(out, count, value);
-    return;
-  }
-  const std::int64_t line = std::max<std::int64_t>(vector_bytes, 64);
-  const auto address = reinterpret_cast<std::uintptr_t>(out);
-  const std::int64_t head =
-      static_cast<std::int64_t>(-address % static_cast<std::uintptr_t>(line)) /
-      static_cast<std::int64_t>(sizeof(T));
-  std::fill_n(out, head, value);
-  const auto vector = hn::Set(d, value);
-  const std::int64_t per_line = line / static_cast<std::int64_t>(sizeof(T));
-  std::int64_t i = head;
-  for (; i + per_line <= count; i += per_line) {
-    for (std::int64_t v = 0; v < per_line; v += lanes) hn::Stream(vector, d, out + i + v);
-  }
-  std::fill_n(out + i, count - i, value);
-}
-
 /// Copies entries, those that follow each other on both sides in one go.
 template <class T>
 class RunCopier {
@@ -115,7 +87,7 @@ inline void copy_run(const RasterJob<T>& job,
                      unsigned bits,
                      int j,
                      int k,
-                     std::int64_t row,
+                     T* out,
                      RunCopier<T>& copier) {
   const SourceView<T>& view = job.source;
   const int components = view.components;
@@ -130,7 +102,7 @@ inline void copy_run(const RasterJob<T>& job,
       const bool is_inside = has_row && x + i >= 0 && x + i < view.dims[0];
       const std::int64_t edge = x + i < 0 ? -x : is_inside ? view.dims[0] - x : past;
       const int end = static_cast<int>(std::min<std::int64_t>(past, edge));
-      T* to = job.volume + (row + i) * components;
+      T* to = out + i * components;
       if (is_inside) {
         copier.add(view.data + (from + i) * components, to, std::int64_t{end - i} * components);
       } else {
