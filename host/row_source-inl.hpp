@@ -70,11 +70,9 @@ class RowSource {
     set_map(bounds);
     if (!bounds.is_vectored || tet.kind == MapKind::steep) kind_ = RowKind::alone;
     if (is_copied(job, tet)) kind_ = RowKind::copied;
-    for (int axis = 2; axis >= 0; --axis) {
-      origin_ = origin_ * job.source.dims[axis] + whole[axis];
-      slice_ahead_ = slice_ahead_ * job.source.dims[axis] + slice_step_[axis];
-    }
-    slice_ahead_ += std::int64_t{job.source.dims[0]} * job.source.dims[1];
+    const std::int64_t line = job.source.dims[0], slice = line * job.source.dims[1];
+    origin_ = whole[2] * slice + whole[1] * line + whole[0];
+    look_ahead(line, slice);
   }
 
   RowKind kind() const { return kind_; }
@@ -84,8 +82,9 @@ class RowSource {
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// From a voxel to the upper neighbour along z of the one in the next slice, about.
-  std::int64_t slice_ahead() const { return slice_ahead_; }
+  /// From a voxel to two that rows to come will need, about.
+  std::int64_t ahead() const { return ahead_; }
+  std::int64_t ahead_too() const { return ahead_too_; }
 
   // The parts of SourceMap<float>.
   alignas(16) float base[4];
@@ -109,7 +108,6 @@ class RowSource {
         below = hn::Add(below, hn::Min(reach, zero));
         above = hn::Add(above, hn::Max(reach, zero));
         hn::Store(hn::DemoteTo(df, step), df, axis[a] + lane);
-        if (a == 2) hn::Store(hn::DemoteTo(di, hn::Round(step)), di, slice_step_ + lane);
       }
       start = hn::Add(start, hn::LoadU(d, setup_->map[3] + lane));
       const auto farthest = hn::Set(d, farthest_whole);
@@ -124,13 +122,27 @@ class RowSource {
     if (!meets_end) kind_ = is_inner ? RowKind::inner : RowKind::rim;
   }
 
+  /// Rows along lines of the source lack the lines above theirs, in the next slice. Rows across
+  /// lines sweep the source from one line of cells to the next: they look as far, and a row more.
+  void look_ahead(std::int64_t line, std::int64_t slice) {
+    const hn::FixedTag<float, 4> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const bool is_across = std::abs(axis[0][1]) + std::abs(axis[0][2]) > 0.5f;
+    const auto step = is_across ? hn::Mul(hn::Load(d, axis[1]), hn::Set(d, float{cell_edge + 1}))
+                                : hn::Load(d, axis[2]);
+    alignas(16) std::int32_t voxels[4];
+    hn::Store(hn::ConvertTo(di, hn::Round(step)), di, voxels);
+    ahead_ = voxels[2] * slice + voxels[1] * line + voxels[0] + (is_across ? 0 : slice);
+    ahead_too_ = ahead_ + (is_across ? slice : line);
+  }
+
   const TetSetup* setup_;
   int number_;
   RowKind kind_ = RowKind::alone;
   int corner_[3];
   std::int64_t origin_ = 0;
-  std::int64_t slice_ahead_ = 0;
-  alignas(16) std::int32_t slice_step_[4];
+  std::int64_t ahead_ = 0;
+  std::int64_t ahead_too_ = 0;
 };
 
 /// Voxels of one row of a cell that one source serves.

@@ -166,11 +166,11 @@ inline void add_unit(const SourceView<T>& view,
       inside |= bits_of(in_source, lane);
     }
   }
-  // What this row will need one slice further up: rows jump too much for the hardware to guess.
+  // Rows to come: they jump too much for the hardware to guess.
   for (const int voxel : {0, cell_edge / 2}) {
-    const std::int64_t ahead = taps.offset[0][at + voxel] + first.slice_ahead();
-    hwy::Prefetch(view.data + ahead * view.components);
-    hwy::Prefetch(view.data + (ahead + stride[1]) * view.components);
+    const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
+    hwy::Prefetch(from + first.ahead() * view.components);
+    hwy::Prefetch(from + first.ahead_too() * view.components);
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};

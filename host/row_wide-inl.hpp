@@ -112,7 +112,6 @@ inline void sample_wide(const RasterJob<T>& job,
   const std::ptrdiff_t up = components * view.dims[0], far = up * view.dims[1];
   const bool nearest = job.filter == Interpolation::nearest;
   WideRow taps(view, source, nearest, j, k);
-  const std::ptrdiff_t ahead = source.slice_ahead() * components;
   for (int n = 0; bits != 0; bits &= bits - 1, ++n) {
     const int i = std::countr_zero(bits);
     T* out = job.volume + (row + i) * components;
@@ -123,8 +122,8 @@ inline void sample_wide(const RasterJob<T>& job,
     const T* samples =
         view.data + taps.voxel[0] * components + taps.voxel[1] * up + taps.voxel[2] * far;
     if (n % (cell_edge / 2) == 0) {  // as add_unit() does
-      hwy::Prefetch(samples + ahead);
-      hwy::Prefetch(samples + ahead + up);
+      hwy::Prefetch(samples + source.ahead() * components);
+      hwy::Prefetch(samples + source.ahead_too() * components);
     }
     if (nearest) {
       std::copy_n(samples, components, out);
