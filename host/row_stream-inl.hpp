@@ -30,7 +30,7 @@ class RowStream {
   /// @param margin   samples in front of a row that may be pointed at, but are not written
   RowStream(std::ptrdiff_t longest, std::ptrdiff_t margin)
       : margin_((margin + per_line - 1) / per_line * per_line),
-        storage_(hwy::AllocateAligned<T>(static_cast<std::size_t>(margin_ + per_line + longest))),
+        storage_(hwy::AllocateAligned<T>(static_cast<std::size_t>(margin_ + enough + longest))),
         lines_(storage_.get() + margin_) {}
 
   ~RowStream() { hwy::FlushStream(); }
@@ -49,9 +49,27 @@ class RowStream {
     return lines_ + size_;
   }
 
-  /// The row has `count` samples. Its whole cache lines leave.
+  /// The row has `count` samples.
   void end_row(std::ptrdiff_t count) {
     size_ += count;
+    if (size_ >= enough) write_lines();
+  }
+
+  /// Nothing is left behind.
+  void flush() {
+    if (is_aligned_) write_lines();
+    std::copy(lines_ + skipped_, lines_ + size_, to_ + skipped_);
+    to_ = nullptr;
+    skipped_ = size_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t line_bytes = 64;
+  static constexpr std::ptrdiff_t per_line = line_bytes / sizeof(T);
+  static constexpr std::ptrdiff_t enough = 8 * per_line;  ///< less is not worth the start
+
+  /// Whole cache lines leave.
+  void write_lines() {
     if (!is_aligned_) return flush();
     if (size_ < per_line) return;
     std::ptrdiff_t done = 0;
@@ -71,17 +89,6 @@ class RowStream {
     to_ += done;
     size_ -= done;
   }
-
-  /// Nothing is left behind.
-  void flush() {
-    std::copy(lines_ + skipped_, lines_ + size_, to_ + skipped_);
-    to_ = nullptr;
-    skipped_ = size_ = 0;
-  }
-
- private:
-  static constexpr std::size_t line_bytes = 64;
-  static constexpr std::ptrdiff_t per_line = line_bytes / sizeof(T);
 
   std::ptrdiff_t margin_;
   hwy::AlignedFreeUniquePtr<T[]> storage_;
