@@ -72,7 +72,7 @@ class RowSource {
     if (is_copied(job, tet)) kind_ = RowKind::copied;
     const std::int64_t line = job.source.dims[0], slice = line * job.source.dims[1];
     origin_ = whole[2] * slice + whole[1] * line + whole[0];
-    look_ahead(line, slice);
+    look_ahead(line, slice, job.source.components);
   }
 
   RowKind kind() const { return kind_; }
@@ -82,7 +82,7 @@ class RowSource {
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// From a voxel to two that rows to come will need, about.
+  /// From a voxel's samples to two that rows to come will need, about.
   std::int64_t ahead() const { return ahead_; }
   std::int64_t ahead_too() const { return ahead_too_; }
 
@@ -124,7 +124,7 @@ class RowSource {
 
   /// Rows along lines of the source lack the lines above theirs, in the next slice. Rows across
   /// lines sweep the source from one line of cells to the next: they look as far, and a row more.
-  void look_ahead(std::int64_t line, std::int64_t slice) {
+  void look_ahead(std::int64_t line, std::int64_t slice, int components) {
     const hn::FixedTag<float, 4> d;
     const hn::RebindToSigned<decltype(d)> di;
     const bool is_across = std::abs(axis[0][1]) + std::abs(axis[0][2]) > 0.5f;
@@ -132,8 +132,9 @@ class RowSource {
                                 : hn::Load(d, axis[2]);
     alignas(16) std::int32_t voxels[4];
     hn::Store(hn::ConvertTo(di, hn::Round(step)), di, voxels);
-    ahead_ = voxels[2] * slice + voxels[1] * line + voxels[0] + (is_across ? 0 : slice);
-    ahead_too_ = ahead_ + (is_across ? slice : line);
+    const std::int64_t ahead = voxels[2] * slice + voxels[1] * line + voxels[0];
+    ahead_ = (ahead + (is_across ? 0 : slice)) * components;
+    ahead_too_ = ahead_ + (is_across ? slice : line) * components;
   }
 
   const TetSetup* setup_;

@@ -169,8 +169,8 @@ inline void add_unit(const SourceView<T>& view,
   // Rows to come: they jump too much for the hardware to guess.
   for (const int voxel : {0, cell_edge / 2}) {
     const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
-    hwy::Prefetch(from + first.ahead() * view.components);
-    hwy::Prefetch(from + first.ahead_too() * view.components);
+    hwy::Prefetch(from + first.ahead());
+    hwy::Prefetch(from + first.ahead_too());
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};
