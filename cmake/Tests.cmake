@@ -49,11 +49,13 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_cell_merge.cpp
     tests/test_cell_work.cpp
     tests/test_tet_moved.cpp
+    tests/test_volume_prefilter.cpp
+    tests/test_volume_range.cpp
     tests/test_volume_uniform.cpp)
   if(TETWARP_HAS_CUDA)
-    # Two units of five files: nvcc parses GoogleTest thrice per unit, for seconds.
-    foreach(first 0 5)
-      list(SUBLIST tetwarp_stage_tests ${first} 5 unit)
+    # Two units of six files: nvcc parses GoogleTest thrice per unit, for seconds.
+    foreach(first 0 6)
+      list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
       list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
       list(JOIN unit "\n" TETWARP_UNIT)
       set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
@@ -65,6 +67,8 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
     tests/test_face_sign.cpp
+    tests/test_volume_filter.cpp
+    tests/test_volume_label.cpp
     tests/test_volume_sample.cpp
     tests/test_lattice_mesh.cpp
     tests/test_deform_mesh.cpp
@@ -78,6 +82,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
+    tests/test_warp_filters.cpp
     tests/test_warp_in_flight.cpp
     tests/test_warp_invariance.cpp
     tests/test_warp_values.cpp
@@ -165,7 +170,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp_emulated_overlap.cpp
     tests/test_warp_in_flight.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*")
+    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

@@ -12,9 +12,11 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -70,6 +72,7 @@ class CellLine {
   void raster_stretch(int ci_begin, int ci_end, int cj, int ck) {
     sources_.clear();
     flat_.clear();
+    constants_.clear();
     has_open_ = false;
     for (auto& slice : run_counts_) std::fill_n(slice, cell_edge, 0);
     first_ = ci_begin;
@@ -133,10 +136,21 @@ class CellLine {
         const bool is_in = k >= box.begin[2] && k < box.end[2];
         covered.slice[k] = is_in ? whole & ~open.slice[k] : 0;
       }
-      add_flat(box, cell, covered, job_.source.data + work * job_.source.components);
+      add_flat(box, cell, covered, constant_at(work));
     }
     has_open_ = has_open_ || any_of(open);
     if (lists_open_) add_flat(box, cell, open, nullptr);
+  }
+
+  /// What the covered voxels of a cell get around a voxel of the source; kept for this stretch.
+  const T* constant_at(std::int64_t voxel) {
+    const int components = job_.source.components;
+    if (job_.source.coefficients == nullptr) return job_.source.data + voxel * components;
+    auto& values = constants_.emplace_back();
+    for (int c = 0; c < components; ++c) {
+      values[static_cast<std::size_t>(c)] = constant_value(job_.source, voxel, c);
+    }
+    return values.data();
   }
 
   /// Voxels of a cell that get `value`, or what nobody owns.
@@ -224,8 +238,8 @@ class CellLine {
     if (!job_.outside.use_source) return;
     for (int voxel = begin; voxel < end; ++voxel) {
       const int cell = voxel / cell_edge * cell_edge;
-      store_outside(row_job_, first.corner[0] + cell, first.corner[1], first.corner[2],
-                    voxel - cell, j, k, voxel);
+      store_outside<true>(row_job_, first.corner[0] + cell, first.corner[1], first.corner[2],
+                          voxel - cell, j, k, voxel);
     }
   }
 
@@ -261,6 +275,7 @@ class CellLine {
   RowStream<T> stream_;
   std::vector<RowSource> sources_;  ///< of the pairs that own voxels of this line
   std::vector<FlatCells> flat_;     ///< ascending
+  std::deque<std::array<T, most_components>> constants_;  ///< that stand nowhere in the source
   bool lists_open_;                 ///< voxels without owner get more than the background
   bool has_open_ = false;           ///< the line has some
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]

@@ -13,9 +13,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <utility>
 
 #include "host/row_components-inl.hpp"
+#include "host/row_filtered.hpp"
 #include "host/row_store-inl.hpp"
 #include "host/row_vector-inl.hpp"
 #include "host/row_wide-inl.hpp"
@@ -36,6 +38,7 @@ class RowSampler {
   /// Writes the covered voxels of row (j, k). Runs of a cell stand side by side; their order within
   /// it is lost.
   void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
     for (int r = 0; r < count;) {
       int past = r;
       RowKind kind = RowKind::inner;
@@ -77,6 +80,22 @@ class RowSampler {
       }
     }
     if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
+  }
+
+  void write_filtered(const RowSource* sources, const RowRun* runs, int count, int j, int k) {
+    for (const RowRun& run : std::span(runs, static_cast<std::size_t>(count))) {
+      const RowSource& source = sources[run.source];
+      const int cell_row = cell_edge * run.cell;
+      if (source.kind() == RowKind::copied) {
+        copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
+                 copier_);
+      } else {
+        const RowMap map = {source.setup(), source.corner(), source.base, source.axis,
+                            source.whole};
+        sample_row_filtered(job_, map, run.bits, j, k, cell_row);
+      }
+    }
+    copier_.flush();
   }
 
   static bool moves_alike(const RowSource& a, const RowSource& b) {

@@ -18,6 +18,25 @@ namespace tetwarp {
 
 namespace {
 
+void check_filter(const VolumeView& source, Filter filter) {
+  const std::string type = std::string("source: ") + name_of(source.type);
+  if (filter == Filter::labels) {
+    if (!is_integer(source.type)) {
+      throw std::invalid_argument(type + " holds no labels; use another filter or integers");
+    }
+    if (source.components != 1) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, labels have one; use the nearest filter");
+    }
+    return;
+  }
+  const bool wide = is_integer(source.type) && size_of(source.type) == 8;
+  if (wide && filter != Filter::nearest) {
+    throw std::invalid_argument(type +
+                                " cannot be interpolated without loss; use the nearest filter");
+  }
+}
+
 void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
   if (sources.empty()) throw std::invalid_argument("sources: no volume");
   for (const VolumeView& source : sources) {
@@ -30,11 +49,7 @@ void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& op
                                   " components, expected 1 to 9");
     }
     if (source.data == nullptr) throw std::invalid_argument("source: no samples");
-    const bool wide = is_integer(source.type) && size_of(source.type) == 8;
-    if (wide && options.filter != Filter::nearest) {
-      throw std::invalid_argument(std::string("source: ") + name_of(source.type) +
-                                  " cannot be interpolated without loss; use the nearest filter");
-    }
+    check_filter(source, options.filter);
     if (is_integer(source.type) && !std::isfinite(options.background)) {
       throw std::invalid_argument(std::string("background: not a finite number, which ") +
                                   name_of(source.type) + " cannot hold");

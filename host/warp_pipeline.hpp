@@ -2,9 +2,7 @@
 /// The warp as a list of stages, for any executor. Read this file first; run() is the method.
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <utility>
-#include <vector>
 
 #include "host/pixel_dispatch.hpp"
 #include "host/step_counters.hpp"
@@ -12,9 +10,9 @@
 #include "host/warp_geometry.hpp"
 #include "host/warp_outputs.hpp"
 #include "host/warp_pairs.hpp"
+#include "host/warp_sources.hpp"
 #include "kernels/cell_raster.hpp"
 #include "kernels/cell_work.hpp"
-#include "kernels/volume_uniform.hpp"
 
 namespace tetwarp {
 
@@ -27,8 +25,7 @@ class WarpPipeline : public WarpBackend {
         exec_(std::move(exec)),
         pairs_(exec_, plan_, geometry_),
         outputs_(exec_, plan_, geometry_.frame),
-        sources_(plan.sources.size()) {
-    for (std::size_t s = 0; s < sources_.size(); ++s) upload_source(s);
+        sources_(exec_, plan_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
   }
@@ -100,14 +97,6 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  /// A source in the executor's memory.
-  struct Source {
-    const std::byte* data = nullptr;
-    Buffer<std::byte> buffer;
-    Buffer<std::uint8_t> reach;
-    std::optional<UniformMap> uniform;  ///< found when first needed
-  };
-
   /// A step between its parts.
   struct Flight {
     typename Exec::template Staged<double> position_buffer;
@@ -147,16 +136,6 @@ class WarpPipeline : public WarpBackend {
                    CoveredSumBody{cell_covered_.const_view(cells), {&work_counters().covered, 1}});
   }
 
-  void upload_source(std::size_t s) {
-    const VolumeView& source = plan_.sources[s];
-    const std::int64_t bytes = source.grid.voxel_count() * source.components *
-                               static_cast<std::int64_t>(size_of(source.type));
-    const std::byte* data = static_cast<const std::byte*>(source.data);
-    sources_[s].data = source.memory == Memory::device
-                           ? data
-                           : exec_.resident("warp/upload", data, bytes, sources_[s].buffer).data;
-  }
-
   /// Of an update only touched cells are counted again: what they held before is taken back.
   void count_folded() {
     const View<const std::uint8_t> touched =
@@ -177,7 +156,6 @@ class WarpPipeline : public WarpBackend {
 
   void raster(std::size_t s, const WarpTarget& target, const Progress& progress) {
     with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
-      const VolumeView& source = plan_.sources[s];
       const OutputFrame& frame = geometry_.frame;
       RasterJob<T> job;
       job.setups = pairs_.setups();
@@ -186,9 +164,8 @@ class WarpPipeline : public WarpBackend {
       job.pairs = pairs_.list().pairs;
       job.ranges = {pairs_.list().ranges.data, frame.cell_count()};
       job.frame = frame;
-      job.source = source_view<T>(source, sources_[s].data);
-      job.filter =
-          plan_.options.filter == Filter::nearest ? Interpolation::nearest : Interpolation::linear;
+      job.source = sources_.template view<T>(s);
+      job.filter = interpolation_of(plan_.options.filter);
       job.outside = geometry_.outside;
       job.background = rounded_to<T>(plan_.options.background);
       job.copy_whole_shifts = plan_.options.skip.copied_voxels;
@@ -208,34 +185,14 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   void choose_work(std::size_t s, RasterJob<T>& job) {
     const UniformMap uniform =
-        plan_.options.skip.constant_cells ? uniform_map(s, job.source) : UniformMap{};
+        plan_.options.skip.constant_cells
+            ? sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest())
+            : UniformMap{};
     if (stale_.size == 0 && uniform.reach.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
     cell_work(exec_, job, uniform, stale_, cell_work_.view(cells),
               {&work_counters().constant_cells, s == 0 ? 1 : 0});
     job.cell_work = cell_work_.const_view(cells);
-  }
-
-  /// Where source s is uniform, found when first asked for; empty where no cell can be filled.
-  template <class T>
-  UniformMap uniform_map(std::size_t s, const SourceView<T>& view) {
-    Source& source = sources_[s];
-    if (source.uniform) return *source.uniform;
-    UniformMap map = make_uniform_map(view);
-    const std::int64_t blocks = map.block_count();
-    Buffer<std::uint8_t> scratch;
-    Buffer<std::int64_t> wide_count;
-    source.reach.reserve(blocks);
-    scratch.reserve(blocks);
-    wide_count.reserve(1);
-    exec_.zero("warp/setup", wide_count.view(1));
-    volume_uniform(exec_, view, pairs_.tets(), pairs_.rest(), source.reach.view(blocks),
-                   scratch.view(blocks), wide_count.view(1));
-    std::int64_t count = 0;
-    exec_.read(wide_count.const_view(1), &count);
-    if (count > 0) map.reach = source.reach.const_view(blocks);
-    source.uniform = map;
-    return map;
   }
 
   WorkCounters& work_counters() const { return pairs_.counters().data->work; }
@@ -259,7 +216,7 @@ class WarpPipeline : public WarpBackend {
   Exec exec_;
   WarpPairs<Exec> pairs_;
   WarpOutputs<Exec> outputs_;
-  std::vector<Source> sources_;
+  WarpSources<Exec> sources_;
 
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;

@@ -13,6 +13,7 @@ namespace tetwarp {
 
 constexpr int raster_threads = 128;
 constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
+constexpr int raster_wide_blocks = 2;  ///< the same of the kernel that knows the wide filters
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
@@ -89,8 +90,8 @@ __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
 
 /// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
 /// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
-template <class T>
-__global__ void __launch_bounds__(raster_threads, raster_blocks)
+template <class T, bool Wide>
+__global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : raster_blocks)
     cell_raster_kernel(RasterJob<T> job) {
   using Real = ArithmeticOf<T>;
   __shared__ RasterChunk<Real> chunk;
@@ -138,10 +139,11 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
       if (work >= 0) {
         store_filled(job, work, voxel);
       } else if (sizeof(Real) == 4 && chunk.steep[slot]) {
-        store_owned<T, double>(job, job.setups[t], corner[0], corner[1], corner[2], i, j, k, voxel);
+        store_owned<Wide, T, double>(job, job.setups[t], corner[0], corner[1], corner[2], i, j, k,
+                                     voxel);
       } else {
-        store_sample(job, chunk.copied[slot] ? Interpolation::nearest : job.filter,
-                     chunk.maps[slot], i, j, k, voxel);
+        store_sample<Wide>(job, chunk.copied[slot] ? Interpolation::nearest : job.filter,
+                           chunk.maps[slot], i, j, k, voxel);
       }
       if (job.mask != nullptr) job.mask[voxel] = 1;
       if (job.tet != nullptr) job.tet[voxel] = t;
@@ -151,7 +153,7 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
     if ((open >> d & 1) == 0) continue;
     const int k = k_first + 2 * d;
     const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-    store_outside(job, corner[0], corner[1], corner[2], i, j, k, voxel);
+    store_outside<Wide>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
     if (job.mask != nullptr) job.mask[voxel] = 0;
     if (job.tet != nullptr) job.tet[voxel] = -1;
   }
@@ -168,6 +170,12 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks)
   if (job.counts != nullptr && thread < 4 && block_counts[thread] != 0) {
     atomic_add(reinterpret_cast<std::int64_t*>(job.counts) + thread, block_counts[thread]);
   }
+}
+
+/// The kernel for a filter: wide ones have their own, whose registers the others need not pay for.
+template <class T>
+auto raster_kernel(Interpolation filter) {
+  return is_wide(filter) ? cell_raster_kernel<T, true> : cell_raster_kernel<T, false>;
 }
 
 }  // namespace tetwarp

@@ -5,11 +5,14 @@
 /// host/cell_raster_cpu.cpp (one thread owns a line of cells, row after row).
 #pragma once
 #include <cstdint>
+#include <type_traits>
 
 #include "kernels/cell_pairs.hpp"
 #include "kernels/face_sign.hpp"
 #include "kernels/tet_setup.hpp"
 #include "kernels/view.hpp"
+#include "kernels/volume_filter.hpp"
+#include "kernels/volume_label.hpp"
 #include "kernels/volume_sample.hpp"
 
 namespace tetwarp {
@@ -121,8 +124,46 @@ TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, dou
   }
 }
 
-/// Stores one voxel's samples at a local position of the source, or the background.
+/// Samples a source by a filter of volume_filter.hpp or volume_label.hpp. Which of them a pixel
+/// type may have is checked by the public calls.
+template <class T>
+TETWARP_HD_RARE void sample_wide(SourceView<T> source,
+                                 Interpolation filter,
+                                 SourcePosition<ArithmeticOf<T>> at,
+                                 T* out) {
+  if constexpr (!std::is_floating_point_v<T>) {
+    if (filter == Interpolation::labels) {
+      out[0] = label_at(source, at);
+      return;
+    }
+  }
+  if constexpr (can_blend<T>) sample_filtered(source, filter, at, out);
+}
+
+/// store_sample() for these filters.
 template <class T, class Real>
+TETWARP_HD void store_wide_sample(
+    const RasterJob<T>& job, Interpolation filter, const int* whole, const Real* x, T* out) {
+  SourcePosition<ArithmeticOf<T>> at;
+  bool is_inside = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    is_inside = is_inside && is_defined(job.source, axis, whole[axis], x[axis]);
+    const Real lower = is_inside ? floor(x[axis]) : Real(0);
+    at.voxel[axis] = whole[axis] + static_cast<int>(lower);
+    at.fraction[axis] = static_cast<ArithmeticOf<T>>(x[axis] - lower);
+  }
+  if (is_inside) {
+    sample_wide(job.source, filter, at, out);
+  } else {
+    for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
+  }
+}
+
+/// Stores one voxel's samples at a local position of the source, or the background.
+///
+/// @tparam Wide  whether the filter may be a wide one: device code that knows better keeps its
+///               registers
+template <bool Wide, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Interpolation filter,
                              const SourceMap<Real>& map,
@@ -132,8 +173,11 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
                              std::int64_t voxel) {
   Real x[3];
   local_position(map, i, j, k, x);
-  const Tap<Real> tap = tap_of(job.source, filter, map.whole, x);
   T* out = job.volume + voxel * job.source.components;
+  if constexpr (Wide) {
+    if (is_wide(filter)) return store_wide_sample(job, filter, map.whole, x, out);
+  }
+  const Tap<Real> tap = tap_of(job.source, filter, map.whole, x);
   for (int c = 0; c < job.source.components; ++c) {
     out[c] = tap.inside ? sample(job.source, filter, tap, c) : job.background;
   }
@@ -146,7 +190,7 @@ TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
 }
 
 /// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that `tet` owns; the map is made anew.
-template <class T, class Real>
+template <bool Wide, class T, class Real>
 TETWARP_HD void store_owned(const RasterJob<T>& job,
                             const TetSetup& tet,
                             int cx,
@@ -158,8 +202,8 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
                             std::int64_t voxel) {
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
-  store_sample(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
-               make_source_map<Real>(start, linear), i, j, k, voxel);
+  store_sample<Wide>(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
+                     make_source_map<Real>(start, linear), i, j, k, voxel);
 }
 
 /// Stores a voxel that gets the samples of voxel `from` of the source.
@@ -167,20 +211,20 @@ template <class T>
 TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::int64_t voxel) {
   const int components = job.source.components;
   for (int c = 0; c < components; ++c) {
-    job.volume[voxel * components + c] = job.source.data[from * components + c];
+    job.volume[voxel * components + c] = constant_value(job.source, from, c);
   }
 }
 
 /// Stores a voxel that no tetrahedron covers.
-template <class T>
+template <bool Wide, class T>
 TETWARP_HD void store_outside(
     const RasterJob<T>& job, int cx, int cy, int cz, int i, int j, int k, std::int64_t voxel) {
   if (job.outside.use_source) {
     double start[3];
     outside_start(job.outside, cx, cy, cz, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
-    store_sample(job, copies ? Interpolation::nearest : job.filter,
-                 make_source_map<double>(start, job.outside.linear), i, j, k, voxel);
+    store_sample<Wide>(job, copies ? Interpolation::nearest : job.filter,
+                       make_source_map<double>(start, job.outside.linear), i, j, k, voxel);
     return;
   }
   T* out = job.volume + voxel * job.source.components;

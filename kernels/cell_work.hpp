@@ -10,13 +10,16 @@
 
 namespace tetwarp {
 
-/// A voxel of the source whose samples are those of every position that a tetrahedron maps the
-/// voxels of a cell to; -1 where there are several values, or the source ends.
+/// A voxel of the source whose samples are those of all that the job's filter reads around every
+/// position that a tetrahedron maps the voxels of a cell to; -1 where there are several values, or
+/// the source ends.
 template <class T>
 TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
-                                      const SourceView<T>& source,
+                                      const RasterJob<T>& job,
                                       const TetSetup& tet,
                                       const int* corner) {
+  const SourceView<T>& source = job.source;
+  const int around = reach_of(job.filter);
   constexpr double slack = 0.01;  // far more than the rounding of a position
   double start[3], linear[3][3], begin[3], end[3];
   map_start(tet, corner[0], corner[1], corner[2], start, linear);
@@ -34,13 +37,23 @@ TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
     }
     const int last = source.dims[axis] - 1;
     if (!(low >= -0.5 && high <= last + 0.5)) return -1;  // NaN fails too
-    block[axis] = static_cast<int>(max_of(low, 0.0)) >> block_shift;
-    const int last_block = min_of(static_cast<int>(floor(high)) + 1, last) >> block_shift;
+    block[axis] = static_cast<int>(max_of(low - (around - 1), 0.0)) >> block_shift;
+    const int last_block = min_of(static_cast<int>(floor(high)) + around, last) >> block_shift;
     reach = max_of(reach, last_block - block[axis] + 1);
   }
   if (map.reach[map.block_index(block[0], block[1], block[2])] < reach) return -1;
   return voxel_of(source, block[0] << block_shift, block[1] << block_shift,
                   block[2] << block_shift);
+}
+
+/// Whether constants around two voxels are one.
+template <class T>
+TETWARP_HD bool has_constant_of(const SourceView<T>& source, std::int64_t a, std::int64_t b) {
+  const int count = source.components;
+  if (source.coefficients == nullptr) {
+    return has_bits_of(source.data + a * count, source.data + b * count, count);
+  }
+  return has_bits_of(source.coefficients + a * count, source.coefficients + b * count, count);
 }
 
 /// One index = one cell; any order.
@@ -72,13 +85,9 @@ struct CellWorkBody {
     std::int64_t value = -1;
     for (std::uint32_t p = range.begin; p < range.end; ++p) {
       const TetSetup& tet = job.setups[tet_of(job.pairs[p])];
-      const std::int64_t voxel = uniform_voxel(uniform, job.source, tet, corner);
+      const std::int64_t voxel = uniform_voxel(uniform, job, tet, corner);
       if (voxel < 0) return -1;
-      const int components = job.source.components;
-      if (value >= 0 && !has_bits_of(job.source.data + voxel * components,
-                                     job.source.data + value * components, components)) {
-        return -1;
-      }
+      if (value >= 0 && !has_constant_of(job.source, voxel, value)) return -1;
       value = voxel;
     }
     return value;
@@ -92,7 +101,8 @@ struct CellWorkBody {
 /// source holds one value.
 /// @param exec            where to run
 /// @param job             all but cell_work
-/// @param uniform         of the job's source; empty: cells are not filled
+/// @param uniform         of the job's source, or of its coefficients where it has some; empty:
+///                        cells are not filled
 /// @param touched         from cell_merge, shape [cell_count]; empty: every cell is
 /// @param work            out, shape [cell_count]
 /// @param constant_count  filled cells are added to it, shape [1]; empty: they are not counted

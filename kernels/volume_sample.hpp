@@ -1,5 +1,6 @@
 /// @file volume_sample.hpp
-/// The source at an index-space position: nearest and linear, clamp and background rules.
+/// The source at an index-space position: nearest and linear, clamp and background rules. Wider
+/// filters: volume_filter.hpp; labels: volume_label.hpp.
 ///
 /// A position is an integer voxel `whole` plus a local part near it, so that float32 loses nothing
 /// in large volumes. The source is defined on [-0.5, N - 0.5] per axis; neighbours are clamped.
@@ -13,7 +14,19 @@
 
 namespace tetwarp {
 
-enum class Interpolation : int { nearest, linear };
+enum class Interpolation : int { nearest, linear, cubic, bspline, lanczos, labels };
+
+/// Filters that tap_of() and sample() do not know.
+TETWARP_HD bool is_wide(Interpolation filter) {
+  return filter > Interpolation::linear;
+}
+
+/// How many samples on either side of a position a filter may read; mirrored ones are up to one
+/// further in.
+TETWARP_HD int reach_of(Interpolation filter) {
+  if (filter == Interpolation::cubic) return 2;
+  return filter == Interpolation::bspline || filter == Interpolation::lanczos ? 3 : 1;
+}
 
 /// The arithmetic that serves a pixel type: float32 for 8- and 16-bit integers and float32, else
 /// float64.
@@ -21,16 +34,24 @@ template <class T>
 using ArithmeticOf =
     std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
 
+/// Whether values of a pixel type may be computed: float64 does not hold 64-bit integers.
+template <class T>
+constexpr bool can_blend = std::is_floating_point_v<T> || sizeof(T) <= 4;
+
 /// How far beyond the source's rim the rounding of nodes and of float32 positions may carry a
 /// position that lies on it [voxel].
 constexpr float rim_slack = 0x1p-19f;
 
-/// Samples [k][j][i][component].
+/// Samples [k][j][i][component], and what some filters must know of them.
 template <class T>
 struct SourceView {
   const T* data;
   int dims[3];
   int components;
+  /// Of the spline through the samples, as many; null: not wanted.
+  const ArithmeticOf<T>* coefficients = nullptr;
+  /// Least and largest sample per component, which values are clamped to; null: they are not.
+  const ArithmeticOf<T>* range = nullptr;
 };
 
 /// Map from voxels of a cell to source positions: whole + (base + axis[0] i + axis[1] j + axis[2]
@@ -74,6 +95,16 @@ struct Tap {
   Real fraction[3];
 };
 
+/// Whether the source is defined along an axis at whole + x.
+template <class T, class Real>
+TETWARP_HD bool is_defined(const SourceView<T>& source, int axis, int whole, Real x) {
+  // Compared in units of the local part: exact, however far the voxel is from index zero.
+  const Real low = Real(-0.5) - Real(whole) - Real(rim_slack);
+  const Real high = Real(source.dims[axis] - 1 - whole) + Real(0.5) + Real(rim_slack);
+  return x >= low && x <= high;
+}
+
+/// For nearest and linear.
 template <class T, class Real>
 TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
                             Interpolation filter,
@@ -84,10 +115,7 @@ TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
   std::int64_t stride = source.components;
   for (int axis = 0; axis < 3; ++axis) {
     const int last = source.dims[axis] - 1;
-    // Compared in units of the local part: exact, however far the voxel is from index zero.
-    const Real low = Real(-0.5) - Real(whole[axis]) - Real(rim_slack);
-    const Real high = Real(last - whole[axis]) + Real(0.5) + Real(rim_slack);
-    tap.inside = tap.inside && x[axis] >= low && x[axis] <= high;
+    tap.inside = tap.inside && is_defined(source, axis, whole[axis], x[axis]);
     const Real near = filter == Interpolation::nearest ? x[axis] + Real(0.5) : x[axis];
     const Real lower = tap.inside ? floor(near) : Real(0);
     const int voxel = whole[axis] + static_cast<int>(lower);

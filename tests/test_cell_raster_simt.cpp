@@ -13,6 +13,7 @@
 
 #include "host/cell_raster_cpu.hpp"
 #include "host/pixel_dispatch.hpp"
+#include "kernels/volume_prefilter.hpp"
 #include "tests/stages.hpp"
 
 #include "kernels/cell_raster.cuh"
@@ -74,6 +75,7 @@ class RasterBench {
     job_.source = source_view<T>(source_, source_.data.data());
     job_.filter = what.filter;
     job_.outside = what.outside;
+    if (what.filter == Interpolation::bspline) prefilter();
     job_.background = T{77};
     job_.copy_whole_shifts = what.copy_whole_shifts;
   }
@@ -107,11 +109,18 @@ class RasterBench {
   Rastered<T> by_blocks() {
     return filled([](const RasterJob<T>& job) {
       const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
-      launch(nullptr, cell_raster_kernel<T>, cells, raster_threads, 0, job);
+      launch(nullptr, raster_kernel<T>(job.filter), cells, raster_threads, 0, job);
     });
   }
 
  private:
+  void prefilter() {
+    const auto size = source_.grid.voxel_count() * source_.components;
+    const auto coefficients = arrays_.template zeros<ArithmeticOf<T>>(size);
+    volume_prefilter(exec_, job_.source, 0, arrays_.template zeros<double>(size), coefficients);
+    job_.source.coefficients = coefficients.data;
+  }
+
   template <class Raster>
   Rastered<T> filled(Raster&& raster) {
     const auto voxels = static_cast<std::size_t>(input_.frame.voxel_count());
@@ -167,6 +176,22 @@ TEST(CellRasterSimt, EveryPixelTypeHasTheSameBits) {
   }
   for (const PixelType type : {PixelType::uint64, PixelType::int16, PixelType::float32}) {
     expect_equal_bits({.type = type, .filter = Interpolation::nearest});
+  }
+}
+
+TEST(CellRasterSimt, EveryFilterHasTheSameBits) {
+  for (const Interpolation filter :
+       {Interpolation::cubic, Interpolation::bspline, Interpolation::lanczos}) {
+    for (const char* scene : {"waved", "other_grid"}) {
+      for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::int16}) {
+        expect_equal_bits({.scene = scene, .type = type, .filter = filter, .outside = stretched()});
+      }
+    }
+    expect_equal_bits({.type = PixelType::float32, .components = 3, .filter = filter});
+    expect_equal_bits({.type = PixelType::float64, .filter = filter});
+  }
+  for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint64}) {
+    expect_equal_bits({.type = type, .filter = Interpolation::labels, .outside = stretched()});
   }
 }
 

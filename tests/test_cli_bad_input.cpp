@@ -45,7 +45,8 @@ TEST(UsageError, ExitsWithTwoAndSaysWhereToRead) {
            {{"warp"}, "tetwarp warp --help"},
            {{"warp", "volume.vtkhdf", "-o", "out.vtkhdf"}, "MESH"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf"}, "-o OUT"},
-           {warp_with({"--filter", "cubical"}), "linear, nearest"},
+           {warp_with({"--filter", "cubical"}), "linear, nearest, cubic, bspline, lanczos, labels"},
+           {warp_with({"--overshoot", "cut"}), "keep, clamp"},
            {warp_with({"--background", "black"}), "--background"},
            {warp_with({"--dims", "1,2"}), "--dims"},
            {warp_with({"--roi", "0:4,0:4"}), "'0:4,0:4'"},
@@ -177,6 +178,15 @@ TEST(BadInput, ChecksPixelTypesAgainstOptions) {
   Names with_nan = warp_wide;
   with_nan.insert(with_nan.end(), {"--filter", "nearest", "--background", "nan"});
   expect_refused(scene, {with_nan, "cannot hold --background nan"}, 1);
+}
+
+TEST(BadInput, RefusesLabelsThatAreNone) {
+  const Scene scene;
+  expect_refused(scene, {warp_with({"--filter", "labels"}), "are no labels"}, 1);
+
+  Volume colors = make_volume(ramp_volume<float>().grid, PixelType::uint8, 3, "colors");
+  write_volumes(scene / "volume.vtkhdf", {&colors});
+  expect_refused(scene, {warp_with({"--filter", "labels"}), "labels have one component"}, 1);
 }
 
 TEST(BadInput, RefusesAnExtraOutputWithTheNameOfAnArray) {

@@ -95,6 +95,8 @@ TEST_F(Resume, WritesAgainTheOneStepThatMoved) {
 
 TEST_F(Resume, WritesAgainAfterAChangeOfAnOption) {
   EXPECT_EQ(rewritten({"--filter", "nearest"}), outputs);
+  EXPECT_EQ(rewritten({"--filter", "cubic"}), outputs);
+  EXPECT_EQ(rewritten({"--filter", "cubic", "--overshoot", "clamp"}), outputs);
   EXPECT_EQ(rewritten({"--background", "-7"}), outputs);
   EXPECT_EQ(rewritten({"--outputs", "mask"}), outputs);
 }

@@ -141,6 +141,16 @@ TEST(WarpArguments, NameThePixelType) {
   EXPECT_EQ(infinite.complaint(), "background: not a finite number, which int16 cannot hold");
 }
 
+TEST(WarpArguments, NameWhatIsNoLabel) {
+  Call real, several;
+  real.source = make_volume(real.source.grid, PixelType::float32);
+  several.source = make_volume(several.source.grid, PixelType::uint8, 3);
+  real.options.filter = several.options.filter = Filter::labels;
+
+  EXPECT_EQ(real.complaint(), "source: float32 holds no labels; use another filter or integers");
+  EXPECT_EQ(several.complaint(), "source: 3 components, labels have one; use the nearest filter");
+}
+
 TEST(WarpArguments, NameTheOptions) {
   Call empty, outside, threads;
   empty.options.region = Region{{2, 3, 4}, {3, 3, 5}};

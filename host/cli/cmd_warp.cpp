@@ -22,12 +22,14 @@ int run_warp(const WarpArguments& arguments) {
 
 void add_warp_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<WarpArguments>();
-  CLI::App* command = add_subcommand(app, "warp", "Warp volumes by a deforming mesh",
-                                     "VOLUME... MESH -o OUT [options]",
-                                     "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n"
-                                     "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf "
-                                     "--steps 0:10:2 --outputs mask --resume\n"
-                                     "  tetwarp warp --batch jobs.json --compress 1\n");
+  CLI::App* command = add_subcommand(
+      app, "warp", "Warp volumes by a deforming mesh", "VOLUME... MESH -o OUT [options]",
+      "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n"
+      "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf "
+      "--steps 0:10:2 --outputs mask --resume\n"
+      "  tetwarp warp atlas.vtkhdf mesh.vtkhdf -o atlas_warped.vtkhdf "
+      "--filter labels\n"
+      "  tetwarp warp --batch jobs.json --compress 1\n");
   declare_warp_options(*command, *arguments);
   command->callback([arguments, command, &run] {
     check_complete(*arguments);

@@ -63,14 +63,30 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
   return chosen;
 }
 
+void check_filter(const std::string& path, const ArrayHeader& array, Filter filter) {
+  if (filter == Filter::nearest) return;
+  const char* const type = name_of(array.type);
+  if (filter != Filter::labels && is_integer(array.type) && size_of(array.type) == 8) {
+    throw IoError(
+        path, array.name,
+        fmt::format("{} samples cannot be interpolated; use --filter nearest or labels", type));
+  }
+  if (filter == Filter::labels && !is_integer(array.type)) {
+    throw IoError(
+        path, array.name,
+        fmt::format("{} samples are no labels; choose others with --array, or a --filter", type));
+  }
+  if (filter == Filter::labels && array.components != 1) {
+    throw IoError(path, array.name,
+                  fmt::format("labels have one component, these samples {}; choose others with "
+                              "--array, or a --filter",
+                              array.components));
+  }
+}
+
 void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
   for (const ArrayHeader& array : plan.arrays) {
-    if (arguments.warp.filter == Filter::linear && is_integer(array.type) &&
-        size_of(array.type) == 8) {
-      throw IoError(plan.path, array.name,
-                    fmt::format("{} samples cannot be interpolated; use --filter nearest",
-                                name_of(array.type)));
-    }
+    check_filter(plan.path, array, arguments.warp.filter);
     if (is_integer(array.type) && !std::isfinite(arguments.warp.background)) {
       throw IoError(plan.path, array.name,
                     fmt::format("{} samples cannot hold --background {}; give a finite value",

@@ -275,6 +275,7 @@ Fingerprint VolumeRun::fingerprint_of_inputs() const {
   fingerprint.add(TETWARP_VERSION);
   fingerprint.add(plan_.backend);
   fingerprint.add(warp.filter);
+  fingerprint.add(warp.overshoot);
   fingerprint.add(warp.outside);
   fingerprint.add(warp.background);
   fingerprint.add(arguments_.extra.mask);

@@ -11,7 +11,10 @@ namespace tetwarp::cli {
 
 namespace {
 
-const Choices<Filter> filters{{"linear", Filter::linear}, {"nearest", Filter::nearest}};
+const Choices<Filter> filters{{"linear", Filter::linear},   {"nearest", Filter::nearest},
+                              {"cubic", Filter::cubic},     {"bspline", Filter::bspline},
+                              {"lanczos", Filter::lanczos}, {"labels", Filter::labels}};
+const Choices<Overshoot> overshoots{{"keep", Overshoot::keep}, {"clamp", Overshoot::clamp}};
 const Choices<Outside> outsides{{"background", Outside::background},
                                 {"identity", Outside::identity}};
 const Choices<bool ExtraOutputs::*> extra_outputs{{"mask", &ExtraOutputs::mask},
@@ -90,6 +93,8 @@ void declare_grid(CLI::App& app, WarpArguments& arguments) {
 void declare_result(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
   add_choice(app, "--filter", warp.filter, filters, "between voxel centres [linear]");
+  add_choice(app, "--overshoot", warp.overshoot, overshoots,
+             "values beyond those of the source, of cubic, bspline and lanczos [keep]");
   add_choice(app, "--outside", warp.outside, outsides, "what no tetrahedron covers [background]");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
   ExtraOutputs& extra = arguments.extra;

@@ -8,16 +8,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/error.hpp>
-#include <type_traits>
 #include <vector>
 
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/exact_geometry.hpp"
+#include "host/reference/sample.hpp"
 #include "host/warp_backend.hpp"
 
 namespace tetwarp {
@@ -25,64 +24,6 @@ namespace tetwarp {
 namespace {
 
 using namespace reference;
-
-template <class T>
-T stored(double value) {
-  if constexpr (std::is_integral_v<T>) {
-    const double whole = std::nearbyint(value);
-    if (whole <= static_cast<double>(std::numeric_limits<T>::min())) {
-      return std::numeric_limits<T>::min();
-    }
-    if (whole >= static_cast<double>(std::numeric_limits<T>::max())) {
-      return std::numeric_limits<T>::max();
-    }
-    return static_cast<T>(whole);
-  }
-  return static_cast<T>(value);
-}
-
-/// Writes the source's samples at an index position, or the background outside of it.
-template <class T>
-void store_sample(
-    const VolumeView& source, Filter filter, const Eigen::Vector3d& x, T background, T* out) {
-  const T* data = static_cast<const T*>(source.data);
-  const std::array<std::int64_t, 3>& n = source.grid.dims;
-  std::array<std::int64_t, 3> low;
-  std::array<double, 3> fraction;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double position = x(static_cast<Eigen::Index>(axis));
-    if (!(position >= -0.5 - rim && position <= static_cast<double>(n[axis]) - 0.5 + rim)) {
-      std::fill_n(out, source.components, background);
-      return;
-    }
-    const double floor = std::floor(filter == Filter::nearest ? position + 0.5 : position);
-    low[axis] = static_cast<std::int64_t>(floor);
-    fraction[axis] = filter == Filter::nearest ? 0.0 : position - floor;
-  }
-  const auto sample_at = [&](int corner, int component) {
-    std::int64_t offset = 0;
-    for (std::size_t axis = 3; axis-- > 0;) {
-      const std::int64_t i = low[axis] + (corner >> axis & 1);
-      offset = offset * n[axis] + std::clamp(i, std::int64_t{0}, n[axis] - 1);
-    }
-    return data[offset * source.components + component];
-  };
-  for (int c = 0; c < source.components; ++c) {
-    if (filter == Filter::nearest) {
-      out[c] = sample_at(0, c);
-      continue;
-    }
-    double sum = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-      double weight = 1;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        weight *= (corner >> axis & 1) != 0 ? fraction[axis] : 1 - fraction[axis];
-      }
-      if (weight != 0) sum += weight * static_cast<double>(sample_at(corner, c));
-    }
-    out[c] = stored<T>(sum);
-  }
-}
 
 class ReferenceBackend : public WarpBackend {
  public:
@@ -207,19 +148,18 @@ class ReferenceBackend : public WarpBackend {
 
   template <class T>
   void fill(std::size_t s, T* out) const {
-    const VolumeView& source = plan_.sources[s];
-    const T background = stored<T>(plan_.options.background);
+    const Sampler<T> sampler(plan_.sources[s], plan_.options);
     std::size_t v = 0;
     for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
       for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {
         for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
-          T* voxel = out + v * static_cast<std::size_t>(source.components);
+          T* voxel = out + v * static_cast<std::size_t>(sampler.components());
           if (owner_[v] >= 0) {
-            store_sample(source, plan_.options.filter, source_position_[v], background, voxel);
+            sampler.store(source_position_[v], voxel);
           } else if (plan_.options.outside == Outside::identity) {
-            store_sample(source, plan_.options.filter, same_place(i, j, k), background, voxel);
+            sampler.store(same_place(i, j, k), voxel);
           } else {
-            std::fill_n(voxel, source.components, background);
+            std::fill_n(voxel, sampler.components(), sampler.background());
           }
         }
       }

@@ -20,8 +20,22 @@
 
 namespace tetwarp {
 
-/// How the source is sampled between voxel centres.
-enum class Filter { nearest, linear };
+/// How the source is sampled between voxel centres. At a centre every one gives its sample. The
+/// order is that of the error as voxels get smaller.
+enum class Filter {
+  nearest,  ///< order 1
+  linear,   ///< order 2
+  cubic,    ///< Catmull-Rom, 4x4x4 samples: order 3
+  bspline,  ///< cubic spline through the samples, mirrored at the source's rim: order 4
+  lanczos,  ///< windowed sinc, 6x6x6 samples: the sharpest for coarse images, but of no high order
+  labels    ///< the label with the most linear weight, of several the lowest; integers only
+};
+
+/// What becomes of values beyond the range of the samples, as cubic, bspline and lanczos make them.
+enum class Overshoot {
+  keep,
+  clamp  ///< to the least and largest sample of the source, component by component
+};
 
 /// What a voxel gets that no tetrahedron covers.
 enum class Outside {
@@ -54,7 +68,8 @@ struct SkipOptions {
 
 /// Choices of a warp. Defaults give what most people want.
 struct WarpOptions {
-  Filter filter = Filter::linear;  ///< 64-bit integers: nearest only
+  Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
+  Overshoot overshoot = Overshoot::keep;
   Outside outside = Outside::background;
   double background = 0.0;               ///< rounded and saturated to the pixel type
   std::optional<Grid> output_grid = {};  ///< nothing: the source's grid
