@@ -92,7 +92,9 @@ def draw_work_precision(rows, folder):
     with Chart(folder, "work_precision", title, x, "ns per covered voxel", columns=2) as chart:
         chart.legend = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}
         for color, type_name in enumerate(TYPES):
-            for filter_name, style in (("nearest", "--"), ("linear", "-")):
+            styles = {"nearest": "--", "linear": "-", "cubic": "-.", "bspline": ":"}
+            styles["lanczos"] = (0, (5, 1, 1, 1, 1, 1))
+            for filter_name, style in styles.items():
                 points = [
                     (int(row.workload), row)
                     for row in rows
@@ -106,7 +108,9 @@ def draw_work_precision(rows, folder):
                     errors = [row[key] for row in points]
                     times = [row["ns_per_covered"] for row in points]
                     label = f"{filter_name}, {type_name}"
-                    axis.plot(errors, times, style, marker="o", color=f"C{color}", label=label)
+                    axis.plot(
+                        errors, times, linestyle=style, marker="o", color=f"C{color}", label=label
+                    )
                     if type_name != "float32":
                         continue
                     for row, at in zip(points, zip(errors, times)):

@@ -32,11 +32,11 @@ def parse_name(name):
     """W2_rotated_256/linear/float32/cpu/threads:2/without:culling as a Row without figures."""
     row = Row(name)
     parts = name.split("/")
-    if parts[0] in ("analytic", "position", "series", "overlap", "region", "chunks"):
+    if parts[0] in ("analytic", "position", "series", "overlap", "region", "chunks", "labels"):
         row.kind = parts.pop(0)
     row.workload = parts.pop(0)
     for part in parts:
-        if part in ("nearest", "linear"):
+        if part in ("nearest", "linear", "cubic", "bspline", "lanczos", "labels"):
             row.filter = part
         elif part in ("cpu", "cuda", "reference"):
             row.backend = part

@@ -122,9 +122,15 @@ std::vector<SkipVariant> skip_variants() {
           {"constant_cells", {.constant_cells = false}}};
 }
 
+const char* name_of(Filter filter) {
+  static constexpr const char* names[] = {"nearest", "linear",  "cubic",
+                                          "bspline", "lanczos", "labels"};
+  return names[static_cast<int>(filter)];
+}
+
 std::string name_of(const WarpCase& row) {
-  std::string name = row.workload.name + (row.image == Image::in_air ? "_in_air" : "") +
-                     (row.filter == Filter::nearest ? "/nearest/" : "/linear/") + name_of(row.type);
+  std::string name = row.workload.name + (row.image == Image::in_air ? "_in_air" : "") + "/" +
+                     name_of(row.filter) + "/" + name_of(row.type);
   if (row.components > 1) name += "x" + std::to_string(row.components);
   name += std::string("/") + name_of(row.backend);
   if (row.backend == Backend::cpu) name += "/threads:" + std::to_string(row.threads);

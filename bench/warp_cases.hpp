@@ -23,6 +23,9 @@ struct WarpCase {
   SkipOptions skip = {};
 };
 
+/// As on the command line.
+const char* name_of(Filter filter);
+
 /// W2_rotated_256/linear/float32/cpu/threads:2/without:culling; of several components: float32x3
 std::string name_of(const WarpCase& warp_case);
 
