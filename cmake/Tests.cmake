@@ -16,8 +16,11 @@ target_link_libraries(tetwarp_scenes PRIVATE
 target_precompile_headers(tetwarp_scenes PRIVATE
   <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
-# As programs are compiled, or they could not use its headers.
+# As programs are compiled, or they could not use its headers. What tests compute by themselves is
+# little: -O3 would take longer to compile than it saves.
 set_target_properties(tetwarp_scenes PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+set(tetwarp_test_options $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
+target_compile_options(tetwarp_scenes PRIVATE ${tetwarp_test_options})
 
 # tetwarp_add_tests(PROGRAM [LIBRARIES ...] SOURCES ...)
 function(tetwarp_add_tests program)
@@ -26,6 +29,7 @@ function(tetwarp_add_tests program)
   target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${program} PRIVATE tetwarp_scenes
     tetwarp ${arg_LIBRARIES} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+  target_compile_options(${program} PRIVATE ${tetwarp_test_options})
   target_precompile_headers(${program} REUSE_FROM tetwarp_scenes)
   set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 endfunction()

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -68,34 +69,38 @@ inline ContactIndices indices_there(const GridContactExec& exec,
 }
 
 /// The same numbers there.
+/// @param members  of the struct: views to copy
+template <class Numbers>
+Numbers numbers_there(const GridContactExec& exec,
+                      const Numbers& host,
+                      std::initializer_list<View<const double> Numbers::*> members,
+                      DeviceArrays& arrays) {
+  arrays.restart();
+  Numbers there = host;
+  for (const auto member : members) there.*member = arrays.put(exec, host.*member);
+  return there;
+}
+
 inline ContactInput input_there(const GridContactExec& exec,
                                 const ContactInput& host,
                                 DeviceArrays& arrays) {
-  arrays.restart();
-  ContactInput there = host;
-  for (const auto values :
-       {&ContactInput::matrix, &ContactInput::jacobian, &ContactInput::load,
-        &ContactInput::given_velocity, &ContactInput::friction, &ContactInput::area,
-        &ContactInput::stiffness, &ContactInput::tangential_stiffness, &ContactInput::intensity,
-        &ContactInput::gap}) {
-    there.*values = arrays.put(exec, host.*values);
-  }
-  return there;
+  using In = ContactInput;
+  return numbers_there(
+      exec, host,
+      {&In::matrix, &In::jacobian, &In::load, &In::given_velocity, &In::friction, &In::area,
+       &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap},
+      arrays);
 }
 
 inline AdhesionViews adhesion_there(const GridContactExec& exec,
                                     const AdhesionViews& host,
                                     DeviceArrays& arrays) {
-  arrays.restart();
-  AdhesionViews there = host;
-  for (const auto values :
-       {&AdhesionViews::area, &AdhesionViews::stiffness, &AdhesionViews::tangential_stiffness,
-        &AdhesionViews::intensity, &AdhesionViews::gap, &AdhesionViews::energy,
-        &AdhesionViews::viscosity, &AdhesionViews::bonding_rate,
-        &AdhesionViews::saturation_pressure, &AdhesionViews::impulse, &AdhesionViews::velocity}) {
-    there.*values = arrays.put(exec, host.*values);
-  }
-  return there;
+  using In = AdhesionViews;
+  return numbers_there(
+      exec, host,
+      {&In::area, &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap, &In::energy,
+       &In::viscosity, &In::bonding_rate, &In::saturation_pressure, &In::impulse, &In::velocity},
+      arrays);
 }
 
 /// What a solve changes and works with.
