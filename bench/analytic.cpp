@@ -51,6 +51,20 @@ double wave_bound(Filter filter, double slope) {
   }
 }
 
+/// Largest sum of |weights| along an axis: half a unit that a sample was rounded by can come out
+/// this much larger, to the third power.
+double amplification(Filter filter) {
+  switch (filter) {
+    case Filter::cubic:
+      return 1.25;
+    case Filter::bspline:
+    case Filter::lanczos:
+      return 1.55;
+    default:
+      return 1;
+  }
+}
+
 /// What interpolation of image_at() can be off by at most.
 double interpolation_bound(Filter filter, double n) {
   double bound = 0;
@@ -151,8 +165,9 @@ void run_interpolation(
   // The image does not go on beyond the rim as wider filters have it.
   const double margin = filter > Filter::linear ? static_cast<double>(n) / 4 : 0;
   const Errors errors = interpolation_errors(scene, type, margin, output.data());
+  const double rounding = 0.5 * std::pow(amplification(filter), 3) + 0.5;  // of samples, of results
   const double bound = interpolation_bound(filter, static_cast<double>(n)) + 1e-5 +
-                       (is_integer(type) ? 1 / range_of(type) : 0);
+                       (is_integer(type) ? rounding / range_of(type) : 0);
   if (!(errors.count > 0 && errors.max <= bound)) {
     refuse(state,
            fmt::format("interpolation error {:.2g}, at most {:.2g} is right", errors.max, bound));
