@@ -71,6 +71,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
     tests/test_face_sign.cpp
+    tests/test_hex_split.cpp
     tests/test_volume_filter.cpp
     tests/test_volume_label.cpp
     tests/test_volume_sample.cpp
@@ -87,6 +88,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
     tests/test_warp_filters.cpp
+    tests/test_warp_hexahedra.cpp
     tests/test_warp_in_flight.cpp
     tests/test_warp_invariance.cpp
     tests/test_warp_values.cpp
@@ -172,9 +174,10 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
+    tests/test_warp_hexahedra.cpp
     tests/test_warp_in_flight.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

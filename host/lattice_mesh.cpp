@@ -1,5 +1,5 @@
 /// @file lattice_mesh.cpp
-/// The embedding lattice: cubic cells around the foreground, five tetrahedra each.
+/// The embedding lattice: cubic cells around the foreground, five tetrahedra each or as they are.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -196,37 +196,34 @@ constexpr int tets_of_cell[2][5][4] = {
     {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 6, 3, 5}},
     {{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 4, 2, 7}}};
 
-/// Tetrahedra of the occupied cells; nodes keep their lattice numbers.
-std::vector<std::array<std::int64_t, 4>> cut_cells(const Lattice& lattice,
-                                                   const std::vector<std::uint8_t>& occupied) {
-  std::vector<std::array<std::int64_t, 4>> tets;
+/// Calls visit(a, b, c) for the occupied cells.
+template <class Visit>
+void for_occupied(const Lattice& lattice, const std::vector<std::uint8_t>& occupied, Visit visit) {
   for (std::int64_t c = 0; c < lattice.cells[2]; ++c) {
     for (std::int64_t b = 0; b < lattice.cells[1]; ++b) {
       for (std::int64_t a = 0; a < lattice.cells[0]; ++a) {
-        if (!occupied[static_cast<std::size_t>(lattice.cell_id(a, b, c))]) continue;
-        for (const auto& corners : tets_of_cell[(a + b + c) % 2]) {
-          auto& tet = tets.emplace_back();
-          for (std::size_t n = 0; n < 4; ++n) {
-            const int corner = corners[n];
-            tet[n] = lattice.node_id(a + (corner & 1), b + (corner >> 1 & 1), c + (corner >> 2));
-          }
-        }
+        if (occupied[static_cast<std::size_t>(lattice.cell_id(a, b, c))]) visit(a, b, c);
       }
     }
   }
-  return tets;
 }
 
-/// The mesh of the tetrahedra's own nodes, in lattice order.
-TetMesh number_nodes(const Grid& grid,
-                     const Lattice& lattice,
-                     const std::vector<std::array<std::int64_t, 4>>& tets) {
+/// The mesh of the occupied cells and their nodes, in lattice order.
+TetMesh mesh_of_cells(const Grid& grid,
+                      const Lattice& lattice,
+                      const std::vector<std::uint8_t>& occupied,
+                      bool hexahedra) {
   const auto& cells = lattice.cells;
   std::vector<std::int32_t> number(static_cast<std::size_t>(lattice.node_id(0, 0, cells[2] + 1)),
                                    -1);
-  for (const auto& tet : tets) {
-    for (const std::int64_t node : tet) number[static_cast<std::size_t>(node)] = 0;
-  }
+  const auto corner_of = [&](std::int64_t a, std::int64_t b, std::int64_t c,
+                             int corner) -> std::int32_t& {
+    return number[static_cast<std::size_t>(
+        lattice.node_id(a + (corner & 1), b + (corner >> 1 & 1), c + (corner >> 2)))];
+  };
+  for_occupied(lattice, occupied, [&](std::int64_t a, std::int64_t b, std::int64_t c) {
+    for (int corner = 0; corner < 8; ++corner) corner_of(a, b, c, corner) = 0;
+  });
   TetMesh mesh;
   for (std::size_t n = 0; n < number.size(); ++n) {
     if (number[n] < 0) continue;
@@ -241,10 +238,17 @@ TetMesh number_nodes(const Grid& grid,
     number[n] = static_cast<std::int32_t>(mesh.rest_positions.size());
     mesh.rest_positions.push_back(grid.world_of(index));
   }
-  for (const auto& tet : tets) {
-    auto& named = mesh.tets.emplace_back();
-    for (std::size_t n = 0; n < 4; ++n) named[n] = number[static_cast<std::size_t>(tet[n])];
-  }
+  for_occupied(lattice, occupied, [&](std::int64_t a, std::int64_t b, std::int64_t c) {
+    const auto add = [&](auto& list, const auto& corners) {
+      auto& nodes = list.emplace_back();
+      for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = corner_of(a, b, c, corners[n]);
+    };
+    if (hexahedra) {
+      add(mesh.hexes, std::array{0, 1, 3, 2, 4, 5, 7, 6});
+    } else {
+      for (const auto& corners : tets_of_cell[(a + b + c) % 2]) add(mesh.tets, corners);
+    }
+  });
   return mesh;
 }
 
@@ -264,9 +268,13 @@ TetMesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options) {
   const Box box = foreground_box(volume, options);
   const Lattice lattice = place_cells(volume.grid, box, options.cells);
   const auto occupied = occupied_cells(volume, options, box, lattice);
-  TetMesh mesh = number_nodes(volume.grid, lattice, cut_cells(lattice, occupied));
+  TetMesh mesh = mesh_of_cells(volume.grid, lattice, occupied, options.hexahedra);
   if (is_mirrored(volume.grid)) {
     for (auto& tet : mesh.tets) std::swap(tet[2], tet[3]);
+    for (auto& hex : mesh.hexes) {
+      std::swap(hex[1], hex[3]);
+      std::swap(hex[5], hex[7]);
+    }
   }
   return mesh;
 }

@@ -4,24 +4,39 @@
 #include <string>
 #include <tetwarp/mesh.hpp>
 
+#include "kernels/hex_view.hpp"
+
 namespace tetwarp {
 
-void check_mesh(const TetMesh& mesh) {
-  if (mesh.tets.empty()) throw std::invalid_argument("mesh: no tetrahedra");
-  if (mesh.tets.size() >= (std::size_t{1} << 31) ||
-      mesh.rest_positions.size() >= (std::size_t{1} << 31)) {
-    throw std::invalid_argument("mesh: 2^31 or more nodes or tetrahedra");
-  }
-  const auto node_count = static_cast<std::int64_t>(mesh.rest_positions.size());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (const std::int32_t node : mesh.tets[t]) {
+namespace {
+
+template <std::size_t N>
+void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
+                 std::size_t nodes,
+                 const std::string& what) {
+  const auto node_count = static_cast<std::int64_t>(nodes);
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    for (const std::int32_t node : cells[cell]) {
       if (node < 0 || node >= node_count) {
-        throw std::invalid_argument("mesh: tetrahedron " + std::to_string(t) + " names node " +
+        throw std::invalid_argument("mesh: " + what + " " + std::to_string(cell) + " names node " +
                                     std::to_string(node) + ", expected 0 to " +
                                     std::to_string(node_count - 1));
       }
     }
   }
+}
+
+}  // namespace
+
+void check_mesh(const TetMesh& mesh) {
+  if (mesh.cell_count() == 0) throw std::invalid_argument("mesh: no tetrahedra or hexahedra");
+  constexpr std::size_t most = std::size_t{1} << 31;
+  if (mesh.rest_positions.size() >= most || mesh.tets.size() >= most ||
+      mesh.tets.size() + tets_per_hex * mesh.hexes.size() >= most) {
+    throw std::invalid_argument("mesh: 2^31 or more nodes or tetrahedra (a hexahedron is six)");
+  }
+  check_nodes(mesh.tets, mesh.rest_positions.size(), "tetrahedron");
+  check_nodes(mesh.hexes, mesh.rest_positions.size(), "hexahedron");
   for (std::size_t n = 0; n < mesh.rest_positions.size(); ++n) {
     for (const double coordinate : mesh.rest_positions[n]) {
       if (!std::isfinite(coordinate)) {

@@ -89,6 +89,8 @@ class RowSampler {
       if (source.kind() == RowKind::copied) {
         copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
+      } else if (source.setup().kind == MapKind::trilinear) {
+        sample_hex(job_, source, run.bits, j, k, cell_row);
       } else {
         const RowMap map = {source.setup(), source.corner(), source.base, source.axis,
                             source.whole};

@@ -25,7 +25,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 enum class RowKind {
   inner,  ///< a vector of float32 positions, none near the source's rim
   rim,    ///< the same, but positions may lie outside and neighbours are clamped
-  alone,  ///< voxel by voxel: steep maps, float64, huge sources
+  alone,  ///< voxel by voxel: steep maps, hexahedra, float64, huge sources
   copied  ///< moved by whole voxels
 };
 
@@ -68,7 +68,9 @@ class RowSource {
             int number)
       : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
     set_map(bounds);
-    if (!bounds.is_vectored || tet.kind == MapKind::steep) kind_ = RowKind::alone;
+    if (!bounds.is_vectored || tet.kind == MapKind::steep || tet.kind == MapKind::trilinear) {
+      kind_ = RowKind::alone;
+    }
     if (is_copied(job, tet)) kind_ = RowKind::copied;
     const std::int64_t line = job.source.dims[0], slice = line * job.source.dims[1];
     origin_ = whole[2] * slice + whole[1] * line + whole[0];

@@ -165,6 +165,23 @@ inline void sample_narrow(const RasterJob<T>& job,
   }
 }
 
+/// The same for voxels of a hexahedron.
+template <class T>
+inline void sample_hex(const RasterJob<T>& job,
+                       const RowSource& source,
+                       unsigned bits,
+                       int j,
+                       int k,
+                       std::int64_t row) {
+  const HexMap map = hex_map_of(job, source.tet());
+  const int* corner = source.corner();
+  for (; bits != 0; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    const int x[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
+    store_hex_voxel<true>(job, source.setup(), map, x, row + i);
+  }
+}
+
 /// Either, as pixel type and map demand.
 template <class T>
 inline void sample_alone(const RasterJob<T>& job,
@@ -173,7 +190,9 @@ inline void sample_alone(const RasterJob<T>& job,
                          int j,
                          int k,
                          std::int64_t row) {
-  if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
+  if (source.setup().kind == MapKind::trilinear) {
+    sample_hex(job, source, bits, j, k, row);
+  } else if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
     sample_narrow(job, source, bits, j, k, row);
   } else {
     sample_wide(job, source, bits, j, k, row);

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/hex_split.hpp"
 #include "host/step_queue.hpp"
 #include "host/warp_backend.hpp"
 #include "kernels/node_quantize.hpp"
@@ -92,6 +93,8 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   plan.options = options;
   check_sources(plan.sources, options);
   check_mesh(mesh);
+  const auto parts = split_hexes(mesh.hexes);
+  plan.mesh.tets.insert(plan.mesh.tets.end(), parts.begin(), parts.end());
   if (options.threads < 0) throw std::invalid_argument("threads: negative");
   plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);
   check_grid(plan.output_grid, "output grid");

@@ -16,7 +16,7 @@ namespace tetwarp {
 /// Checked arguments of a Warper and the geometry that no step changes.
 struct WarpPlan {
   std::vector<VolumeView> sources;
-  TetMesh mesh;
+  TetMesh mesh;  ///< of its tetrahedra the last are those that its hexahedra split into
   WarpOptions options;
   Grid output_grid;  ///< the whole output grid
   Region region;     ///< part of it to compute

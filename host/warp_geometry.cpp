@@ -7,6 +7,7 @@
 
 #include "host/index_space.hpp"
 #include "kernels/face_sign.hpp"
+#include "kernels/hex_view.hpp"
 #include "kernels/tet_setup.hpp"
 
 namespace tetwarp {
@@ -72,6 +73,13 @@ bool is_too_large(const TetNodes& tet) {
   return false;
 }
 
+/// Of the cell that tetrahedron t is or is a part of.
+std::string cell_name(const TetMesh& mesh, std::size_t t) {
+  const std::size_t alone = mesh.tets.size() - tets_per_hex * mesh.hexes.size();
+  if (t < alone) return "tetrahedron " + std::to_string(t);
+  return "hexahedron " + std::to_string((t - alone) / tets_per_hex);
+}
+
 }  // namespace
 
 WarpGeometry make_geometry(const WarpPlan& plan) {
@@ -99,7 +107,7 @@ WarpGeometry make_geometry(const WarpPlan& plan) {
   for (std::size_t t = 0; t < plan.mesh.tets.size(); ++t) {
     const TetNodes tet = tet_nodes(rest, plan.mesh.tets[t].data());
     if (is_too_large(tet)) {
-      throw std::invalid_argument("mesh: tetrahedron " + std::to_string(t) +
+      throw std::invalid_argument("mesh: " + cell_name(plan.mesh, t) +
                                   " spans over 2^20 voxels of the source at rest");
     }
     geometry.rest_orientation.push_back(

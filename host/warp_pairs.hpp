@@ -11,6 +11,7 @@
 #include "host/step_counters.hpp"
 #include "host/warp_backend.hpp"
 #include "host/warp_geometry.hpp"
+#include "host/warp_mesh.hpp"
 #include "kernels/cell_cull.hpp"
 #include "kernels/cell_merge.hpp"
 #include "kernels/cell_pairs.hpp"
@@ -25,18 +26,12 @@ class WarpPairs {
  public:
   /// The arguments must outlive it.
   WarpPairs(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
-      : exec_(exec), options_(plan.options), geometry_(geometry) {
-    const std::int64_t tet_count = static_cast<std::int64_t>(plan.mesh.tets.size());
-    const std::int64_t node_count = static_cast<std::int64_t>(geometry.rest.size());
-    tets_ = exec.resident("warp/upload", plan.mesh.tets.front().data(), 4 * tet_count, tet_buffer_);
-    rest_ = exec.resident("warp/upload", geometry.rest.data(), node_count, rest_buffer_);
-    orientation_ = exec.resident("warp/upload", geometry.rest_orientation.data(), tet_count,
-                                 orientation_buffer_);
-    setups_.reserve(tet_count);
-    corner_offsets_.reserve(tet_count + 1);
-    pair_offsets_.reserve(tet_count + 1);
+      : exec_(exec), options_(plan.options), geometry_(geometry), mesh_(exec, plan, geometry) {
+    setups_.reserve(tet_count());
+    corner_offsets_.reserve(tet_count() + 1);
+    pair_offsets_.reserve(tet_count() + 1);
     counters_.reserve(1);
-    for (Buffer<Node>& nodes : nodes_) nodes.reserve(node_count);
+    for (Buffer<Node>& nodes : nodes_) nodes.reserve(mesh_.node_count());
   }
 
   /// Runs setup, mask and cull. Where sizes would have to travel from a device, buffers are trusted
@@ -47,7 +42,7 @@ class WarpPairs {
     was_update_ = is_update_;
     exec_.zero("warp/setup", View<WorkCounters>{&counters().data->work, 1});
     node_quantize(exec_, geometry_.output_index, geometry_.frame.origin, positions,
-                  nodes_[now_].view(rest_.size));
+                  nodes_[now_].view(mesh_.node_count()));
     is_update_ = std::exchange(has_before_, false) && update();
     if (!is_update_) make();
   }
@@ -70,10 +65,11 @@ class WarpPairs {
     has_before_ = options_.skip.unchanged_tets;
   }
 
-  View<const std::int32_t> tets() const { return tets_; }
-  View<const Node> rest() const { return rest_; }
+  View<const std::int32_t> tets() const { return mesh_.tets; }
+  View<const Node> rest() const { return mesh_.rest; }
+  const HexView& hexes() const { return mesh_.hexes; }
   View<const TetSetup> setups() const { return setups_.const_view(tet_count()); }
-  View<const Node> nodes() const { return nodes_[now_].const_view(rest_.size); }
+  View<const Node> nodes() const { return nodes_[now_].const_view(mesh_.node_count()); }
   PairList list() const { return view_of(lists_[now_]); }
   View<StepCounters> counters() const { return counters_.view(1); }
 
@@ -81,7 +77,7 @@ class WarpPairs {
   bool is_update() const { return is_update_; }
   /// True when the last `steps` ones are: 1 or 2.
   bool are_updates(int steps) const { return is_update_ && (steps == 1 || was_update_); }
-  View<const Node> nodes_before() const { return nodes_[1 - now_].const_view(rest_.size); }
+  View<const Node> nodes_before() const { return nodes_[1 - now_].const_view(mesh_.node_count()); }
   PairList list_before() const { return view_of(lists_[1 - now_]); }
   /// 1 where a tetrahedron that has moved was or is in the list of a cell.
   View<const std::uint8_t> touched() const { return touched_[now_].const_view(cell_count()); }
@@ -96,7 +92,7 @@ class WarpPairs {
     return both;
   }
 
-  std::int64_t tet_count() const { return orientation_.size; }
+  std::int64_t tet_count() const { return mesh_.tet_count(); }
   std::int64_t unchanged_count() const { return is_update_ ? tet_count() - moved_count_ : 0; }
   std::int64_t candidate_count() const { return pair_total_; }
 
@@ -114,8 +110,9 @@ class WarpPairs {
   void make() {
     exec_.zero("warp/setup", View<MeshCounters>{&counters().data->mesh, 1});
     const TetSetupBody setup = setup_body();
-    tet_setup(exec_, tets_, nodes(), rest_, orientation_, geometry_.frame, setup.setups,
-              setup.corner_counts, setup.pair_counts, setup.class_counts);
+    tet_setup(exec_, mesh_.tets, nodes(), mesh_.rest, mesh_.orientation, geometry_.frame,
+              setup.setups, setup.corner_counts, setup.pair_counts, setup.class_counts,
+              mesh_.hexes);
     sum_up(setup, {});
     if (Exec::reads_are_free) {
       take_totals(read_counters());
@@ -134,8 +131,9 @@ class WarpPairs {
     const std::int64_t tets = tet_count();
     const TetSetupBody setup = setup_body();
     reserve_update();
-    tet_moved(exec_, tets_, nodes_before(), nodes(), setups(), node_moved_.view(rest_.size),
-              moved_.view(tets), moved_offsets_.view(tets + 1), setup.class_counts);
+    tet_moved(exec_, mesh_.tets, nodes_before(), nodes(), setups(),
+              node_moved_.view(mesh_.node_count()), moved_.view(tets),
+              moved_offsets_.view(tets + 1), setup.class_counts, mesh_.hexes);
     exec_.exclusive_scan("warp/setup", moved_offsets_.view(tets + 1));
     std::int64_t most_moved = tets;
     if (Exec::reads_are_free) {
@@ -230,22 +228,23 @@ class WarpPairs {
   void reserve_update() {
     cell_offsets_.reserve(cell_count() + 1);
     for (Buffer<std::uint8_t>& touched : touched_) touched.reserve(cell_count());
-    node_moved_.reserve(rest_.size);
+    node_moved_.reserve(mesh_.node_count());
     moved_.reserve(tet_count());
     moved_offsets_.reserve(tet_count() + 1);
   }
 
   TetSetupBody setup_body() const {
     const std::int64_t tets = tet_count();
-    return {tets_,
+    return {mesh_.tets,
             nodes(),
-            rest_,
-            orientation_,
+            mesh_.rest,
+            mesh_.orientation,
             geometry_.frame,
             setups_.view(tets),
             corner_offsets_.view(tets + 1),
             pair_offsets_.view(tets + 1),
-            {counters().data->mesh.classes, tet_class_count}};
+            {counters().data->mesh.classes, tet_class_count},
+            mesh_.hexes};
   }
   View<const std::int64_t> last_of(const Buffer<std::int64_t>& offsets) const {
     return {offsets.const_view(tet_count() + 1).data + tet_count(), 1};
@@ -259,13 +258,7 @@ class WarpPairs {
   const WarpOptions& options_;
   const WarpGeometry& geometry_;
 
-  View<const std::int32_t> tets_;
-  View<const Node> rest_;
-  View<const std::int8_t> orientation_;
-  Buffer<std::int32_t> tet_buffer_;
-  Buffer<Node> rest_buffer_;
-  Buffer<std::int8_t> orientation_buffer_;
-
+  WarpMesh<Exec> mesh_;
   Buffer<TetSetup> setups_;
   Buffer<std::int64_t> corner_offsets_;
   Buffer<std::int64_t> pair_offsets_;

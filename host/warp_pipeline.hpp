@@ -13,6 +13,7 @@
 #include "host/warp_sources.hpp"
 #include "kernels/cell_raster.hpp"
 #include "kernels/cell_work.hpp"
+#include "kernels/voxel_count.hpp"
 
 namespace tetwarp {
 
@@ -160,6 +161,8 @@ class WarpPipeline : public WarpBackend {
       RasterJob<T> job;
       job.setups = pairs_.setups();
       job.tets = pairs_.tets();
+      job.hexes = pairs_.hexes();
+      job.rest = pairs_.rest();
       job.nodes = pairs_.nodes();
       job.pairs = pairs_.list().pairs;
       job.ranges = {pairs_.list().ranges.data, frame.cell_count()};

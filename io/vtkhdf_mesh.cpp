@@ -37,7 +37,9 @@ MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) 
   const VtkhdfInput& file = state.file.file();
   file.check_step(options.rest_step);
   state.parts = state.file.parts_of(options.rest_step);
-  state.mesh.tets = state.file.read_tets(options.rest_step);
+  MeshCells cells = state.file.read_cells(options.rest_step);
+  state.mesh.tets = std::move(cells.tets);
+  state.mesh.hexes = std::move(cells.hexes);
   state.mesh.rest_positions = state.file.read_points(options.rest_step);
   if (options.rest_file) {
     const MeshFile rest(*options.rest_file);
@@ -47,6 +49,7 @@ MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) 
   }
   state.header.node_count = static_cast<std::int64_t>(state.mesh.rest_positions.size());
   state.header.tet_count = static_cast<std::int64_t>(state.mesh.tets.size());
+  state.header.hex_count = static_cast<std::int64_t>(state.mesh.hexes.size());
   state.header.times = file.is_temporal() ? file.times : std::vector<double>{0.0};
   state.header.has_displacement = state.file.has_displacement();
 }
@@ -66,9 +69,11 @@ std::vector<Point3> MeshReader::read_step(std::int64_t step) const {
   const State& state = *state_;
   const h5::Object& file = state.file.file().file;
   state.file.file().check_step(step);
-  if (!is_same_topology(state.parts, state.file.parts_of(step)) &&
-      state.file.read_tets(step) != state.mesh.tets) {
-    file.fail("step " + std::to_string(step) + " has other tetrahedra than the rest step");
+  if (!is_same_topology(state.parts, state.file.parts_of(step))) {
+    const MeshCells cells = state.file.read_cells(step);
+    if (cells.tets != state.mesh.tets || cells.hexes != state.mesh.hexes) {
+      file.fail("step " + std::to_string(step) + " has other cells than the rest step");
+    }
   }
   std::vector<Point3> positions = state.header.has_displacement ? state.file.read_displacement(step)
                                                                 : state.file.read_points(step);

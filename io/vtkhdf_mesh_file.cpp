@@ -9,6 +9,7 @@ namespace tetwarp {
 namespace {
 
 constexpr int vtk_tetra = 10;
+constexpr int vtk_hexahedron = 12;
 
 /// VTK's own names of its cell types.
 std::string cell_type_name(std::int64_t type) {
@@ -23,7 +24,6 @@ std::string cell_type_name(std::int64_t type) {
                                                           {8, "VTK_PIXEL"},
                                                           {9, "VTK_QUAD"},
                                                           {11, "VTK_VOXEL"},
-                                                          {12, "VTK_HEXAHEDRON"},
                                                           {13, "VTK_WEDGE"},
                                                           {14, "VTK_PYRAMID"},
                                                           {15, "VTK_PENTAGONAL_PRISM"},
@@ -187,68 +187,93 @@ std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
   return read_rows(displacement_, parts_of(step), shift);
 }
 
-std::vector<std::array<std::int32_t, 4>> MeshFile::read_tets(std::int64_t step) const {
+MeshCells MeshFile::read_cells(std::int64_t step) const {
   const std::vector<MeshPart> parts = parts_of(step);
   std::int64_t node_count = 0;
   std::int64_t cell_count = 0;
+  std::int64_t id_count = 0;
   for (const MeshPart& part : parts) {
     node_count += part.node_count;
     cell_count += part.cell_count;
+    id_count += part.id_count;
   }
-  if (cell_count == 0) types_.fail("holds no tetrahedron at step " + std::to_string(step));
+  if (cell_count == 0) {
+    types_.fail("holds no tetrahedron or hexahedron at step " + std::to_string(step));
+  }
   constexpr std::int64_t limit = std::int64_t{1} << 31;
-  if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or tetrahedra");
-  constexpr double bytes_per_tet = 16 + (1 + 4) * sizeof(std::int64_t);
+  if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or cells");
+  constexpr double bytes_per_cell = 2 * sizeof(std::int64_t);
+  constexpr double bytes_per_id = sizeof(std::int64_t) + sizeof(std::int32_t);
   h5::check_memory(file_.file.file, connectivity_.name,
-                   bytes_per_tet * static_cast<double>(cell_count));
-  std::vector<std::array<std::int32_t, 4>> tets;
-  tets.reserve(static_cast<std::size_t>(cell_count));
+                   bytes_per_cell * static_cast<double>(cell_count) +
+                       bytes_per_id * static_cast<double>(id_count));
+  MeshCells cells;
   std::int64_t first_node = 0;
   for (const MeshPart& part : parts) {
-    read_part_tets(part, first_node, tets);
+    read_part_cells(part, first_node, cells);
     first_node += part.node_count;
   }
-  return tets;
+  return cells;
 }
 
-void MeshFile::read_part_tets(const MeshPart& part,
-                              std::int64_t first_node,
-                              std::vector<std::array<std::int32_t, 4>>& tets) const {
-  const std::vector<std::int64_t> types = read_column(types_, part.first_cell, part.cell_count);
-  for (std::size_t cell = 0; cell < types.size(); ++cell) {
-    if (types[cell] != vtk_tetra) {
-      types_.fail("cell " + std::to_string(tets.size() + cell) + " has type " +
-                  cell_type_name(types[cell]) +
-                  ", expected tetrahedra (10, VTK_TETRA) only; split the cells into tetrahedra");
+std::vector<std::int64_t> MeshFile::read_cell_sizes(const MeshPart& part,
+                                                    std::size_t first_cell) const {
+  std::vector<std::int64_t> sizes = read_column(types_, part.first_cell, part.cell_count);
+  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
+    const std::int64_t type = sizes[cell];
+    if (type != vtk_tetra && type != vtk_hexahedron) {
+      types_.fail("cell " + std::to_string(first_cell + cell) + " has type " +
+                  cell_type_name(type) +
+                  ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, VTK_HEXAHEDRON) only; "
+                  "split the cells into tetrahedra");
     }
+    sizes[cell] = type == vtk_tetra ? 4 : 8;
   }
+  return sizes;
+}
+
+void MeshFile::read_part_cells(const MeshPart& part,
+                               std::int64_t first_node,
+                               MeshCells& cells) const {
+  const std::size_t first_cell = cells.tets.size() + cells.hexes.size();
+  const std::vector<std::int64_t> sizes = read_cell_sizes(part, first_cell);
   const std::vector<std::int64_t> offsets =
       read_column(offsets_, part.first_offset, part.cell_count + 1);
+  std::int64_t expected = 0;
   for (std::size_t cell = 0; cell < offsets.size(); ++cell) {
-    const auto expected = static_cast<std::int64_t>(4 * cell);
     if (offsets[cell] != expected) {
       offsets_.fail("entry " + std::to_string(cell) + " of a part is " +
-                    std::to_string(offsets[cell]) + ", tetrahedra ask for " +
-                    std::to_string(expected) + " (steps of 4 from 0)");
+                    std::to_string(offsets[cell]) + ", its cells ask for " +
+                    std::to_string(expected) +
+                    " (from 0 in steps of 4 for tetrahedra, 8 for hexahedra)");
     }
+    if (cell < sizes.size()) expected += sizes[cell];
   }
-  if (part.id_count != 4 * part.cell_count) {
+  if (part.id_count != expected) {
     connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
-                       std::to_string(part.cell_count) + " tetrahedra, expected 4 for each");
+                       std::to_string(part.cell_count) + " cells, expected " +
+                       std::to_string(expected) + ", 4 for each tetrahedron, 8 for a hexahedron");
   }
   const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
-  for (std::size_t cell = 0; cell < types.size(); ++cell) {
-    std::array<std::int32_t, 4> tet;
-    for (std::size_t corner = 0; corner < 4; ++corner) {
-      const std::int64_t node = ids[4 * cell + corner];
-      if (node < 0 || node >= part.node_count) {
-        connectivity_.fail("tetrahedron " + std::to_string(tets.size()) + " names node " +
-                           std::to_string(node) + ", expected 0 to " +
-                           std::to_string(part.node_count - 1));
+  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
+    const auto first = static_cast<std::size_t>(offsets[cell]);
+    const auto take = [&](auto& list) {
+      auto& nodes = list.emplace_back();
+      for (std::size_t corner = 0; corner < nodes.size(); ++corner) {
+        const std::int64_t node = ids[first + corner];
+        if (node < 0 || node >= part.node_count) {
+          connectivity_.fail("cell " + std::to_string(first_cell + cell) + " names node " +
+                             std::to_string(node) + ", expected 0 to " +
+                             std::to_string(part.node_count - 1));
+        }
+        nodes[corner] = static_cast<std::int32_t>(first_node + node);
       }
-      tet[corner] = static_cast<std::int32_t>(first_node + node);
+    };
+    if (sizes[cell] == 4) {
+      take(cells.tets);
+    } else {
+      take(cells.hexes);
     }
-    tets.push_back(tet);
   }
 }
 

@@ -27,6 +27,12 @@ struct MeshPart {
   bool operator==(const MeshPart&) const = default;
 };
 
+/// Cells of a step by their kinds, node indices counted through the parts.
+struct MeshCells {
+  std::vector<std::array<std::int32_t, 4>> tets;
+  std::vector<std::array<std::int32_t, 8>> hexes;
+};
+
 /// An open mesh file. Every row is checked against the datasets before anything is allocated.
 class MeshFile {
  public:
@@ -41,8 +47,8 @@ class MeshFile {
   std::vector<Point3> read_points(std::int64_t step) const;
   std::vector<Point3> read_displacement(std::int64_t step) const;
 
-  /// Tetrahedra of all parts, node indices counted through the parts.
-  std::vector<std::array<std::int32_t, 4>> read_tets(std::int64_t step) const;
+  /// Cells of all parts.
+  MeshCells read_cells(std::int64_t step) const;
 
  private:
   /// Steps/<name> of a step; 0 in static files and where the file says nothing.
@@ -50,9 +56,9 @@ class MeshFile {
   std::vector<Point3> read_rows(const h5::Dataset& dataset,
                                 const std::vector<MeshPart>& parts,
                                 std::int64_t shift) const;
-  void read_part_tets(const MeshPart& part,
-                      std::int64_t first_node,
-                      std::vector<std::array<std::int32_t, 4>>& tets) const;
+  /// Nodes of each cell of a part: 4 or 8.
+  std::vector<std::int64_t> read_cell_sizes(const MeshPart& part, std::size_t first_cell) const;
+  void read_part_cells(const MeshPart& part, std::int64_t first_node, MeshCells& cells) const;
 
   VtkhdfInput file_;
   h5::Dataset points_;

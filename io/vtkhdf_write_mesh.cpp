@@ -12,6 +12,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::uint8_t vtk_tetra = 10;
+constexpr std::uint8_t vtk_hexahedron = 12;
 
 void check_arguments(const std::string& path,
                      const TetMesh& mesh,
@@ -54,17 +55,27 @@ void write_integers(const h5::Object& parent,
 }
 
 void write_topology(const h5::Object& root, const TetMesh& mesh) {
-  const auto tet_count = static_cast<std::int64_t>(mesh.tets.size());
+  const auto cell_count = static_cast<std::int64_t>(mesh.cell_count());
+  std::vector<std::int32_t> ids;
+  std::vector<std::int64_t> offsets;
+  const auto add = [&](const auto& cells) {
+    for (const auto& nodes : cells) {
+      offsets.push_back(static_cast<std::int64_t>(ids.size()));
+      ids.insert(ids.end(), nodes.begin(), nodes.end());
+    }
+  };
+  add(mesh.tets);
+  add(mesh.hexes);
+  const hsize_t id_count = ids.size();
+  offsets.push_back(static_cast<std::int64_t>(id_count));
   write_integers(root, "NumberOfPoints", {static_cast<std::int64_t>(mesh.rest_positions.size())});
-  write_integers(root, "NumberOfCells", {tet_count});
-  write_integers(root, "NumberOfConnectivityIds", {4 * tet_count});
-  std::vector<std::int64_t> offsets(mesh.tets.size() + 1);
-  for (std::size_t t = 0; t < offsets.size(); ++t) offsets[t] = static_cast<std::int64_t>(4 * t);
+  write_integers(root, "NumberOfCells", {cell_count});
+  write_integers(root, "NumberOfConnectivityIds", {offsets.back()});
   write_integers(root, "Offsets", offsets);
-  const hsize_t id_count = 4 * mesh.tets.size();
   h5::write_dataset(root, "Connectivity", H5T_STD_I64LE, H5T_NATIVE_INT32, {&id_count, 1},
-                    mesh.tets.front().data());
-  const std::vector<std::uint8_t> types(mesh.tets.size(), vtk_tetra);
+                    ids.data());
+  std::vector<std::uint8_t> types(mesh.tets.size(), vtk_tetra);
+  types.resize(mesh.cell_count(), vtk_hexahedron);
   const hsize_t type_count = types.size();
   h5::write_dataset(root, "Types", H5T_STD_U8LE, H5T_NATIVE_UINT8, {&type_count, 1}, types.data());
 }

@@ -26,7 +26,7 @@ struct RasterChunk {
   std::uint16_t rows[raster_chunk];  ///< of the box in the cell: bit j, and bit 8 + k
   bool accepted[raster_chunk];
   bool copied[raster_chunk];
-  bool steep[raster_chunk];
+  bool alone[raster_chunk];  ///< not by `maps`: steep or trilinear
 };
 
 /// Voxels [begin, end) that lie within the eight from `corner` on, one bit each.
@@ -60,7 +60,8 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
                                    bits_within(tet.begin[2], tet.end[2], corner[2]) << cell_edge);
     chunk.accepted[slot] = is_accepted(pair);
     chunk.copied[slot] = is_copied(job, tet);
-    chunk.steep[slot] = tet.kind == MapKind::steep;
+    chunk.alone[slot] = tet.kind == MapKind::trilinear ||
+                        (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
   }
 }
 
@@ -138,15 +139,14 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
       mine.copied += chunk.copied[slot];
       if (work >= 0) {
         store_filled(job, work, voxel);
-      } else if (sizeof(Real) == 4 && chunk.steep[slot]) {
-        store_owned<Wide, T, double>(job, job.setups[t], corner[0], corner[1], corner[2], i, j, k,
-                                     voxel);
+      } else if (chunk.alone[slot]) {
+        store_owned<Wide, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
         store_sample<Wide>(job, chunk.copied[slot] ? Interpolation::nearest : job.filter,
                            chunk.maps[slot], i, j, k, voxel);
       }
       if (job.mask != nullptr) job.mask[voxel] = 1;
-      if (job.tet != nullptr) job.tet[voxel] = t;
+      if (job.tet != nullptr) job.tet[voxel] = static_cast<std::int32_t>(job.hexes.cell_of(t));
     }
   }
   for (int d = 0; d < raster_depth; ++d) {

@@ -9,6 +9,7 @@
 
 #include "kernels/cell_pairs.hpp"
 #include "kernels/face_sign.hpp"
+#include "kernels/hex_map.hpp"
 #include "kernels/tet_setup.hpp"
 #include "kernels/view.hpp"
 #include "kernels/volume_filter.hpp"
@@ -42,6 +43,8 @@ struct RasterJob {
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
   View<const Node> nodes;
+  HexView hexes;
+  View<const Node> rest;  ///< in the source's index space; for hexahedra only
   View<const CellPair> pairs;
   View<const CellRange> ranges;
   OutputFrame frame;
@@ -140,7 +143,7 @@ TETWARP_HD_RARE void sample_wide(SourceView<T> source,
   if constexpr (can_blend<T>) sample_filtered(source, filter, at, out);
 }
 
-/// store_sample() for these filters.
+/// store_position() for these filters.
 template <class T, class Real>
 TETWARP_HD void store_wide_sample(
     const RasterJob<T>& job, Interpolation filter, const int* whole, const Real* x, T* out) {
@@ -159,10 +162,27 @@ TETWARP_HD void store_wide_sample(
   }
 }
 
-/// Stores one voxel's samples at a local position of the source, or the background.
+/// Stores one voxel's samples at a position x of the source relative to `whole`, or the background.
 ///
 /// @tparam Wide  whether the filter may be a wide one: device code that knows better keeps its
 ///               registers
+template <bool Wide, class T, class Real>
+TETWARP_HD void store_position(const RasterJob<T>& job,
+                               Interpolation filter,
+                               const int* whole,
+                               const Real* x,
+                               std::int64_t voxel) {
+  T* out = job.volume + voxel * job.source.components;
+  if constexpr (Wide) {
+    if (is_wide(filter)) return store_wide_sample(job, filter, whole, x, out);
+  }
+  const Tap<Real> tap = tap_of(job.source, filter, whole, x);
+  for (int c = 0; c < job.source.components; ++c) {
+    out[c] = tap.inside ? sample(job.source, filter, tap, c) : job.background;
+  }
+}
+
+/// The same for voxel (i, j, k) of a cell under a map.
 template <bool Wide, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Interpolation filter,
@@ -173,14 +193,33 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
                              std::int64_t voxel) {
   Real x[3];
   local_position(map, i, j, k, x);
-  T* out = job.volume + voxel * job.source.components;
-  if constexpr (Wide) {
-    if (is_wide(filter)) return store_wide_sample(job, filter, map.whole, x, out);
+  store_position<Wide>(job, filter, map.whole, x, voxel);
+}
+
+/// The map of the hexahedron that tetrahedron t of a job belongs to.
+template <class T>
+TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
+  return make_hex_map(job.hexes.nodes_of(t), job.tets.data + 4 * t, job.setups[t], job.nodes,
+                      job.rest);
+}
+
+/// Stores frame voxel x, which `tet` owns and `map` is of.
+template <bool Wide, class T>
+TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
+                                     const TetSetup& tet,
+                                     const HexMap& map,
+                                     const int* x,
+                                     std::int64_t voxel) {
+  double at[3];
+  hex_position(map, tet, x, at);
+  int whole[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double all = floor(at[axis]) + static_cast<double>(map.whole[axis]);
+    const double near = min_of(max_of(all, -farthest_whole), farthest_whole);
+    whole[axis] = static_cast<int>(near);
+    at[axis] -= near - static_cast<double>(map.whole[axis]);
   }
-  const Tap<Real> tap = tap_of(job.source, filter, map.whole, x);
-  for (int c = 0; c < job.source.components; ++c) {
-    out[c] = tap.inside ? sample(job.source, filter, tap, c) : job.background;
-  }
+  store_position<Wide>(job, job.filter, whole, at, voxel);
 }
 
 /// A voxel that moved by whole voxels needs one sample, whatever the filter.
@@ -189,10 +228,11 @@ TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;
 }
 
-/// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that `tet` owns; the map is made anew.
+/// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that tetrahedron t owns; the map is made
+/// anew.
 template <bool Wide, class T, class Real>
 TETWARP_HD void store_owned(const RasterJob<T>& job,
-                            const TetSetup& tet,
+                            std::int64_t t,
                             int cx,
                             int cy,
                             int cz,
@@ -200,6 +240,12 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
                             int j,
                             int k,
                             std::int64_t voxel) {
+  const TetSetup& tet = job.setups[t];
+  if (tet.kind == MapKind::trilinear) {
+    const int x[3] = {cx + i, cy + j, cz + k};
+    store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
+    return;
+  }
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
   store_sample<Wide>(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
@@ -230,47 +276,5 @@ TETWARP_HD void store_outside(
   T* out = job.volume + voxel * job.source.components;
   for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
 }
-
-/// One index = one voxel of the output: is it strictly inside two or more tetrahedra?
-struct VoxelFoldBody {
-  View<const std::int32_t> tets;
-  View<const Node> nodes;
-  PairList list;
-  View<const std::uint8_t> touched;  ///< cells to look at; size 0: all
-  OutputFrame frame;
-  View<std::int64_t> folded;
-  std::int64_t weight;  ///< of a folded voxel: 1 counts it, -1 takes it back
-
-  TETWARP_HD void operator()(std::int64_t voxel) const {
-    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
-    const std::int64_t row = voxel / nx;
-    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
-    const int j = frame.begin[1] + static_cast<int>(row % ny);
-    const int k = frame.begin[2] + static_cast<int>(row / ny);
-    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
-    if (touched.size > 0 && touched[cell] == 0) return;
-    const std::int64_t end = end_of_cell(list, cell);
-    int inside = 0;
-    for (std::int64_t p = list.ranges[cell].begin; p < end && inside < 2; ++p) {
-      const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(list.pairs[p]));
-      inside += is_inside_exact(tet, i, j, k, true);
-    }
-    if (inside == 2) atomic_add(&folded[0], weight);
-  }
-};
-
-/// One index = a thousand cells: their covered voxels, summed.
-struct CoveredSumBody {
-  static constexpr std::int64_t cells = 1024;
-  View<const std::uint16_t> cell_covered;
-  View<std::int64_t> covered;
-
-  TETWARP_HD void operator()(std::int64_t part) const {
-    const std::int64_t end = min_of((part + 1) * cells, cell_covered.size);
-    std::int64_t sum = 0;
-    for (std::int64_t cell = part * cells; cell < end; ++cell) sum += cell_covered[cell];
-    atomic_add(&covered[0], sum);
-  }
-};
 
 }  // namespace tetwarp

@@ -18,6 +18,7 @@ TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
                                       const RasterJob<T>& job,
                                       const TetSetup& tet,
                                       const int* corner) {
+  if (tet.kind == MapKind::trilinear) return -1;
   const SourceView<T>& source = job.source;
   const int around = reach_of(job.filter);
   constexpr double slack = 0.01;  // far more than the rounding of a position

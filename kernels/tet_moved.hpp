@@ -30,11 +30,13 @@ struct TetMovedBody {
   View<std::uint8_t> moved;
   View<std::int64_t> moved_counts;
   View<std::int64_t> class_counts;
+  HexView hexes = {};
 
   TETWARP_HD void operator()(std::int64_t t) const {
-    const std::int32_t* tet = tets.data + 4 * t;
-    const bool has_moved =
-        (node_moved[tet[0]] | node_moved[tet[1]] | node_moved[tet[2]] | node_moved[tet[3]]) != 0;
+    const bool is_part = hexes.has(t);
+    const std::int32_t* nodes = is_part ? hexes.nodes_of(t) : tets.data + 4 * t;
+    bool has_moved = false;
+    for (int a = 0; a < (is_part ? 8 : 4); ++a) has_moved = has_moved || node_moved[nodes[a]] != 0;
     moved[t] = has_moved;
     moved_counts[t] = has_moved;
     if (has_moved && setups[t].tet_class != TetClass::regular) {
@@ -55,6 +57,7 @@ struct TetMovedBody {
 /// @param moved         out, 1 where a tetrahedron has moved, shape [tet_count]
 /// @param moved_counts  out, the same to be summed, shape [tet_count + 1]
 /// @param class_counts  in and out: moved irregular tetrahedra are taken out of it
+/// @param hexes         those that the last tetrahedra are parts of, and move with
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes read per node, 20 per tetrahedron.
 template <class Exec>
@@ -66,10 +69,11 @@ void tet_moved(Exec& exec,
                View<std::uint8_t> node_moved,
                View<std::uint8_t> moved,
                View<std::int64_t> moved_counts,
-               View<std::int64_t> class_counts) {
+               View<std::int64_t> class_counts,
+               const HexView& hexes = {}) {
   exec.for_each("warp/setup", now.size, NodeMovedBody{before, now, node_moved});
   exec.for_each("warp/setup", setups.size,
-                TetMovedBody{tets, node_moved, setups, moved, moved_counts, class_counts});
+                TetMovedBody{tets, node_moved, setups, moved, moved_counts, class_counts, hexes});
 }
 
 /// One item = one moved tetrahedron; any order.

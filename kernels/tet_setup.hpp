@@ -5,15 +5,17 @@
 
 #include "kernels/atomic_add.hpp"
 #include "kernels/face_sign.hpp"
+#include "kernels/hex_kind.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
 
 /// How the map of a tetrahedron must be evaluated.
 enum class MapKind : std::int32_t {
-  affine,  ///< float32 relative to a cell's corner is exact enough
-  steep,   ///< stretches an axis more than fourfold: float64
-  copy     ///< moves by whole voxels
+  affine,     ///< float32 relative to a cell's corner is exact enough
+  steep,      ///< stretches an axis more than fourfold: float64
+  trilinear,  ///< that of the hexahedron that it belongs to: hex_map.hpp
+  copy        ///< moves by whole voxels
 };
 
 /// Class of a tetrahedron in one step.
@@ -176,11 +178,15 @@ struct TetSetupBody {
   View<std::int64_t> corner_counts;
   View<std::int64_t> pair_counts;
   View<std::int64_t> class_counts;
+  HexView hexes = {};
 
   /// Sets everything but the class, which is returned; nothing that counts when flat or worse.
   TETWARP_HD TetClass set_up(std::int64_t t, TetSetup& setup) const {
     for (int a = 0; a < 4; ++a) {
       if (deformed[tets[4 * t + a]].x[0] == bad_node) return TetClass::bad_position;
+    }
+    for (int a = 0; a < 8 && hexes.has(t); ++a) {
+      if (deformed[hexes.nodes_of(t)[a]].x[0] == bad_node) return TetClass::bad_position;
     }
     const TetNodes output = tet_nodes(deformed, tets.data + 4 * t);
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
@@ -193,7 +199,9 @@ struct TetSetupBody {
     if (turned == 0) return TetClass::flat;
     std::int64_t shift[3];
     for (auto& column : setup.map) column[3] = 0;
-    if (is_whole_shift(output, source, shift)) {
+    const std::int32_t* const hex = hexes.has(t) ? hexes.nodes_of(t) : nullptr;
+    if (is_whole_shift(output, source, shift) &&
+        (hex == nullptr || has_whole_shift(hex, deformed, rest, shift))) {
       for (int row = 0; row < 3; ++row) {
         for (int axis = 0; axis < 3; ++axis) setup.map[axis][row] = row == axis ? 1.0 : 0.0;
         setup.map[3][row] = static_cast<double>(setup.anchor[row] + shift[row]);
@@ -201,6 +209,8 @@ struct TetSetupBody {
       setup.kind = MapKind::copy;
     } else {
       set_map(source, gradient, at_anchor, setup);
+      if (hex != nullptr && !maps_all(setup.map, setup.anchor, hex, deformed, rest))
+        setup.kind = MapKind::trilinear;
     }
     return turned * rest_orientation[t] < 0 ? TetClass::inverted : TetClass::regular;
   }
@@ -243,6 +253,7 @@ struct TetSetupBody {
 ///                          fewest_masked_cells cells, shape [tet_count + 1]
 /// @param pair_counts       out, cells of the box, shape [tet_count + 1]
 /// @param class_counts      irregular tetrahedra are added to it, shape [tet_class_count]
+/// @param hexes             those that the last tetrahedra are parts of
 /// @pre  indices in tets are in range; the pipeline checks them
 ///
 /// Determinism: boxes, classes and copies are exact; planes and maps within 2^-48 relative between
@@ -258,10 +269,11 @@ void tet_setup(Exec& exec,
                View<TetSetup> setups,
                View<std::int64_t> corner_counts,
                View<std::int64_t> pair_counts,
-               View<std::int64_t> class_counts) {
+               View<std::int64_t> class_counts,
+               const HexView& hexes = {}) {
   exec.for_each("warp/setup", setups.size,
                 TetSetupBody{tets, deformed, rest, rest_orientation, frame, setups, corner_counts,
-                             pair_counts, class_counts});
+                             pair_counts, class_counts, hexes});
 }
 
 }  // namespace tetwarp

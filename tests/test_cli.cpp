@@ -254,6 +254,32 @@ TEST(Cli, LeadsFromAVolumeToAPicture) {
   EXPECT_EQ(MeshReader(folder / "moving.vtkhdf").header().times, (std::vector<double>{0, 0.5, 1}));
 }
 
+TEST(Cli, WarpsByHexahedraAsTheLibraryDoes) {
+  const TemporaryFolder folder;
+  const Volume phantom = make_phantom({24, 16, 12});
+  write_volumes(folder / "volume.vtkhdf", {&phantom});
+  const std::vector<Names> commands{
+      {"mesh", "volume.vtkhdf", "-o", "mesh.vtkhdf", "--cells", "3", "--hexahedra"},
+      {"deform", "mesh.vtkhdf", "-o", "moving.vtkhdf", "--kind", "twist", "--steps", "2"},
+      {"warp", "volume.vtkhdf", "moving.vtkhdf", "-o", "out.vtkhdf", "--outputs", "tet", "--steps",
+       "1"},
+      {"info", "moving.vtkhdf"}};
+  std::string last;
+  for (const Names& command : commands) {
+    const CommandResult result = run_command(folder, command);
+    ASSERT_EQ(result.exit_code, 0) << command.front() << ": " << result.err;
+    last = result.out;
+  }
+
+  const MeshReader reader(folder / "moving.vtkhdf");
+  const auto here = warp(phantom, reader.mesh(), reader.read_step(1), {.backend = Backend::cpu});
+  EXPECT_EQ(read_volume(folder / "out.vtkhdf").data, here.volume.data);
+  const Volume owner = read_volume(folder / "out.vtkhdf", "tetwarp_tet");
+  const auto owners = owner.samples<std::int32_t>();
+  EXPECT_EQ(*std::max_element(owners.begin(), owners.end()), reader.header().hex_count - 1);
+  EXPECT_NE(last.find("tetrahedra: 0\nhexahedra: 18\n"), std::string::npos) << last;
+}
+
 TEST(Cli, InfoShowsVolumesAndMeshesForPeopleAndMachines) {
   const Scene scene;
 

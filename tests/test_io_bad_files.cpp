@@ -159,8 +159,10 @@ TEST_F(BadFiles, AreNamedWhenMeshOffsetsLeaveTheData) {
 }
 
 TEST_F(BadFiles, AreNamedWhenAMeshHasOtherCells) {
+  Hdf5Editor(mesh).dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 14});
+  expect_mesh_error("cell 1 has type 14 (VTK_PYRAMID)");
   Hdf5Editor(mesh).dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 12});
-  expect_mesh_error("cell 1 has type 12 (VTK_HEXAHEDRON)");
+  expect_mesh_error("entry 2 of a part is 8, its cells ask for 12");
   Hdf5Editor(mesh).dataset<std::int64_t>("VTKHDF/NumberOfCells", {1}, {0});
   expect_mesh_error("no tetrahedron");
 }
@@ -172,15 +174,15 @@ TEST_F(BadFiles, AreNamedWhenConnectivityIsWrong) {
     Hdf5Editor(mesh).dataset(name, {values.size()}, values);
     expect_mesh_error(words);
   };
-  error("VTKHDF/Connectivity", {0, 1, 2, 3, 1, 2, 3, 5}, "tetrahedron 1 names node 5");
-  error("VTKHDF/Connectivity", {0, 1, -2, 3, 1, 2, 3, 4}, "tetrahedron 0 names node -2");
+  error("VTKHDF/Connectivity", {0, 1, 2, 3, 1, 2, 3, 5}, "cell 1 names node 5");
+  error("VTKHDF/Connectivity", {0, 1, -2, 3, 1, 2, 3, 4}, "cell 0 names node -2");
   error("VTKHDF/Connectivity", {0, 1, 2, 3}, "/VTKHDF/Connectivity: rows 0");
   error("VTKHDF/Offsets", {0, 8, 4}, "/VTKHDF/Offsets: entry 1");
   error("VTKHDF/Offsets", {0, 3, 8}, "/VTKHDF/Offsets: entry 1");
   error("VTKHDF/Offsets", {0, 4}, "/VTKHDF/Offsets: rows 0");
   error("VTKHDF/NumberOfPoints", {-5}, "/VTKHDF/Points: rows 0");
   error("VTKHDF/NumberOfPoints", {5, 5}, "differ in length");
-  error("VTKHDF/NumberOfConnectivityIds", {7}, "NumberOfConnectivityIds is 7 for 2 tetrahedra");
+  error("VTKHDF/NumberOfConnectivityIds", {7}, "NumberOfConnectivityIds is 7 for 2 cells");
 }
 
 TEST_F(BadFiles, AreNamedWhenNodesAreNotFinite) {

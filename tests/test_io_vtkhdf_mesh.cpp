@@ -193,7 +193,7 @@ TEST(VtkhdfMesh, RefusesTetrahedraThatChangeInTime) {
 
   const MeshReader reader(folder / "m.vtkhdf");
 
-  EXPECT_NE(io_error([&] { reader.read_step(1); }).find("other tetrahedra"), std::string::npos);
+  EXPECT_NE(io_error([&] { reader.read_step(1); }).find("other cells"), std::string::npos);
 }
 
 /// One entry of NumberOfPoints per step with PartOffsets all zero, as some small writers do.
@@ -223,6 +223,27 @@ TEST(VtkhdfMesh, RefusesToWriteWhatCannotBeRead) {
   EXPECT_THROW(write_mesh(folder / "m", two_tets(), {{{0, 0, 0}}}), IoError);
   EXPECT_THROW(write_mesh(folder / "m", two_tets(), bent), IoError);
   EXPECT_EQ(folder.entry_count(), 0);
+}
+
+TEST(VtkhdfMesh, KeepsTetrahedraAndHexahedraApart) {
+  const ScratchFolder folder;
+  TetMesh mesh = two_tets();
+  for (int n = 0; n < 8; ++n) {
+    mesh.rest_positions.push_back({1.0 * (n == 1 || n == 2 || n == 5 || n == 6),
+                                   1.0 * (n == 2 || n == 3 || n == 6 || n == 7), 1.0 * (n / 4)});
+  }
+  const auto first = static_cast<std::int32_t>(two_tets().rest_positions.size());
+  mesh.hexes = {
+      {first, first + 1, first + 2, first + 3, first + 4, first + 5, first + 6, first + 7}};
+  write_mesh(folder / "m.vtkhdf", mesh);
+
+  const MeshReader reader(folder / "m.vtkhdf");
+
+  EXPECT_EQ(reader.header().tet_count, 2);
+  EXPECT_EQ(reader.header().hex_count, 1);
+  EXPECT_EQ(reader.mesh().tets, mesh.tets);
+  EXPECT_EQ(reader.mesh().hexes, mesh.hexes);
+  EXPECT_EQ(reader.mesh().rest_positions, mesh.rest_positions);
 }
 
 }  // namespace

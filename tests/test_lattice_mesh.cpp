@@ -189,5 +189,26 @@ TEST(Lattice, BadArgumentsAreNamed) {
   EXPECT_THROW(make_lattice_mesh(volume), std::invalid_argument);
 }
 
+TEST(Lattice, HexahedraAreItsCellsRightSideOut) {
+  for (const double handedness : {1.0, -1.0}) {
+    const Volume volume = make_volume(oblique_grid(handedness), PixelType::float32);
+    const TetMesh tets = make_lattice_mesh(volume, {.cells = 4});
+    const TetMesh cells = make_lattice_mesh(volume, {.cells = 4, .hexahedra = true});
+    EXPECT_EQ(cells.rest_positions, tets.rest_positions);
+    EXPECT_EQ(5 * cells.hexes.size(), tets.tets.size());
+    EXPECT_TRUE(cells.tets.empty());
+    for (const auto& hex : cells.hexes) {
+      const auto corner = [&](std::size_t n) {
+        return vector_of(cells.rest_positions[static_cast<std::size_t>(hex[n])]);
+      };
+      const Vector3d x = corner(1) - corner(0), y = corner(3) - corner(0),
+                     z = corner(4) - corner(0);
+      EXPECT_GT(x.cross(y).dot(z), 0);
+      EXPECT_LT((corner(6) - corner(0) - x - y - z).norm(), 1e-9);
+      EXPECT_LT((corner(2) - corner(0) - x - y).norm(), 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp

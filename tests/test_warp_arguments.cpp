@@ -61,7 +61,7 @@ TEST(WarpArguments, NameTheMesh) {
   far.mesh.rest_positions[5][0] = 0x1p41;
   wide.mesh.rest_positions[0][0] = -0x1p21;
 
-  EXPECT_EQ(none.complaint(), "mesh: no tetrahedra");
+  EXPECT_EQ(none.complaint(), "mesh: no tetrahedra or hexahedra");
   EXPECT_EQ(wild.complaint(), "mesh: tetrahedron 2 names node 99999, expected 0 to 79");
   EXPECT_EQ(infinite.complaint(), "mesh: rest position of node 3 is not finite");
   EXPECT_EQ(far.complaint(),

@@ -37,8 +37,8 @@ int run_deform(const DeformArguments& arguments) {
   check_output_file(arguments.output, {arguments.input});
   const MeshReader reader(arguments.input);
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
-  fmt::print("{} nodes, {} tetrahedra, {} steps of {}: {}\n", reader.header().node_count,
-             reader.header().tet_count, arguments.steps, name_of(arguments.deform.kind),
+  fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
+             reader.mesh().cell_count(), arguments.steps, name_of(arguments.deform.kind),
              arguments.output);
   return 0;
 }

@@ -57,6 +57,7 @@ Json mesh_json(const InfoArguments& arguments) {
   const MeshReader reader(arguments.file);
   const MeshHeader& header = reader.header();
   Json json{{"kind", "mesh"}, {"nodes", header.node_count}, {"tetrahedra", header.tet_count}};
+  if (header.hex_count > 0) json["hexahedra"] = header.hex_count;
   json.update(times_json(header.times));
   json["deformation"] = header.has_displacement   ? "array displacement"
                         : header.times.size() > 1 ? "points that move"

@@ -35,8 +35,8 @@ int run_mesh(const MeshArguments& arguments) {
     throw IoError(arguments.volume, volume.name, error.what());
   }
   write_mesh(arguments.output, mesh);
-  fmt::print("{} nodes, {} tetrahedra: {}\n", mesh.rest_positions.size(), mesh.tets.size(),
-             arguments.output);
+  fmt::print("{} nodes, {} {}: {}\n", mesh.rest_positions.size(), mesh.cell_count(),
+             arguments.lattice.hexahedra ? "hexahedra" : "tetrahedra", arguments.output);
   return 0;
 }
 
@@ -44,9 +44,10 @@ int run_mesh(const MeshArguments& arguments) {
 
 void add_mesh_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<MeshArguments>();
-  CLI::App* command = add_subcommand(
-      app, "mesh", "Make a tetrahedral lattice that embeds a volume", "VOLUME -o MESH [options]",
-      "  tetwarp mesh ct.vtkhdf -o mesh.vtkhdf --cells 8 --threshold -500\n");
+  CLI::App* command =
+      add_subcommand(app, "mesh", "Make a lattice of tetrahedra or cubes that embeds a volume",
+                     "VOLUME -o MESH [options]",
+                     "  tetwarp mesh ct.vtkhdf -o mesh.vtkhdf --cells 8 --threshold -500\n");
   command->add_option("VOLUME", arguments->volume, "VTKHDF image")->required()->type_name("");
   command->add_option("-o,--output", arguments->output, "mesh to write")
       ->required()
@@ -58,6 +59,8 @@ void add_mesh_command(CLI::App& app, Run& run) {
       ->add_option("--threshold", arguments->lattice.threshold,
                    "foreground is above it [every voxel is foreground]")
       ->type_name("V");
+  command->add_flag("--hexahedra", arguments->lattice.hexahedra,
+                    "the cubes themselves, mapped trilinearly, not five tetrahedra each");
   command->add_option("--array", arguments->array, "array to look at [first]")->type_name("NAME");
   command->add_option("--step", arguments->step, "of a volume file with several steps [0]")
       ->check(at_least_zero())

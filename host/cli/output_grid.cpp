@@ -30,7 +30,7 @@ Point3 index_of(const IndexFromWorld& map, const Point3& world) {
 }
 
 /// The smallest box of voxels of the source's lattice, continued beyond the source, that encloses
-/// the deformed tetrahedra of all steps; at least two voxels along each axis.
+/// the deformed cells of all steps; at least two voxels along each axis.
 Grid bounds_grid(const Grid& source,
                  const MeshReader& mesh,
                  const std::vector<std::int64_t>& steps) {
@@ -40,15 +40,17 @@ Grid bounds_grid(const Grid& source,
   for (const std::int64_t step : steps) {
     stop_if_interrupted();
     const std::vector<Point3> positions = mesh.read_step(step);
-    for (const auto& tet : mesh.mesh().tets) {
-      for (const std::int32_t node : tet) {
+    const auto include = [&](const auto& cell) {
+      for (const std::int32_t node : cell) {
         const Point3 index = index_of(map, positions[static_cast<std::size_t>(node)]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           low[axis] = std::min(low[axis], index[axis]);
           high[axis] = std::max(high[axis], index[axis]);
         }
       }
-    }
+    };
+    std::ranges::for_each(mesh.mesh().tets, include);
+    std::ranges::for_each(mesh.mesh().hexes, include);
   }
   Grid grid = source;
   Point3 first{};

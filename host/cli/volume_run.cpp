@@ -284,6 +284,7 @@ Fingerprint VolumeRun::fingerprint_of_inputs() const {
   fingerprint.add(volume_.written_grid);
   for (const Volume& source : sources_) fingerprint.add(source);
   fingerprint.add(plan_.mesh.mesh().tets);
+  fingerprint.add(plan_.mesh.mesh().hexes);
   fingerprint.add(plan_.mesh.mesh().rest_positions);
   return fingerprint;
 }

@@ -16,6 +16,7 @@
 
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/exact_geometry.hpp"
+#include "host/reference/hexahedron.hpp"
 #include "host/reference/sample.hpp"
 #include "host/warp_backend.hpp"
 
@@ -102,7 +103,8 @@ class ReferenceBackend : public WarpBackend {
       first[axis] = std::max(begin, plan_.region.begin[axis]);
       last[axis] = std::min(end, plan_.region.end[axis] - 1);
     }
-    const std::optional<Eigen::Vector3d> shift = whole_shift(rest, now);
+    const std::optional<Hexahedron> hex = hexahedron_of(t, deformed);
+    const std::optional<Eigen::Vector3d> shift = hex ? hex->shift : whole_shift(rest, now);
     for (std::int64_t k = first[2]; k <= last[2]; ++k) {
       for (std::int64_t j = first[1]; j <= last[1]; ++j) {
         for (std::int64_t i = first[0]; i <= last[0]; ++i) {
@@ -115,16 +117,40 @@ class ReferenceBackend : public WarpBackend {
             ++strictly_inside_[v];
           }
           if (owner_[v] >= 0) continue;
-          owner_[v] = t;
-          source_position_[v] =
-              shift
-                  ? Eigen::Vector3d(Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
-                                                    static_cast<double>(k)) +
-                                    *shift)
-                  : combined(rest, b->weight);
+          owner_[v] = hex ? hex->number : t;
+          const Eigen::Vector3d x(static_cast<double>(i), static_cast<double>(j),
+                                  static_cast<double>(k));
+          if (shift) {
+            source_position_[v] = x + *shift;
+          } else if (hex) {
+            source_position_[v] = hex->rest.at(hex->now.inverse(x));
+          } else {
+            source_position_[v] = combined(rest, b->weight);
+          }
         }
       }
     }
+  }
+
+  /// What tetrahedron t is a part of.
+  struct Hexahedron {
+    std::int32_t number;  ///< of the cell: tetrahedra come first
+    Trilinear now;
+    Trilinear rest;
+    std::optional<Eigen::Vector3d> shift;
+  };
+  std::optional<Hexahedron> hexahedron_of(std::int32_t t, const double* deformed) const {
+    const std::size_t alone = plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size();
+    if (static_cast<std::size_t>(t) < alone) return std::nullopt;
+    const std::size_t h = (static_cast<std::size_t>(t) - alone) / 6;
+    HexCorners now, rest;
+    for (std::size_t node = 0; node < 8; ++node) {
+      const auto n = static_cast<std::size_t>(plan_.mesh.hexes[h][node]);
+      now[node] = output_.quanta_of(deformed + 3 * n);
+      rest[node] = source_.quanta_of(plan_.mesh.rest_positions[n].data());
+    }
+    return Hexahedron{static_cast<std::int32_t>(alone + h), Trilinear(now), Trilinear(rest),
+                      whole_shift(rest, now)};
   }
 
   /// sum_i b_i R_i [voxel]

@@ -17,7 +17,8 @@ namespace tetwarp {
 struct LatticeOptions {
   int cells = 8;  ///< cubic cells along the longest side of the foreground's box, >= 1
   std::optional<double> threshold =
-      {};  ///< foreground: any component > threshold; nothing: every voxel
+      {};                  ///< foreground: any component > threshold; nothing: every voxel
+  bool hexahedra = false;  ///< the cells themselves instead of tetrahedra
 };
 
 /// Lattice of cubic cells around the foreground's bounding box (half a voxel beyond its outermost

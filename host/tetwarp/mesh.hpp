@@ -1,5 +1,5 @@
 /// @file mesh.hpp
-/// Tetrahedral meshes that embed a volume.
+/// Meshes of tetrahedra, hexahedra or both that embed a volume.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,13 +11,20 @@
 
 namespace tetwarp {
 
-/// Nodes at rest and the four nodes of each tetrahedron (either orientation).
+/// Nodes at rest and the nodes of each cell. Cells are numbered tetrahedra first, then hexahedra.
 struct TetMesh {
   std::vector<Point3> rest_positions;             ///< [node_count], world
-  std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], indices into rest_positions
+  std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], either orientation; indices
+                                                  ///< into rest_positions
+  /// [hex_count], in VTK's order: 0 to 3 around the bottom, 4 to 7 above them. Inside, positions go
+  /// by the trilinear map. A face between hexahedra is cut from its node of the lowest number; a
+  /// tetrahedron that joins it must be cut alike.
+  std::vector<std::array<std::int32_t, 8>> hexes = {};
+
+  std::size_t cell_count() const { return tets.size() + hexes.size(); }
 };
 
-/// Throws std::invalid_argument naming the first offender unless there is a tetrahedron, every
+/// Throws std::invalid_argument naming the first offender unless there is a cell, every
 /// index is in range and every position finite.
 void check_mesh(const TetMesh& mesh);
 

@@ -46,6 +46,7 @@ Volume read_volume(const std::string& path, const std::string& array = {}, std::
 struct MeshHeader {
   std::int64_t node_count = 0;
   std::int64_t tet_count = 0;
+  std::int64_t hex_count = 0;
   std::vector<double> times;      ///< one per step; a static file has one step at time 0
   bool has_displacement = false;  ///< deformed = rest + displacement, else points that move
 };
