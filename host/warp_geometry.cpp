@@ -40,11 +40,24 @@ OutsideMap make_outside_map(const WarpPlan& plan, const OutputFrame& frame) {
   return outside;
 }
 
-double determinant(const IndexFromWorld& map) {
-  const auto& m = map.linear;
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+Matrix3 linear_part(const IndexFromWorld& map) {
+  Matrix3 matrix;
+  for (int row = 0; row < 3; ++row) {
+    for (int axis = 0; axis < 3; ++axis) matrix.at[row][axis] = map.linear[row][axis];
+  }
+  return matrix;
+}
+
+GridAxes make_axes(const Grid& source, const Grid& output) {
+  GridAxes axes;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      axes.source.at[row][axis] = source.direction[3 * row + axis] * source.spacing[axis];
+    }
+  }
+  axes.output_index = linear_part(index_from_world(output));
+  axes.are_same = source.spacing == output.spacing && source.direction == output.direction;
+  return axes;
 }
 
 bool is_too_large(const TetNodes& tet) {
@@ -67,6 +80,8 @@ WarpGeometry make_geometry(const WarpPlan& plan) {
   geometry.output_index = index_from_world(plan.output_grid);
   geometry.outside = make_outside_map(plan, geometry.frame);
 
+  geometry.axes = make_axes(plan.sources.front().grid, plan.output_grid);
+
   const IndexFromWorld source_index = index_from_world(plan.sources.front().grid);
   const std::int64_t no_shift[3] = {0, 0, 0};
   for (std::size_t n = 0; n < plan.mesh.rest_positions.size(); ++n) {
@@ -77,7 +92,8 @@ WarpGeometry make_geometry(const WarpPlan& plan) {
     }
   }
   // Seen from index spaces of opposite handedness the same tetrahedron has opposite signs.
-  const bool mirrored = determinant(source_index) * determinant(geometry.output_index) < 0;
+  const bool mirrored =
+      determinant(linear_part(source_index)) * determinant(geometry.axes.output_index) < 0;
   const View<const Node> rest{geometry.rest.data(),
                               static_cast<std::int64_t>(geometry.rest.size())};
   for (std::size_t t = 0; t < plan.mesh.tets.size(); ++t) {

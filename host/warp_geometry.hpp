@@ -7,6 +7,7 @@
 
 #include "host/warp_backend.hpp"
 #include "kernels/cell_raster.hpp"
+#include "kernels/tet_gradient.hpp"
 
 namespace tetwarp {
 
@@ -17,6 +18,7 @@ struct WarpGeometry {
   std::vector<Node> rest;                     ///< in the source's index space [quantum]
   std::vector<std::int8_t> rest_orientation;  ///< sign of the rest volume in the output's sense
   OutsideMap outside;
+  GridAxes axes;
 };
 
 /// Throws std::invalid_argument when a rest position is too far from the source grid, or a
