@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/rule_checks.hpp"
 #include "host/step_queue.hpp"
 #include "host/warp_backend.hpp"
 #include "kernels/node_quantize.hpp"
@@ -91,6 +92,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   plan.mesh = mesh;
   plan.options = options;
   check_sources(plan.sources, options);
+  check_rules(plan.sources, options);
   check_mesh(mesh);
   if (options.threads < 0) throw std::invalid_argument("threads: negative");
   plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);

@@ -9,6 +9,7 @@
 
 #include "kernels/cell_pairs.hpp"
 #include "kernels/face_sign.hpp"
+#include "kernels/tet_rule.hpp"
 #include "kernels/tet_setup.hpp"
 #include "kernels/view.hpp"
 #include "kernels/volume_filter.hpp"
@@ -60,7 +61,24 @@ struct RasterJob {
   View<const std::int64_t> cell_work;
   /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
   View<std::uint16_t> cell_covered;
+
+  /// Per tetrahedron: what its voxels get, see voxel_rule.hpp. Size 0: all are plain.
+  View<const TetRule> rules;
+  TetRule outside_rule;         ///< of voxels that no tetrahedron covers
+  Reorientation reorientation;  ///< that the matrices of rules are made for
 };
+
+/// Whether voxels of tetrahedron t get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_rule(const RasterJob<T>& job, std::int64_t t) {
+  return job.rules.size > 0 && !job.rules[t].is_plain;
+}
+
+/// Whether voxels that no tetrahedron covers get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_outside_rule(const RasterJob<T>& job) {
+  return job.rules.size > 0 && job.outside.use_source && !job.outside_rule.is_plain;
+}
 
 template <class T>
 TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {

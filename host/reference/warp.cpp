@@ -16,6 +16,7 @@
 
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/exact_geometry.hpp"
+#include "host/reference/rule.hpp"
 #include "host/reference/sample.hpp"
 #include "host/warp_backend.hpp"
 
@@ -42,6 +43,7 @@ class ReferenceBackend : public WarpBackend {
     const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
     owner_.assign(voxels, -1);
     source_position_.assign(voxels, Eigen::Vector3d::Zero());
+    rules_.assign(plan_.mesh.tets.size(), Rule());
     strictly_inside_.assign(plan_.options.count_folded ? voxels : 0, 0);
     StepReport& report = reports_[flight];
     report = {};
@@ -102,6 +104,9 @@ class ReferenceBackend : public WarpBackend {
       first[axis] = std::max(begin, plan_.region.begin[axis]);
       last[axis] = std::min(end, plan_.region.end[axis] - 1);
     }
+    Rule& rule = rules_[static_cast<std::size_t>(t)];
+    rule = rule_of(rest, now, source_, output_, plan_.options);
+    counts.tets_averaged += rule.averages();
     const std::optional<Eigen::Vector3d> shift = whole_shift(rest, now);
     for (std::int64_t k = first[2]; k <= last[2]; ++k) {
       for (std::int64_t j = first[1]; j <= last[1]; ++j) {
@@ -155,15 +160,56 @@ class ReferenceBackend : public WarpBackend {
         for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
           T* voxel = out + v * static_cast<std::size_t>(sampler.components());
           if (owner_[v] >= 0) {
-            sampler.store(source_position_[v], voxel);
+            const Rule& rule = rules_[static_cast<std::size_t>(owner_[v])];
+            store(s, sampler, source_position_[v], rule, voxel);
           } else if (plan_.options.outside == Outside::identity) {
-            sampler.store(same_place(i, j, k), voxel);
+            store(s, sampler, same_place(i, j, k), outside_rule(), voxel);
           } else {
             std::fill_n(voxel, sampler.components(), sampler.background());
           }
         }
       }
     }
+  }
+
+  /// Of voxels that show the source at their own place.
+  Rule outside_rule() const {
+    Rule rule;
+    rule.step = source_.from_world * output_.to_world;
+    if (plan_.options.antialias) rule.parts = parts_of(rule.step);
+    return rule;
+  }
+
+  /// One voxel: a sample, or a mean of samples at the midpoints of its parts, by its rule.
+  template <class T>
+  void store(std::size_t s,
+             const Sampler<T>& sampler,
+             const Eigen::Vector3d& x,
+             const Rule& rule,
+             T* voxel) const {
+    const WarpOptions& options = plan_.options;
+    const Quantity quantity =
+        options.quantities.empty() ? Quantity::components : options.quantities[s];
+    const bool turns = quantity != Quantity::components && !rule.is_still && !rule.is_singular;
+    if (!turns && !rule.averages() && rule.scale == 1) return sampler.store(x, voxel);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(sampler.components());
+    int count = 0;
+    for (int c = 0; c < rule.parts(2); ++c) {
+      for (int b = 0; b < rule.parts(1); ++b) {
+        for (int a = 0; a < rule.parts(0); ++a) {
+          const Eigen::Array3d part = Eigen::Vector3i(a, b, c).cast<double>();
+          const Eigen::Array3d within = (part + 0.5) / rule.parts.cast<double>().array() - 0.5;
+          count += sampler.add(x + rule.step * within.matrix(), mean);
+        }
+      }
+    }
+    if (count == 0) {
+      std::fill_n(voxel, sampler.components(), sampler.background());
+      return;
+    }
+    sampler.clamp(mean /= count);
+    if (turns) mean = reoriented(mean, quantity, rule.forward);
+    for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * rule.scale);
   }
 
   /// Source index of an output voxel's own world position; whole voxels within 2^-40 are whole.
@@ -186,6 +232,7 @@ class ReferenceBackend : public WarpBackend {
   IndexSpace source_;
   std::vector<std::int32_t> owner_;
   std::vector<Eigen::Vector3d> source_position_;
+  std::vector<Rule> rules_;  ///< of every tetrahedron
   std::vector<std::uint8_t> strictly_inside_;
 };
 
