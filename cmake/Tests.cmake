@@ -68,6 +68,17 @@ if(NOT BUILD_SHARED_LIBS)
     endforeach()
     set(tetwarp_stage_tests ${tetwarp_stage_units})
   endif()
+  # Loops over the back ends that answer, compiled once for two programs: of one, cuda is emulated.
+  add_library(tetwarp_rule_tests OBJECT
+    tests/test_warp_antialias.cpp
+    tests/test_warp_quantities.cpp)
+  target_include_directories(tetwarp_rule_tests PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(tetwarp_rule_tests PRIVATE
+    tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+  target_compile_options(tetwarp_rule_tests PRIVATE ${tetwarp_test_options})
+  target_precompile_headers(tetwarp_rule_tests REUSE_FROM tetwarp_scenes)
+  set_target_properties(tetwarp_rule_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
     tests/test_face_sign.cpp
@@ -93,7 +104,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp_invariance.cpp
     tests/test_warp_values.cpp
     tests/test_coverage.cpp
-    tests/test_parity.cpp)
+    tests/test_parity.cpp
+    $<TARGET_OBJECTS:tetwarp_rule_tests>)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
   endif()
@@ -175,9 +187,10 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
     tests/test_warp_hexahedra.cpp
-    tests/test_warp_in_flight.cpp)
+    tests/test_warp_in_flight.cpp
+    $<TARGET_OBJECTS:tetwarp_rule_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -261,6 +274,7 @@ if(TETWARP_IO)
     tests/test_cli_contact.cpp
     tests/test_cli_contact_usage.cpp
     tests/test_cli_resume.cpp
+    tests/test_cli_rules.cpp
     tests/test_cli_skip.cpp)
   target_compile_definitions(tetwarp_cli_tests PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")

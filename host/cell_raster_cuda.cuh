@@ -12,7 +12,7 @@ template <class T>
 void cell_raster(CudaExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
   const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
   exec.timed("warp/raster", [&] {
-    launch(exec.stream(), raster_kernel<T>(job.filter), cells, raster_threads, 0, job);
+    launch(exec.stream(), raster_kernel(job), cells, raster_threads, 0, job);
   });
   progress.report(1.0);
 }

@@ -17,6 +17,7 @@ namespace tetwarp {
 struct MeshCounters {
   std::int64_t classes[tet_class_count];
   std::int64_t folded;
+  std::int64_t averaged;  ///< tetrahedra whose voxels are means of samples
 };
 
 /// Counters of the work of one step, zeroed at its start.
@@ -84,6 +85,7 @@ inline StepReport make_step_report(const StepCounters& counters,
   counts.inverted = counters.mesh.classes[static_cast<int>(TetClass::inverted)];
   counts.flat = counters.mesh.classes[static_cast<int>(TetClass::flat)];
   counts.folded = counters.mesh.folded;
+  counts.tets_averaged = counters.mesh.averaged;
   counts.cells = frame.cell_count();
   counts.candidate_pairs = sizes.candidate_pairs;
   counts.pairs_rejected = sizes.candidate_pairs - work.pairs;

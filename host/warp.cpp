@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "host/hex_split.hpp"
+#include "host/rule_checks.hpp"
 #include "host/step_queue.hpp"
 #include "host/warp_backend.hpp"
 #include "kernels/node_quantize.hpp"
@@ -92,6 +93,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   plan.mesh = mesh;
   plan.options = options;
   check_sources(plan.sources, options);
+  check_rules(plan.sources, options);
   check_mesh(mesh);
   const auto parts = split_hexes(mesh.hexes);
   plan.mesh.tets.insert(plan.mesh.tets.end(), parts.begin(), parts.end());

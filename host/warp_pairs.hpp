@@ -77,6 +77,8 @@ class WarpPairs {
   bool is_update() const { return is_update_; }
   /// True when the last `steps` ones are: 1 or 2.
   bool are_updates(int steps) const { return is_update_ && (steps == 1 || was_update_); }
+  /// 1 where a tetrahedron has moved; size 0: not an update, all count as moved.
+  View<const std::uint8_t> moved() const { return moved_.const_view(is_update_ ? tet_count() : 0); }
   View<const Node> nodes_before() const { return nodes_[1 - now_].const_view(mesh_.node_count()); }
   PairList list_before() const { return view_of(lists_[1 - now_]); }
   /// 1 where a tetrahedron that has moved was or is in the list of a cell.

@@ -10,6 +10,7 @@
 #include "host/warp_geometry.hpp"
 #include "host/warp_outputs.hpp"
 #include "host/warp_pairs.hpp"
+#include "host/warp_rules.hpp"
 #include "host/warp_sources.hpp"
 #include "kernels/cell_raster.hpp"
 #include "kernels/cell_work.hpp"
@@ -26,6 +27,7 @@ class WarpPipeline : public WarpBackend {
         exec_(std::move(exec)),
         pairs_(exec_, plan_, geometry_),
         outputs_(exec_, plan_, geometry_.frame),
+        rules_(exec_, plan_, geometry_),
         sources_(exec_, plan_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -127,6 +129,7 @@ class WarpPipeline : public WarpBackend {
            int age,
            const Progress& progress) {
     pairs_.run(positions);
+    rules_.run(pairs_);
     stale_ = {};
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
@@ -178,6 +181,9 @@ class WarpPipeline : public WarpBackend {
       job.tet = s == 0 ? outputs_.tet(target) : nullptr;
       job.counts = s == 0 ? &work_counters().raster : nullptr;
       if (s == 0) job.cell_covered = cell_covered_.view(frame.cell_count());
+      job.rules = rules_.rules(s, pairs_.tet_count());
+      job.outside_rule = rules_.outside();
+      job.reorientation = rules_.reorientation(s);
       choose_work(s, job);
       const double share = 1.0 / static_cast<double>(sources_.size());
       cell_raster(exec_, job, ProgressPart{progress, static_cast<double>(s) * share, share});
@@ -188,7 +194,7 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   void choose_work(std::size_t s, RasterJob<T>& job) {
     const UniformMap uniform =
-        plan_.options.skip.constant_cells
+        plan_.options.skip.constant_cells && job.rules.size == 0
             ? sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest())
             : UniformMap{};
     if (stale_.size == 0 && uniform.reach.size == 0) return;
@@ -219,6 +225,7 @@ class WarpPipeline : public WarpBackend {
   Exec exec_;
   WarpPairs<Exec> pairs_;
   WarpOutputs<Exec> outputs_;
+  WarpRules<Exec> rules_;
   WarpSources<Exec> sources_;
 
   Flight flights_[2];

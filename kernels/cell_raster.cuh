@@ -8,6 +8,7 @@
 #pragma once
 #include "kernels/cell_raster.hpp"
 #include "kernels/launch.hpp"
+#include "kernels/voxel_rule.hpp"
 
 namespace tetwarp {
 
@@ -136,9 +137,12 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
       ++mine.covered;
       const int t = chunk.tet[slot];
       const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-      mine.copied += chunk.copied[slot];
+      const bool ruled = Wide && has_rule(job, t);
+      mine.copied += chunk.copied[slot] && !ruled;
       if (work >= 0) {
         store_filled(job, work, voxel);
+      } else if (ruled) {
+        store_ruled(job, t, corner, i, j, k, voxel);
       } else if (chunk.alone[slot]) {
         store_owned<Wide, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
@@ -153,7 +157,11 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
     if ((open >> d & 1) == 0) continue;
     const int k = k_first + 2 * d;
     const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-    store_outside<Wide>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
+    if (Wide && has_outside_rule(job)) {
+      store_outside_ruled(job, corner, i, j, k, voxel);
+    } else {
+      store_outside<Wide>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
+    }
     if (job.mask != nullptr) job.mask[voxel] = 0;
     if (job.tet != nullptr) job.tet[voxel] = -1;
   }
@@ -172,10 +180,12 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
   }
 }
 
-/// The kernel for a filter: wide ones have their own, whose registers the others need not pay for.
+/// The kernel for a job: wide filters and rules have their own, whose registers the others need not
+/// pay for.
 template <class T>
-auto raster_kernel(Interpolation filter) {
-  return is_wide(filter) ? cell_raster_kernel<T, true> : cell_raster_kernel<T, false>;
+auto raster_kernel(const RasterJob<T>& job) {
+  const bool is_plain = !is_wide(job.filter) && job.rules.size == 0;
+  return is_plain ? cell_raster_kernel<T, false> : cell_raster_kernel<T, true>;
 }
 
 }  // namespace tetwarp

@@ -10,6 +10,7 @@
 #include "kernels/cell_pairs.hpp"
 #include "kernels/face_sign.hpp"
 #include "kernels/hex_map.hpp"
+#include "kernels/tet_rule.hpp"
 #include "kernels/tet_setup.hpp"
 #include "kernels/view.hpp"
 #include "kernels/volume_filter.hpp"
@@ -63,7 +64,24 @@ struct RasterJob {
   View<const std::int64_t> cell_work;
   /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
   View<std::uint16_t> cell_covered;
+
+  /// Per tetrahedron: what its voxels get, see voxel_rule.hpp. Size 0: all are plain.
+  View<const TetRule> rules;
+  TetRule outside_rule;         ///< of voxels that no tetrahedron covers
+  Reorientation reorientation;  ///< that the matrices of rules are made for
 };
+
+/// Whether voxels of tetrahedron t get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_rule(const RasterJob<T>& job, std::int64_t t) {
+  return job.rules.size > 0 && !job.rules[t].is_plain;
+}
+
+/// Whether voxels that no tetrahedron covers get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_outside_rule(const RasterJob<T>& job) {
+  return job.rules.size > 0 && job.outside.use_source && !job.outside_rule.is_plain;
+}
 
 template <class T>
 TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {
@@ -210,15 +228,9 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      const HexMap& map,
                                      const int* x,
                                      std::int64_t voxel) {
-  double at[3];
-  hex_position(map, tet, x, at);
   int whole[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double all = floor(at[axis]) + static_cast<double>(map.whole[axis]);
-    const double near = min_of(max_of(all, -farthest_whole), farthest_whole);
-    whole[axis] = static_cast<int>(near);
-    at[axis] -= near - static_cast<double>(map.whole[axis]);
-  }
+  double at[3];
+  place_in_hex(tet, map, x, whole, at);
   store_position<Wide>(job, job.filter, whole, at, voxel);
 }
 

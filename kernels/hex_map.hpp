@@ -9,6 +9,7 @@
 #include "kernels/hex_view.hpp"
 #include "kernels/tet_gradient.hpp"
 #include "kernels/view.hpp"
+#include "kernels/volume_sample.hpp"
 
 namespace tetwarp {
 
@@ -153,6 +154,18 @@ TETWARP_HD_RARE void hex_position(const HexMap& map,
   invert_hex(map.output, target, u);
   Matrix3 gradient;
   map_hex(map.source, u, at, gradient);
+}
+
+/// Source position of frame voxel x, which `tet` owns and `map` is of, in two parts.
+TETWARP_HD void place_in_hex(
+    const TetSetup& tet, const HexMap& map, const int* x, int* whole, double* at) {
+  hex_position(map, tet, x, at);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double all = floor(at[axis]) + static_cast<double>(map.whole[axis]);
+    const double near = min_of(max_of(all, -farthest_whole), farthest_whole);
+    whole[axis] = static_cast<int>(near);
+    at[axis] -= near - static_cast<double>(map.whole[axis]);
+  }
 }
 
 }  // namespace tetwarp

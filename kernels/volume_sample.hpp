@@ -155,14 +155,10 @@ TETWARP_HD T rounded_to(Real value) {
   }
 }
 
-/// One component of the source at a tap that is inside.
+/// A component between the neighbours of a tap, not rounded.
+/// @param s  of voxel 0
 template <class T, class Real>
-TETWARP_HD T
-sample(const SourceView<T>& source, Interpolation filter, const Tap<Real>& tap, int component) {
-  const T* s = source.data + component;
-  if (filter == Interpolation::nearest) {
-    return s[tap.offset[0][0] + tap.offset[1][0] + tap.offset[2][0]];
-  }
+TETWARP_HD Real linear_value(const T* s, const Tap<Real>& tap) {
   Real column[2];  // blended along y, then z; x comes last, where two columns meet
   for (int x = 0; x < 2; ++x) {
     const T* at = s + tap.offset[0][x];
@@ -174,7 +170,18 @@ sample(const SourceView<T>& source, Interpolation filter, const Tap<Real>& tap, 
     }
     column[x] = lerp_of(tap.fraction[2], slice[0], slice[1]);
   }
-  return rounded_to<T>(lerp_of(tap.fraction[0], column[0], column[1]));
+  return lerp_of(tap.fraction[0], column[0], column[1]);
+}
+
+/// One component of the source at a tap that is inside.
+template <class T, class Real>
+TETWARP_HD T
+sample(const SourceView<T>& source, Interpolation filter, const Tap<Real>& tap, int component) {
+  const T* s = source.data + component;
+  if (filter == Interpolation::nearest) {
+    return s[tap.offset[0][0] + tap.offset[1][0] + tap.offset[2][0]];
+  }
+  return rounded_to<T>(linear_value(s, tap));
 }
 
 }  // namespace tetwarp

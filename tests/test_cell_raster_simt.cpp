@@ -109,7 +109,7 @@ class RasterBench {
   Rastered<T> by_blocks() {
     return filled([](const RasterJob<T>& job) {
       const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
-      launch(nullptr, raster_kernel<T>(job.filter), cells, raster_threads, 0, job);
+      launch(nullptr, raster_kernel(job), cells, raster_threads, 0, job);
     });
   }
 

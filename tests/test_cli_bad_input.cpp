@@ -48,6 +48,9 @@ TEST(UsageError, ExitsWithTwoAndSaysWhereToRead) {
            {warp_with({"--filter", "cubical"}), "linear, nearest, cubic, bspline, lanczos, labels"},
            {warp_with({"--overshoot", "cut"}), "keep, clamp"},
            {warp_with({"--background", "black"}), "--background"},
+           {warp_with({"--antialias", "--filter", "nearest"}), "use another --filter"},
+           {warp_with({"--intensity", "mass"}), "value, density"},
+           {warp_with({"--vectors", "flow=twisted"}), "rotate, covariant, contravariant"},
            {warp_with({"--dims", "1,2"}), "--dims"},
            {warp_with({"--roi", "0:4,0:4"}), "'0:4,0:4'"},
            {warp_with({"--steps", "0:4:0"}), "stride"},
@@ -75,6 +78,8 @@ TEST(BadInput, NamesTheFileThatCannotBeRead) {
            {{"import", "volume.vtkhdf", "-o", "out.vtkhdf"}, "is a volume, expected a NIfTI"},
            {{"render", "mesh.vtkhdf", "-o", "out.png"}, "is a mesh, expected a volume"},
            {warp_with({"--rest", "none.vtkhdf"}), "none.vtkhdf"},
+           {warp_with({"--vectors", "flow"}), "--vectors names no array"},
+           {warp_with({"--tensors", "density=principal"}), "wants 6 components, the array has 1"},
            {warp_with({"--grid", "none.vtkhdf"}), "none.vtkhdf"}}) {
     expect_refused(scene, refused, 1);
   }

@@ -25,13 +25,16 @@ using Words = std::vector<std::string>;
 /// Options of the whole batch, which no job has.
 const Words batch_options{"help", "batch", "quiet"};
 
+/// Options of array names, which may hold commas.
+const Words name_options{"array", "vectors", "tensors"};
+
 bool is_one_of(const std::string& word, const Words& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 /// Words of an option's values: repeated where a value may hold commas, else one comma list.
 Words option_words(const std::string& name, const Words& values) {
-  if (name != "array") return {"--" + name + "=" + CLI::detail::join(values, ",")};
+  if (!is_one_of(name, name_options)) return {"--" + name + "=" + CLI::detail::join(values, ",")};
   Words words;
   for (const std::string& value : values) words.push_back("--" + name + "=" + value);
   return words;

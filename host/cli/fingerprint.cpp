@@ -35,6 +35,18 @@ void Fingerprint::add(const Grid& grid) {
   add(grid.direction);
 }
 
+void Fingerprint::add(const WarpOptions& options) {
+  add(options.backend);
+  add(options.filter);
+  add(options.overshoot);
+  add(options.antialias);
+  add(options.intensity);
+  add(options.quantities);
+  add(options.outside);
+  add(options.background);
+  add(*options.output_grid);
+}
+
 void Fingerprint::add(const Volume& volume) {
   add(volume.name);
   add(volume.type);

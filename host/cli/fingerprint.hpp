@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tetwarp/volume.hpp>
+#include <tetwarp/warp.hpp>
 
 namespace tetwarp::cli {
 
@@ -37,6 +38,10 @@ class Fingerprint {
   void add(const std::vector<T>& items) { add(std::as_bytes(std::span(items))); }
 
   void add(const Grid& grid);
+
+  /// What values depend on; not the region.
+  /// @pre  options.output_grid is there
+  void add(const WarpOptions& options);
 
   /// Name, type, grid and samples.
   void add(const Volume& volume);

@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "host/cli/array_checks.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
 #include "io/memory.hpp"
@@ -85,6 +86,7 @@ void check_filter(const std::string& path, const ArrayHeader& array, Filter filt
 }
 
 void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
+  check_quantities(plan.path, plan.arrays, arguments);
   for (const ArrayHeader& array : plan.arrays) {
     check_filter(plan.path, array, arguments.warp.filter);
     if (is_integer(array.type) && !std::isfinite(arguments.warp.background)) {

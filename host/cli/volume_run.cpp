@@ -149,6 +149,7 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write 
     report.counts.flat = last.flat;
     report.counts.folded = last.folded;
     report.counts.cells = last.cells;
+    report.counts.tets_averaged = last.tets_averaged;
     report.counts.steps_unchanged = 1;
     computed_ = Step{report, std::move(write), outputs_[now_].volumes()};
     return;
@@ -195,12 +196,19 @@ void VolumeRun::finish_computing() {
   if (volume_.overlaps) start_writing();
 }
 
-void VolumeRun::start_warper() {
+WarpOptions VolumeRun::warp_options() const {
   WarpOptions options = arguments_.warp;
   options.backend = plan_.backend;
   options.output_grid = volume_.output_grid;
+  for (const ArrayHeader& array : volume_.arrays) {
+    options.quantities.push_back(arguments_.quantity_of(array.name));
+  }
+  return options;
+}
+
+void VolumeRun::start_warper() {
   const std::vector<VolumeView> views(sources_.begin(), sources_.end());
-  warper_.emplace(views, plan_.mesh.mesh(), options);
+  warper_.emplace(views, plan_.mesh.mesh(), warp_options());
   const Report& report = warper_->report();
   result_.report.device = report.device;
   result_.report.threads = report.threads;
@@ -271,16 +279,10 @@ void VolumeRun::finish_step(const StepReport& report) {
 
 Fingerprint VolumeRun::fingerprint_of_inputs() const {
   Fingerprint fingerprint;
-  const WarpOptions& warp = arguments_.warp;
   fingerprint.add(TETWARP_VERSION);
-  fingerprint.add(plan_.backend);
-  fingerprint.add(warp.filter);
-  fingerprint.add(warp.overshoot);
-  fingerprint.add(warp.outside);
-  fingerprint.add(warp.background);
+  fingerprint.add(warp_options());
   fingerprint.add(arguments_.extra.mask);
   fingerprint.add(arguments_.extra.tet);
-  fingerprint.add(volume_.output_grid);
   fingerprint.add(volume_.written_grid);
   for (const Volume& source : sources_) fingerprint.add(source);
   fingerprint.add(plan_.mesh.mesh().tets);

@@ -45,6 +45,7 @@ class VolumeRun {
   bool equals_last_step(const std::vector<Point3>& positions) const;
   void compute(std::vector<Point3> positions, StepReport report, Write write);
   void finish_computing();
+  WarpOptions warp_options() const;
   void start_warper();
   void finish_step(const StepReport& report);
   void start_writing();

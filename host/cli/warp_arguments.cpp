@@ -15,6 +15,12 @@ const Choices<Filter> filters{{"linear", Filter::linear},   {"nearest", Filter::
                               {"cubic", Filter::cubic},     {"bspline", Filter::bspline},
                               {"lanczos", Filter::lanczos}, {"labels", Filter::labels}};
 const Choices<Overshoot> overshoots{{"keep", Overshoot::keep}, {"clamp", Overshoot::clamp}};
+const Choices<Intensity> intensities{{"value", Intensity::value}, {"density", Intensity::density}};
+const Choices<Quantity> vector_laws{{"rotate", Quantity::vector},
+                                    {"covariant", Quantity::covariant_vector},
+                                    {"contravariant", Quantity::contravariant_vector}};
+const Choices<Quantity> tensor_laws{{"finite-strain", Quantity::tensor},
+                                    {"principal", Quantity::principal_tensor}};
 const Choices<Outside> outsides{{"background", Outside::background},
                                 {"identity", Outside::identity}};
 const Choices<bool ExtraOutputs::*> extra_outputs{{"mask", &ExtraOutputs::mask},
@@ -53,6 +59,27 @@ void add_numbers(CLI::App& app,
          option, [&target](const Numbers& numbers) { target = numbers; }, description)
       ->delimiter(',')
       ->type_name(type_name);
+}
+
+/// Declares a repeatable option NAME[=LAW]: the first law is the default.
+void add_quantities(CLI::App& app,
+                    const std::string& option,
+                    std::map<std::string, Quantity>& quantities,
+                    const Choices<Quantity>& laws,
+                    const std::string& description) {
+  app.add_option_function<std::vector<std::string>>(
+         option,
+         [&quantities, option, laws](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) {
+             const std::size_t split = std::min(text.rfind('='), text.size());
+             const bool is_told = split < text.size();
+             quantities[text.substr(0, split)] =
+                 is_told ? meaning_of(option, text.substr(split + 1), laws) : laws.front().second;
+           }
+         },
+         description)
+      ->allow_extra_args(false)
+      ->type_name("NAME[=" + CLI::detail::join(words_of(laws), "|") + "]");
 }
 
 void declare_files(CLI::App& app, WarpArguments& arguments) {
@@ -95,6 +122,13 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
   add_choice(app, "--filter", warp.filter, filters, "between voxel centres [linear]");
   add_choice(app, "--overshoot", warp.overshoot, overshoots,
              "values beyond those of the source, of cubic, bspline and lanczos [keep]");
+  app.add_flag("--antialias", warp.antialias, "average where tetrahedra shrink the source");
+  add_choice(app, "--intensity", warp.intensity, intensities,
+             "what a voxel shows, or what it has per volume [value]");
+  add_quantities(app, "--vectors", arguments.quantities, vector_laws,
+                 "an array of 3 components that the deformation turns, repeatable [rotate]");
+  add_quantities(app, "--tensors", arguments.quantities, tensor_laws,
+                 "the same of 6: XX YY ZZ XY YZ XZ [finite-strain]");
   add_choice(app, "--outside", warp.outside, outsides, "what no tetrahedron covers [background]");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
   ExtraOutputs& extra = arguments.extra;
@@ -156,6 +190,11 @@ void declare_warp_options(CLI::App& app, WarpArguments& arguments) {
 }
 
 void check_complete(const WarpArguments& arguments) {
+  const Filter filter = arguments.warp.filter;
+  if (arguments.warp.antialias && (filter == Filter::nearest || filter == Filter::labels)) {
+    throw CLI::ValidationError("--antialias",
+                               "averages, which nearest and labels must not; use another --filter");
+  }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {
       throw CLI::ValidationError("--batch", "volumes, mesh and output stand in the file's jobs");

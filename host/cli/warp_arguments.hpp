@@ -2,6 +2,7 @@
 /// Everything a user can say to `tetwarp warp`: one declaration for command line and batch files.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct WarpArguments {
   StepSelection steps;
   MeshReadOptions mesh;
   GridChoice grid;
-  WarpOptions warp;  ///< without output_grid, which needs the files
+  std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
+  WarpOptions warp;  ///< without output_grid and quantities, which need the files
   ExtraOutputs extra;
   int compress = 0;
   bool temporal = false;
@@ -43,13 +45,17 @@ struct WarpArguments {
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
+  Quantity quantity_of(const std::string& array) const {
+    const auto found = quantities.find(array);
+    return found == quantities.end() ? Quantity::components : found->second;
+  }
 };
 
 /// Declares every option and binds it to `arguments`, which must outlive `app`.
 void declare_warp_options(CLI::App& app, WarpArguments& arguments);
 
 /// Throws CLI::ValidationError when volumes, mesh or output are missing, or when they stand beside
-/// --batch.
+/// --batch, or when options do not go together.
 void check_complete(const WarpArguments& arguments);
 
 /// Parses words as if they stood on the command line. Throws CLI::ParseError.

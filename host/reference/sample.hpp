@@ -108,6 +108,29 @@ class Sampler {
     }
   }
 
+  /// Adds the values at an index position, not rounded. @returns false outside of the source
+  bool add(const Eigen::Vector3d& x, Eigen::VectorXd& sums) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = static_cast<double>(n_[static_cast<std::size_t>(axis)]);
+      if (!(x(axis) >= -0.5 - rim && x(axis) <= n - 0.5 + rim)) return false;
+    }
+    const Eigen::Vector3d nearest = (x.array() + 0.5).floor();
+    const bool is_sample = x == nearest || filter_ == Filter::nearest;
+    for (int c = 0; c < components_; ++c) {
+      sums(c) += is_sample ? static_cast<double>(data_[offset_of(nearest) + c]) : value_at(x, c);
+    }
+    return true;
+  }
+
+  /// Clamps values to the range of the samples where that is wanted.
+  void clamp(Eigen::VectorXd& values) const {
+    for (int c = 0; c < components_; ++c) {
+      const auto of = static_cast<std::size_t>(c);
+      if (values(c) < low_[of]) values(c) = low_[of];
+      if (values(c) > high_[of]) values(c) = high_[of];
+    }
+  }
+
  private:
   /// Position in memory of component 0 of the voxel that stands at (i, j, k).
   std::int64_t offset_of(const Eigen::Vector3d& ijk) const {

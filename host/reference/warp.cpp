@@ -17,6 +17,7 @@
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/exact_geometry.hpp"
 #include "host/reference/hexahedron.hpp"
+#include "host/reference/rule.hpp"
 #include "host/reference/sample.hpp"
 #include "host/warp_backend.hpp"
 
@@ -43,6 +44,7 @@ class ReferenceBackend : public WarpBackend {
     const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
     owner_.assign(voxels, -1);
     source_position_.assign(voxels, Eigen::Vector3d::Zero());
+    rules_.assign(plan_.mesh.tets.size(), Rule());
     strictly_inside_.assign(plan_.options.count_folded ? voxels : 0, 0);
     StepReport& report = reports_[flight];
     report = {};
@@ -58,7 +60,7 @@ class ReferenceBackend : public WarpBackend {
     for (std::size_t v = 0; v < voxels; ++v) {
       report.counts.covered += owner_[v] >= 0;
       if (target.mask != nullptr) target.mask[v] = owner_[v] >= 0;
-      if (target.tet != nullptr) target.tet[v] = owner_[v];
+      if (target.tet != nullptr) target.tet[v] = cell_of(owner_[v]);
     }
     for (const std::uint8_t count : strictly_inside_) report.counts.folded += count > 1;
     report.counts.voxels = static_cast<std::int64_t>(voxels);
@@ -103,6 +105,9 @@ class ReferenceBackend : public WarpBackend {
       first[axis] = std::max(begin, plan_.region.begin[axis]);
       last[axis] = std::min(end, plan_.region.end[axis] - 1);
     }
+    Rule& rule = rules_[static_cast<std::size_t>(t)];
+    rule = rule_of(rest, now, source_, output_, plan_.options);
+    counts.tets_averaged += rule.averages();
     const std::optional<Hexahedron> hex = hexahedron_of(t, deformed);
     const std::optional<Eigen::Vector3d> shift = hex ? hex->shift : whole_shift(rest, now);
     for (std::int64_t k = first[2]; k <= last[2]; ++k) {
@@ -117,7 +122,7 @@ class ReferenceBackend : public WarpBackend {
             ++strictly_inside_[v];
           }
           if (owner_[v] >= 0) continue;
-          owner_[v] = hex ? hex->number : t;
+          owner_[v] = t;
           const Eigen::Vector3d x(static_cast<double>(i), static_cast<double>(j),
                                   static_cast<double>(k));
           if (shift) {
@@ -132,25 +137,29 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
+  /// Tetrahedra that are no parts of hexahedra; they come first.
+  std::int32_t lone_tets() const {
+    return static_cast<std::int32_t>(plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size());
+  }
+  std::int32_t cell_of(std::int32_t t) const {
+    return t < lone_tets() ? t : lone_tets() + (t - lone_tets()) / 6;
+  }
   /// What tetrahedron t is a part of.
   struct Hexahedron {
-    std::int32_t number;  ///< of the cell: tetrahedra come first
     Trilinear now;
     Trilinear rest;
     std::optional<Eigen::Vector3d> shift;
   };
   std::optional<Hexahedron> hexahedron_of(std::int32_t t, const double* deformed) const {
-    const std::size_t alone = plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size();
-    if (static_cast<std::size_t>(t) < alone) return std::nullopt;
-    const std::size_t h = (static_cast<std::size_t>(t) - alone) / 6;
+    if (t < lone_tets()) return std::nullopt;
+    const auto h = static_cast<std::size_t>(cell_of(t) - lone_tets());
     HexCorners now, rest;
     for (std::size_t node = 0; node < 8; ++node) {
       const auto n = static_cast<std::size_t>(plan_.mesh.hexes[h][node]);
       now[node] = output_.quanta_of(deformed + 3 * n);
       rest[node] = source_.quanta_of(plan_.mesh.rest_positions[n].data());
     }
-    return Hexahedron{static_cast<std::int32_t>(alone + h), Trilinear(now), Trilinear(rest),
-                      whole_shift(rest, now)};
+    return Hexahedron{Trilinear(now), Trilinear(rest), whole_shift(rest, now)};
   }
 
   /// sum_i b_i R_i [voxel]
@@ -181,15 +190,56 @@ class ReferenceBackend : public WarpBackend {
         for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
           T* voxel = out + v * static_cast<std::size_t>(sampler.components());
           if (owner_[v] >= 0) {
-            sampler.store(source_position_[v], voxel);
+            const Rule& rule = rules_[static_cast<std::size_t>(owner_[v])];
+            store(s, sampler, source_position_[v], rule, voxel);
           } else if (plan_.options.outside == Outside::identity) {
-            sampler.store(same_place(i, j, k), voxel);
+            store(s, sampler, same_place(i, j, k), outside_rule(), voxel);
           } else {
             std::fill_n(voxel, sampler.components(), sampler.background());
           }
         }
       }
     }
+  }
+
+  /// Of voxels that show the source at their own place.
+  Rule outside_rule() const {
+    Rule rule;
+    rule.step = source_.from_world * output_.to_world;
+    if (plan_.options.antialias) rule.parts = parts_of(rule.step);
+    return rule;
+  }
+
+  /// One voxel: a sample, or a mean of samples at the midpoints of its parts, by its rule.
+  template <class T>
+  void store(std::size_t s,
+             const Sampler<T>& sampler,
+             const Eigen::Vector3d& x,
+             const Rule& rule,
+             T* voxel) const {
+    const WarpOptions& options = plan_.options;
+    const Quantity quantity =
+        options.quantities.empty() ? Quantity::components : options.quantities[s];
+    const bool turns = quantity != Quantity::components && !rule.is_still && !rule.is_singular;
+    if (!turns && !rule.averages() && rule.scale == 1) return sampler.store(x, voxel);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(sampler.components());
+    int count = 0;
+    for (int c = 0; c < rule.parts(2); ++c) {
+      for (int b = 0; b < rule.parts(1); ++b) {
+        for (int a = 0; a < rule.parts(0); ++a) {
+          const Eigen::Array3d part = Eigen::Vector3i(a, b, c).cast<double>();
+          const Eigen::Array3d within = (part + 0.5) / rule.parts.cast<double>().array() - 0.5;
+          count += sampler.add(x + rule.step * within.matrix(), mean);
+        }
+      }
+    }
+    if (count == 0) {
+      std::fill_n(voxel, sampler.components(), sampler.background());
+      return;
+    }
+    sampler.clamp(mean /= count);
+    if (turns) mean = reoriented(mean, quantity, rule.forward);
+    for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * rule.scale);
   }
 
   /// Source index of an output voxel's own world position; whole voxels within 2^-40 are whole.
@@ -212,6 +262,7 @@ class ReferenceBackend : public WarpBackend {
   IndexSpace source_;
   std::vector<std::int32_t> owner_;
   std::vector<Eigen::Vector3d> source_position_;
+  std::vector<Rule> rules_;  ///< of every tetrahedron
   std::vector<std::uint8_t> strictly_inside_;
 };
 

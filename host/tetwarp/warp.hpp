@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <tetwarp/backend.hpp>
 #include <tetwarp/mesh.hpp>
@@ -35,6 +36,27 @@ enum class Filter {
 enum class Overshoot {
   keep,
   clamp  ///< to the least and largest sample of the source, component by component
+};
+
+/// What the components of a source are, and how they follow the deformation: F is its gradient in
+/// world axes, constant in a tetrahedron, R the rotation nearest to F. Components are along world
+/// axes, on oblique grids too, as VTK has them. Of tetrahedra that are inverted R is the nearest
+/// proper rotation, without the reflection.
+enum class Quantity {
+  components,            ///< numbers that stay what they are
+  vector,                ///< 3 components: R v
+  covariant_vector,      ///< F^-T v, as gradients go
+  contravariant_vector,  ///< F v, as material lines go
+  tensor,                ///< symmetric, 6 components XX YY ZZ XY YZ XZ: R D R^T
+  principal_tensor  ///< the same: eigenvalues stay, the first eigenvector follows F, the second
+                    ///< stays in the plane of both (D. C. Alexander et al., 2001)
+};
+
+/// What a voxel gets of a value.
+enum class Intensity {
+  value,   ///< the value: what a material point shows
+  density  ///< divided by |det F|: what a material point has per volume. The integral stays, as far
+           ///< as sampling goes; vectors are turned first
 };
 
 /// What a voxel gets that no tetrahedron covers.
@@ -70,6 +92,11 @@ struct SkipOptions {
 struct WarpOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
   Overshoot overshoot = Overshoot::keep;
+  /// Where a tetrahedron maps a voxel's step to more than 1.5 voxels of the source, the mean of as
+  /// many samples as it has voxels, at most 16 per axis. Not of nearest and labels.
+  bool antialias = false;
+  Intensity intensity = Intensity::value;
+  std::vector<Quantity> quantities = {};  ///< one per source; empty: components
   Outside outside = Outside::background;
   double background = 0.0;               ///< rounded and saturated to the pixel type
   std::optional<Grid> output_grid = {};  ///< nothing: the source's grid

@@ -1,0 +1,65 @@
+/// @file rule_checks.cpp
+#include "host/rule_checks.hpp"
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace tetwarp {
+
+namespace {
+
+/// Components that a quantity has; 0: any number.
+int components_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::components:
+      return 0;
+    case Quantity::vector:
+    case Quantity::covariant_vector:
+    case Quantity::contravariant_vector:
+      return 3;
+    case Quantity::tensor:
+    case Quantity::principal_tensor:
+      return 6;
+  }
+  return 0;
+}
+
+void check_quantity(const VolumeView& source, Quantity quantity) {
+  if (quantity == Quantity::components) return;
+  const int expected = components_of(quantity);
+  if (source.components != expected) {
+    throw std::invalid_argument(
+        "quantities: a " + std::string(expected == 3 ? "vector" : "tensor") + " has " +
+        std::to_string(expected) + " components, the source " + std::to_string(source.components));
+  }
+}
+
+}  // namespace
+
+void check_rules(std::span<const VolumeView> sources, const WarpOptions& options) {
+  const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
+  if (options.antialias && !blends) {
+    throw std::invalid_argument(
+        "antialias: averages samples, which nearest and labels must not; use another filter");
+  }
+  if (!options.quantities.empty() && options.quantities.size() != sources.size()) {
+    throw std::invalid_argument("quantities: expected none or one per source, " +
+                                std::to_string(sources.size()) + ", got " +
+                                std::to_string(options.quantities.size()));
+  }
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const Quantity quantity =
+        options.quantities.empty() ? Quantity::components : options.quantities[s];
+    check_quantity(sources[s], quantity);
+    const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
+    const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
+    if (computes && (is_wide || options.filter == Filter::labels)) {
+      throw std::invalid_argument(
+          std::string("source: ") + (is_wide ? name_of(sources[s].type) : "labels") +
+          " cannot be scaled or turned; leave out intensity and quantities, or use another type");
+    }
+  }
+}
+
+}  // namespace tetwarp

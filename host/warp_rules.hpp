@@ -1,0 +1,94 @@
+/// @file warp_rules.hpp
+/// The rules of a step's tetrahedra, for the sources that ask for more than plain samples.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "host/warp_backend.hpp"
+#include "host/warp_geometry.hpp"
+#include "host/warp_pairs.hpp"
+#include "kernels/tet_rule.hpp"
+
+namespace tetwarp {
+
+/// The reorientation by the name it has in kernels.
+inline Reorientation reorientation_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::components:
+      return Reorientation::none;
+    case Quantity::vector:
+      return Reorientation::rotate;
+    case Quantity::covariant_vector:
+      return Reorientation::covariant;
+    case Quantity::contravariant_vector:
+      return Reorientation::contravariant;
+    case Quantity::tensor:
+      return Reorientation::finite_strain;
+    case Quantity::principal_tensor:
+      return Reorientation::principal;
+  }
+  return Reorientation::none;
+}
+
+template <class Exec>
+class WarpRules {
+ public:
+  /// The arguments must outlive it.
+  WarpRules(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
+      : exec_(exec), options_(plan.options), axes_(geometry.axes), outside_(plain_rule()) {
+    for (std::size_t s = 0; s < plan.sources.size(); ++s) {
+      const bool is_plain = !options_.antialias && options_.intensity == Intensity::value &&
+                            reorientation(s) == Reorientation::none;
+      if (!is_plain) buffers_[reorientation(s)].reserve(std::ssize(plan.mesh.tets));
+    }
+    for (int axis = 0; axis < 3 && options_.antialias; ++axis) {
+      const auto& linear = geometry.outside.linear;
+      const double step[3] = {linear[0][axis], linear[1][axis], linear[2][axis]};
+      outside_.parts[axis] = parts_of(step);
+    }
+    outside_.is_plain = !is_averaging(outside_);
+  }
+
+  /// Makes the rules of a step whose pairs are there; of an update those that have changed.
+  void run(const WarpPairs<Exec>& pairs) {
+    bool is_first = true;  // tetrahedra that average are counted once
+    for (auto& [reorientation, buffer] : buffers_) {
+      tet_rule(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
+               choice(reorientation), buffer.view(pairs.tet_count()),
+               {&pairs.counters().data->mesh.averaged, is_first ? 1 : 0});
+      is_first = false;
+    }
+  }
+
+  /// Of source s; size 0: all are plain.
+  View<const TetRule> rules(std::size_t s, std::int64_t tet_count) const {
+    const auto found = buffers_.find(reorientation(s));
+    return found == buffers_.end() ? View<const TetRule>{} : found->second.const_view(tet_count);
+  }
+  Reorientation reorientation(std::size_t s) const {
+    return options_.quantities.empty() ? Reorientation::none
+                                       : reorientation_of(options_.quantities[s]);
+  }
+  /// Of voxels that no tetrahedron covers.
+  const TetRule& outside() const { return outside_; }
+
+ private:
+  RuleChoice choice(Reorientation reorientation) const {
+    const double ratio = std::abs(determinant(axes_.source) * determinant(axes_.output_index));
+    return {.averages = options_.antialias,
+            .divides = options_.intensity != Intensity::value,
+            .reorientation = reorientation,
+            .axes = axes_,
+            .voxel_ratio = axes_.are_same ? 1.0 : ratio};
+  }
+
+  Exec& exec_;
+  const WarpOptions& options_;
+  const GridAxes& axes_;
+  TetRule outside_;
+  std::map<Reorientation, typename Exec::template Buffer<TetRule>> buffers_;
+};
+
+}  // namespace tetwarp
