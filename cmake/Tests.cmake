@@ -86,6 +86,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
+    tests/test_warp_fields.cpp
     tests/test_warp_filters.cpp
     tests/test_warp_in_flight.cpp
     tests/test_warp_invariance.cpp
@@ -172,9 +173,10 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
+    tests/test_warp_fields.cpp
     tests/test_warp_in_flight.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

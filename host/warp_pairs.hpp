@@ -72,6 +72,7 @@ class WarpPairs {
 
   View<const std::int32_t> tets() const { return tets_; }
   View<const Node> rest() const { return rest_; }
+  View<const std::int8_t> rest_orientation() const { return orientation_; }
   View<const TetSetup> setups() const { return setups_.const_view(tet_count()); }
   View<const Node> nodes() const { return nodes_[now_].const_view(rest_.size); }
   PairList list() const { return view_of(lists_[now_]); }

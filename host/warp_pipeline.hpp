@@ -7,6 +7,7 @@
 #include "host/pixel_dispatch.hpp"
 #include "host/step_counters.hpp"
 #include "host/warp_backend.hpp"
+#include "host/warp_fields.hpp"
 #include "host/warp_geometry.hpp"
 #include "host/warp_outputs.hpp"
 #include "host/warp_pairs.hpp"
@@ -25,6 +26,7 @@ class WarpPipeline : public WarpBackend {
         exec_(std::move(exec)),
         pairs_(exec_, plan_, geometry_),
         outputs_(exec_, plan_, geometry_.frame),
+        fields_(exec_, plan_, geometry_),
         sources_(exec_, plan_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -130,6 +132,8 @@ class WarpPipeline : public WarpBackend {
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     for (std::size_t s = 0; s < sources_.size(); ++s) raster(s, target, progress);
+    fields_.run(pairs_, {outputs_.tet(target), geometry_.frame.voxel_count()}, stale_,
+                outputs_.fields(target));
     if (stale_.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
     exec_.for_each("warp/raster", (cells + CoveredSumBody::cells - 1) / CoveredSumBody::cells,
@@ -216,6 +220,7 @@ class WarpPipeline : public WarpBackend {
   Exec exec_;
   WarpPairs<Exec> pairs_;
   WarpOutputs<Exec> outputs_;
+  WarpFields<Exec> fields_;
   WarpSources<Exec> sources_;
 
   Flight flights_[2];

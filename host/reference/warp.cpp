@@ -16,6 +16,7 @@
 
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/exact_geometry.hpp"
+#include "host/reference/fields.hpp"
 #include "host/reference/sample.hpp"
 #include "host/warp_backend.hpp"
 
@@ -40,16 +41,11 @@ class ReferenceBackend : public WarpBackend {
   void compute(int flight, const WarpTarget& target, const Progress& progress) override {
     const auto start = std::chrono::steady_clock::now();
     const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
-    owner_.assign(voxels, -1);
-    source_position_.assign(voxels, Eigen::Vector3d::Zero());
-    strictly_inside_.assign(plan_.options.count_folded ? voxels : 0, 0);
     StepReport& report = reports_[flight];
     report = {};
-    const auto tets = static_cast<std::int32_t>(plan_.mesh.tets.size());
-    for (std::int32_t t = 0; t < tets; ++t) {
-      claim(t, positions_[flight].data(), report.counts);
-      if (progress && t % 64 == 0 && !progress(0.5 * t / tets)) throw Cancelled();
-    }
+    const double* const rest = plan_.mesh.rest_positions.front().data();
+    const double* const deformed = positions_[flight].data();
+    claim_all(rest, deformed, report.counts, progress);
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) {
       with_pixel_type(plan_.sources[s].type,
                       [&]<class T>(T) { fill<T>(s, static_cast<T*>(target.volumes[s])); });
@@ -62,7 +58,13 @@ class ReferenceBackend : public WarpBackend {
     for (const std::uint8_t count : strictly_inside_) report.counts.folded += count > 1;
     report.counts.voxels = static_cast<std::int64_t>(voxels);
     report.counts.outside = report.counts.voxels - report.counts.covered;
-    report.counts.tetrahedra = tets;
+    report.counts.tetrahedra = static_cast<std::int64_t>(plan_.mesh.tets.size());
+    write_fields(rest, deformed, target.fields);
+    if (target.fields.forward != nullptr) {
+      Counts exchanged;
+      claim_all(deformed, rest, exchanged, {});
+      write_displacement(target.fields.forward);
+    }
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
     report.timings.raster = passed.count();
     if (progress && !progress(1.0)) throw Cancelled();
@@ -71,14 +73,35 @@ class ReferenceBackend : public WarpBackend {
   StepReport finish(int flight) override { return reports_[flight]; }
 
  private:
-  /// Gives tetrahedron t every voxel of its closed shape that no lower one owns.
-  void claim(std::int32_t t, const double* deformed, Counts& counts) {
-    Corners now, rest;
+  /// Finds the owner of every voxel and its source position.
+  void claim_all(const double* rest,
+                 const double* deformed,
+                 Counts& counts,
+                 const Progress& progress) {
+    const auto voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
+    owner_.assign(voxels, -1);
+    source_position_.assign(voxels, Eigen::Vector3d::Zero());
+    strictly_inside_.assign(plan_.options.count_folded ? voxels : 0, 0);
+    const auto tets = static_cast<std::int32_t>(plan_.mesh.tets.size());
+    for (std::int32_t t = 0; t < tets; ++t) {
+      claim(t, rest, deformed, counts);
+      if (progress && t % 64 == 0 && !progress(0.5 * t / tets)) throw Cancelled();
+    }
+  }
+
+  Corners corners_of(std::int32_t t, const double* positions, const IndexSpace& space) const {
+    Corners corners;
     for (std::size_t node = 0; node < 4; ++node) {
       const auto n = static_cast<std::size_t>(plan_.mesh.tets[static_cast<std::size_t>(t)][node]);
-      now[node] = output_.quanta_of(deformed + 3 * n);
-      rest[node] = source_.quanta_of(plan_.mesh.rest_positions[n].data());
+      corners[node] = space.quanta_of(positions + 3 * n);
     }
+    return corners;
+  }
+
+  /// Gives tetrahedron t every voxel of its closed shape that no lower one owns.
+  void claim(std::int32_t t, const double* rest_positions, const double* deformed, Counts& counts) {
+    const Corners now = corners_of(t, deformed, output_);
+    const Corners rest = corners_of(t, rest_positions, source_);
     check_extent(now);
     check_extent(rest);
     const Integer volume = signed_volume(now);
@@ -163,6 +186,50 @@ class ReferenceBackend : public WarpBackend {
           }
         }
       }
+    }
+  }
+
+  /// Calls body(v, index) for every voxel of the region.
+  template <class Body>
+  void for_each_voxel(const Body& body) const {
+    std::size_t v = 0;
+    for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
+      for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {
+        for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
+          body(v, Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
+                                  static_cast<double>(k)));
+        }
+      }
+    }
+  }
+
+  /// Where the material of each voxel comes from, less the voxel's own place.
+  void write_displacement(float* displacement) const {
+    for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
+      Eigen::Vector3d apart = Eigen::Vector3d::Zero();
+      if (owner_[v] >= 0) {
+        apart = source_.origin - output_.origin + source_.to_world * source_position_[v] -
+                output_.to_world * index;
+      }
+      store({apart(0), apart(1), apart(2)}, v, displacement);
+    });
+  }
+
+  void write_fields(const double* rest, const double* deformed, const FieldTarget& fields) const {
+    if (fields.displacement != nullptr) write_displacement(fields.displacement);
+    if (fields.jacobian == nullptr && fields.gradient == nullptr && fields.strain == nullptr)
+      return;
+    for (std::size_t v = 0; v < owner_.size(); ++v) {
+      Eigen::Matrix3d f = Eigen::Matrix3d::Zero(), e = f;
+      if (owner_[v] >= 0) {
+        f = gradient_of(corners_of(owner_[v], rest, source_), source_,
+                        corners_of(owner_[v], deformed, output_), output_);
+        e = green_lagrange(f);
+      }
+      store({f.determinant()}, v, fields.jacobian);
+      store({f(0, 0), f(0, 1), f(0, 2), f(1, 0), f(1, 1), f(1, 2), f(2, 0), f(2, 1), f(2, 2)}, v,
+            fields.gradient);
+      store({e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(0, 2)}, v, fields.strain);
     }
   }
 
