@@ -221,6 +221,7 @@ if(TETWARP_IO)
       tests/test_io_fclib_solution.cpp
       tests/test_skip_chunks.cpp)
     tetwarp_discover(tetwarp_io_tests io)
+    include(cmake/ItkTests.cmake)
   endif()
 
   # What the contact benchmark rests on: the judge of results.
