@@ -192,7 +192,7 @@ endif()
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers io)
+  list(APPEND tetwarp_public_headers io mesh_import)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
@@ -213,6 +213,7 @@ if(TETWARP_IO)
       tests/test_io_nifti.cpp
       tests/test_io_png.cpp
       tests/test_io_bad_files.cpp
+      tests/test_mesh_import.cpp
       tests/test_contact_certified.cpp
       tests/test_contact_reference_certified.cpp
       tests/test_io_checkpoint.cpp
