@@ -98,6 +98,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
+    tests/test_warp_fields.cpp
     tests/test_warp_filters.cpp
     tests/test_warp_hexahedra.cpp
     tests/test_warp_in_flight.cpp
@@ -186,11 +187,12 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
+    tests/test_warp_fields.cpp
     tests/test_warp_hexahedra.cpp
     tests/test_warp_in_flight.cpp
     $<TARGET_OBJECTS:tetwarp_rule_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -206,7 +208,7 @@ endif()
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers io)
+  list(APPEND tetwarp_public_headers io mesh_import)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
@@ -227,6 +229,7 @@ if(TETWARP_IO)
       tests/test_io_nifti.cpp
       tests/test_io_png.cpp
       tests/test_io_bad_files.cpp
+      tests/test_mesh_import.cpp
       tests/test_contact_certified.cpp
       tests/test_contact_reference_certified.cpp
       tests/test_io_checkpoint.cpp
@@ -235,6 +238,7 @@ if(TETWARP_IO)
       tests/test_io_fclib_solution.cpp
       tests/test_skip_chunks.cpp)
     tetwarp_discover(tetwarp_io_tests io)
+    include(cmake/ItkTests.cmake)
   endif()
 
   # What the contact benchmark rests on: the judge of results.

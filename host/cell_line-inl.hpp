@@ -267,7 +267,7 @@ class CellLine {
     for (; bits != 0; bits &= bits - 1) {
       const std::int64_t voxel = row + std::countr_zero(bits);
       if (job_.mask != nullptr) job_.mask[voxel] = 1;
-      if (job_.tet != nullptr) job_.tet[voxel] = static_cast<std::int32_t>(job_.hexes.cell_of(tet));
+      if (job_.tet != nullptr) job_.tet[voxel] = tet;
     }
   }
 

@@ -9,9 +9,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const Timings& t) {
-  return {{"read", t.read},         {"upload", t.upload}, {"setup", t.setup},
-          {"mask", t.mask},         {"cull", t.cull},     {"raster", t.raster},
-          {"download", t.download}, {"write", t.write},   {"total", t.total}};
+  return {{"read", t.read},   {"upload", t.upload}, {"setup", t.setup},   {"mask", t.mask},
+          {"cull", t.cull},   {"raster", t.raster}, {"fields", t.fields}, {"download", t.download},
+          {"write", t.write}, {"total", t.total}};
 }
 
 Json json_of(const Counts& c) {
@@ -49,6 +49,7 @@ Timings& Timings::operator+=(const Timings& other) {
   mask += other.mask;
   cull += other.cull;
   raster += other.raster;
+  fields += other.fields;
   download += other.download;
   write += other.write;
   total += other.total;

@@ -68,6 +68,7 @@ inline void add_stages(const StageTimes& times, Timings& timings) {
   timings.mask += times.of("warp/mask");
   timings.cull += times.of("warp/cull");
   timings.raster += times.of("warp/raster") + times.of("warp/fold");
+  timings.fields += times.of("warp/fields");
   timings.download += times.of("warp/download");
 }
 

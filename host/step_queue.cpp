@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "host/warp_target.hpp"
 
 namespace tetwarp {
 
@@ -14,10 +17,10 @@ StepQueue::~StepQueue() {
 
 bool StepQueue::writes_to(const WarpTarget& target) const {
   return std::ranges::any_of(flights_, [&](const auto& flight) {
-    const WarpTarget& other = flight->target;
-    return (target.mask != nullptr && target.mask == other.mask) ||
-           (target.tet != nullptr && target.tet == other.tet) ||
-           std::ranges::find_first_of(target.volumes, other.volumes) != target.volumes.end();
+    const std::vector<void*> others = arrays_of(flight->target);
+    return std::ranges::any_of(arrays_of(target), [&](const void* array) {
+      return array != nullptr && std::ranges::find(others, array) != others.end();
+    });
   });
 }
 

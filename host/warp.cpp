@@ -140,6 +140,11 @@ void check_step(const WarpPlan& plan,
   for (const void* volume : target.volumes) {
     if (volume == nullptr) throw std::invalid_argument("target: an output is null");
   }
+  if (target.fields.forward != nullptr && plan.output_grid != plan.sources.front().grid) {
+    throw std::invalid_argument(
+        "target: the forward field is on the source grid, which the output grid is not; leave out "
+        "output_grid or the field");
+  }
   const bool on_device = deformed.memory == Memory::device || target.memory == Memory::device ||
                          target.stream != nullptr;
   if (on_device && backend != Backend::cuda) {

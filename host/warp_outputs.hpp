@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/warp_backend.hpp"
+#include "host/warp_target.hpp"
 #include "kernels/view.hpp"
 
 namespace tetwarp {
@@ -24,11 +25,11 @@ class WarpOutputs {
  public:
   /// The arguments must outlive it.
   WarpOutputs(Exec& exec, const WarpPlan& plan, const OutputFrame& frame)
-      : exec_(exec), frame_(frame) {
-    for (const VolumeView& source : plan.sources) {
-      voxel_bytes_.push_back(source.components * static_cast<std::int64_t>(size_of(source.type)));
-    }
-    for (Slot& slot : slots_) slot.volumes.resize(voxel_bytes_.size());
+      : exec_(exec),
+        frame_(frame),
+        volume_count_(plan.sources.size()),
+        voxel_bytes_(voxel_bytes_of(plan.sources)) {
+    for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
   }
 
   /// Chooses the memory for a step. What the target holds is unknown from now on.
@@ -53,16 +54,31 @@ class WarpOutputs {
   /// That memory has been brought home, or never will be.
   void release(int slot) { slots_[slot].is_leaving = false; }
 
-  /// Where an executor writes volume s, the mask and the owners; null where nobody asked.
-  void* volume(std::size_t s, const WarpTarget& target) {
-    return writable(static_cast<std::byte*>(target.volumes[s]), voxel_bytes_[s], target,
-                    slots_[now_].volumes[s]);
-  }
+  /// Where an executor writes volume s, the mask and the fields; null where nobody asked.
+  void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
   std::uint8_t* mask(const WarpTarget& target) {
-    return writable(target.mask, 1, target, slots_[now_].mask);
+    return static_cast<std::uint8_t*>(writable(place_of(Extra::mask), target));
   }
+  FieldTarget fields(const WarpTarget& target) {
+    const auto field = [&](Extra extra) {
+      return static_cast<float*>(writable(place_of(extra), target));
+    };
+    return {.displacement = field(Extra::displacement),
+            .jacobian = field(Extra::jacobian),
+            .gradient = field(Extra::gradient),
+            .strain = field(Extra::strain),
+            .forward = field(Extra::forward)};
+  }
+  /// The same for the owners, which fields are made of: null where nobody asked for either.
   std::int32_t* tet(const WarpTarget& target) {
-    return writable(target.tet, 1, target, slots_[now_].tet);
+    const std::size_t place = place_of(Extra::tet);
+    if (target.tet != nullptr || !needs_owners(target.fields)) {
+      return static_cast<std::int32_t*>(writable(place, target));
+    }
+    Buffer<std::byte>& own = slots_[now_].arrays[place];
+    const std::int64_t bytes = voxel_bytes_[place] * frame_.voxel_count();
+    own.reserve(bytes);
+    return reinterpret_cast<std::int32_t*>(own.view(bytes).data);
   }
 
   /// What was written: the least window with all marked cells; size 0: all.
@@ -88,27 +104,25 @@ class WarpOutputs {
 
   /// True when deliver() to this target does not keep the host waiting.
   bool delivers_beside(const WarpTarget& target) const {
-    const auto beside = [&](const void* to) { return to == nullptr || exec_.delivers_beside(to); };
-    return std::ranges::all_of(target.volumes, beside) && beside(target.mask) && beside(target.tet);
+    return std::ranges::all_of(arrays_of(target), [&](const void* to) {
+      return to == nullptr || exec_.delivers_beside(to);
+    });
   }
 
-  /// Brings home a window of what a step wrote to the memory of a slot.
+  /// Brings home a window of what a step wrote to the memory of a slot. The forward field is not
+  /// on the cells of the output and comes whole.
   void deliver(int from, const WarpTarget& target, const CellWindow& window) {
-    const Slot& slot = slots_[from];
-    for (std::size_t s = 0; s < slot.volumes.size(); ++s) {
-      deliver(slot.volumes[s], voxel_bytes_[s], static_cast<std::byte*>(target.volumes[s]), window);
+    const std::vector<void*> arrays = arrays_of(target);
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+      if (arrays[a] == nullptr) continue;
+      deliver(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
+              a == place_of(Extra::forward) ? window_of({}) : window);
     }
-    if (target.mask != nullptr) deliver(slot.mask, 1, target.mask, window);
-    if (target.tet != nullptr) deliver(slot.tet, 1, target.tet, window);
   }
 
   /// The step is complete: the target holds its result.
   void finish(const WarpTarget& target) {
-    slots_[now_].held = Held{{target.volumes.begin(), target.volumes.end()},
-                             target.mask,
-                             target.tet,
-                             target.memory,
-                             step_};
+    slots_[now_].held = Held{arrays_of(target), target.memory, step_};
   }
 
  private:
@@ -117,36 +131,38 @@ class WarpOutputs {
 
   /// A target, by its pointers, and the step whose result it got.
   struct Held {
-    std::vector<void*> volumes;
-    const std::uint8_t* mask;
-    const std::int32_t* tet;
+    std::vector<void*> arrays;
     Memory memory;
     std::int64_t step;
 
     bool is(const WarpTarget& target) const {
-      return mask == target.mask && tet == target.tet && memory == target.memory &&
-             std::ranges::equal(volumes, target.volumes);
+      return memory == target.memory && arrays == arrays_of(target);
     }
   };
 
   /// Memory of one target.
   struct Slot {
-    std::vector<Buffer<std::byte>> volumes;
-    Buffer<std::uint8_t> mask;
-    Buffer<std::int32_t> tet;
+    std::vector<Buffer<std::byte>> arrays;
     std::optional<Held> held;
     bool is_leaving = false;  ///< a step in flight writes it or has it brought home
   };
 
-  template <class T>
-  T* writable(T* wanted, std::int64_t per_voxel, const WarpTarget& target, Buffer<T>& buffer) {
+  std::size_t place_of(Extra extra) const {
+    return volume_count_ + static_cast<std::size_t>(extra);
+  }
+
+  void* writable(std::size_t place, const WarpTarget& target) {
+    void* const wanted = arrays_of(target)[place];
     if (wanted == nullptr || target.memory == Memory::device) return wanted;
-    return exec_.writable(wanted, per_voxel * frame_.voxel_count(), buffer);
+    return exec_.writable(static_cast<std::byte*>(wanted),
+                          voxel_bytes_[place] * frame_.voxel_count(), slots_[now_].arrays[place]);
   }
 
   /// Slices as long as they are whole, else slice by slice.
-  template <class T>
-  void deliver(const Buffer<T>& from, std::int64_t per_voxel, T* to, const CellWindow& window) {
+  void deliver(const Buffer<std::byte>& from,
+               std::int64_t per_voxel,
+               std::byte* to,
+               const CellWindow& window) {
     int begin[2], end[2];
     for (int axis = 0; axis < 2; ++axis) {
       begin[axis] = std::max(window.begin[axis] * cell_edge, frame_.begin[axis + 1]);
@@ -158,14 +174,16 @@ class WarpOutputs {
       const std::int64_t first = frame_.offset_of(frame_.begin[0], begin[0], k) * per_voxel;
       const std::int64_t past =
           frame_.offset_of(frame_.end[0], end[0] - 1, k + slices - 1) * per_voxel;
-      const View<const T> all = from.const_view(frame_.voxel_count() * per_voxel);
-      exec_.deliver("warp/download", View<const T>{all.data + first, past - first}, to + first);
+      const View<const std::byte> all = from.const_view(frame_.voxel_count() * per_voxel);
+      exec_.deliver("warp/download", View<const std::byte>{all.data + first, past - first},
+                    to + first);
     }
   }
 
   Exec& exec_;
   const OutputFrame& frame_;
-  std::vector<std::int64_t> voxel_bytes_;
+  std::size_t volume_count_;
+  std::vector<std::int64_t> voxel_bytes_;  ///< per array of a target
   Slot slots_[2];
   int now_ = 0;  ///< the slot of this step
   std::int64_t step_ = 0;

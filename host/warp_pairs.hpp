@@ -68,6 +68,7 @@ class WarpPairs {
   View<const std::int32_t> tets() const { return mesh_.tets; }
   View<const Node> rest() const { return mesh_.rest; }
   const HexView& hexes() const { return mesh_.hexes; }
+  View<const std::int8_t> rest_orientation() const { return mesh_.orientation; }
   View<const TetSetup> setups() const { return setups_.const_view(tet_count()); }
   View<const Node> nodes() const { return nodes_[now_].const_view(mesh_.node_count()); }
   PairList list() const { return view_of(lists_[now_]); }

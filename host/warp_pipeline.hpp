@@ -7,6 +7,7 @@
 #include "host/pixel_dispatch.hpp"
 #include "host/step_counters.hpp"
 #include "host/warp_backend.hpp"
+#include "host/warp_fields.hpp"
 #include "host/warp_geometry.hpp"
 #include "host/warp_outputs.hpp"
 #include "host/warp_pairs.hpp"
@@ -14,6 +15,7 @@
 #include "host/warp_sources.hpp"
 #include "kernels/cell_raster.hpp"
 #include "kernels/cell_work.hpp"
+#include "kernels/voxel_cells.hpp"
 #include "kernels/voxel_count.hpp"
 
 namespace tetwarp {
@@ -28,6 +30,7 @@ class WarpPipeline : public WarpBackend {
         pairs_(exec_, plan_, geometry_),
         outputs_(exec_, plan_, geometry_.frame),
         rules_(exec_, plan_, geometry_),
+        fields_(exec_, plan_, geometry_),
         sources_(exec_, plan_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
@@ -134,6 +137,10 @@ class WarpPipeline : public WarpBackend {
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     for (std::size_t s = 0; s < sources_.size(); ++s) raster(s, target, progress);
+    std::int32_t* const tet = outputs_.tet(target);
+    const View<std::int32_t> owners{tet, tet != nullptr ? geometry_.frame.voxel_count() : 0};
+    fields_.run(pairs_, owners, stale_, outputs_.fields(target));
+    voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
     if (stale_.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
     exec_.for_each("warp/raster", (cells + CoveredSumBody::cells - 1) / CoveredSumBody::cells,
@@ -226,6 +233,7 @@ class WarpPipeline : public WarpBackend {
   WarpPairs<Exec> pairs_;
   WarpOutputs<Exec> outputs_;
   WarpRules<Exec> rules_;
+  WarpFields<Exec> fields_;
   WarpSources<Exec> sources_;
 
   Flight flights_[2];

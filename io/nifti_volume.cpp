@@ -55,6 +55,29 @@ void copy_strided(const std::byte* in,
   }
 }
 
+/// Turns round the samples of a slice of floats.
+template <class T>
+void negate(std::vector<std::byte>& slice) {
+  for (std::size_t at = 0; at < slice.size(); at += sizeof(T)) {
+    T sample;
+    std::memcpy(&sample, slice.data() + at, sizeof sample);
+    sample = T{0} - sample;  // no negative zeros
+    std::memcpy(slice.data() + at, &sample, sizeof sample);
+  }
+}
+
+void negate(PixelType type, std::vector<std::byte>& slice) {
+  type == PixelType::float32 ? negate<float>(slice) : negate<double>(slice);
+}
+
+void check_vectors(const std::string& path, const Volume& volume) {
+  if (volume.components == 3 && !is_integer(volume.type)) return;
+  throw IoError(path, "",
+                "'" + volume.name + "' holds " + std::to_string(volume.components) +
+                    " components of " + name_of(volume.type) +
+                    ", a displacement field has three of float32 or float64; write it as it is");
+}
+
 /// Stores slope * sample + intercept of one slice as component `c` of `out`.
 void scale_slice(const std::vector<std::byte>& slice,
                  const NiftiHeader& header,
@@ -116,12 +139,13 @@ Volume read_nifti(const std::string& path) {
   return volume;
 }
 
-void write_nifti(const std::string& path, const Volume& volume) {
+void write_nifti(const std::string& path, const Volume& volume, NiftiVectors vectors) {
   const bool is_compressed = path.ends_with(".nii.gz");
   if (!is_compressed && !path.ends_with(".nii")) {
     throw IoError(path, "", "is no name of a NIfTI file, end it in .nii or .nii.gz");
   }
   static_cast<void>(VolumeView(volume));  // checks that the samples fill the grid
+  if (vectors == NiftiVectors::lps) check_vectors(path, volume);
   const nifti_1_header header = make_nifti_header(path, volume);
   const char no_extensions[4] = {0, 0, 0, 0};
   FinishedFile file(path);
@@ -139,6 +163,7 @@ void write_nifti(const std::string& path, const Volume& volume) {
     for (std::size_t k = 0; k < slices && is_good; ++k) {
       const std::byte* in = volume.data.data() + (k * slice_voxels * components + c) * size;
       copy_strided(in, components, slice.data(), 1, size, slice_voxels);
+      if (vectors == NiftiVectors::lps && c < 2) negate(volume.type, slice);
       is_good = stream.write(slice.data(), slice.size());
     }
   }

@@ -150,7 +150,7 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
                            chunk.maps[slot], i, j, k, voxel);
       }
       if (job.mask != nullptr) job.mask[voxel] = 1;
-      if (job.tet != nullptr) job.tet[voxel] = static_cast<std::int32_t>(job.hexes.cell_of(t));
+      if (job.tet != nullptr) job.tet[voxel] = t;
     }
   }
   for (int d = 0; d < raster_depth; ++d) {

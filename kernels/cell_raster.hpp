@@ -217,8 +217,7 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
 /// The map of the hexahedron that tetrahedron t of a job belongs to.
 template <class T>
 TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
-  return make_hex_map(job.hexes.nodes_of(t), job.tets.data + 4 * t, job.setups[t], job.nodes,
-                      job.rest);
+  return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
 }
 
 /// Stores frame voxel x, which `tet` owns and `map` is of.

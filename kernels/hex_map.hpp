@@ -115,36 +115,36 @@ struct HexMap {
   double start[4][3];     ///< local coordinates of the tetrahedron's nodes
 };
 
-/// @param hex     its nodes
-/// @param corner  nodes of the tetrahedron, all of them nodes of the hexahedron
-/// @param nodes   deformed, in the frame [quantum]
-/// @param rest    in the source's index space [quantum]
-TETWARP_HD HexMap make_hex_map(const std::int32_t* hex,
-                               const std::int32_t* corner,
-                               const TetSetup& tet,
-                               View<const Node> nodes,
-                               View<const Node> rest) {
+/// What the maps of a mesh's hexahedra are made of.
+struct HexMesh {
+  HexView hexes;
+  View<const std::int32_t> tets;  ///< [4 * tet_count]
+  View<const Node> nodes;         ///< deformed, in the frame [quantum]
+  View<const Node> rest;          ///< in the source's index space [quantum]
+};
+
+/// @pre tetrahedron t, which `tet` is the setup of, belongs to a hexahedron
+TETWARP_HD HexMap make_hex_map(const HexMesh& mesh, std::int64_t t, const TetSetup& tet) {
+  const std::int32_t* const hex = mesh.hexes.nodes_of(t);
   HexMap map;
-  map.output = hex_corners(nodes, hex, tet.anchor);
-  for (int axis = 0; axis < 3; ++axis) map.whole[axis] = rest[hex[0]].x[axis] >> quantum_bits;
-  map.source = hex_corners(rest, hex, map.whole);
+  map.output = hex_corners(mesh.nodes, hex, tet.anchor);
+  for (int axis = 0; axis < 3; ++axis) map.whole[axis] = mesh.rest[hex[0]].x[axis] >> quantum_bits;
+  map.source = hex_corners(mesh.rest, hex, map.whole);
   for (int n = 0; n < 4; ++n) {
     int a = 0;
-    while (a < 7 && hex[a] != corner[n]) ++a;
+    while (a < 7 && hex[a] != mesh.tets[4 * t + n]) ++a;
     for (int axis = 0; axis < 3; ++axis) map.start[n][axis] = unit_corner(a, axis);
   }
   return map;
 }
 
-/// Source position of a voxel that the tetrahedron owns, relative to map.whole.
-/// @param x  the voxel [frame]
-TETWARP_HD_RARE void hex_position(const HexMap& map,
-                                  const TetSetup& tet,
-                                  const int* x,
-                                  double* at) {
-  double target[3], u[3] = {0, 0, 0};
-  for (int axis = 0; axis < 3; ++axis)
+/// Local coordinates of frame voxel x, which `tet` owns and `map` is of.
+TETWARP_HD_RARE void hex_local(const HexMap& map, const TetSetup& tet, const int* x, double* u) {
+  double target[3];
+  for (int axis = 0; axis < 3; ++axis) {
     target[axis] = static_cast<double>(x[axis] - tet.anchor[axis]);
+    u[axis] = 0;
+  }
   for (int face = 0; face < 4; ++face) {
     const double value = tet.plane[0][face] * target[0] + tet.plane[1][face] * target[1] +
                          tet.plane[2][face] * target[2] + tet.plane[3][face];
@@ -152,14 +152,27 @@ TETWARP_HD_RARE void hex_position(const HexMap& map,
     for (int axis = 0; axis < 3; ++axis) u[axis] += weight * map.start[face][axis];
   }
   invert_hex(map.output, target, u);
-  Matrix3 gradient;
-  map_hex(map.source, u, at, gradient);
 }
 
-/// Source position of frame voxel x, which `tet` owns and `map` is of, in two parts.
+/// Gradient of the source position by the voxel there, both in index space. False where there is
+/// none.
+TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradient) {
+  double x[3];
+  Matrix3 output, source;
+  map_hex(map.output, u, x, output);
+  map_hex(map.source, u, x, source);
+  if (determinant(output) == 0) return false;
+  gradient = source * inverse(output);
+  return true;
+}
+
+/// Its source position, in two parts.
 TETWARP_HD void place_in_hex(
     const TetSetup& tet, const HexMap& map, const int* x, int* whole, double* at) {
-  hex_position(map, tet, x, at);
+  double u[3];
+  Matrix3 gradient;
+  hex_local(map, tet, x, u);
+  map_hex(map.source, u, at, gradient);
   for (int axis = 0; axis < 3; ++axis) {
     const double all = floor(at[axis]) + static_cast<double>(map.whole[axis]);
     const double near = min_of(max_of(all, -farthest_whole), farthest_whole);

@@ -9,6 +9,7 @@
 
 #include <tetwarp/warp.hpp>
 
+#include "tests/field_buffers.hpp"
 #include "tests/scenes.hpp"
 
 namespace tetwarp::test {
@@ -19,6 +20,7 @@ class Series {
   std::vector<Volume> volumes;
   std::vector<std::uint8_t> mask;
   std::vector<std::int32_t> tet;
+  FieldBuffers fields;
 
   Series(const std::vector<Volume>& sources, const scenes::Scene& scene, WarpOptions options)
       : warper_(views_of(sources), scene.mesh, with_grid(options, scene)) {
@@ -28,6 +30,7 @@ class Series {
     }
     mask.assign(static_cast<std::size_t>(grid.voxel_count()), 0xee);
     tet.assign(mask.size(), -99);
+    fields = FieldBuffers(grid, scene.source_grid == scene.output_grid);
   }
 
   Counts step(const std::vector<Point3>& deformed,
@@ -38,6 +41,7 @@ class Series {
     const WarpTarget target = {.volumes = pointers,
                                .mask = mask.data(),
                                .tet = tet.data(),
+                               .fields = fields.target(),
                                .holds_previous = holds_previous};
     return warper_.step(deformed, target, progress).counts;
   }
@@ -48,14 +52,16 @@ class Series {
       other_volumes_ = volumes;
       other_mask_ = mask;
       other_tet_ = tet;
+      other_fields_ = fields;
     }
     volumes.swap(other_volumes_);
     mask.swap(other_mask_);
     tet.swap(other_tet_);
+    fields.swap(other_fields_);
   }
 
   bool has_bits_of(const Series& other) const {
-    bool same = mask == other.mask && tet == other.tet;
+    bool same = mask == other.mask && tet == other.tet && fields == other.fields;
     for (std::size_t s = 0; s < volumes.size(); ++s) {
       same = same && volumes[s].data == other.volumes[s].data;
     }
@@ -75,6 +81,7 @@ class Series {
   std::vector<Volume> other_volumes_;
   std::vector<std::uint8_t> other_mask_;
   std::vector<std::int32_t> other_tet_;
+  FieldBuffers other_fields_;
 };
 
 /// Nodes within `radius` voxels of a point of the scene's output grid get what `change` makes of

@@ -29,6 +29,8 @@ class StepBuffers {
     volume_count_ = parts_.size();
     add(voxels);
     add(voxels * sizeof(std::int32_t));
+    add(3 * voxels * sizeof(float));
+    add(6 * voxels * sizeof(float));
     for (Bits& part : parts_) {
       pointers_.push_back(part.data());
       if (pages == Pages::locked) locks_.emplace_back(part.data(), part.size());
@@ -39,6 +41,8 @@ class StepBuffers {
     return {.volumes = {pointers_.data(), volume_count_},
             .mask = static_cast<std::uint8_t*>(pointers_[volume_count_]),
             .tet = static_cast<std::int32_t*>(pointers_[volume_count_ + 1]),
+            .fields = {.displacement = static_cast<float*>(pointers_[volume_count_ + 2]),
+                       .strain = static_cast<float*>(pointers_[volume_count_ + 3])},
             .holds_previous = holds_previous};
   }
 

@@ -111,6 +111,52 @@ TEST(Cli, WritesMaskAndOwnerBesideTheArray) {
   }
 }
 
+/// The box moves by 3 voxels of 2 along x; at rest it covers all voxels.
+TEST(Cli, WritesFieldsOfTheDeformationAndExportsDisplacementsForItk) {
+  const Scene scene;
+
+  const CommandResult result = scene.warp({"-o", "out.vtkhdf", "--steps", "3", "--outputs",
+                                           "displacement,jacobian,gradient,strain,forward"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto expect_field = [&](const std::string& name, const std::vector<float>& inside,
+                                bool covers_all) {
+    const Volume field = read_volume(scene / "out.vtkhdf", "tetwarp_" + name);
+    ASSERT_EQ(field.components, std::ssize(inside)) << name;
+    const auto samples = field.samples<float>();
+    for (std::size_t s = 0; s < samples.size(); ++s) {
+      const bool is_covered = covers_all || s / inside.size() % 12 >= 3;
+      ASSERT_EQ(samples[s], is_covered ? inside[s % inside.size()] : 0) << name << ' ' << s;
+    }
+  };
+  expect_field("displacement", {-6, 0, 0}, false);
+  expect_field("jacobian", {1}, false);
+  expect_field("gradient", {1, 0, 0, 0, 1, 0, 0, 0, 1}, false);
+  expect_field("strain", {0, 0, 0, 0, 0, 0}, false);
+  expect_field("forward", {6, 0, 0}, true);
+  for (const auto& [vectors, x] : {std::pair<Names, float>{{}, 6}, {{"--vectors", "world"}, -6}}) {
+    Names words{"export", "out.vtkhdf", "--array", "tetwarp_displacement", "-o", "field.nii"};
+    words.insert(words.end(), vectors.begin(), vectors.end());
+    EXPECT_EQ(run_command(scene, words).exit_code, 0);
+    EXPECT_EQ(read_nifti(scene / "field.nii").samples<float>()[3 * 5], x);
+  }
+}
+
+/// The box is beyond the grid at both steps: no voxel shows another sample.
+TEST(Cli, AForwardFieldMayChangeWhereTheVolumeDoesNot) {
+  const Scene scene;
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({100, 101}), {0, 1});
+
+  const CommandResult result =
+      scene.warp({"-o", "out.vtkhdf", "--temporal", "--outputs", "forward"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const std::int64_t step : {0, 1}) {
+    const Volume forward = read_volume(scene / "out.vtkhdf", "tetwarp_forward", step);
+    EXPECT_EQ(forward.samples<float>()[3 * 17], 2.0F * static_cast<float>(100 + step));
+  }
+}
+
 TEST(Cli, CutsTheOutputToTheRegionAndMovesItsOrigin) {
   const Scene scene;
 

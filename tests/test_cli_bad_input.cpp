@@ -204,6 +204,22 @@ TEST(BadInput, RefusesAnExtraOutputWithTheNameOfAnArray) {
                  {warp_with({"--array", "tetwarp_mask", "--outputs", "mask"}), "has this name"}, 1);
 }
 
+TEST(BadInput, RefusesFieldsThatCannotBe) {
+  const Scene scene;
+
+  expect_refused(scene,
+                 {warp_with({"--outputs", "forward", "--dims", "5,5,5"}), "leave out --grid"}, 1);
+  expect_refused(scene,
+                 {{"export", "volume.vtkhdf", "--vectors", "lps", "-o", "field.nii"},
+                  "a displacement field has three"},
+                 1);
+  write_text(scene / "mesh.msh", "Exit;");
+  fs::remove(scene / "mesh.vtkhdf");
+  expect_refused(scene, {{"import", "mesh.msh", "-o", "out.vtkhdf"}, "mesh.msh: "}, 1);
+  expect_refused(scene,
+                 {{"import", "absent.vtu", "-o", "out.vtkhdf"}, "absent.vtu: cannot be opened"}, 1);
+}
+
 TEST(BadInput, SaysWhyCudaCannotRun) {
   const BackendStatus cuda = available_backends().front();
   if (cuda.usable) GTEST_SKIP() << "a CUDA device answers: " << cuda.device;

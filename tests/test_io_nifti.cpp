@@ -26,6 +26,12 @@ nifti_1_header plain_header() {
   return header;
 }
 
+nifti_1_header header_of(const std::string& path) {
+  nifti_1_header header{};
+  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
+  return header;
+}
+
 /// The header, four empty bytes and twelve samples 0, 1, 2...
 void write_file(const std::string& path, const nifti_1_header& header, std::int16_t samples = 12) {
   std::ofstream file(path, std::ios::binary);
@@ -84,15 +90,11 @@ TEST(Nifti, WritesTheSameAffineMapAgain) {
 TEST(Nifti, WritesBothFormsOfARotationAndTheSformAloneOfAShear) {
   const ScratchFolder folder;
   Volume volume = counting_volume(PixelType::uint8);
-  const auto header_of = [&](const std::string& path) {
-    write_nifti(path, volume);
-    nifti_1_header header;
-    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
-    return header;
-  };
+  write_nifti(folder / "a.nii", volume);
+  volume.grid.direction = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
+  write_nifti(folder / "b.nii", volume);
 
   EXPECT_GT(header_of(folder / "a.nii").qform_code, 0);
-  volume.grid.direction = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
   EXPECT_EQ(header_of(folder / "b.nii").qform_code, 0);
   EXPECT_GT(header_of(folder / "b.nii").sform_code, 0);
   const Grid back = read_nifti(folder / "b.nii").grid;
@@ -172,6 +174,40 @@ TEST(Nifti, ReadsTheOtherByteOrder) {
 
   EXPECT_EQ(volume.grid, expected.grid);
   EXPECT_EQ(volume.data, expected.data);
+}
+
+/// RAS as the grid is, LPS as ITK takes the vectors of an image.
+TEST(Nifti, TurnsDisplacementsForItkAndRefusesOtherSamples) {
+  const ScratchFolder folder;
+  for (const PixelType type : {PixelType::float32, PixelType::float64}) {
+    Volume volume = make_volume(oblique_grid(), type, 3);
+    std::vector<double> expected;
+    for (std::size_t s = 0; s < 3 * 7 * 5 * 4; ++s) {
+      const double value = static_cast<double>(s % 11) - 4;
+      type == PixelType::float32 ? volume.samples<float>()[s] = static_cast<float>(value)
+                                 : volume.samples<double>()[s] = value;
+      expected.push_back(s % 3 == 2 ? value : -value);
+    }
+
+    write_nifti(folder / "v.nii", volume, NiftiVectors::lps);
+
+    const nifti_1_header header = header_of(folder / "v.nii");
+    EXPECT_EQ(header.intent_code, NIFTI_INTENT_VECTOR);
+    EXPECT_EQ(header.dim[0], 5);
+    EXPECT_EQ(header.dim[5], 3);
+    const Volume back = read_nifti(folder / "v.nii");
+    for (std::size_t s = 0; s < expected.size(); ++s) {
+      const double value =
+          type == PixelType::float32 ? back.samples<float>()[s] : back.samples<double>()[s];
+      ASSERT_EQ(value, expected[s]) << s;
+    }
+  }
+  for (const Volume& other :
+       {counting_volume(PixelType::float32, 6), counting_volume(PixelType::int16, 3)}) {
+    const std::string error =
+        io_error([&] { write_nifti(folder / "w.nii", other, NiftiVectors::lps); });
+    EXPECT_NE(error.find("three of float32 or float64"), std::string::npos) << error;
+  }
 }
 
 TEST(Nifti, KeepsNaN) {

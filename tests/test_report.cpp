@@ -42,8 +42,8 @@ TEST(Report, HasTheseFieldsAndNoOthers) {
             (std::set<std::string>{"version", "backend", "backend_reason", "device", "threads",
                                    "position_quantum", "timings", "counts", "steps"}));
   EXPECT_EQ(names_of(json["timings"]),
-            (std::set<std::string>{"read", "upload", "setup", "mask", "cull", "raster", "download",
-                                   "write", "total"}));
+            (std::set<std::string>{"read", "upload", "setup", "mask", "cull", "raster", "fields",
+                                   "download", "write", "total"}));
   EXPECT_EQ(names_of(json["counts"]),
             (std::set<std::string>{
                 "voxels",          "covered",        "outside",         "tetrahedra",
@@ -90,7 +90,7 @@ TEST(Report, SumsCountsAndTimesOverSteps) {
 TEST(Report, MixesUpNoField) {
   Report report;
   report.backend = Backend::reference;
-  report.timings = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  report.timings = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   report.counts = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12,
                    13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
   report.timings += report.timings;
@@ -109,8 +109,8 @@ TEST(Report, MixesUpNoField) {
     EXPECT_EQ(json["counts"][name], value += 2) << name;
   }
   value = 0;
-  for (const char* name :
-       {"read", "upload", "setup", "mask", "cull", "raster", "download", "write", "total"}) {
+  for (const char* name : {"read", "upload", "setup", "mask", "cull", "raster", "fields",
+                           "download", "write", "total"}) {
     EXPECT_EQ(json["timings"][name], value += 2) << name;
   }
   EXPECT_EQ(json["backend"], "reference");

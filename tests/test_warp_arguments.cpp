@@ -217,6 +217,18 @@ TEST(WarpArguments, NameTheTarget) {
   EXPECT_EQ(complaint_of(on_device), on_cuda);
   EXPECT_EQ(complaint_of(streamed), on_cuda);
   EXPECT_EQ(complaint([&] { warper.step(device_positions); }), on_cuda);
+
+  Call elsewhere;
+  elsewhere.options.output_grid = elsewhere.source.grid;
+  elsewhere.options.output_grid->origin[1] += 1;
+  Warper other(elsewhere.source, elsewhere.mesh, elsewhere.options);
+  std::vector<float> forward(3 * static_cast<std::size_t>(output.grid.voxel_count()));
+  EXPECT_EQ(complaint([&] {
+              other.step(elsewhere.deformed, {.volumes = std::span(pointers).first(1),
+                                              .fields = {.forward = forward.data()}});
+            }),
+            "target: the forward field is on the source grid, which the output grid is not; leave "
+            "out output_grid or the field");
 }
 
 TEST(WarpArguments, OneNewVolumeCannotHoldSeveralSources) {

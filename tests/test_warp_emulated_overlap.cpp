@@ -59,7 +59,7 @@ TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
 /// A step waits once for its positions, then four times, per output, for its kernels: of these the
 /// first counts, as the others come after it on the same stream.
 TEST_F(EmulatedOverlap, AForgottenWaitIsSeen) {
-  constexpr int waits_of_step = 5;
+  constexpr int waits_of_step = 7;
   const Steps steps = shaken(5);
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
   const auto run = [&](int ahead, int forgotten) {
@@ -95,7 +95,7 @@ TEST_F(EmulatedOverlap, KernelsAreAskedForBeforeTheLastStepIsHome) {
       EXPECT_EQ(std::ranges::count(calls, 'W'), 1) << calls;
       EXPECT_EQ(calls.find('U'), 0u) << calls;
       EXPECT_LT(calls.find('W'), calls.find('L')) << calls;
-      EXPECT_EQ(std::ranges::count(calls, 'D'), 1 + 4) << calls;  // counters and outputs
+      EXPECT_EQ(std::ranges::count(calls, 'D'), 1 + 6) << calls;  // counters and outputs
     }
     if (s == 0) continue;
     EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is home already";

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
 
@@ -13,12 +14,21 @@ namespace tetwarp::cli {
 
 namespace {
 
+const Choices<NiftiVectors> vector_axes{{"world", NiftiVectors::world}, {"lps", NiftiVectors::lps}};
+
 struct ExportArguments {
   std::string input;
   std::string output;
   std::string array;
   std::int64_t step = 0;
+  std::optional<NiftiVectors> vectors;
 };
+
+/// What --vectors was given, else what the array is made for.
+NiftiVectors vectors_of(const ExportArguments& arguments, const Volume& volume) {
+  const bool is_field = volume.name == "tetwarp_displacement" || volume.name == "tetwarp_forward";
+  return arguments.vectors.value_or(is_field ? NiftiVectors::lps : NiftiVectors::world);
+}
 
 int run_export(const ExportArguments& arguments) {
   check_kind(arguments.input, FileKind::volume, "usage: tetwarp export VOLUME -o FILE.nii.gz");
@@ -27,8 +37,10 @@ int run_export(const ExportArguments& arguments) {
   }
   check_output_file(arguments.output, {arguments.input});
   const Volume volume = read_volume(arguments.input, arguments.array, arguments.step);
-  write_nifti(arguments.output, volume);
-  fmt::print("{} of {}: {}\n", volume.name, name_of(volume.type), arguments.output);
+  const NiftiVectors vectors = vectors_of(arguments, volume);
+  write_nifti(arguments.output, volume, vectors);
+  fmt::print("{} of {}{}: {}\n", volume.name, name_of(volume.type),
+             vectors == NiftiVectors::lps ? " as LPS displacements" : "", arguments.output);
   return 0;
 }
 
@@ -38,7 +50,9 @@ void add_export_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = add_subcommand(app, "export", "Turn one array of a volume into a NIfTI image",
                                      "VOLUME -o FILE [options]",
-                                     "  tetwarp export warped.vtkhdf -o warped.nii.gz\n");
+                                     "  tetwarp export warped.vtkhdf -o warped.nii.gz\n"
+                                     "  tetwarp export warped.vtkhdf --array tetwarp_displacement "
+                                     "-o field.nii.gz\n");
   command->add_option("VOLUME", arguments->input, "VTKHDF image")->required()->type_name("");
   command->add_option("-o,--output", arguments->output, "image to write, .nii or .nii.gz")
       ->required()
@@ -47,6 +61,15 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("--step", arguments->step, "of a volume file with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
+  command
+      ->add_option_function<std::string>(
+          "--vectors",
+          [arguments](const std::string& word) {
+            arguments->vectors = meaning_of("--vectors", word, vector_axes);
+          },
+          "axes of vectors: as they are, or those of ITK and ANTs, x and y turned round [lps for "
+          "tetwarp_displacement and tetwarp_forward, else world]")
+      ->type_name("world|lps");
   command->callback([arguments, &run] { run = [arguments] { return run_export(*arguments); }; });
 }
 

@@ -94,9 +94,11 @@ void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
                     fmt::format("{} samples cannot hold --background {}; give a finite value",
                                 name_of(array.type), arguments.warp.background));
     }
-    if ((arguments.extra.mask && array.name == mask_array_name) ||
-        (arguments.extra.tet && array.name == tet_array_name)) {
-      throw IoError(plan.path, array.name, "an extra output has this name; leave out one of them");
+    for (const std::size_t e : arguments.extra) {
+      if (array.name == extra_outputs[e].array()) {
+        throw IoError(plan.path, array.name,
+                      "an extra output has this name; leave out one of them");
+      }
     }
   }
 }
@@ -111,11 +113,14 @@ bool leaves_time(Backend backend, const WarpArguments& arguments) {
 
 /// Two copies of every array, source and output, and the extra outputs must fit.
 /// @returns whether the outputs fit once more
-bool check_memory(const VolumePlan& plan, const ExtraOutputs& extra) {
+bool check_memory(const VolumePlan& plan, const ExtraChoice& extra) {
   const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
   const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
-  double source_bytes = 0,
-         output_bytes = output_voxels * ((extra.mask ? 1 : 0) + (extra.tet ? 4 : 0));
+  double source_bytes = 0, output_bytes = 0;
+  for (const std::size_t e : extra) {
+    output_bytes += output_voxels * extra_outputs[e].components *
+                    static_cast<double>(size_of(extra_outputs[e].type));
+  }
   for (const ArrayHeader& array : plan.arrays) {
     const double voxel_bytes = array.components * static_cast<double>(size_of(array.type));
     source_bytes += source_voxels * voxel_bytes;
@@ -180,6 +185,11 @@ VolumePlan plan_volume(const std::string& path,
   plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
   plan.written_grid = cut_grid(plan.output_grid, arguments.warp.region);
   check_axes(plan);
+  if (arguments.extra.contains(forward_output) && plan.output_grid != plan.source_grid) {
+    throw std::invalid_argument(path +
+                                ": --outputs forward is on the volume's own grid; leave out "
+                                "--grid, --dims, --origin, --spacing and --direction");
+  }
   plan.writes_beside =
       check_memory(plan, arguments.extra) && steps.size() > 1 && leaves_time(backend, arguments);
   // On processors beginning a step is computing it: the write of the one before starts first.

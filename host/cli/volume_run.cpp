@@ -103,8 +103,10 @@ void VolumeRun::write_temporal() {
     const auto write = [this, time](const StepReport& step_report,
                                     const std::vector<const Volume*>& volumes) {
       const Counts& counts = step_report.counts;
+      const bool keeps_forward =
+          !arguments_.extra.contains(forward_output) || counts.tets_unchanged == counts.tetrahedra;
       if (counts.steps_unchanged > 0 ||
-          (counts.cells > 0 && counts.cells_unchanged == counts.cells)) {
+          (counts.cells > 0 && counts.cells_unchanged == counts.cells && keeps_forward)) {
         temporal_->repeat(time);
       } else {
         temporal_->append(time, volumes);
@@ -163,8 +165,8 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write 
   WarpTarget target;
   target.volumes = pointers;
   target.holds_previous = true;
-  if (outputs.mask) target.mask = outputs.mask->samples<std::uint8_t>().data();
-  if (outputs.tet) target.tet = outputs.tet->samples<std::int32_t>().data();
+  auto extra = outputs.extra.begin();
+  for (const std::size_t e : arguments_.extra) set_extra_output(target, e, (extra++)->data.data());
   const auto step_voxels = static_cast<double>(volume_.written_grid.voxel_count());
   const bool writes = writing_.valid();
   const auto steps_done = static_cast<double>(result_.report.steps.size() + (writes ? 1 : 0));
@@ -220,22 +222,22 @@ void VolumeRun::make_outputs(Outputs& outputs) const {
   for (const Volume& source : sources_) {
     outputs.warped.push_back(make_volume(grid, source.type, source.components, source.name));
   }
-  if (arguments_.extra.mask) outputs.mask = make_volume(grid, PixelType::uint8, 1, mask_array_name);
-  if (arguments_.extra.tet) outputs.tet = make_volume(grid, PixelType::int32, 1, tet_array_name);
+  for (const std::size_t e : arguments_.extra) {
+    const ExtraOutput& extra = extra_outputs[e];
+    outputs.extra.push_back(make_volume(grid, extra.type, extra.components, extra.array()));
+  }
   if (plan_.backend != Backend::cuda) return;
   const auto lock = [&](Volume& volume) {
     outputs.locks.emplace_back(volume.data.data(), volume.data.size());
   };
   for (Volume& volume : outputs.warped) lock(volume);
-  if (outputs.mask) lock(*outputs.mask);
-  if (outputs.tet) lock(*outputs.tet);
+  for (Volume& volume : outputs.extra) lock(volume);
 }
 
 std::vector<const Volume*> VolumeRun::Outputs::volumes() const {
   std::vector<const Volume*> all;
   for (const Volume& volume : warped) all.push_back(&volume);
-  if (mask) all.push_back(&*mask);
-  if (tet) all.push_back(&*tet);
+  for (const Volume& volume : extra) all.push_back(&volume);
   return all;
 }
 
@@ -281,8 +283,7 @@ Fingerprint VolumeRun::fingerprint_of_inputs() const {
   Fingerprint fingerprint;
   fingerprint.add(TETWARP_VERSION);
   fingerprint.add(warp_options());
-  fingerprint.add(arguments_.extra.mask);
-  fingerprint.add(arguments_.extra.tet);
+  for (const std::size_t e : arguments_.extra) fingerprint.add(e);
   fingerprint.add(volume_.written_grid);
   for (const Volume& source : sources_) fingerprint.add(source);
   fingerprint.add(plan_.mesh.mesh().tets);

@@ -65,9 +65,8 @@ class VolumeRun {
 
   /// What a step writes to.
   struct Outputs {
-    std::vector<Volume> warped;  ///< as sources_, on the written grid
-    std::optional<Volume> mask;
-    std::optional<Volume> tet;
+    std::vector<Volume> warped;   ///< as sources_, on the written grid
+    std::vector<Volume> extra;    ///< in the order of the table
     std::vector<PageLock> locks;  ///< on a device, of all these
 
     std::vector<const Volume*> volumes() const;

@@ -23,8 +23,13 @@ const Choices<Quantity> tensor_laws{{"finite-strain", Quantity::tensor},
                                     {"principal", Quantity::principal_tensor}};
 const Choices<Outside> outsides{{"background", Outside::background},
                                 {"identity", Outside::identity}};
-const Choices<bool ExtraOutputs::*> extra_outputs{{"mask", &ExtraOutputs::mask},
-                                                  {"tet", &ExtraOutputs::tet}};
+
+/// Words of --outputs with their place in the table.
+Choices<std::size_t> extra_choices() {
+  Choices<std::size_t> choices;
+  for (const ExtraOutput& extra : extra_outputs) choices.emplace_back(extra.word, choices.size());
+  return choices;
+}
 
 /// Declares an option whose text a function turns into a value; its std::invalid_argument is a
 /// usage error.
@@ -131,11 +136,12 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
                  "the same of 6: XX YY ZZ XY YZ XZ [finite-strain]");
   add_choice(app, "--outside", warp.outside, outsides, "what no tetrahedron covers [background]");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
-  ExtraOutputs& extra = arguments.extra;
+  ExtraChoice& extra = arguments.extra;
   add_word_list(
-      app, "--outputs", extra_outputs,
-      [&extra](bool ExtraOutputs::*wanted) { extra.*wanted = true; },
-      "extra arrays tetwarp_mask and tetwarp_tet");
+      app, "--outputs", extra_choices(), [&extra](std::size_t wanted) { extra.insert(wanted); },
+      "extra arrays tetwarp_mask and so on: covered or not; owning tetrahedron; rest less output "
+      "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
+      "deformed less rest position, of the source's voxels; zero (tet: -1) where nothing covers");
   app.add_flag("--temporal", arguments.temporal, "one file with all steps");
   app.add_option("--compress", arguments.compress, "deflate level, 0 is none [0]")
       ->check(between(0, 9))

@@ -9,20 +9,11 @@
 #include <tetwarp/io.hpp>
 #include <tetwarp/warp.hpp>
 
+#include "host/cli/extra_outputs.hpp"
 #include "host/cli/output_grid.hpp"
 #include "host/cli/step_selection.hpp"
 
 namespace tetwarp::cli {
-
-/// Names of the extra arrays.
-constexpr const char* mask_array_name = "tetwarp_mask";
-constexpr const char* tet_array_name = "tetwarp_tet";
-
-/// Arrays written beside the warped ones.
-struct ExtraOutputs {
-  bool mask = false;  ///< uint8, 1 where a tetrahedron covers the voxel
-  bool tet = false;   ///< int32, owning tetrahedron, -1 outside
-};
 
 /// Syntax is checked, files are not looked at.
 struct WarpArguments {
@@ -35,7 +26,7 @@ struct WarpArguments {
   GridChoice grid;
   std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
   WarpOptions warp;  ///< without output_grid and quantities, which need the files
-  ExtraOutputs extra;
+  ExtraChoice extra;
   int compress = 0;
   bool temporal = false;
   bool resume = false;

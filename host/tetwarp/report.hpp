@@ -17,6 +17,7 @@ struct Timings {
   double mask = 0;
   double cull = 0;
   double raster = 0;
+  double fields = 0;  ///< displacement, strain and the like, when asked for
   double download = 0;
   double write = 0;
   double total = 0;

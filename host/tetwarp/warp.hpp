@@ -112,12 +112,29 @@ struct WarpOptions {
 /// Called within step() or begin_step().
 using Progress = std::function<bool(double fraction)>;
 
+/// Fields of the deformation, float32 in world axes, [k][j][i][component] over
+/// Warper::output_grid(). All are zero where no tetrahedron covers the voxel.
+struct FieldTarget {
+  /// 3: backward, what a voxel shows was at the voxel's position plus this at rest. The
+  /// displacement field that other programs resample by.
+  float* displacement = nullptr;
+  /// 1: det F, with F the gradient of the deformed position by the rest position; negative where
+  /// inverted.
+  float* jacobian = nullptr;
+  float* gradient = nullptr;  ///< 9: F, row major
+  float* strain = nullptr;    ///< 6: Green-Lagrange, (F^T F - I) / 2, as XX YY ZZ XY YZ XZ
+  /// 3: the inverse field, on the source grid, which the output grid must be: the voxel's position
+  /// plus this is where the step has moved what is at the voxel at rest.
+  float* forward = nullptr;
+};
+
 /// Where a step writes. Null pointers are outputs nobody asked for. One pointer per source volume,
 /// each [k][j][i][component] over Warper::output_grid() in the source's pixel type.
 struct WarpTarget {
   std::span<void* const> volumes;
   std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
   std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
+  FieldTarget fields = {};
   Memory memory = Memory::host;
   /// The buffers hold what a step wrote to them last, untouched: a step then leaves alone what it
   /// would write again. Has no effect on the first step, after one that threw, and on other buffers

@@ -135,9 +135,20 @@ std::optional<std::string> read_fingerprint(const std::string& path);
 /// Axis `dim[4]` (time) must be 1; `dim[5]` becomes components.
 Volume read_nifti(const std::string& path);
 
+/// Axes in which a NIfTI file holds samples that are vectors.
+enum class NiftiVectors {
+  world,  ///< those of the samples
+  lps     ///< x and y turned round: a displacement field as ITK and ANTs read it
+};
+
 /// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a
-/// rotation).
-void write_nifti(const std::string& path, const Volume& volume);
+/// rotation). Samples of several components get the intent code VECTOR.
+///
+/// NIfTI's world is RAS, that of ITK and ANTs LPS: they turn positions when they read a file, but
+/// not the samples of an image of vectors.
+void write_nifti(const std::string& path,
+                 const Volume& volume,
+                 NiftiVectors vectors = NiftiVectors::world);
 
 /// Writes an 8-bit RGB PNG.
 void write_png(const std::string& path, const Image& image);

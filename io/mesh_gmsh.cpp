@@ -1,0 +1,155 @@
+/// @file mesh_gmsh.cpp
+/// Meshes and node data in Gmsh's MSH 2 and 4.1, read by Gmsh.
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <tetwarp/error.hpp>
+#include <unordered_map>
+
+#include "io/gmsh_library.hpp"
+#include "io/mesh_import.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
+
+/// Places of nodes in the mesh by Gmsh's tags.
+using Places = std::unordered_map<std::size_t, std::size_t>;
+
+/// What does not begin like a mesh Gmsh would run as a script.
+void check_format(const std::string& path) {
+  std::string line;
+  std::getline(std::ifstream(path) >> std::ws, line);
+  if (line.starts_with("$MeshFormat")) return;
+  throw IoError(path, "", "does not begin with $MeshFormat, as Gmsh's MSH 2 and 4 do");
+}
+
+std::size_t place_of(const std::string& path, const Places& places, std::size_t tag) {
+  const auto found = places.find(tag);
+  if (found != places.end()) return found->second;
+  throw IoError(path, "", "has no node " + std::to_string(tag) + ": damaged, write it again");
+}
+
+Places add_nodes(const GmshLibrary& gmsh, ImportedMesh& into) {
+  GmshArray<std::size_t> tags(gmsh);
+  GmshArray<double> positions(gmsh), parameters(gmsh);
+  gmsh.call<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes", &tags.data, &tags.size,
+                                             &positions.data, &positions.size, &parameters.data,
+                                             &parameters.size, -1, -1, 0, 0);
+  Places places;
+  for (std::size_t n = 0; n < tags.size; ++n) {
+    places.emplace(tags[n], n);
+    into.mesh.rest_positions.push_back(
+        {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2]});
+  }
+  return places;
+}
+
+CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
+  GmshArray<char> name(gmsh);
+  GmshArray<double> positions(gmsh);
+  int dimension = 0, order = 0, nodes = 0, primary_nodes = 0;
+  gmsh.call<decltype(gmshModelMeshGetElementProperties)>(
+      "gmshModelMeshGetElementProperties", type, &name.data, &dimension, &order, &nodes,
+      &positions.data, &positions.size, &primary_nodes);
+  return {name.data, dimension, type == gmsh_tetrahedron};
+}
+
+void add_cells(const std::string& path,
+               const GmshLibrary& gmsh,
+               const Places& places,
+               ImportedMesh& into) {
+  GmshArray<int> types(gmsh);
+  GmshArrays<std::size_t> tags(gmsh), nodes(gmsh);
+  gmsh.call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types.data,
+                                                &types.size, &tags.data, &tags.sizes, &tags.size,
+                                                &nodes.data, &nodes.sizes, &nodes.size, -1, -1);
+  for (std::size_t type = 0; type < types.size; ++type) {
+    const CellKind kind = kind_of_type(gmsh, types[type]);
+    for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
+      if (!keeps_cell(path, kind, static_cast<std::int64_t>(tags.data[type][c]), into)) continue;
+      std::array<std::int32_t, 4> tet;
+      for (std::size_t node = 0; node < tet.size(); ++node) {
+        tet[node] = static_cast<std::int32_t>(
+            place_of(path, places, nodes.data[type][tet.size() * c + node]));
+      }
+      into.mesh.tets.push_back(tet);
+    }
+  }
+}
+
+/// One step of node data: every node must have it.
+void add_step(const std::string& path,
+              const GmshLibrary& gmsh,
+              int view,
+              int step,
+              const std::string& name,
+              const Places& places,
+              ImportedMesh& into) {
+  GmshArray<char> kind(gmsh);
+  GmshArray<std::size_t> tags(gmsh);
+  GmshArrays<double> data(gmsh);
+  double time = 0;
+  int components = 0;
+  gmsh.call<decltype(gmshViewGetModelData)>("gmshViewGetModelData", view, step, &kind.data,
+                                            &tags.data, &tags.size, &data.data, &data.sizes,
+                                            &data.size, &time, &components);
+  if (std::strcmp(kind.data, "NodeData") != 0 || components != 3 || tags.size != places.size()) {
+    throw IoError(path, name,
+                  "step " + std::to_string(step) + ": expected three components for every node");
+  }
+  std::vector<Point3> displacement(places.size());
+  for (std::size_t n = 0; n < tags.size; ++n) {
+    const double* const row = data.data[n];
+    displacement[place_of(path, places, tags[n])] = {row[0], row[1], row[2]};
+  }
+  into.displacements.push_back(std::move(displacement));
+  into.times.push_back(time);
+}
+
+void add_displacement(const std::string& path,
+                      const GmshLibrary& gmsh,
+                      const Places& places,
+                      const MeshImportOptions& options,
+                      ImportedMesh& into) {
+  GmshArray<int> views(gmsh);
+  gmsh.call<decltype(gmshViewGetTags)>("gmshViewGetTags", &views.data, &views.size);
+  const auto option = [](std::size_t view, const char* of) {
+    return "View[" + std::to_string(view) + "]." + of;
+  };
+  std::vector<std::string> names;
+  for (std::size_t view = 0; view < views.size; ++view) {
+    GmshArray<char> name(gmsh);
+    gmsh.call<decltype(gmshOptionGetString)>("gmshOptionGetString", option(view, "Name").c_str(),
+                                             &name.data);
+    names.emplace_back(name.data);
+  }
+  const auto chosen = choose_displacement(path, names, options);
+  for (std::size_t view = 0; chosen && view < views.size; ++view) {
+    if (names[view] != *chosen) continue;
+    double steps = 0;
+    gmsh.call<decltype(gmshOptionGetNumber)>("gmshOptionGetNumber",
+                                             option(view, "NbTimeStep").c_str(), &steps);
+    for (int step = 0; step < static_cast<int>(steps); ++step) {
+      add_step(path, gmsh, views[view], step, *chosen, places, into);
+    }
+    return;
+  }
+}
+
+}  // namespace
+
+ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options) {
+  check_format(path);
+  const GmshLibrary gmsh(path);
+  gmsh.call<decltype(gmshOpen)>("gmshOpen", path.c_str());
+  ImportedMesh mesh;
+  const Places places = add_nodes(gmsh, mesh);
+  add_cells(path, gmsh, places, mesh);
+  add_displacement(path, gmsh, places, options, mesh);
+  return mesh;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,62 @@
+/// @file mesh_import.cpp
+/// Foreign meshes: which reader, which cells, which array.
+#include "io/mesh_import.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <tetwarp/error.hpp>
+
+namespace tetwarp {
+
+bool has_mesh_extension(const std::string& path) {
+  return path.ends_with(".msh") || path.ends_with(".vtu") || path.ends_with(".vtk");
+}
+
+ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& options) {
+  if (!has_mesh_extension(path)) {
+    throw IoError(path, "", "is no name of a mesh to import, which ends in .msh, .vtu or .vtk");
+  }
+  if (!std::ifstream(path)) {
+    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  ImportedMesh mesh =
+      path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
+  if (mesh.mesh.tets.empty()) {
+    throw IoError(path, "", "holds no tetrahedron; mesh the volume, not its surface alone");
+  }
+  if (mesh.mesh.rest_positions.size() > std::numeric_limits<std::int32_t>::max()) {
+    throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
+  }
+  return mesh;
+}
+
+bool keeps_cell(const std::string& path,
+                const CellKind& kind,
+                std::int64_t number,
+                ImportedMesh& into) {
+  if (kind.is_tetrahedron) return true;
+  if (kind.dimension == 3) {
+    throw IoError(path, "",
+                  "cell " + std::to_string(number) + " is a " + kind.name +
+                      ", expected tetrahedra of four nodes; split the cells into such");
+  }
+  ++into.skipped[kind.name];
+  return false;
+}
+
+std::optional<std::string> choose_displacement(const std::string& path,
+                                               const std::vector<std::string>& names,
+                                               const MeshImportOptions& options) {
+  const std::string wanted = options.displacement.value_or("displacement");
+  if (std::ranges::find(names, wanted) != names.end()) return wanted;
+  if (!options.displacement) return std::nullopt;
+  std::string listed;
+  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
+  throw IoError(path, wanted,
+                "no such point array; the file has " + (listed.empty() ? "none" : listed));
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,145 @@
+/// @file mesh_vtk.cpp
+/// Meshes in VTK's XML and legacy formats, read by VTK.
+#include <vtkCellTypes.h>
+#include <vtkDataArray.h>
+#include <vtkGenericCell.h>
+#include <vtkIdList.h>
+#include <vtkNew.h>
+#include <vtkObject.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <map>
+#include <tetwarp/error.hpp>
+
+#include "io/mesh_import.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+/// VTK prints what goes wrong, several lines of it, unless it is told not to.
+class QuietVtk {
+ public:
+  QuietVtk() { vtkObject::GlobalWarningDisplayOff(); }
+  QuietVtk(const QuietVtk&) = delete;
+  QuietVtk& operator=(const QuietVtk&) = delete;
+  ~QuietVtk() { vtkObject::SetGlobalWarningDisplay(was_on_); }
+
+ private:
+  int was_on_ = vtkObject::GetGlobalWarningDisplay();
+};
+
+CellKind kind_of_type(int type) {
+  const char* const name = vtkCellTypes::GetClassNameFromTypeId(type);
+  const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
+  return {name, cell ? cell->GetCellDimension() : 3, type == VTK_TETRA};
+}
+
+void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
+  std::map<int, CellKind> kinds;
+  const vtkNew<vtkIdList> nodes;
+  for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
+    const int type = grid.GetCellType(c);
+    if (!kinds.contains(type)) kinds[type] = kind_of_type(type);
+    if (!keeps_cell(path, kinds[type], c, into)) continue;
+    grid.GetCellPoints(c, nodes);
+    std::array<std::int32_t, 4> tet;
+    for (std::size_t node = 0; node < tet.size(); ++node) {
+      const vtkIdType id = nodes->GetId(static_cast<vtkIdType>(node));
+      if (id < 0 || id >= grid.GetNumberOfPoints()) {
+        throw IoError(path, "",
+                      "cell " + std::to_string(c) + " has node " + std::to_string(id) + " of " +
+                          std::to_string(grid.GetNumberOfPoints()) + ": damaged, write it again");
+      }
+      tet[node] = static_cast<std::int32_t>(id);
+    }
+    into.mesh.tets.push_back(tet);
+  }
+}
+
+std::vector<std::string> array_names(vtkPointData& data) {
+  std::vector<std::string> names;
+  for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
+    const char* const name = data.GetArrayName(a);
+    if (name != nullptr && data.GetArray(a) != nullptr) names.emplace_back(name);
+  }
+  return names;
+}
+
+std::vector<Point3> rows_of(vtkDataArray& array) {
+  std::vector<Point3> rows(static_cast<std::size_t>(array.GetNumberOfTuples()));
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    array.GetTuple(static_cast<vtkIdType>(row), rows[row].data());
+  }
+  return rows;
+}
+
+void check_grid(const std::string& path, vtkUnstructuredGrid* grid) {
+  if (grid != nullptr && grid->GetNumberOfPoints() > 0) return;
+  throw IoError(path, "",
+                "holds no unstructured grid that VTK can read: damaged, or of another kind");
+}
+
+/// The first step makes the mesh, every step a displacement where there is one.
+void add_step(const std::string& path,
+              vtkUnstructuredGrid& grid,
+              double time,
+              const MeshImportOptions& options,
+              ImportedMesh& into) {
+  if (into.mesh.tets.empty()) {
+    into.mesh.rest_positions = rows_of(*grid.GetPoints()->GetData());
+    add_cells(path, grid, into);
+  }
+  vtkPointData& data = *grid.GetPointData();
+  const auto name = choose_displacement(path, array_names(data), options);
+  if (!name) return;
+  vtkDataArray& array = *data.GetArray(name->c_str());
+  if (array.GetNumberOfComponents() != 3 ||
+      array.GetNumberOfTuples() != static_cast<vtkIdType>(into.mesh.rest_positions.size())) {
+    throw IoError(path, *name, "expected three components for every node");
+  }
+  into.displacements.push_back(rows_of(array));
+  into.times.push_back(time);
+}
+
+ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& options) {
+  const vtkNew<vtkUnstructuredGridReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->ReadAllVectorsOn();
+  reader->ReadAllFieldsOn();
+  if (reader->IsFileUnstructuredGrid() != 0) reader->Update();
+  check_grid(path, reader->GetOutput());
+  ImportedMesh mesh;
+  add_step(path, *reader->GetOutput(), 0, options, mesh);
+  return mesh;
+}
+
+/// The times of steps do not get through VTK's reader: they are numbered.
+ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options) {
+  const vtkNew<vtkXMLUnstructuredGridReader> reader;
+  ImportedMesh mesh;
+  if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  const int steps = std::max(1, reader->GetNumberOfTimeSteps());
+  for (int step = 0; step < steps; ++step) {
+    if (steps > 1) reader->SetTimeStep(step);
+    reader->Update();
+    check_grid(path, reader->GetErrorCode() == 0 ? reader->GetOutput() : nullptr);
+    add_step(path, *reader->GetOutput(), step, options, mesh);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options) {
+  const QuietVtk quiet;
+  return path.ends_with(".vtu") ? read_xml(path, options) : read_legacy(path, options);
+}
+
+}  // namespace tetwarp
