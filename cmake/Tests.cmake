@@ -70,6 +70,7 @@ if(NOT BUILD_SHARED_LIBS)
   endif()
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
+    tests/test_blocks.cpp
     tests/test_face_sign.cpp
     tests/test_volume_filter.cpp
     tests/test_volume_label.cpp
@@ -169,12 +170,13 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emulated_contact.cpp
     tests/test_contact_emulated.cpp
     tests/test_contact_cuda.cpp
+    tests/test_blocks.cpp
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
     tests/test_warp_in_flight.cpp)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:*ContactCuda*:*InFlight*/cuda:*Blocks*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -188,7 +190,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers io)
 endif()
