@@ -35,6 +35,7 @@ Json json_of(const Counts& c) {
           {"cells_constant", c.cells_constant},
           {"voxels_copied", c.voxels_copied},
           {"chunks_background", c.chunks_background},
+          {"blocks", c.blocks},
           {"bytes_read", c.bytes_read},
           {"bytes_written", c.bytes_written}};
 }
@@ -75,6 +76,7 @@ Counts& Counts::operator+=(const Counts& other) {
   cells_constant += other.cells_constant;
   voxels_copied += other.voxels_copied;
   chunks_background += other.chunks_background;
+  blocks += other.blocks;
   bytes_read += other.bytes_read;
   bytes_written += other.bytes_written;
   return *this;
