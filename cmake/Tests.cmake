@@ -81,6 +81,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
+    tests/test_blocks.cpp
     tests/test_face_sign.cpp
     tests/test_hex_split.cpp
     tests/test_volume_filter.cpp
@@ -184,6 +185,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emulated_contact.cpp
     tests/test_contact_emulated.cpp
     tests/test_contact_cuda.cpp
+    tests/test_blocks.cpp
     tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
@@ -192,7 +194,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp_in_flight.cpp
     $<TARGET_OBJECTS:tetwarp_rule_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -206,7 +208,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers io mesh_import)
 endif()
@@ -277,6 +279,7 @@ if(TETWARP_IO)
     tests/test_cli_batch.cpp
     tests/test_cli_contact.cpp
     tests/test_cli_contact_usage.cpp
+    tests/test_cli_memory.cpp
     tests/test_cli_resume.cpp
     tests/test_cli_rules.cpp
     tests/test_cli_skip.cpp)

@@ -28,17 +28,22 @@ inline bool has_bad_positions(const std::int64_t* classes) {
          classes[static_cast<int>(TetClass::too_large)] != 0;
 }
 
+/// @throws std::invalid_argument naming tetrahedron t when its class says that it cannot be placed
+inline void throw_on_bad_position(TetClass tet_class, std::int64_t t) {
+  if (tet_class == TetClass::bad_position) {
+    throw std::invalid_argument("deformed positions: a node of tetrahedron " + std::to_string(t) +
+                                " is not finite or over 2^40 voxels from the output grid");
+  }
+  if (tet_class == TetClass::too_large) {
+    throw std::invalid_argument("deformed positions: tetrahedron " + std::to_string(t) +
+                                " spans over 2^20 voxels; use a coarser output grid");
+  }
+}
+
 /// @throws std::invalid_argument naming the first tetrahedron that cannot be placed
 inline void throw_on_bad_positions(std::span<const TetSetup> setups) {
   for (std::size_t t = 0; t < setups.size(); ++t) {
-    if (setups[t].tet_class == TetClass::bad_position) {
-      throw std::invalid_argument("deformed positions: a node of tetrahedron " + std::to_string(t) +
-                                  " is not finite or over 2^40 voxels from the output grid");
-    }
-    if (setups[t].tet_class == TetClass::too_large) {
-      throw std::invalid_argument("deformed positions: tetrahedron " + std::to_string(t) +
-                                  " spans over 2^20 voxels; use a coarser output grid");
-    }
+    throw_on_bad_position(setups[t].tet_class, static_cast<std::int64_t>(t));
   }
 }
 

@@ -32,4 +32,10 @@ std::vector<std::array<std::int32_t, 4>> split_hexes(
   return tets;
 }
 
+TetMesh with_split_hexes(TetMesh mesh) {
+  const auto parts = split_hexes(mesh.hexes);
+  mesh.tets.insert(mesh.tets.end(), parts.begin(), parts.end());
+  return mesh;
+}
+
 }  // namespace tetwarp

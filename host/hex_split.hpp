@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include <tetwarp/mesh.hpp>
+
 #include "kernels/hex_view.hpp"
 
 namespace tetwarp {
@@ -20,5 +22,8 @@ namespace tetwarp {
 /// @returns [tets_per_hex * hexes.size()], those of a hexahedron side by side
 std::vector<std::array<std::int32_t, 4>> split_hexes(
     std::span<const std::array<std::int32_t, 8>> hexes);
+
+/// A mesh whose tetrahedra are followed by those of its hexahedra.
+TetMesh with_split_hexes(TetMesh mesh);
 
 }  // namespace tetwarp

@@ -24,6 +24,15 @@ BackendStatus cuda_status(int device) {
   return status;
 }
 
+double free_device_memory(int device) {
+  std::size_t free = 0, all = 0;
+  if (cudaSetDevice(device) != cudaSuccess || cudaMemGetInfo(&free, &all) != cudaSuccess) {
+    cudaGetLastError();  // leaves no error behind for the next call
+    return 0;
+  }
+  return static_cast<double>(free);
+}
+
 bool cuda_lock_pages(void* data, std::size_t bytes) {
   if (cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess) return true;
   cudaGetLastError();  // leaves no error behind for the next call

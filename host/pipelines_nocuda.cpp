@@ -14,6 +14,10 @@ BackendStatus cuda_status(int) {
   return {Backend::cuda, false, "", reason};
 }
 
+double free_device_memory(int) {
+  return 0;
+}
+
 bool cuda_lock_pages(void*, std::size_t) {
   return false;
 }

@@ -36,6 +36,7 @@ Json json_of(const Counts& c) {
           {"voxels_copied", c.voxels_copied},
           {"chunks_background", c.chunks_background},
           {"tets_averaged", c.tets_averaged},
+          {"blocks", c.blocks},
           {"bytes_read", c.bytes_read},
           {"bytes_written", c.bytes_written}};
 }
@@ -78,6 +79,7 @@ Counts& Counts::operator+=(const Counts& other) {
   voxels_copied += other.voxels_copied;
   chunks_background += other.chunks_background;
   tets_averaged += other.tets_averaged;
+  blocks += other.blocks;
   bytes_read += other.bytes_read;
   bytes_written += other.bytes_written;
   return *this;

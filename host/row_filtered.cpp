@@ -187,14 +187,14 @@ void sample_row_filtered(
           job.volume[row + i] = sample_lanes(job.source, job.filter, walk);
         } else {
           set_start();
-          sample_one(job, make_source_map<float>(start, linear), i, j, k, row);
+          sample_one(job, make_source_map<float>(job.source, start, linear), i, j, k, row);
         }
       }
       return;
     }
   }
   set_start();
-  const auto map = make_source_map<double>(start, linear);
+  const auto map = make_source_map<double>(job.source, start, linear);
   for (; bits != 0; bits &= bits - 1) sample_one(job, map, std::countr_zero(bits), j, k, row);
 }
 

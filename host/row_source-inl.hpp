@@ -44,14 +44,16 @@ struct SourceBounds {
     constexpr double slack = 0.51;  // nearest rounds up
     double voxels_per_step = 1;
     for (int axis = 0; axis < 3; ++axis) {
-      inner_low[axis] = 0.01;
-      inner_high[axis] = source.dims[axis] - 1 - slack;
+      origin[axis] = source.origin[axis];
+      inner_low[axis] = origin[axis] + 0.01;
+      inner_high[axis] = origin[axis] + source.dims[axis] - 1 - slack;
       end[axis] = inner_high[axis] - std::ceil(spare / voxels_per_step);
       voxels_per_step *= source.dims[axis];
     }
   }
 
   bool is_vectored;
+  double origin[4] = {0, 0, 0, 0};      ///< of what the view holds
   double inner_low[4] = {0, 0, 0, -1};  ///< above and below these no neighbour is clamped
   double inner_high[4] = {0, 0, 0, 1};
   double end[4] = {0, 0, 0, -1};  ///< beyond these on all axes a read may pass the source's end
@@ -115,7 +117,8 @@ class RowSource {
       const auto farthest = hn::Set(d, farthest_whole);
       const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
       hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
-      hn::Store(hn::DemoteTo(di, floor), di, whole + lane);
+      const auto local = hn::Sub(floor, hn::LoadU(d, bounds.origin + lane));
+      hn::Store(hn::DemoteTo(di, local), di, whole + lane);
       const auto low = hn::Add(start, below), high = hn::Add(start, above);
       is_inner = is_inner && hn::AllTrue(d, hn::Gt(low, hn::LoadU(d, bounds.inner_low + lane))) &&
                  hn::AllTrue(d, hn::Lt(high, hn::LoadU(d, bounds.inner_high + lane)));

@@ -35,7 +35,11 @@ class WideRow {
       : nearest_(nearest) {
     const TetSetup& tet = source.setup();
     const int* corner = source.corner();
-    for (int axis = 0; axis < 3; ++axis) last_[axis] = view.dims[axis] - 1;
+    double origin[4] = {0, 0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      last_[axis] = view.dims[axis] - 1;
+      origin[axis] = view.origin[axis];
+    }
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
       auto start = hn::Zero(d);
       for (int a = 0; a < 3; ++a) {
@@ -50,11 +54,12 @@ class WideRow {
       const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
       const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
       const auto half = hn::Set(d, 0.5);
-      const auto low = hn::Sub(hn::Sub(hn::Neg(half), whole), slack);
-      const auto high = hn::Add(hn::Add(hn::Sub(hn::Load(d, last_ + lane), whole), half), slack);
+      const auto local = hn::Sub(whole, hn::LoadU(d, origin + lane));
+      const auto low = hn::Sub(hn::Sub(hn::Neg(half), local), slack);
+      const auto high = hn::Add(hn::Add(hn::Sub(hn::Load(d, last_ + lane), local), half), slack);
       hn::Store(line, d, line_ + lane);
       hn::Store(hn::LoadU(d, tet.map[0] + lane), d, step_ + lane);
-      hn::Store(whole, d, whole_ + lane);
+      hn::Store(local, d, whole_ + lane);
       hn::Store(low, d, low_ + lane);
       hn::Store(high, d, high_ + lane);
     }
@@ -158,7 +163,7 @@ inline void sample_narrow(const RasterJob<T>& job,
   double start[3], linear[3][3];
   const int* corner = source.corner();
   map_start(source.setup(), corner[0], corner[1], corner[2], start, linear);
-  const auto map = make_source_map<float>(start, linear);
+  const auto map = make_source_map<float>(job.source, start, linear);
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
     store_sample<false>(job, job.filter, map, i, j, k, row + i);

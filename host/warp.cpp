@@ -39,6 +39,31 @@ void check_filter(const VolumeView& source, Filter filter) {
   }
 }
 
+/// Some things are only known of a whole volume.
+void check_window(const VolumeView& source, const WarpOptions& options) {
+  if (!source.range.empty() &&
+      source.range.size() != 2 * static_cast<std::size_t>(source.components)) {
+    throw std::invalid_argument("source: range has " + std::to_string(source.range.size()) +
+                                " entries, expected two per component");
+  }
+  if (!source.window) return;
+  const auto& [begin, end] = *source.window;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (begin[axis] < 0 || begin[axis] >= end[axis] || end[axis] > source.grid.dims[axis]) {
+      throw std::invalid_argument("source: window is empty or not within the grid on axis " +
+                                  std::to_string(axis));
+    }
+  }
+  if (options.filter == Filter::bspline) {
+    throw std::invalid_argument(
+        "source: a spline passes through all samples, a window has some; use another filter");
+  }
+  if (options.overshoot == Overshoot::clamp && source.range.empty()) {
+    throw std::invalid_argument(
+        "source: clamping needs the range of all samples, a window has some; give the range");
+  }
+}
+
 void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
   if (sources.empty()) throw std::invalid_argument("sources: no volume");
   for (const VolumeView& source : sources) {
@@ -51,6 +76,7 @@ void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& op
                                   " components, expected 1 to 9");
     }
     if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+    check_window(source, options);
     check_filter(source, options.filter);
     if (is_integer(source.type) && !std::isfinite(options.background)) {
       throw std::invalid_argument(std::string("background: not a finite number, which ") +
@@ -90,13 +116,11 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
                    const WarpOptions& options) {
   WarpPlan plan;
   plan.sources.assign(sources.begin(), sources.end());
-  plan.mesh = mesh;
   plan.options = options;
   check_sources(plan.sources, options);
   check_rules(plan.sources, options);
   check_mesh(mesh);
-  const auto parts = split_hexes(mesh.hexes);
-  plan.mesh.tets.insert(plan.mesh.tets.end(), parts.begin(), parts.end());
+  plan.mesh = with_split_hexes(mesh);
   if (options.threads < 0) throw std::invalid_argument("threads: negative");
   plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);
   check_grid(plan.output_grid, "output grid");

@@ -56,6 +56,9 @@ std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan);
 /// Name of CUDA device `device`, or why it does not answer.
 BackendStatus cuda_status(int device);
 
+/// Bytes of CUDA device `device` that can be had; 0 when it does not answer.
+double free_device_memory(int device);
+
 /// Page-locks host memory for CUDA devices. @returns whether it worked
 bool cuda_lock_pages(void* data, std::size_t bytes);
 void cuda_unlock_pages(void* data);

@@ -33,9 +33,9 @@ OutsideMap make_outside_map(const WarpPlan& plan, const OutputFrame& frame) {
   outside.is_copy = map.linear == std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (std::size_t row = 0; row < 3; ++row) {
     outside.offset[row] = map.offset[row];
+    outside.origin[row] = static_cast<double>(frame.origin[row]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       outside.linear[row][axis] = map.linear[3 * row + axis];
-      outside.offset[row] += map.linear[3 * row + axis] * static_cast<double>(frame.origin[axis]);
     }
   }
   return outside;

@@ -42,8 +42,10 @@ SourceView<T> source_view(const VolumeView& volume, const void* data) {
   SourceView<T> view;
   view.data = static_cast<const T*>(data);
   view.components = volume.components;
+  const Region held = volume.held();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    view.dims[axis] = static_cast<int>(volume.grid.dims[axis]);
+    view.origin[axis] = static_cast<int>(held.begin[axis]);
+    view.dims[axis] = static_cast<int>(held.end[axis] - held.begin[axis]);
   }
   return view;
 }

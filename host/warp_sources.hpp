@@ -84,7 +84,10 @@ class WarpSources {
     } else {
       SourceView<ArithmeticOf<T>> read;
       read.data = view.coefficients;
-      for (int axis = 0; axis < 3; ++axis) read.dims[axis] = view.dims[axis];
+      for (int axis = 0; axis < 3; ++axis) {
+        read.dims[axis] = view.dims[axis];
+        read.origin[axis] = view.origin[axis];
+      }
       read.components = view.components;
       known = find_uniform(s, read, tets, rest);
     }
@@ -114,7 +117,7 @@ class WarpSources {
   };
 
   std::int64_t entry_count(std::size_t s) const {
-    return plan_.sources[s].grid.voxel_count() * plan_.sources[s].components;
+    return plan_.sources[s].held().voxel_count() * plan_.sources[s].components;
   }
 
   template <class T>
@@ -149,7 +152,14 @@ class WarpSources {
   const ArithmeticOf<T>* range(std::size_t s, const SourceView<T>& view) {
     auto& found = std::get<Found<ArithmeticOf<T>>>(sources_[s].found);
     if (found.range_data == nullptr) {
-      found.range = volume_range(exec_, view);
+      const std::vector<double>& known = plan_.sources[s].range;
+      if (known.empty()) {
+        found.range = volume_range(exec_, view);
+      } else {
+        for (const double bound : known) {
+          found.range.push_back(static_cast<ArithmeticOf<T>>(bound));
+        }
+      }
       found.range_data =
           exec_
               .resident("warp/setup", found.range.data(),

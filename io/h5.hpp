@@ -122,6 +122,9 @@ void read_block(const Dataset& dataset,
                 std::span<const std::int64_t> count,
                 void* out);
 
+/// Bytes of a chunk of a dataset, unpacked; 0 where it has none.
+double chunk_bytes(const Dataset& dataset);
+
 /// Reads a dataset of integers of shape [n] or [n][1].
 std::vector<std::int64_t> read_integers(const Dataset& dataset);
 

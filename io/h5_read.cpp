@@ -25,18 +25,6 @@ std::string child_path(const Object& parent, const std::string& name) {
                     "' holds " + (there.empty() ? "nothing" : there));
 }
 
-/// Throws when chunks cannot be held in memory.
-void check_chunks(const Dataset& dataset, const Handle& properties) {
-  std::vector<hsize_t> chunk(dataset.dims.size());
-  const int rank = static_cast<int>(chunk.size());
-  if (H5Pget_chunk(properties.id(), rank, chunk.data()) != rank) {
-    dataset.fail_with_reason("damaged chunk sizes");
-  }
-  auto bytes = static_cast<double>(dataset.type_size);
-  for (const hsize_t edge : chunk) bytes *= static_cast<double>(edge);
-  check_memory(dataset.file, dataset.name, bytes);
-}
-
 /// Throws when a dataset claims more than its file holds: a cut file, or damaged sizes.
 void check_storage(const Dataset& dataset) {
   const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
@@ -46,7 +34,7 @@ void check_storage(const Dataset& dataset) {
   if (stat(dataset.file.c_str(), &status) != 0) return;
   const auto file_bytes = static_cast<hsize_t>(status.st_size);
   const H5D_layout_t layout = H5Pget_layout(properties.id());
-  if (layout == H5D_CHUNKED) check_chunks(dataset, properties);
+  check_memory(dataset.file, dataset.name, chunk_bytes(dataset));
   const hsize_t stored = H5Dget_storage_size(dataset.id());
   auto claimed = static_cast<double>(dataset.type_size);
   for (const std::int64_t dim : dataset.dims) claimed *= static_cast<double>(dim);
@@ -167,6 +155,19 @@ Dataset open_dataset(const Object& parent, const std::string& name) {
   dataset.is_signed = dataset.type_class == H5T_INTEGER && H5Tget_sign(type.id()) == H5T_SGN_2;
   check_storage(dataset);
   return dataset;
+}
+
+double chunk_bytes(const Dataset& dataset) {
+  const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
+  if (!properties || H5Pget_layout(properties.id()) != H5D_CHUNKED) return 0;
+  std::vector<hsize_t> chunk(dataset.dims.size());
+  const int rank = static_cast<int>(chunk.size());
+  if (H5Pget_chunk(properties.id(), rank, chunk.data()) != rank) {
+    dataset.fail_with_reason("damaged chunk sizes");
+  }
+  auto bytes = static_cast<double>(dataset.type_size);
+  for (const hsize_t edge : chunk) bytes *= static_cast<double>(edge);
+  return bytes;
 }
 
 bool is_numeric(const Dataset& dataset) {

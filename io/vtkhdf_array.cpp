@@ -48,14 +48,23 @@ std::vector<hsize_t> file_shape(const std::array<std::int64_t, 3>& xyz,
 
 }  // namespace
 
-std::array<std::int64_t, 3> chunk_dims(const Volume& volume) {
-  const std::int64_t voxel_bytes =
-      volume.components * static_cast<std::int64_t>(size_of(volume.type));
-  const auto& dims = volume.grid.dims;
+std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,
+                                      std::int64_t voxel_bytes) {
   const std::int64_t x = std::min(dims[0], longest_row_bytes / voxel_bytes);
   const std::int64_t rows = std::max<std::int64_t>(1, chunk_bytes / (x * voxel_bytes));
   const std::int64_t y = std::min(dims[1], rows);
   return {x, y, std::min(dims[2], std::max<std::int64_t>(1, rows / y))};
+}
+
+std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
+                                        std::int64_t voxel_bytes) {
+  std::array<std::int64_t, 3> edges = {8, 8, 8};
+  for (std::size_t axis = 0; 2 * edges[0] * edges[1] * edges[2] * voxel_bytes <= chunk_bytes;
+       axis = (axis + 1) % 3) {
+    edges[axis] *= 2;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) edges[axis] = std::min(edges[axis], dims[axis]);
+  return edges;
 }
 
 std::vector<std::byte> sample_bytes(PixelType type, double value) {
@@ -86,79 +95,83 @@ std::vector<std::byte> sample_bytes(PixelType type, double value) {
 
 ArrayWriter::ArrayWriter(const VtkhdfOutput& output,
                          const h5::Object& point_data,
-                         const Volume& volume,
+                         const std::array<std::int64_t, 3>& dims,
+                         const ArrayHeader& header,
+                         const std::array<std::int64_t, 3>& chunk,
                          const VolumeWriteOptions& options,
                          bool is_temporal)
     : output_(&output),
-      name_(volume.name),
-      dims_(volume.grid.dims),
-      type_(volume.type),
-      components_(volume.components),
+      dims_(dims),
+      type_(header.type),
+      components_(header.components),
       is_temporal_(is_temporal),
-      chunk_(chunk_dims(volume)),
-      background_(sample_bytes(volume.type, options.background)),
+      chunk_(chunk),
+      background_(sample_bytes(header.type, options.background)),
       skips_background_(options.skip_background_chunks) {
   const std::vector<hsize_t> shape = file_shape(dims_, components_, is_temporal, 0);
-  const std::vector<hsize_t> chunk = file_shape(chunk_, components_, is_temporal, 1);
+  const std::vector<hsize_t> edges = file_shape(chunk_, components_, is_temporal, 1);
   std::vector<hsize_t> largest = shape;
   if (is_temporal) largest[0] = H5S_UNLIMITED;
   const int rank = static_cast<int>(shape.size());
   const h5::Handle space(H5Screate_simple(rank, shape.data(), largest.data()), H5Sclose);
   const h5::Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   bool is_good =
-      H5Pset_chunk(properties.id(), rank, chunk.data()) >= 0 &&
+      H5Pset_chunk(properties.id(), rank, edges.data()) >= 0 &&
       H5Pset_fill_value(properties.id(), h5::memory_type_of(type_), background_.data()) >= 0;
   if (options.compress > 0) {
     is_good = is_good && H5Pset_shuffle(properties.id()) >= 0 &&
               H5Pset_deflate(properties.id(), static_cast<unsigned>(options.compress)) >= 0;
   }
-  if (!is_good) point_data.fail_with_reason("chunks for " + name_ + " cannot be set up");
-  dataset_ =
-      h5::create_dataset(point_data, name_, h5::file_type_of(type_), space.id(), properties.id());
+  if (!is_good) point_data.fail_with_reason("chunks for " + header.name + " cannot be set up");
+  dataset_ = h5::create_dataset(point_data, header.name, h5::file_type_of(type_), space.id(),
+                                properties.id());
 }
 
-bool ArrayWriter::fits(const Volume& volume) const {
-  return volume.name == name_ && volume.grid.dims == dims_ && volume.type == type_ &&
-         volume.components == components_;
+void ArrayWriter::grow(std::int64_t rows) const {
+  const std::vector<hsize_t> shape = file_shape(dims_, components_, true, rows);
+  if (H5Dset_extent(dataset_.id(), shape.data()) < 0) dataset_.fail_with_reason("cannot grow");
 }
 
-void ArrayWriter::write(const Volume& volume, std::int64_t row, WrittenFile& written) const {
-  if (is_temporal_) {
-    const std::vector<hsize_t> shape = file_shape(dims_, components_, true, row + 1);
-    if (H5Dset_extent(dataset_.id(), shape.data()) < 0) dataset_.fail_with_reason("cannot grow");
-  }
-  std::array<std::int64_t, 3> begin{};
-  for (begin[2] = 0; begin[2] < dims_[2]; begin[2] += chunk_[2]) {
-    for (begin[1] = 0; begin[1] < dims_[1]; begin[1] += chunk_[1]) {
-      for (begin[0] = 0; begin[0] < dims_[0]; begin[0] += chunk_[0]) {
-        std::array<std::int64_t, 3> end{};
+void ArrayWriter::write(const Region& region,
+                        const void* samples,
+                        std::int64_t row,
+                        WrittenFile& written) const {
+  Region chunk;
+  const auto& begin = chunk.begin;
+  for (chunk.begin[2] = region.begin[2]; begin[2] < region.end[2]; chunk.begin[2] += chunk_[2]) {
+    for (chunk.begin[1] = region.begin[1]; begin[1] < region.end[1]; chunk.begin[1] += chunk_[1]) {
+      for (chunk.begin[0] = region.begin[0]; begin[0] < region.end[0];
+           chunk.begin[0] += chunk_[0]) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          end[axis] = std::min(begin[axis] + chunk_[axis], dims_[axis]);
+          chunk.end[axis] = std::min(begin[axis] + chunk_[axis], region.end[axis]);
         }
         ++written.chunks;
-        if (skips_background_ && is_background(volume, begin, end)) {
+        if (skips_background_ && is_background(chunk, region, samples)) {
           ++written.chunks_background;
         } else {
-          write_chunk(volume, row, begin, end);
+          write_chunk(chunk, region, samples, row);
         }
       }
     }
   }
 }
 
-bool ArrayWriter::is_background(const Volume& volume,
-                                const std::array<std::int64_t, 3>& begin,
-                                const std::array<std::int64_t, 3>& end) const {
+bool ArrayWriter::is_background(const Region& chunk,
+                                const Region& region,
+                                const void* samples) const {
   const std::size_t sample = background_.size();
   const std::size_t voxel = sample * static_cast<std::size_t>(components_);
-  const std::size_t bytes = static_cast<std::size_t>(end[0] - begin[0]) * voxel;
-  for (std::int64_t k = begin[2]; k < end[2]; ++k) {
-    for (std::int64_t j = begin[1]; j < end[1]; ++j) {
-      const std::int64_t first = (k * dims_[1] + j) * dims_[0] + begin[0];
-      const std::byte* row = volume.data.data() + static_cast<std::size_t>(first) * voxel;
+  const std::size_t bytes = static_cast<std::size_t>(chunk.end[0] - chunk.begin[0]) * voxel;
+  const std::int64_t nx = region.end[0] - region.begin[0], ny = region.end[1] - region.begin[1];
+  for (std::int64_t k = chunk.begin[2]; k < chunk.end[2]; ++k) {
+    for (std::int64_t j = chunk.begin[1]; j < chunk.end[1]; ++j) {
+      const std::int64_t line = (k - region.begin[2]) * ny + (j - region.begin[1]);
+      const std::int64_t first = line * nx + (chunk.begin[0] - region.begin[0]);
+      const std::byte* at =
+          static_cast<const std::byte*>(samples) + static_cast<std::size_t>(first) * voxel;
       // A row is all background when its first sample is and every sample equals the one before.
-      if (std::memcmp(row, background_.data(), sample) != 0 ||
-          std::memcmp(row, row + sample, bytes - sample) != 0) {
+      if (std::memcmp(at, background_.data(), sample) != 0 ||
+          std::memcmp(at, at + sample, bytes - sample) != 0) {
         return false;
       }
     }
@@ -166,15 +179,19 @@ bool ArrayWriter::is_background(const Volume& volume,
   return true;
 }
 
-void ArrayWriter::write_chunk(const Volume& volume,
-                              std::int64_t row,
-                              const std::array<std::int64_t, 3>& begin,
-                              const std::array<std::int64_t, 3>& end) const {
-  const std::array<std::int64_t, 3> edges = {end[0] - begin[0], end[1] - begin[1],
-                                             end[2] - begin[2]};
-  const std::vector<hsize_t> whole = file_shape(dims_, components_, false, 0);
-  std::vector<hsize_t> memory_start = file_shape(begin, components_, false, 0);
-  std::vector<hsize_t> file_start = file_shape(begin, components_, is_temporal_, row);
+void ArrayWriter::write_chunk(const Region& chunk,
+                              const Region& region,
+                              const void* samples,
+                              std::int64_t row) const {
+  std::array<std::int64_t, 3> edges, extent, start;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    edges[axis] = chunk.end[axis] - chunk.begin[axis];
+    extent[axis] = region.end[axis] - region.begin[axis];
+    start[axis] = chunk.begin[axis] - region.begin[axis];
+  }
+  const std::vector<hsize_t> whole = file_shape(extent, components_, false, 0);
+  std::vector<hsize_t> memory_start = file_shape(start, components_, false, 0);
+  std::vector<hsize_t> file_start = file_shape(chunk.begin, components_, is_temporal_, row);
   if (components_ > 1) memory_start.back() = file_start.back() = 0;
   const std::vector<hsize_t> memory_count = file_shape(edges, components_, false, 0);
   const std::vector<hsize_t> file_count = file_shape(edges, components_, is_temporal_, 1);
@@ -182,15 +199,15 @@ void ArrayWriter::write_chunk(const Volume& volume,
   const h5::Handle memory(H5Screate_simple(static_cast<int>(whole.size()), whole.data(), nullptr),
                           H5Sclose);
   const h5::Handle file(H5Dget_space(dataset_.id()), H5Sclose);
-  const auto select = [](const h5::Handle& space, const std::vector<hsize_t>& start,
+  const auto select = [](const h5::Handle& space, const std::vector<hsize_t>& from,
                          const std::vector<hsize_t>& count) {
-    return H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+    return H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, from.data(), nullptr, count.data(),
                                nullptr) >= 0;
   };
   if (!memory || !file || !select(memory, memory_start, memory_count) ||
       !select(file, file_start, file_count) ||
       H5Dwrite(dataset_.id(), h5::memory_type_of(type_), memory.id(), file.id(), H5P_DEFAULT,
-               volume.data.data()) < 0) {
+               samples) < 0) {
     dataset_.fail_with_reason("cannot be written");
   }
   output_->check_disk(dataset_);

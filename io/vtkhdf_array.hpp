@@ -14,9 +14,16 @@
 
 namespace tetwarp {
 
-/// Whole rows of x, as many of y and then of z as fit in 256 KiB. Rows above 1 MiB are cut.
+/// For arrays that are written whole: whole rows of x, as many of y and then of z as fit in 256
+/// KiB. Rows above 1 MiB are cut.
 /// @returns edges in voxels, x first
-std::array<std::int64_t, 3> chunk_dims(const Volume& volume);
+std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,
+                                      std::int64_t voxel_bytes);
+
+/// For arrays that are written in blocks: nearly a cube, edges of powers of two from 8 on, as many
+/// voxels as fit in 256 KiB.
+std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
+                                        std::int64_t voxel_bytes);
 
 /// The bytes of one sample: `value` rounded half to even and saturated to the type; NaN is 0 in
 /// integers.
@@ -26,33 +33,35 @@ std::vector<std::byte> sample_bytes(PixelType type, double value);
 /// only the background are not stored, unless asked for: it is the dataset's fill value.
 class ArrayWriter {
  public:
-  /// Creates the dataset for arrays like `volume` in `output`, which must live longer.
+  /// Creates the dataset in `output`, which must live longer.
   ArrayWriter(const VtkhdfOutput& output,
               const h5::Object& point_data,
-              const Volume& volume,
+              const std::array<std::int64_t, 3>& dims,
+              const ArrayHeader& header,
+              const std::array<std::int64_t, 3>& chunk,
               const VolumeWriteOptions& options,
               bool is_temporal);
 
-  /// Writes `volume`, in temporal files as row `row` of the time axis, and counts its chunks.
-  void write(const Volume& volume, std::int64_t row, WrittenFile& written) const;
+  /// Makes room for so many rows of the time axis.
+  void grow(std::int64_t rows) const;
 
-  /// False unless `volume` has the name, type and shape the dataset was made for.
-  bool fits(const Volume& volume) const;
-
-  const std::string& name() const { return name_; }
+  /// Writes a region that begins and ends at chunks, in temporal files of row `row` of the time
+  /// axis, and counts its chunks.
+  /// @param samples  [k][j][i][component] of the region
+  void write(const Region& region,
+             const void* samples,
+             std::int64_t row,
+             WrittenFile& written) const;
 
  private:
-  bool is_background(const Volume& volume,
-                     const std::array<std::int64_t, 3>& begin,
-                     const std::array<std::int64_t, 3>& end) const;
-  void write_chunk(const Volume& volume,
-                   std::int64_t row,
-                   const std::array<std::int64_t, 3>& begin,
-                   const std::array<std::int64_t, 3>& end) const;
+  bool is_background(const Region& chunk, const Region& region, const void* samples) const;
+  void write_chunk(const Region& chunk,
+                   const Region& region,
+                   const void* samples,
+                   std::int64_t row) const;
 
   const VtkhdfOutput* output_;
   h5::Object dataset_;
-  std::string name_;
   std::array<std::int64_t, 3> dims_;
   PixelType type_;
   int components_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
+#include <utility>
 
 #include "io/h5.hpp"
 #include "io/vtkhdf_input.hpp"
@@ -47,6 +48,7 @@ std::string shape_text(const std::vector<std::int64_t>& dims) {
 struct PointArray {
   h5::Dataset dataset;
   ArrayHeader header;
+  bool has_component_axis = false;
 };
 
 PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::string& name) {
@@ -71,6 +73,7 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
       array.dataset.fail("has " + std::to_string(components) + " components, expected 1 to 9");
     }
     array.header.components = static_cast<int>(components);
+    array.has_component_axis = true;
     found.pop_back();
   }
   if (found != shape) {
@@ -118,26 +121,67 @@ VolumeHeader read_volume_header(const std::string& path) {
   return header;
 }
 
-Volume read_volume(const std::string& path, const std::string& array, std::int64_t step) {
+struct VolumeReader::State {
+  VtkhdfInput file;
+  Grid grid;
+  PointArray source;
+  std::int64_t row;  // of the time axis
+};
+
+VolumeReader::VolumeReader(const std::string& path, const std::string& array, std::int64_t step) {
   const h5::Silence silence;
-  const VtkhdfInput file = open_vtkhdf(path, "ImageData");
+  VtkhdfInput file = open_vtkhdf(path, "ImageData");
   const Grid grid = read_grid(file.root);
   file.check_step(step);
-  const PointArray source =
-      open_array(file, grid, array.empty() ? numeric_arrays(file).front() : array);
+  PointArray source = open_array(file, grid, array.empty() ? numeric_arrays(file).front() : array);
+  const std::int64_t row = file.is_temporal() ? time_row(file, source, step) : 0;
+  state_.reset(new State{std::move(file), grid, std::move(source), row});
+}
 
-  std::vector<std::int64_t> start(source.dataset.dims.size(), 0);
-  std::vector<std::int64_t> count = source.dataset.dims;
-  if (file.is_temporal()) {
-    start[0] = time_row(file, source, step);
-    count[0] = 1;
+VolumeReader::VolumeReader(VolumeReader&&) noexcept = default;
+VolumeReader::~VolumeReader() = default;
+
+const Grid& VolumeReader::grid() const {
+  return state_->grid;
+}
+
+const ArrayHeader& VolumeReader::array() const {
+  return state_->source.header;
+}
+
+double VolumeReader::chunk_bytes() const {
+  return 2 * h5::chunk_bytes(state_->source.dataset);
+}
+
+void VolumeReader::read(const Region& region, void* samples) const {
+  const h5::Silence silence;
+  const h5::Dataset& dataset = state_->source.dataset;
+  std::vector<std::int64_t> start, count;
+  if (state_->file.is_temporal()) {
+    start.push_back(state_->row);
+    count.push_back(1);
   }
-  double bytes = static_cast<double>(size_of(source.header.type));
-  for (const std::int64_t edge : count) bytes *= static_cast<double>(edge);
-  h5::check_memory(path, source.dataset.name, bytes);
-  Volume volume =
-      make_volume(grid, source.header.type, source.header.components, source.header.name);
-  h5::read_block(source.dataset, h5::memory_type_of(volume.type), start, count, volume.data.data());
+  const bool has_components = state_->source.has_component_axis;
+  const std::size_t axes = dataset.dims.size() - start.size() - (has_components ? 1 : 0);
+  for (std::size_t axis = axes; axis-- > 0;) {  // without z in flat images
+    start.push_back(region.begin[axis]);
+    count.push_back(region.end[axis] - region.begin[axis]);
+  }
+  if (has_components) {
+    start.push_back(0);
+    count.push_back(state_->source.header.components);
+  }
+  h5::read_block(dataset, h5::memory_type_of(array().type), start, count, samples);
+}
+
+Volume read_volume(const std::string& path, const std::string& array, std::int64_t step) {
+  const VolumeReader reader(path, array, step);
+  const ArrayHeader& header = reader.array();
+  h5::check_memory(path, "/VTKHDF/PointData/" + header.name,
+                   static_cast<double>(reader.grid().voxel_count()) * header.components *
+                       static_cast<double>(size_of(header.type)));
+  Volume volume = make_volume(reader.grid(), header.type, header.components, header.name);
+  reader.read({{0, 0, 0}, reader.grid().dims}, volume.data.data());
   return volume;
 }
 

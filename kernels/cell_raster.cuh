@@ -54,7 +54,7 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
     const TetSetup& tet = job.setups[tet_of(pair)];
     double start[3], linear[3][3];
     map_start(tet, corner[0], corner[1], corner[2], start, linear);
-    chunk.maps[slot] = make_source_map<ArithmeticOf<T>>(start, linear);
+    chunk.maps[slot] = make_source_map<ArithmeticOf<T>>(job.source, start, linear);
     chunk.tet[slot] = tet_of(pair);
     chunk.rows[slot] =
         static_cast<std::uint16_t>(bits_within(tet.begin[1], tet.end[1], corner[1]) |

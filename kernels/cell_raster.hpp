@@ -27,12 +27,14 @@ struct RasterCounts {
   std::int64_t copied;        ///< voxels that were moved, not interpolated
 };
 
-/// Source index of frame voxel (i, j, k) where nothing covers it: linear * (i, j, k) + offset.
+/// Source index of frame voxel (i, j, k) where nothing covers it: linear * (origin + (i, j, k)) +
+/// offset.
 struct OutsideMap {
   bool use_source;  ///< false: the background
   bool is_copy;     ///< the grids differ by whole voxels
   double linear[3][3];
   double offset[3];
+  double origin[3] = {0, 0, 0};  ///< of the frame: regions have the bits of the whole
 };
 
 constexpr std::int64_t keep_cell = -2;    ///< the output holds this cell already
@@ -139,9 +141,10 @@ TETWARP_HD void map_start(
 
 /// The same under the map of uncovered voxels.
 TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, double* start) {
+  const double x = map.origin[0] + cx, y = map.origin[1] + cy, z = map.origin[2] + cz;
   for (int row = 0; row < 3; ++row) {
     const double* m = map.linear[row];
-    start[row] = m[0] * cx + m[1] * cy + m[2] * cz + map.offset[row];
+    start[row] = m[0] * x + m[1] * y + m[2] * z + map.offset[row];
   }
 }
 
@@ -230,6 +233,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   int whole[3];
   double at[3];
   place_in_hex(tet, map, x, whole, at);
+  for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
   store_position<Wide>(job, job.filter, whole, at, voxel);
 }
 
@@ -260,7 +264,7 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
   store_sample<Wide>(job, is_copied(job, tet) ? Interpolation::nearest : job.filter,
-                     make_source_map<Real>(start, linear), i, j, k, voxel);
+                     make_source_map<Real>(job.source, start, linear), i, j, k, voxel);
 }
 
 /// Stores a voxel that gets the samples of voxel `from` of the source.
@@ -281,7 +285,8 @@ TETWARP_HD void store_outside(
     outside_start(job.outside, cx, cy, cz, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
     store_sample<Wide>(job, copies ? Interpolation::nearest : job.filter,
-                       make_source_map<double>(start, job.outside.linear), i, j, k, voxel);
+                       make_source_map<double>(job.source, start, job.outside.linear), i, j, k,
+                       voxel);
     return;
   }
   T* out = job.volume + voxel * job.source.components;

@@ -30,7 +30,8 @@ TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
   }
   int block[3], reach = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    double low = start[axis] - slack, high = start[axis] + slack;
+    const double local = start[axis] - source.origin[axis];
+    double low = local - slack, high = local + slack;
     for (int a = 0; a < 3; ++a) {
       const double at_begin = linear[axis][a] * begin[a], at_end = linear[axis][a] * end[a];
       low += min_of(at_begin, at_end);

@@ -43,6 +43,9 @@ constexpr bool can_blend = std::is_floating_point_v<T> || sizeof(T) <= 4;
 constexpr float rim_slack = 0x1p-19f;
 
 /// Samples [k][j][i][component], and what some filters must know of them.
+///
+/// They may be a window of the source: where it ends, the source ends, or nobody samples beyond.
+/// Positions then count from its first voxel, moved by whole voxels so that no bit of them changes.
 template <class T>
 struct SourceView {
   const T* data;
@@ -52,6 +55,7 @@ struct SourceView {
   const ArithmeticOf<T>* coefficients = nullptr;
   /// Least and largest sample per component, which values are clamped to; null: they are not.
   const ArithmeticOf<T>* range = nullptr;
+  int origin[3] = {0, 0, 0};  ///< index in the source of the first voxel of the samples
 };
 
 /// Map from voxels of a cell to source positions: whole + (base + axis[0] i + axis[1] j + axis[2]
@@ -75,6 +79,16 @@ TETWARP_HD SourceMap<Real> make_source_map(const double* start, const double (*l
     map.base[row] = static_cast<Real>(start[row] - whole);
     for (int a = 0; a < 3; ++a) map.axis[a][row] = static_cast<Real>(linear[row][a]);
   }
+  return map;
+}
+
+/// The same to positions in what a view holds of the source.
+template <class Real, class T>
+TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
+                                           const double* start,
+                                           const double (*linear)[3]) {
+  SourceMap<Real> map = make_source_map<Real>(start, linear);
+  for (int row = 0; row < 3; ++row) map.whole[row] -= source.origin[row];
   return map;
 }
 

@@ -101,6 +101,7 @@ struct BlockNeedBody {
   View<const std::int32_t> tets;
   View<const Node> rest;
   UniformMap map;
+  int origin[3];  ///< of the samples, in the source
   View<std::uint8_t> needed;
 
   TETWARP_HD void operator()(std::int64_t t) const {
@@ -112,6 +113,8 @@ struct BlockNeedBody {
         low = min_of(low, tet.x[a][axis]);
         high = max_of(high, tet.x[a][axis]);
       }
+      low -= origin[axis] * quanta_per_voxel;
+      high -= origin[axis] * quanta_per_voxel;
       const std::int64_t end = map.blocks[axis] - 1;
       constexpr int shift = quantum_bits + block_shift;
       first[axis] = static_cast<int>(min_of(max_of((low >> shift) - 1, std::int64_t{0}), end + 1));
@@ -230,7 +233,10 @@ void volume_uniform(Exec& exec,
                     View<std::int64_t> wide_count) {
   const UniformMap map = make_uniform_map(source);
   exec.zero("warp/setup", reach);
-  exec.for_each("warp/setup", tets.size / 4, BlockNeedBody{tets, rest, map, reach});
+  exec.for_each(
+      "warp/setup", tets.size / 4,
+      BlockNeedBody{
+          tets, rest, map, {source.origin[0], source.origin[1], source.origin[2]}, reach});
   exec.for_each("warp/setup", reach.size, BlockUniformBody<T>{source, map, reach});
   View<std::uint8_t> from = reach, to = scratch;
   for (int n = 1; n < longest_reach; ++n) {  // an even number of passes: ends in `reach`

@@ -223,11 +223,12 @@ TETWARP_HD void store_ruled(const RasterJob<T>& job,
                             std::int64_t voxel) {
   double start[3], linear[3][3], x[3];
   map_start(job.setups[t], corner[0], corner[1], corner[2], start, linear);
-  auto map = make_source_map<double>(start, linear);
+  auto map = make_source_map<double>(job.source, start, linear);
   local_position(map, i, j, k, x);
   if (job.setups[t].kind == MapKind::trilinear) {
     const int frame_voxel[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
     place_in_hex(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
+    for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
   }
   T* const out = job.volume + voxel * job.source.components;
   store_by_rule(RuleSampler<T>(job), job.rules[t], map, x, out);
@@ -239,7 +240,7 @@ TETWARP_HD void store_outside_ruled(
     const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
   double start[3], x[3];
   outside_start(job.outside, corner[0], corner[1], corner[2], start);
-  const auto map = make_source_map<double>(start, job.outside.linear);
+  const auto map = make_source_map<double>(job.source, start, job.outside.linear);
   local_position(map, i, j, k, x);
   T* const out = job.volume + voxel * job.source.components;
   store_by_rule(RuleSampler<T>(job), job.outside_rule, map, x, out);

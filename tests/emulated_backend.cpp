@@ -76,6 +76,10 @@ BackendStatus cuda_status(int device) {
   return {Backend::cuda, false, "", "no device " + std::to_string(device) + ", there are 1"};
 }
 
+double free_device_memory(int device) {
+  return device == 0 ? 0x1p40 : 0;
+}
+
 bool cuda_lock_pages(void* data, std::size_t bytes) {
   return cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess;
 }

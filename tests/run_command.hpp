@@ -68,6 +68,7 @@ struct CommandResult {
   int exit_code = -1;  ///< 128 + signal when it was killed
   std::string out;
   std::string err;
+  double peak_memory = 0;  ///< bytes, of it or of the caller when it started: the larger
 
   /// One line on standard error, beginning like all errors of the command.
   bool has_one_line_error() const {
@@ -101,10 +102,12 @@ class RunningCommand {
 
   CommandResult wait() {
     int status = 0;
-    waitpid(child_, &status, 0);
+    rusage used{};
+    wait4(child_, &status, 0, &used);
     const bool ended = WIFEXITED(status);
     return {ended ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            fs::is_regular_file(out_) ? text_of(out_) : "", text_of(err_)};
+            fs::is_regular_file(out_) ? text_of(out_) : "", text_of(err_),
+            1024.0 * static_cast<double>(used.ru_maxrss)};
   }
 
  private:

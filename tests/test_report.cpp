@@ -51,7 +51,7 @@ TEST(Report, HasTheseFieldsAndNoOthers) {
                 "candidate_pairs", "pairs_rejected", "pairs_accepted",  "pairs_partial",
                 "inside_tests",    "exact_tests",    "steps_unchanged", "tets_unchanged",
                 "cells_unchanged", "cells_constant", "voxels_copied",   "chunks_background",
-                "tets_averaged",   "bytes_read",     "bytes_written"}));
+                "tets_averaged",   "blocks",         "bytes_read",      "bytes_written"}));
   EXPECT_EQ(names_of(json["steps"][0]), (std::set<std::string>{"step", "timings", "counts"}));
   EXPECT_EQ(names_of(json["steps"][0]["counts"]), names_of(json["counts"]));
   EXPECT_EQ(names_of(json["steps"][0]["timings"]), names_of(json["timings"]));
@@ -92,7 +92,7 @@ TEST(Report, MixesUpNoField) {
   report.backend = Backend::reference;
   report.timings = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   report.counts = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12,
-                   13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23};
+                   13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24};
   report.timings += report.timings;
   report.counts += report.counts;
 
@@ -105,7 +105,7 @@ TEST(Report, MixesUpNoField) {
         "candidate_pairs", "pairs_rejected", "pairs_accepted",  "pairs_partial",
         "inside_tests",    "exact_tests",    "steps_unchanged", "tets_unchanged",
         "cells_unchanged", "cells_constant", "voxels_copied",   "chunks_background",
-        "tets_averaged",   "bytes_read",     "bytes_written"}) {
+        "tets_averaged",   "blocks",         "bytes_read",      "bytes_written"}) {
     EXPECT_EQ(json["counts"][name], value += 2) << name;
   }
   value = 0;

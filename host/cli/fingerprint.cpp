@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace tetwarp::cli {
@@ -14,14 +15,33 @@ void Fingerprint::mix(std::uint64_t word) {
 
 void Fingerprint::add(std::span<const std::byte> bytes) {
   mix(bytes.size());
-  for (; bytes.size() >= sizeof(std::uint64_t); bytes = bytes.subspan(sizeof(std::uint64_t))) {
+  add_part(bytes);
+  end();
+}
+
+void Fingerprint::add_part(std::span<const std::byte> bytes) {
+  const auto take = [&](std::size_t count) {
+    std::memcpy(reinterpret_cast<std::byte*>(&rest_) + rest_bytes_, bytes.data(), count);
+    rest_bytes_ += count;
+    bytes = bytes.subspan(count);
+  };
+  const auto take_rest = [&] {
+    if (!bytes.empty()) take(std::min(bytes.size(), sizeof rest_ - rest_bytes_));
+  };
+  if (rest_bytes_ > 0) take_rest();
+  if (rest_bytes_ == sizeof rest_) end();
+  for (; bytes.size() >= sizeof rest_; bytes = bytes.subspan(sizeof rest_)) {
     std::uint64_t word;
     std::memcpy(&word, bytes.data(), sizeof word);
     mix(word);
   }
-  std::uint64_t rest = 0;
-  if (!bytes.empty()) std::memcpy(&rest, bytes.data(), bytes.size());
-  mix(rest);
+  take_rest();
+}
+
+void Fingerprint::end() {
+  mix(rest_);
+  rest_ = 0;
+  rest_bytes_ = 0;
 }
 
 void Fingerprint::add(std::string_view text) {
@@ -48,11 +68,18 @@ void Fingerprint::add(const WarpOptions& options) {
 }
 
 void Fingerprint::add(const Volume& volume) {
-  add(volume.name);
-  add(volume.type);
-  add(volume.components);
-  add(volume.grid);
-  add(volume.data);
+  begin({volume.name, volume.type, volume.components}, volume.grid);
+  add_part(volume.data);
+  end();
+}
+
+void Fingerprint::begin(const ArrayHeader& array, const Grid& grid) {
+  add(array.name);
+  add(array.type);
+  add(array.components);
+  add(grid);
+  mix(static_cast<std::size_t>(grid.voxel_count()) * static_cast<std::size_t>(array.components) *
+      size_of(array.type));
 }
 
 std::string Fingerprint::text() const {

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <tetwarp/volume.hpp>
+#include <tetwarp/io.hpp>
 #include <tetwarp/warp.hpp>
 
 namespace tetwarp::cli {
@@ -46,12 +46,19 @@ class Fingerprint {
   /// Name, type, grid and samples.
   void add(const Volume& volume);
 
+  /// The same for samples that come in parts, in the order of memory.
+  void begin(const ArrayHeader& array, const Grid& grid);
+  void add_part(std::span<const std::byte> bytes);
+  void end();
+
   /// Sixteen hexadecimal digits.
   std::string text() const;
 
  private:
   void mix(std::uint64_t word);
 
+  std::uint64_t rest_ = 0;      ///< of the parts so far: bytes that are no whole word yet
+  std::size_t rest_bytes_ = 0;  ///< fewer than eight
   std::uint64_t hash_ = 0xcbf29ce484222325;
 };
 

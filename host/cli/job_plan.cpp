@@ -111,13 +111,28 @@ bool leaves_time(Backend backend, const WarpArguments& arguments) {
   return backend != Backend::cpu || threads < processors || arguments.compress > 0;
 }
 
-/// Two copies of every array, source and output, and the extra outputs must fit.
+/// What cannot be done from windows of the source.
+void check_streams(const VolumePlan& plan, const WarpArguments& arguments) {
+  if (arguments.extra.contains(forward_output)) {
+    throw IoError(plan.path, "",
+                  fmt::format("the forward displacement needs the whole mesh at once, source and "
+                              "output take {}; allow more --memory or leave out --outputs forward",
+                              bytes_text(plan.memory)));
+  }
+  if (arguments.warp.filter != Filter::bspline) return;
+  throw IoError(plan.path, "",
+                fmt::format("a spline passes through all samples at once, source and output take "
+                            "{}; allow more --memory or use --filter cubic",
+                            bytes_text(plan.memory)));
+}
+
+/// Source and output and the extra outputs must fit, or blocks of them where a limit is given.
 /// @returns whether the outputs fit once more
-bool check_memory(const VolumePlan& plan, const ExtraChoice& extra) {
+bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
   const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
   const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
   double source_bytes = 0, output_bytes = 0;
-  for (const std::size_t e : extra) {
+  for (const std::size_t e : arguments.extra) {
     output_bytes += output_voxels * extra_outputs[e].components *
                     static_cast<double>(size_of(extra_outputs[e].type));
   }
@@ -127,11 +142,21 @@ bool check_memory(const VolumePlan& plan, const ExtraChoice& extra) {
     output_bytes += output_voxels * voxel_bytes;
   }
   const double bytes = source_bytes + output_bytes;
+  plan.memory = bytes;
+  if (arguments.memory > 0) {
+    // Lists of cells and tetrahedra, and what is there already.
+    const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
+    if (bytes > limit) {
+      plan.memory_limit = arguments.memory;
+      check_streams(plan, arguments);
+    }
+    return bytes + output_bytes <= limit;
+  }
   const double available = available_memory();
-  if (bytes > available) {
+  if (bytes > available && !arguments.dry_run) {
     throw std::invalid_argument(fmt::format(
         "{}: {} x {} x {} output voxels need {} of memory with the source, {} are available; use "
-        "a smaller --roi, coarser --dims and --spacing, or fewer arrays",
+        "--memory to stream them, a smaller --roi, coarser --dims and --spacing, or fewer arrays",
         plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
         bytes_text(bytes), bytes_text(available)));
   }
@@ -191,7 +216,7 @@ VolumePlan plan_volume(const std::string& path,
                                 "--grid, --dims, --origin, --spacing and --direction");
   }
   plan.writes_beside =
-      check_memory(plan, arguments.extra) && steps.size() > 1 && leaves_time(backend, arguments);
+      plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
   // On processors beginning a step is computing it: the write of the one before starts first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.outputs = output_names(output, steps, arguments.temporal);

@@ -21,6 +21,8 @@ struct VolumePlan {
   Grid output_grid;  ///< before the region cuts it
   Grid written_grid;
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
+  double memory_limit = 0;           ///< to compute in blocks within it; 0: all fits
+  double memory = 0;                 ///< that all would take at once
   bool writes_beside =
       false;              ///< there is time and memory to write a step while the next is computed
   bool overlaps = false;  ///< the next step is begun before a step is brought home and written

@@ -1,10 +1,10 @@
 /// @file volume_run.cpp
 #include "host/cli/volume_run.hpp"
 
-#include <tetwarp/version.hpp>
 #include <utility>
 
 #include "host/cli/interrupt.hpp"
+#include "host/cli/output_files.hpp"
 #include "host/cli/stopwatch.hpp"
 
 namespace tetwarp::cli {
@@ -13,11 +13,6 @@ namespace {
 
 std::int64_t bytes_of(const std::vector<Point3>& positions) {
   return static_cast<std::int64_t>(positions.size() * sizeof(Point3));
-}
-
-void add_written(const WrittenFile& file, Counts& counts) {
-  counts.bytes_written += file.bytes;
-  counts.chunks_background += file.chunks_background;
 }
 
 }  // namespace
@@ -59,7 +54,7 @@ void VolumeRun::write_each_step() {
     Fingerprint fingerprint = inputs;
     fingerprint.add(positions);
     const std::string& output = volume_.outputs[s];
-    const bool skips = is_up_to_date(output, fingerprint.text());
+    const bool skips = is_up_to_date(arguments_, output, fingerprint);
     start_writing();
     if (skips) {
       finish_computing();
@@ -69,7 +64,7 @@ void VolumeRun::write_each_step() {
       finish_step(report);
       continue;
     }
-    const auto write = [&output, options = write_options(fingerprint)](
+    const auto write = [&output, options = write_options(arguments_, fingerprint)](
                            const StepReport&, const std::vector<const Volume*>& volumes) {
       return write_volumes(output, volumes, options);
     };
@@ -87,11 +82,11 @@ void VolumeRun::write_temporal() {
     fingerprint.add(plan_.mesh.read_step(step));
   }
   const std::string& output = volume_.outputs.front();
-  if (is_up_to_date(output, fingerprint.text())) {
+  if (is_up_to_date(arguments_, output, fingerprint)) {
     ++result_.skipped;
     return;
   }
-  temporal_.emplace(output, write_options(fingerprint));
+  temporal_.emplace(output, write_options(arguments_, fingerprint));
   for (const std::int64_t step : plan_.steps) {
     stop_if_interrupted();
     finish_writing();
@@ -117,7 +112,7 @@ void VolumeRun::write_temporal() {
   }
   write_the_rest();
   const Stopwatch watch;
-  add_written(temporal_->finish(), result_.report.counts);
+  result_.report.counts += counts_of(temporal_->finish());
   result_.report.timings.write += watch.seconds();
   ++result_.written;
 }
@@ -128,10 +123,6 @@ std::vector<Point3> VolumeRun::read_positions(std::int64_t step, StepReport& rep
   report.timings.read = watch.seconds();
   report.counts.bytes_read = bytes_of(positions);
   return positions;
-}
-
-bool VolumeRun::is_up_to_date(const std::string& output, const std::string& fingerprint) const {
-  return arguments_.resume && read_fingerprint(output) == fingerprint;
 }
 
 bool VolumeRun::equals_last_step(const std::vector<Point3>& positions) const {
@@ -198,19 +189,9 @@ void VolumeRun::finish_computing() {
   if (volume_.overlaps) start_writing();
 }
 
-WarpOptions VolumeRun::warp_options() const {
-  WarpOptions options = arguments_.warp;
-  options.backend = plan_.backend;
-  options.output_grid = volume_.output_grid;
-  for (const ArrayHeader& array : volume_.arrays) {
-    options.quantities.push_back(arguments_.quantity_of(array.name));
-  }
-  return options;
-}
-
 void VolumeRun::start_warper() {
   const std::vector<VolumeView> views(sources_.begin(), sources_.end());
-  warper_.emplace(views, plan_.mesh.mesh(), warp_options());
+  warper_.emplace(views, plan_.mesh.mesh(), warp_options(arguments_, plan_, volume_));
   const Report& report = warper_->report();
   result_.report.device = report.device;
   result_.report.threads = report.threads;
@@ -256,7 +237,7 @@ void VolumeRun::start_writing() {
 void VolumeRun::finish_writing() {
   if (!writing_.valid()) return;
   const Written written = writing_.get();
-  add_written(written.file, writing_report_.counts);
+  writing_report_.counts += counts_of(written.file);
   writing_report_.timings.write = written.seconds;
   if (!temporal_) ++result_.written;
   finish_step(writing_report_);
@@ -280,23 +261,9 @@ void VolumeRun::finish_step(const StepReport& report) {
 }
 
 Fingerprint VolumeRun::fingerprint_of_inputs() const {
-  Fingerprint fingerprint;
-  fingerprint.add(TETWARP_VERSION);
-  fingerprint.add(warp_options());
-  for (const std::size_t e : arguments_.extra) fingerprint.add(e);
-  fingerprint.add(volume_.written_grid);
+  Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
   for (const Volume& source : sources_) fingerprint.add(source);
-  fingerprint.add(plan_.mesh.mesh().tets);
-  fingerprint.add(plan_.mesh.mesh().hexes);
-  fingerprint.add(plan_.mesh.mesh().rest_positions);
   return fingerprint;
-}
-
-VolumeWriteOptions VolumeRun::write_options(const Fingerprint& fingerprint) const {
-  return {.compress = arguments_.compress,
-          .background = arguments_.warp.background,
-          .skip_background_chunks = arguments_.warp.skip.background_chunks,
-          .fingerprint = fingerprint.text()};
 }
 
 }  // namespace tetwarp::cli

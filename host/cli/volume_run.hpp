@@ -41,18 +41,15 @@ class VolumeRun {
   void write_each_step();
   void write_temporal();
   std::vector<Point3> read_positions(std::int64_t step, StepReport& report) const;
-  bool is_up_to_date(const std::string& output, const std::string& fingerprint) const;
   bool equals_last_step(const std::vector<Point3>& positions) const;
   void compute(std::vector<Point3> positions, StepReport report, Write write);
   void finish_computing();
-  WarpOptions warp_options() const;
   void start_warper();
   void finish_step(const StepReport& report);
   void start_writing();
   void finish_writing();
   void write_the_rest();
   Fingerprint fingerprint_of_inputs() const;
-  VolumeWriteOptions write_options(const Fingerprint& fingerprint) const;
 
   const WarpArguments& arguments_;
   const JobPlan& plan_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 #include "host/cli/declare.hpp"
@@ -29,6 +30,24 @@ Choices<std::size_t> extra_choices() {
   Choices<std::size_t> choices;
   for (const ExtraOutput& extra : extra_outputs) choices.emplace_back(extra.word, choices.size());
   return choices;
+}
+
+/// Bytes of "512M", "4G", "1.5T", in units of 1024; of plain digits bytes.
+double parse_bytes(const std::string& text) {
+  const std::string units = "KMGT";
+  std::size_t used = 0;
+  double bytes = 0;
+  try {
+    bytes = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  const std::size_t unit = used + 1 == text.size() ? units.find(text[used]) : std::string::npos;
+  if (used == 0 || (used < text.size() && unit == std::string::npos) || !(bytes > 0) ||
+      !std::isfinite(bytes)) {
+    throw std::invalid_argument("'" + text + "' is no size such as 512M or 4G");
+  }
+  return used < text.size() ? std::ldexp(bytes, 10 * static_cast<int>(unit + 1)) : bytes;
 }
 
 /// Declares an option whose text a function turns into a value; its std::invalid_argument is a
@@ -178,6 +197,9 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
         for (bool SkipOptions::*member : members) skip.*member = false;
       },
       "do work that cannot change the result");
+  add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
+             "memory to keep to, e.g. 4G or 512M: what does not fit is streamed in blocks");
+  app.add_flag("--dry-run", arguments.dry_run, "say what would be done, and in which memory");
   app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");

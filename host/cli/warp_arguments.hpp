@@ -30,6 +30,8 @@ struct WarpArguments {
   int compress = 0;
   bool temporal = false;
   bool resume = false;
+  double memory = 0;     ///< bytes that the process may take; 0: what there is
+  bool dry_run = false;  ///< plan only
   bool quiet = false;
   std::string report;
   std::string batch;

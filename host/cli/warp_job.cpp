@@ -7,12 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <tetwarp/version.hpp>
 
+#include "host/cli/block_run.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/job_plan.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/stopwatch.hpp"
 #include "host/cli/volume_run.hpp"
 #include "io/finished_file.hpp"
+#include "io/memory.hpp"
 
 namespace tetwarp::cli {
 
@@ -25,12 +27,22 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   result.report.version = TETWARP_VERSION;
   result.report.backend = plan.backend;
   result.report.backend_reason = plan.backend_reason;
-  if (!plan.output_folder.empty()) std::filesystem::create_directory(plan.output_folder);
+  if (!plan.output_folder.empty() && !arguments.dry_run)
+    std::filesystem::create_directory(plan.output_folder);
   {
     ProgressBar bar(context.shows_progress, context.label,
                     static_cast<double>(plan.volumes.size() * plan.steps.size()));
     for (const VolumePlan& volume : plan.volumes) {
-      VolumeRun(arguments, plan, volume, bar, result).run();
+      if (volume.memory_limit > 0) {
+        BlockRun run(arguments, plan, volume, bar, result);
+        arguments.dry_run ? run.plan_only() : run.run();
+      } else if (arguments.dry_run) {
+        for (const std::int64_t step : plan.steps) {
+          result.plans.push_back({volume.path, step, volume.written_grid.dims, volume.memory});
+        }
+      } else {
+        VolumeRun(arguments, plan, volume, bar, result).run();
+      }
     }
   }
   result.report.timings.total = watch.seconds();
@@ -38,11 +50,35 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   return result;
 }
 
+namespace {
+
+std::string plan_text(const StepPlan& plan) {
+  std::string text =
+      fmt::format("{} step {}: {} x {} x {} voxels, {} of memory", plan.volume, plan.step,
+                  plan.dims[0], plan.dims[1], plan.dims[2], bytes_text(plan.memory));
+  if (plan.blocks == 0) return text + "\n";
+  return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
+                            plan.blocks, plan.largest_block, plan.largest_window,
+                            bytes_text(plan.bytes_read));
+}
+
+}  // namespace
+
 std::string report_json(const JobResult& result) {
   auto json = nlohmann::ordered_json::parse(to_json(result.report));
-  json["status"] = result.written == 0 ? "skipped" : "done";
+  json["status"] = !result.plans.empty() ? "planned" : result.written == 0 ? "skipped" : "done";
   json["outputs"] = result.outputs;
   json["outputs_skipped"] = result.skipped;
+  for (const StepPlan& plan : result.plans) {
+    json["plans"].push_back({{"volume", plan.volume},
+                             {"step", plan.step},
+                             {"dims", plan.dims},
+                             {"memory", plan.memory},
+                             {"blocks", plan.blocks},
+                             {"largest_block", plan.largest_block},
+                             {"largest_window", plan.largest_window},
+                             {"bytes_read", plan.bytes_read}});
+  }
   return json.dump(2);
 }
 
@@ -50,6 +86,8 @@ std::string summary(const JobResult& result) {
   const Report& report = result.report;
   const Counts& counts = report.counts;
   std::string text = fmt::format("{}: {}\n", name_of(report.backend), report.backend_reason);
+  for (const StepPlan& plan : result.plans) text += plan_text(plan);
+  if (!result.plans.empty()) return text;
   text += fmt::format("{} written", result.written);
   if (result.skipped > 0) text += fmt::format(", {} skipped", result.skipped);
   if (counts.voxels > 0) {

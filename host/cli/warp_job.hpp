@@ -1,6 +1,7 @@
 /// @file warp_job.hpp
 /// One warp from files to files: `tetwarp warp` without --batch, or one job of a batch.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,10 +18,23 @@ struct JobContext {
   bool shows_progress = true;
 };
 
+/// How one step would be done.
+struct StepPlan {
+  std::string volume;
+  std::int64_t step = 0;
+  std::array<std::int64_t, 3> dims{};  ///< of the output
+  double memory = 0;                   ///< bytes at a time
+  std::int64_t blocks = 0;             ///< 0: all at once
+  std::int64_t largest_block = 0;      ///< [voxel]
+  std::int64_t largest_window = 0;     ///< of the source [voxel]
+  double bytes_read = 0;               ///< of the source
+};
+
 /// What a job did.
 struct JobResult {
   Report report;
   std::vector<std::string> outputs;  ///< of all steps and volumes, also those skipped
+  std::vector<StepPlan> plans;       ///< with --dry-run, which does no more
   std::int64_t written = 0;          ///< outputs written
   std::int64_t skipped = 0;          ///< outputs that --resume found complete and up to date
 };

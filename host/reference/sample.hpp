@@ -55,6 +55,7 @@ class Sampler {
   Sampler(const VolumeView& source, const WarpOptions& options)
       : data_(static_cast<const T*>(source.data)),
         n_(source.grid.dims),
+        held_(source.held()),
         components_(source.components),
         filter_(options.filter),
         background_(stored<T>(options.background)),
@@ -69,6 +70,11 @@ class Sampler {
     }
     const bool blends = filter_ != Filter::nearest && filter_ != Filter::labels;
     if (!blends || options.overshoot == Overshoot::keep) return;
+    for (std::size_t c = 0; c < source.range.size() / 2; ++c) {
+      low_[c] = source.range[2 * c];
+      high_[c] = source.range[2 * c + 1];
+    }
+    if (!source.range.empty()) return;
     std::ranges::fill(low_, INFINITY);
     std::ranges::fill(high_, -INFINITY);
     for (std::size_t s = 0; s < count; ++s) {
@@ -137,7 +143,8 @@ class Sampler {
     std::int64_t offset = 0;
     for (std::size_t axis = 3; axis-- > 0;) {
       const auto i = static_cast<std::int64_t>(ijk(static_cast<Eigen::Index>(axis)));
-      offset = offset * n_[axis] + stand_in(filter_, i, n_[axis]);
+      offset = offset * (held_.end[axis] - held_.begin[axis]) +
+               (stand_in(filter_, i, n_[axis]) - held_.begin[axis]);
     }
     return offset * components_;
   }
@@ -183,6 +190,7 @@ class Sampler {
 
   const T* data_;
   std::array<std::int64_t, 3> n_;
+  Region held_;  ///< what `data_` is of the source
   int components_;
   Filter filter_;
   T background_;

@@ -48,6 +48,7 @@ struct Counts {
   std::int64_t voxels_copied = 0;    ///< voxels moved by whole voxels: copied, not interpolated
   std::int64_t chunks_background = 0;  ///< chunks of files that hold only background: not stored
   std::int64_t tets_averaged = 0;      ///< tetrahedra whose voxels are means of samples (antialias)
+  std::int64_t blocks = 0;  ///< of the output, computed on their own; none where memory held all
   std::int64_t bytes_read = 0;
   std::int64_t bytes_written = 0;
 

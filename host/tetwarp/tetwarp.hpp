@@ -2,6 +2,7 @@
 /// Everything of tetwarp::tetwarp.
 #pragma once
 #include <tetwarp/backend.hpp>
+#include <tetwarp/blocks.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>

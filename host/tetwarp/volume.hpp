@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -72,6 +73,18 @@ struct Grid {
 /// invertible.
 void check_grid(const Grid& grid, const std::string& what);
 
+/// Half-open range of voxels [begin, end) per axis, in the indices of a grid.
+struct Region {
+  std::array<std::int64_t, 3> begin{0, 0, 0};
+  std::array<std::int64_t, 3> end{0, 0, 0};
+
+  std::int64_t voxel_count() const {
+    return (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]);
+  }
+
+  bool operator==(const Region&) const = default;
+};
+
 /// Samples of one array on a grid, stored [k][j][i][component].
 struct Volume {
   Grid grid;
@@ -115,6 +128,14 @@ struct VolumeView {
   int components = 1;
   const void* data = nullptr;
   Memory memory = Memory::host;
+  /// What `data` holds of the grid; nothing: all of it. A warp of a region must find there
+  /// all that it reads (BlockPlanner tells).
+  std::optional<Region> window = {};
+  /// Least and largest sample per component of the whole grid, in turns; empty: not known.
+  std::vector<double> range = {};
+
+  /// The window, or all of the grid.
+  Region held() const { return window.value_or(Region{{0, 0, 0}, grid.dims}); }
 
   VolumeView() = default;
   VolumeView(const Volume& volume);  // a volume is a view of itself

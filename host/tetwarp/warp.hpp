@@ -65,14 +65,6 @@ enum class Outside {
   identity     ///< the source at the same world position
 };
 
-/// Half-open range of voxels [begin, end) per axis, in the indices of the output grid.
-struct Region {
-  std::array<std::int64_t, 3> begin{0, 0, 0};
-  std::array<std::int64_t, 3> end{0, 0, 0};
-
-  bool operator==(const Region&) const = default;
-};
-
 /// Work left out because it cannot change the result. Each switch gives the same output bits (but
 /// for the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
 struct SkipOptions {

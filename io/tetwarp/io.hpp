@@ -6,6 +6,7 @@
 /// against the file and the machine's memory before anything is allocated. Writers write to a
 /// temporary name in the same folder and rename when complete: no half file stands under its name.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -25,6 +26,8 @@ struct ArrayHeader {
   std::string name;
   PixelType type = PixelType::float32;
   int components = 1;
+
+  bool operator==(const ArrayHeader&) const = default;
 };
 
 /// What a volume file holds.
@@ -41,6 +44,31 @@ VolumeHeader read_volume_header(const std::string& path);
 /// @param array  empty: the only or first array
 /// @param step   of a temporal file; static files have step 0 only
 Volume read_volume(const std::string& path, const std::string& array = {}, std::int64_t step = 0);
+
+/// One array of a VTKHDF ImageData file, read region by region.
+class VolumeReader {
+ public:
+  /// Arguments as of read_volume().
+  explicit VolumeReader(const std::string& path,
+                        const std::string& array = {},
+                        std::int64_t step = 0);
+  VolumeReader(VolumeReader&&) noexcept;
+  ~VolumeReader();
+
+  const Grid& grid() const;
+  const ArrayHeader& array() const;
+
+  /// Bytes that HDF5 holds of the array while it reads: its largest chunk, unpacked and packed.
+  double chunk_bytes() const;
+
+  /// Reads a region of the grid.
+  /// @param samples  out, [k][j][i][component]
+  void read(const Region& region, void* samples) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// What a mesh file holds.
 struct MeshHeader {
@@ -119,6 +147,38 @@ class TemporalVolumeWriter {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Writes a VTKHDF ImageData file whose arrays come in regions: a static one, or a temporal one
+/// step by step. Chunks are bricks, so that regions of any proportions end where chunks do.
+class BlockVolumeWriter {
+ public:
+  BlockVolumeWriter(const std::string& path,
+                    const Grid& grid,
+                    const std::vector<ArrayHeader>& arrays,
+                    const VolumeWriteOptions& options,
+                    bool is_temporal);
+  BlockVolumeWriter(BlockVolumeWriter&&) noexcept;
+  ~BlockVolumeWriter();  ///< without finish(): removes the temporary file
+
+  /// Of temporal files: what is written next belongs to a new step, or: a step equal to the last.
+  void begin_step(double time);
+  void repeat_step(double time);
+
+  /// Writes a region of an array.
+  /// @param region   begins and ends at multiples of block_step(), or at the grid's end
+  /// @param samples  [k][j][i][component] of the region
+  void write(std::size_t array, const Region& region, const void* samples);
+
+  /// Flushes and moves the file to its name.
+  WrittenFile finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Edges of the bricks in which BlockVolumeWriter stores such arrays [voxel].
+std::array<std::int64_t, 3> block_step(const Grid& grid, const std::vector<ArrayHeader>& arrays);
 
 /// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
 void write_mesh(const std::string& path,

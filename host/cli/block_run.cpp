@@ -1,0 +1,199 @@
+/// @file block_run.cpp
+#include "host/cli/block_run.hpp"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "host/cli/interrupt.hpp"
+#include "host/cli/output_files.hpp"
+#include "host/cli/source_scan.hpp"
+#include "host/cli/stopwatch.hpp"
+#include "host/warp_backend.hpp"
+#include "io/memory.hpp"
+#include "kernels/hex_view.hpp"
+
+namespace tetwarp::cli {
+
+namespace {
+
+double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
+  double bytes = 0;
+  for (const ArrayHeader& array : arrays) {
+    bytes += array.components * static_cast<double>(size_of(array.type));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+BlockRun::BlockRun(const WarpArguments& arguments,
+                   const JobPlan& plan,
+                   const VolumePlan& volume,
+                   ProgressBar& bar,
+                   JobResult& result)
+    : arguments_(arguments),
+      plan_(plan),
+      volume_(volume),
+      bar_(bar),
+      result_(result),
+      options_(warp_options(arguments, plan, volume)),
+      outputs_(volume.arrays) {
+  // Memory of a block goes back when it is done with.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  options_.skip.unchanged_tets = false;  // a block is not computed twice
+  for (const std::size_t e : arguments.extra) {
+    const ExtraOutput& extra = extra_outputs[e];
+    outputs_.push_back({extra.array(), extra.type, extra.components});
+  }
+  for (const ArrayHeader& array : volume.arrays) {
+    readers_.emplace_back(volume.path, array.name, arguments.source_step);
+  }
+  planner_.emplace(volume.source_grid, plan.mesh.mesh(), options_);
+  fixed_bytes_ = fixed_bytes();
+}
+
+void BlockRun::run() {
+  const Stopwatch watch;
+  Fingerprint inputs = scan_sources();
+  result_.report.timings.read += watch.seconds();
+  if (arguments_.temporal) {
+    run_temporal(inputs);
+  } else {
+    run_each_step(inputs);
+  }
+}
+
+void BlockRun::plan_only() {
+  for (const std::int64_t number : plan_.steps) {
+    stop_if_interrupted();
+    const BlockPlan plan = plan_step(plan_.mesh.read_step(number));
+    StepPlan step{volume_.path, number, volume_.written_grid.dims};
+    step.blocks = std::ssize(plan.blocks);
+    for (const WarpBlock& block : plan.blocks) {
+      const std::int64_t window = block.source.voxel_count();
+      step.memory = std::max(step.memory, fixed_bytes_ + block.host_bytes);
+      step.largest_block = std::max(step.largest_block, block.output.voxel_count());
+      step.largest_window = std::max(step.largest_window, window);
+      step.bytes_read += static_cast<double>(window) * voxel_bytes(volume_.arrays);
+    }
+    result_.plans.push_back(step);
+  }
+}
+
+Fingerprint BlockRun::scan_sources() {
+  Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
+  const double bytes = std::max(0.5 * (volume_.memory_limit - fixed_bytes_), 1e6);
+  for (const VolumeReader& reader : readers_) {
+    ranges_.push_back(
+        scan_source(reader, bytes, arguments_.warp.overshoot == Overshoot::clamp, fingerprint));
+    result_.report.counts.bytes_read +=
+        static_cast<std::int64_t>(bytes_of(reader.array(), {{0, 0, 0}, reader.grid().dims}));
+  }
+  return fingerprint;
+}
+
+void BlockRun::run_each_step(const Fingerprint& inputs) {
+  for (std::size_t s = 0; s < plan_.steps.size(); ++s) {
+    stop_if_interrupted();
+    StepReport report;
+    report.step = plan_.steps[s];
+    const std::vector<Point3> positions = plan_.mesh.read_step(report.step);
+    Fingerprint fingerprint = inputs;
+    fingerprint.add(positions);
+    if (is_up_to_date(arguments_, volume_.outputs[s], fingerprint)) {
+      ++result_.skipped;
+      finish_step(report, {});
+      continue;
+    }
+    const BlockPlan plan = plan_step(positions);
+    BlockVolumeWriter writer(volume_.outputs[s], volume_.written_grid, outputs_,
+                             write_options(arguments_, fingerprint), false);
+    run_step(plan, positions, writer, report);
+    report.counts += counts_of(writer.finish());
+    ++result_.written;
+    finish_step(report, plan);
+  }
+}
+
+void BlockRun::run_temporal(Fingerprint fingerprint) {
+  const std::vector<double>& times = plan_.mesh.header().times;
+  for (const std::int64_t step : plan_.steps) {
+    stop_if_interrupted();
+    fingerprint.add(times[static_cast<std::size_t>(step)]);
+    fingerprint.add(plan_.mesh.read_step(step));
+  }
+  const std::string& output = volume_.outputs.front();
+  if (is_up_to_date(arguments_, output, fingerprint)) {
+    ++result_.skipped;
+    return;
+  }
+  BlockVolumeWriter writer(output, volume_.written_grid, outputs_,
+                           write_options(arguments_, fingerprint), true);
+  std::vector<Point3> last_positions;
+  for (const std::int64_t step : plan_.steps) {
+    stop_if_interrupted();
+    StepReport report;
+    report.step = step;
+    std::vector<Point3> positions = plan_.mesh.read_step(step);
+    const double time = times[static_cast<std::size_t>(step)];
+    BlockPlan plan;
+    if (arguments_.warp.skip.unchanged_steps && positions == last_positions) {
+      writer.repeat_step(time);
+      report.counts.steps_unchanged = 1;
+    } else {
+      plan = plan_step(positions);
+      writer.begin_step(time);
+      run_step(plan, positions, writer, report);
+    }
+    finish_step(report, plan);
+    last_positions = std::move(positions);
+  }
+  result_.report.counts += counts_of(writer.finish());
+  ++result_.written;
+}
+
+double BlockRun::fixed_bytes() const {
+  // What is there, the mesh included, and what planning, threads and files take: footprints, lists
+  // of tetrahedra, positions in several forms; chunks.
+  const MeshHeader& mesh = plan_.mesh.header();
+  double bytes = resident_memory() + 8e6 +
+                 160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
+                 120 * static_cast<double>(mesh.node_count);
+  for (const VolumeReader& reader : readers_) bytes += reader.chunk_bytes() + 1e6;
+  return bytes;
+}
+
+BlockLimits BlockRun::limits() const {
+  BlockLimits limits;
+  limits.host = volume_.memory_limit - fixed_bytes_;
+  if (plan_.backend == Backend::cuda) {
+    limits.device = std::min(volume_.memory_limit, 0.9 * free_device_memory(options_.device));
+  }
+  limits.source_voxel = voxel_bytes(volume_.arrays);
+  limits.output_voxel = voxel_bytes(outputs_);
+  limits.scratch_voxel = plan_.backend == Backend::reference ? 30 : 0;
+  limits.step = block_step(volume_.written_grid, outputs_);
+  return limits;
+}
+
+BlockPlan BlockRun::plan_step(const std::vector<Point3>& positions) {
+  return planner_->plan(positions, limits());
+}
+
+/// What a tetrahedron is counts once, however many blocks it meets.
+void BlockRun::finish_step(StepReport report, const BlockPlan& plan) {
+  Counts& counts = report.counts;
+  counts.blocks = std::ssize(plan.blocks);
+  counts.tetrahedra = plan.blocks.empty() ? 0 : plan.tetrahedra;
+  counts.inverted = plan.inverted;
+  counts.flat = plan.flat;
+  Report& total = result_.report;
+  total.timings += report.timings;
+  total.counts += report.counts;
+  total.steps.push_back(report);
+  bar_.update(static_cast<double>(total.steps.size()), static_cast<double>(total.counts.voxels));
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,54 @@
+/// @file output_files.cpp
+#include "host/cli/output_files.hpp"
+
+#include <tetwarp/version.hpp>
+
+namespace tetwarp::cli {
+
+WarpOptions warp_options(const WarpArguments& arguments,
+                         const JobPlan& plan,
+                         const VolumePlan& volume) {
+  WarpOptions options = arguments.warp;
+  options.backend = plan.backend;
+  options.output_grid = volume.output_grid;
+  for (const ArrayHeader& array : volume.arrays) {
+    options.quantities.push_back(arguments.quantity_of(array.name));
+  }
+  return options;
+}
+
+Fingerprint fingerprint_of_options(const WarpArguments& arguments,
+                                   const JobPlan& plan,
+                                   const VolumePlan& volume) {
+  Fingerprint fingerprint;
+  fingerprint.add(TETWARP_VERSION);
+  fingerprint.add(warp_options(arguments, plan, volume));
+  for (const std::size_t e : arguments.extra) fingerprint.add(e);
+  fingerprint.add(volume.written_grid);
+  fingerprint.add(plan.mesh.mesh().tets);
+  fingerprint.add(plan.mesh.mesh().hexes);
+  fingerprint.add(plan.mesh.mesh().rest_positions);
+  return fingerprint;
+}
+
+bool is_up_to_date(const WarpArguments& arguments,
+                   const std::string& output,
+                   const Fingerprint& fingerprint) {
+  return arguments.resume && read_fingerprint(output) == fingerprint.text();
+}
+
+VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerprint& fingerprint) {
+  return {.compress = arguments.compress,
+          .background = arguments.warp.background,
+          .skip_background_chunks = arguments.warp.skip.background_chunks,
+          .fingerprint = fingerprint.text()};
+}
+
+Counts counts_of(const WrittenFile& file) {
+  Counts counts;
+  counts.bytes_written = file.bytes;
+  counts.chunks_background = file.chunks_background;
+  return counts;
+}
+
+}  // namespace tetwarp::cli
