@@ -143,6 +143,17 @@ def chunk_table(rows):
     return table(header + ["MB with all"], lines)
 
 
+def feature_table(rows):
+    lines = [
+        [row.workload, where_of(row), figure(row.time), figure(row["plain"])]
+        + [figure(row["cost"], 2), figure(row["ns_per_covered"]), figure(row["max_error"], 2)]
+        for row in rows
+        if row.kind == "feature"
+    ]
+    header = ["feature", "where", "ms", "ms of the plain step", "cost", "ns per covered voxel"]
+    return table(header + ["max error"], lines)
+
+
 def error_table(rows):
     lines = []
     for row in rows:
@@ -175,6 +186,7 @@ def main():
         ("What overlapping steps saves", overlap_table(rows)),
         ("What a region costs", region_table(rows)),
         ("What chunks of background save", chunk_table(rows)),
+        ("What features cost", feature_table(rows)),
         ("Error", error_table(rows)),
     ]
     if arguments.gpu_peers:

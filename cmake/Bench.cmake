@@ -19,6 +19,7 @@ add_executable(tetwarp_bench
   bench/analytic.cpp
   bench/bench_warp.cpp
   bench/floors.cpp
+  bench/features.cpp
   bench/labels.cpp
   bench/measure.cpp
   bench/overlap.cpp

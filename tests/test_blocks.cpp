@@ -13,7 +13,9 @@
 
 #include <tetwarp/blocks.hpp>
 
+#include "host/hex_split.hpp"
 #include "tests/each_backend.hpp"
+#include "tests/hex_scenes.hpp"
 #include "tests/scenes.hpp"
 #include "tests/warp_run.hpp"
 
@@ -118,6 +120,28 @@ TEST_P(Blocks, OfEverySceneHaveTheBitsOfTheWhole) {
     source_voxels += scene.source_grid.voxel_count() * std::ssize(blocks.plan.blocks);
   }
   EXPECT_LT(window_voxels, source_voxels * 2 / 3) << "windows are no smaller than the source";
+}
+
+TEST_P(Blocks, OfHexahedraAndOfMeansHaveTheBitsOfTheWhole) {
+  const Grid grid = scenes::unit_grid(40, 36, 32);
+  for (const double shrink : {1.0, 0.4}) {
+    const HexBox box = hex_box({4, 3, 3}, {-0.5, -0.5, -0.5}, {39.5, 35.5, 31.5}, bent(2.5));
+    scenes::Scene scene = {"hexahedra", box.mesh, box.deformed, grid, grid};
+    const auto middle = scene.mesh.hexes.begin() + 12;
+    scene.mesh.tets = split_hexes(std::vector(scene.mesh.hexes.begin(), middle));
+    scene.mesh.hexes.erase(scene.mesh.hexes.begin(), middle);
+    for (Point3& p : scene.deformed) {
+      for (double& x : p) x = shrink * x + 20 * (1 - shrink);
+    }
+    const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+    WarpOptions options{.antialias = shrink < 1, .outside = Outside::identity};
+    options.backend = GetParam();
+
+    const InBlocks blocks = run_blocks(source, scene, options, small);
+
+    EXPECT_TRUE(is_same(blocks.warped, run_warp(source, scene, GetParam(), options))) << shrink;
+    EXPECT_GT(blocks.plan.blocks.size(), 1u);
+  }
 }
 
 TEST_P(Blocks, OfEveryFilterAndPixelTypeHaveTheBitsOfTheWhole) {

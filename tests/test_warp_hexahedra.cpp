@@ -12,6 +12,7 @@
 
 #include "host/hex_split.hpp"
 #include "tests/each_backend.hpp"
+#include "tests/field_buffers.hpp"
 #include "tests/hex_scenes.hpp"
 #include "tests/skip_series.hpp"
 #include "tests/warp_run.hpp"
@@ -199,6 +200,61 @@ TEST_P(WarpHexahedra, MoveAsAWholeInUpdates) {
     fresh.step(deformed, false);
     EXPECT_TRUE(series.has_bits_of(fresh)) << n;
   }
+}
+
+/// Fields change within a hexahedron; those of whole steps and of updates are the reference's.
+TEST_P(WarpHexahedra, HaveFieldsOfTheTrilinearMap) {
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
+  const scenes::Scene scene = mixed_scene(2.5);
+  const std::vector sources{scenes::wavy_volume(scene.source_grid, PixelType::uint8)};
+  const std::vector<VolumeView> views(sources.begin(), sources.end());
+  std::vector<Point3> deformed = scene.deformed;
+  const auto step_of = [&](Warper& warper, FieldBuffers& fields, std::vector<std::int32_t>& tet,
+                           bool holds_previous) {
+    Volume volume = make_volume(scene.output_grid, PixelType::uint8);
+    void* const data = volume.data.data();
+    warper.step(deformed, {.volumes = {&data, 1},
+                           .tet = tet.data(),
+                           .fields = fields.target(),
+                           .holds_previous = holds_previous});
+  };
+  const std::vector<std::int32_t> nobody(static_cast<std::size_t>(scene.output_grid.voxel_count()),
+                                         -99);
+  FieldBuffers here(scene.output_grid, true), judge(scene.output_grid, true);
+  std::vector<std::int32_t> owners = nobody, true_owners = nobody;
+  Warper warper(views, scene.mesh, {.backend = GetParam()});
+  Warper reference(views, scene.mesh, {.backend = Backend::reference});
+  for (const bool is_update : {false, true}) {
+    if (is_update) deformed[30][1] += 1.25;
+    step_of(warper, here, owners, is_update);
+    step_of(reference, judge, true_owners, false);
+    EXPECT_TRUE(owners == true_owners);
+    for (std::size_t field = 0; field < here.arrays().size(); ++field) {
+      double worst = 0;
+      for (std::size_t n = 0; n < here.arrays()[field].size(); ++n) {
+        worst =
+            std::max(worst, double{std::abs(here.arrays()[field][n] - judge.arrays()[field][n])});
+      }
+      EXPECT_LE(worst, 2e-5) << field;
+      found("field" + std::to_string(field), worst);
+    }
+  }
+}
+
+TEST_P(WarpHexahedra, TurnAndAverageAsTheReferenceDoes) {
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
+  scenes::Scene scene = mixed_scene(2.5);
+  for (Point3& p : scene.deformed) {
+    for (double& x : p) x = 0.45 * x + 5;
+  }
+  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64, 3);
+  WarpOptions options{.antialias = true, .quantities = {Quantity::vector}};
+  const Warped here = run(source, scene, options);
+
+  EXPECT_LE(
+      largest_difference(here.volume, run_warp(source, scene, Backend::reference, options).volume),
+      1e-5);
+  EXPECT_GT(here.counts.tets_averaged, 0);
 }
 
 TEST_P(WarpHexahedra, AreCheckedBeforeUse) {
