@@ -9,7 +9,7 @@ class Row:
     """One benchmark. The parts of its name are fields, its counters a dictionary."""
 
     name: str
-    kind: str = "warp"  # warp, series, overlap, region, chunks, analytic or position
+    kind: str = "warp"  # warp, series, overlap, region, chunks, fields, analytic or position
     workload: str = ""
     filter: str = ""
     type: str = ""
@@ -32,7 +32,8 @@ def parse_name(name):
     """W2_rotated_256/linear/float32/cpu/threads:2/without:culling as a Row without figures."""
     row = Row(name)
     parts = name.split("/")
-    if parts[0] in ("analytic", "position", "series", "overlap", "region", "chunks", "labels"):
+    kinds = ("analytic", "position", "series", "overlap", "region", "chunks", "labels", "fields")
+    if parts[0] in kinds:
         row.kind = parts.pop(0)
     row.workload = parts.pop(0)
     for part in parts:

@@ -143,6 +143,17 @@ def chunk_table(rows):
     return table(header + ["MB with all"], lines)
 
 
+def field_table(rows):
+    lines = [
+        [row.workload, row.name.split("/")[2], figure(row.time), figure(row["plain"])]
+        + [figure(row["field_ns_per_covered"])]
+        for row in rows
+        if row.kind == "fields"
+    ]
+    header = ["workload", "field", "ms with it", "ms without", "ns per covered voxel"]
+    return table(header, lines)
+
+
 def error_table(rows):
     lines = []
     for row in rows:
@@ -175,6 +186,7 @@ def main():
         ("What overlapping steps saves", overlap_table(rows)),
         ("What a region costs", region_table(rows)),
         ("What chunks of background save", chunk_table(rows)),
+        ("What fields cost", field_table(rows)),
         ("Error", error_table(rows)),
     ]
     if arguments.gpu_peers:
