@@ -3,8 +3,8 @@
 ///
 /// `tetwarp_bench` runs the short list of rows; with --full, or with Google Benchmark's own
 /// --benchmark_filter, all of them are there. Rows and columns: warp_cases.hpp, measure.hpp,
-/// series.hpp, overlap.hpp, region.hpp, chunks.hpp, analytic.hpp, labels.hpp, features.hpp. Ends
-/// with 1 when a result was wrong.
+/// series.hpp, overlap.hpp, region.hpp, chunks.hpp, analytic.hpp, labels.hpp, features.hpp,
+/// fields.hpp. Ends with 1 when a result was wrong.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -14,6 +14,7 @@
 #include "bench/analytic.hpp"
 #include "bench/chunks.hpp"
 #include "bench/features.hpp"
+#include "bench/fields.hpp"
 #include "bench/floors.hpp"
 #include "bench/labels.hpp"
 #include "bench/measure.hpp"
@@ -73,7 +74,9 @@ int main(int argc, char** argv) {
   bench::register_analytic_rows(extent, threads);
   bench::register_label_rows(extent, threads);
   bench::register_feature_rows(threads);
+  bench::register_field_rows(extent, threads);
   describe(program, cuda, cuda_seconds, threads);
   return program.run({"floor_ratio", "ns_per_covered", "cost_share", "cells_touched", "max_error",
-                      "rms_error", "wrong_share", "position_max", "position_rms"});
+                      "rms_error", "wrong_share", "field_ns_per_covered", "position_max",
+                      "position_rms"});
 }

@@ -23,7 +23,6 @@ struct Feature {
   WarpOptions options = {};
   int components = 1;
   double shrink = 1;       ///< of the deformed mesh
-  bool fields = false;     ///< displacement, Jacobian, gradient and strain
   bool hexahedra = false;  ///< instead of tetrahedra
 };
 
@@ -32,7 +31,6 @@ std::vector<Feature> features() {
           {.name = "vectors", .options = {.quantities = {Quantity::vector}}, .components = 3},
           {.name = "tensors", .options = {.quantities = {Quantity::tensor}}, .components = 6},
           {.name = "density", .options = {.intensity = Intensity::density}},
-          {.name = "fields", .fields = true},
           {.name = "hexahedra", .hexahedra = true}};
 }
 
@@ -88,20 +86,11 @@ class Job {
     warper_.emplace(std::span(&source, 1), mesh, options);
     const auto voxels = static_cast<std::size_t>(scene.output_grid.voxel_count());
     values_.resize(voxels * static_cast<std::size_t>(source.components));
-    if (feature.fields) fields_.resize((3 + 1 + 9 + 6) * voxels);
-    float* const f = fields_.data();
-    if (feature.fields) {
-      target_ = {.displacement = f,
-                 .jacobian = f + 3 * voxels,
-                 .gradient = f + 4 * voxels,
-                 .strain = f + 13 * voxels};
-    }
   }
 
   void step() {
     void* const out = values_.data();
-    covered_ =
-        warper_->step(deformed_, {.volumes = std::span(&out, 1), .fields = target_}).counts.covered;
+    covered_ = warper_->step(deformed_, {.volumes = std::span(&out, 1)}).counts.covered;
   }
 
   std::int64_t covered() const { return covered_; }
@@ -111,17 +100,13 @@ class Job {
     for (std::size_t s = 0; s < values_.size(); ++s) {
       largest = std::max(largest, error_between(values_[s], other.values_[s]));
     }
-    for (std::size_t s = 0; s < fields_.size(); ++s) {
-      largest = std::max(largest, error_between(fields_[s], other.fields_[s]));
-    }
     return largest;
   }
 
  private:
   const std::vector<Point3>& deformed_;
   std::optional<Warper> warper_;
-  std::vector<float> values_, fields_;
-  FieldTarget target_;
+  std::vector<float> values_;
   std::int64_t covered_ = 0;
 };
 
@@ -149,7 +134,7 @@ void run(benchmark::State& state, const Feature& feature, int threads) {
                           Memory::host};
   Feature none = feature;
   none.options = {};
-  none.fields = none.hexahedra = false;
+  none.hexahedra = false;
   Job with(feature, scene, source, Backend::cpu, threads);
   Job plain(none, scene, source, Backend::cpu, threads);
   const std::function<void()> jobs[] = {[&] { with.step(); }, [&] { plain.step(); }};

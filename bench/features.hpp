@@ -13,8 +13,7 @@ namespace tetwarp::bench {
 ///   plain           the plain step [ms]
 ///   cost            time / plain
 ///   ns_per_covered  [ns]
-///   max_error       of the values, as a share of the image's range; of fields in voxels, and as a
-///                   share of 1 for gradients
+///   max_error       of the values, as a share of the image's range
 void register_feature_rows(int threads);
 
 }  // namespace tetwarp::bench

@@ -32,8 +32,9 @@ def parse_name(name):
     """W2_rotated_256/linear/float32/cpu/threads:2/without:culling as a Row without figures."""
     row = Row(name)
     parts = name.split("/")
-    if parts[0] in ("analytic", "position", "series", "overlap", "region", "chunks", "labels",
-                    "feature"):
+    kinds = ("analytic", "position", "series", "overlap", "region", "chunks", "labels", "feature",
+             "fields")
+    if parts[0] in kinds:
         row.kind = parts.pop(0)
     row.workload = parts.pop(0)
     for part in parts:

@@ -154,6 +154,17 @@ def feature_table(rows):
     return table(header + ["max error"], lines)
 
 
+def field_table(rows):
+    lines = [
+        [row.workload, row.name.split("/")[2], figure(row.time), figure(row["plain"])]
+        + [figure(row["field_ns_per_covered"])]
+        for row in rows
+        if row.kind == "fields"
+    ]
+    header = ["workload", "field", "ms with it", "ms without", "ns per covered voxel"]
+    return table(header, lines)
+
+
 def error_table(rows):
     lines = []
     for row in rows:
@@ -187,6 +198,7 @@ def main():
         ("What a region costs", region_table(rows)),
         ("What chunks of background save", chunk_table(rows)),
         ("What features cost", feature_table(rows)),
+        ("What fields cost", field_table(rows)),
         ("Error", error_table(rows)),
     ]
     if arguments.gpu_peers:

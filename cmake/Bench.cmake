@@ -18,6 +18,7 @@ configure_file(bench/build_info.hpp.in bench_info/bench/build_info.hpp @ONLY)
 add_executable(tetwarp_bench
   bench/analytic.cpp
   bench/bench_warp.cpp
+  bench/fields.cpp
   bench/floors.cpp
   bench/features.cpp
   bench/labels.cpp

@@ -47,9 +47,11 @@ class WarpFields {
            View<const std::uint8_t> touched,
            const FieldTarget& to) {
     if (needs_owners(to)) {
-      strains_.reserve(pairs.tet_count());
-      const View<TetStrain> strains = strains_.view(pairs.tet_count());
-      tet_strain(exec_, pairs.setups(), geometry_.axes, strains);
+      const bool strained =
+          to.jacobian != nullptr || to.gradient != nullptr || to.strain != nullptr;
+      strains_.reserve(strained ? pairs.tet_count() : 0);
+      const View<TetStrain> strains = strains_.view(strained ? pairs.tet_count() : 0);
+      if (strained) tet_strain(exec_, pairs.setups(), geometry_.axes, strains);
       voxel_fields(exec_, {.setups = pairs.setups(),
                            .mesh = {pairs.hexes(), pairs.tets(), pairs.nodes(), pairs.rest()},
                            .axes = geometry_.axes,

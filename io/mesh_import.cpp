@@ -25,7 +25,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   ImportedMesh mesh =
       path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
   if (mesh.mesh.tets.empty()) {
-    throw IoError(path, "", "holds no tetrahedron; mesh the volume, not its surface alone");
+    throw IoError(path, "", "holds no tetrahedron: damaged, or the mesh of a surface alone");
   }
   if (mesh.mesh.rest_positions.size() > std::numeric_limits<std::int32_t>::max()) {
     throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");

@@ -48,14 +48,15 @@ void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh&
     if (!keeps_cell(path, kinds[type], c, into)) continue;
     grid.GetCellPoints(c, nodes);
     std::array<std::int32_t, 4> tet;
-    for (std::size_t node = 0; node < tet.size(); ++node) {
-      const vtkIdType id = nodes->GetId(static_cast<vtkIdType>(node));
+    for (vtkIdType node = 0; node < 4; ++node) {
+      const vtkIdType id = node < nodes->GetNumberOfIds() ? nodes->GetId(node) : -1;
       if (id < 0 || id >= grid.GetNumberOfPoints()) {
         throw IoError(path, "",
-                      "cell " + std::to_string(c) + " has node " + std::to_string(id) + " of " +
-                          std::to_string(grid.GetNumberOfPoints()) + ": damaged, write it again");
+                      "cell " + std::to_string(c) + " is no tetrahedron of nodes 0 to " +
+                          std::to_string(grid.GetNumberOfPoints() - 1) +
+                          ": damaged, write it again");
       }
-      tet[node] = static_cast<std::int32_t>(id);
+      tet[static_cast<std::size_t>(node)] = static_cast<std::int32_t>(id);
     }
     into.mesh.tets.push_back(tet);
   }
@@ -112,7 +113,7 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
   reader->ReadAllVectorsOn();
   reader->ReadAllFieldsOn();
   if (reader->IsFileUnstructuredGrid() != 0) reader->Update();
-  check_grid(path, reader->GetOutput());
+  check_grid(path, reader->GetErrorCode() == 0 ? reader->GetOutput() : nullptr);
   ImportedMesh mesh;
   add_step(path, *reader->GetOutput(), 0, options, mesh);
   return mesh;

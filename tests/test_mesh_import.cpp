@@ -156,6 +156,11 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
   std::string surface = legacy_file();
   surface.replace(surface.find("CELLS"), surface.find("POINT_DATA") - surface.find("CELLS"),
                   "CELLS 1 4\n3 1 2 3\nCELL_TYPES 1\n5\n");
+  std::string short_cell = legacy_file();
+  short_cell.replace(short_cell.find("4 0 1 2 3\n"), 10, "3 0 1 2\n");
+  short_cell.replace(short_cell.find("3 14"), 4, "3 13");
+  std::string stray_node = legacy_file();
+  stray_node.replace(stray_node.find("4 1 2 3 4\n"), 10, "4 1 2 3 5\n");
   const struct {
     const char* name;
     std::string text;
@@ -164,6 +169,8 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
   } cases[] = {
       {"a.vtk", hexahedron, {}, "cell 2 is a vtkHexahedron"},
       {"b.vtk", surface, {}, "holds no tetrahedron"},
+      {"s.vtk", short_cell, {}, "cell 0 is no tetrahedron of nodes 0 to 4"},
+      {"t.vtk", stray_node, {}, "cell 2 is no tetrahedron of nodes 0 to 4"},
       {"c.vtk", legacy_file(), {.displacement = "u"}, "the file has heat, displacement"},
       {"d.vtk", legacy_file(), {.displacement = "heat"}, "three components"},
       {"e.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", {}, "no unstructured"},
