@@ -31,11 +31,13 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
 BlockRun::BlockRun(const WarpArguments& arguments,
                    const JobPlan& plan,
                    const VolumePlan& volume,
+                   Ranks& ranks,
                    ProgressBar& bar,
                    JobResult& result)
     : arguments_(arguments),
       plan_(plan),
       volume_(volume),
+      ranks_(ranks),
       bar_(bar),
       result_(result),
       options_(warp_options(arguments, plan, volume)),
@@ -84,10 +86,13 @@ void BlockRun::plan_only() {
 
 Fingerprint BlockRun::scan_sources() {
   Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
-  const double bytes = std::max(0.5 * (volume_.memory_limit - fixed_bytes_), 1e6);
-  for (const VolumeReader& reader : readers_) {
-    ranges_.push_back(
-        scan_source(reader, bytes, arguments_.warp.overshoot == Overshoot::clamp, fingerprint));
+  const bool wants_range = arguments_.warp.overshoot == Overshoot::clamp;
+  ranges_.resize(readers_.size());
+  if (!ranks_.is_root() && !wants_range) return fingerprint;
+  const double bytes = std::clamp(0.5 * limits().host, 1e6, 1e9);
+  for (std::size_t s = 0; s < readers_.size(); ++s) {
+    const VolumeReader& reader = readers_[s];
+    ranges_[s] = scan_source(reader, bytes, wants_range, fingerprint);
     result_.report.counts.bytes_read +=
         static_cast<std::int64_t>(bytes_of(reader.array(), {{0, 0, 0}, reader.grid().dims}));
   }
@@ -95,24 +100,21 @@ Fingerprint BlockRun::scan_sources() {
 }
 
 void BlockRun::run_each_step(const Fingerprint& inputs) {
-  for (std::size_t s = 0; s < plan_.steps.size(); ++s) {
+  for (std::size_t s = 0; s < volume_.steps.size(); ++s) {
     stop_if_interrupted();
     StepReport report;
-    report.step = plan_.steps[s];
+    report.step = volume_.steps[s];
     const std::vector<Point3> positions = plan_.mesh.read_step(report.step);
     Fingerprint fingerprint = inputs;
     fingerprint.add(positions);
-    if (is_up_to_date(arguments_, volume_.outputs[s], fingerprint)) {
-      ++result_.skipped;
+    if (may_keep(volume_.outputs[s], fingerprint)) {
       finish_step(report, {});
       continue;
     }
     const BlockPlan plan = plan_step(positions);
-    BlockVolumeWriter writer(volume_.outputs[s], volume_.written_grid, outputs_,
-                             write_options(arguments_, fingerprint), false);
-    run_step(plan, positions, writer, report);
-    report.counts += counts_of(writer.finish());
-    ++result_.written;
+    begin_file(volume_.outputs[s], fingerprint, false);
+    run_step(plan, positions, report);
+    report.counts += finish_file();
     finish_step(report, plan);
   }
 }
@@ -125,12 +127,8 @@ void BlockRun::run_temporal(Fingerprint fingerprint) {
     fingerprint.add(plan_.mesh.read_step(step));
   }
   const std::string& output = volume_.outputs.front();
-  if (is_up_to_date(arguments_, output, fingerprint)) {
-    ++result_.skipped;
-    return;
-  }
-  BlockVolumeWriter writer(output, volume_.written_grid, outputs_,
-                           write_options(arguments_, fingerprint), true);
+  if (may_keep(output, fingerprint)) return;
+  begin_file(output, fingerprint, true);
   std::vector<Point3> last_positions;
   for (const std::int64_t step : plan_.steps) {
     stop_if_interrupted();
@@ -140,18 +138,41 @@ void BlockRun::run_temporal(Fingerprint fingerprint) {
     const double time = times[static_cast<std::size_t>(step)];
     BlockPlan plan;
     if (arguments_.warp.skip.unchanged_steps && positions == last_positions) {
-      writer.repeat_step(time);
+      if (writer_) writer_->repeat_step(time);
       report.counts.steps_unchanged = 1;
     } else {
       plan = plan_step(positions);
-      writer.begin_step(time);
-      run_step(plan, positions, writer, report);
+      if (writer_) writer_->begin_step(time);
+      run_step(plan, positions, report);
     }
     finish_step(report, plan);
     last_positions = std::move(positions);
   }
-  result_.report.counts += counts_of(writer.finish());
+  result_.report.counts += finish_file();
+}
+
+/// The root decides, and writes.
+bool BlockRun::may_keep(const std::string& output, const Fingerprint& fingerprint) {
+  const bool may =
+      ranks_.shared(ranks_.is_root() && is_up_to_date(arguments_, output, fingerprint));
+  if (may && ranks_.is_root()) ++result_.skipped;
+  return may;
+}
+
+void BlockRun::begin_file(const std::string& output,
+                          const Fingerprint& fingerprint,
+                          bool is_temporal) {
+  if (!ranks_.is_root()) return;
+  writer_.emplace(output, volume_.written_grid, outputs_, write_options(arguments_, fingerprint),
+                  is_temporal);
+}
+
+Counts BlockRun::finish_file() {
+  if (!writer_) return {};
+  const Counts counts = counts_of(writer_->finish());
+  writer_.reset();
   ++result_.written;
+  return counts;
 }
 
 double BlockRun::fixed_bytes() const {
@@ -167,9 +188,13 @@ double BlockRun::fixed_bytes() const {
 
 BlockLimits BlockRun::limits() const {
   BlockLimits limits;
-  limits.host = volume_.memory_limit - fixed_bytes_;
-  if (plan_.backend == Backend::cuda) {
-    limits.device = std::min(volume_.memory_limit, 0.9 * free_device_memory(options_.device));
+  if (volume_.memory_limit > 0) limits.host = volume_.memory_limit - fixed_bytes_;
+  if (plan_.backend == Backend::cuda) limits.device = 0.9 * free_device_memory(options_.device);
+  // Enough blocks to share out, the last of which keep few waiting.
+  constexpr std::int64_t blocks_per_rank = 4;
+  if (ranks_.count() > 1) {
+    limits.most_voxels =
+        volume_.written_grid.voxel_count() / (blocks_per_rank * ranks_.count()) + 1;
   }
   limits.source_voxel = voxel_bytes(volume_.arrays);
   limits.output_voxel = voxel_bytes(outputs_);
@@ -179,11 +204,15 @@ BlockLimits BlockRun::limits() const {
 }
 
 BlockPlan BlockRun::plan_step(const std::vector<Point3>& positions) {
-  return planner_->plan(positions, limits());
+  BlockLimits common = limits();
+  common.host = ranks_.least(common.host);
+  common.device = ranks_.least(common.device);
+  return planner_->plan(positions, common);
 }
 
 /// What a tetrahedron is counts once, however many blocks it meets.
 void BlockRun::finish_step(StepReport report, const BlockPlan& plan) {
+  if (!ranks_.is_root()) return;
   Counts& counts = report.counts;
   counts.blocks = std::ssize(plan.blocks);
   counts.tetrahedra = plan.blocks.empty() ? 0 : plan.tetrahedra;

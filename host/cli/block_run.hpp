@@ -1,6 +1,7 @@
 /// @file block_run.hpp
-/// One volume file that is larger than the memory allowed, warped block by block by every step of a
-/// plan: a window of the source is read and the block before is written while a block is computed.
+/// One volume file warped block by block by every step of a plan, because memory does not hold it
+/// or because ranks share it: a window of the source is read and the block before is written while
+/// a block is computed.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "host/cli/fingerprint.hpp"
 #include "host/cli/job_plan.hpp"
 #include "host/cli/progress_bar.hpp"
+#include "host/cli/ranks.hpp"
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
@@ -31,6 +33,7 @@ class BlockRun {
   BlockRun(const WarpArguments& arguments,
            const JobPlan& plan,
            const VolumePlan& volume,
+           Ranks& ranks,
            ProgressBar& bar,
            JobResult& result);
 
@@ -50,22 +53,26 @@ class BlockRun {
   BlockPlan plan_step(const std::vector<Point3>& positions);
   BlockLimits limits() const;
   double fixed_bytes() const;
-  void run_step(const BlockPlan& plan,
-                const std::vector<Point3>& positions,
-                BlockVolumeWriter& writer,
-                StepReport& report);
+  bool may_keep(const std::string& output, const Fingerprint& fingerprint);
+  void begin_file(const std::string& output, const Fingerprint& fingerprint, bool is_temporal);
+  Counts finish_file();
+  void run_step(const BlockPlan& plan, const std::vector<Point3>& positions, StepReport& report);
+  void send(const WarpBlock& block, Samples outputs);
+  Samples receive(const WarpBlock& block, int from) const;
+  void add_reports_of_others(StepReport& report) const;
   Samples read_window(const Region& window) const;
   Samples compute(const WarpBlock& block,
                   const std::vector<Point3>& positions,
                   const Samples& windows,
                   StepReport& report);
   Samples make_outputs(const Region& region) const;
-  void write(const Region& region, const Samples& outputs, BlockVolumeWriter& writer) const;
+  void write(const Region& region, const Samples& outputs);
   void finish_step(StepReport report, const BlockPlan& plan);
 
   const WarpArguments& arguments_;
   const JobPlan& plan_;
   const VolumePlan& volume_;
+  Ranks& ranks_;
   ProgressBar& bar_;
   JobResult& result_;
   WarpOptions options_;
@@ -73,7 +80,9 @@ class BlockRun {
   std::vector<VolumeReader> readers_;
   std::vector<std::vector<double>> ranges_;  ///< of the sources, where they are wanted
   std::optional<BlockPlanner> planner_;
-  double fixed_bytes_ = 0;  ///< memory that is not the blocks'
+  std::optional<BlockVolumeWriter> writer_;  ///< of the root
+  Samples sent_;                             ///< on their way to the root
+  double fixed_bytes_ = 0;                   ///< memory that is not the blocks'
 };
 
 }  // namespace tetwarp::cli

@@ -1,7 +1,9 @@
 /// @file block_run_step.cpp
 /// One step in blocks: files on a thread of their own, this one computes.
 #include <algorithm>
+#include <cstring>
 #include <future>
+#include <span>
 #include <utility>
 
 #include "host/cli/block_run.hpp"
@@ -27,41 +29,80 @@ Region moved(const Region& region, const std::array<std::int64_t, 3>& origin) {
 
 void BlockRun::run_step(const BlockPlan& plan,
                         const std::vector<Point3>& positions,
-                        BlockVolumeWriter& writer,
                         StepReport& report) {
   double read_seconds = 0, write_seconds = 0;  // of the thread for files
   {
     IoThread files;
-    const auto read = [&](const WarpBlock& block) {
-      return files.run([this, &block, &read_seconds] {
+    const auto stride = static_cast<std::size_t>(ranks_.count());
+    const auto read = [&](std::size_t b) -> std::future<Samples> {
+      if (b >= plan.blocks.size()) return {};
+      return files.run([this, &window = plan.blocks[b].source, &read_seconds] {
         const Stopwatch watch;
-        Samples windows = read_window(block.source);
+        Samples windows = read_window(window);
         read_seconds += watch.seconds();
         return windows;
       });
     };
-    std::future<Samples> next = read(plan.blocks.front());
+    std::future<Samples> next = read(static_cast<std::size_t>(ranks_.rank()));
     std::future<void> written;
     for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
       const WarpBlock& block = plan.blocks[b];
-      Samples windows = next.get();
-      for (const ArrayHeader& array : volume_.arrays) {
-        report.counts.bytes_read += static_cast<std::int64_t>(bytes_of(array, block.source));
+      const int owner = static_cast<int>(b % stride);
+      if (owner != ranks_.rank() && !ranks_.is_root()) continue;
+      Samples outputs;
+      if (owner == ranks_.rank()) {
+        const Samples windows = next.get();
+        next = read(b + stride);
+        outputs = compute(block, positions, windows, report);
+      } else {
+        outputs = receive(block, owner);
       }
-      if (b + 1 < plan.blocks.size()) next = read(plan.blocks[b + 1]);
-      auto outputs = std::make_shared<const Samples>(compute(block, positions, windows, report));
-      windows.clear();
+      if (!ranks_.is_root()) {
+        send(block, std::move(outputs));
+        continue;
+      }
       if (written.valid()) written.get();
-      written = files.run([this, &block, &writer, &write_seconds, outputs = std::move(outputs)] {
+      written = files.run([this, &block, &write_seconds,
+                           samples = std::make_shared<const Samples>(std::move(outputs))] {
         const Stopwatch watch;
-        write(block.output, *outputs, writer);
+        write(block.output, *samples);
         write_seconds += watch.seconds();
       });
     }
-    written.get();
+    if (written.valid()) written.get();
   }
   report.timings.read += read_seconds;
   report.timings.write += write_seconds;
+  ranks_.finish_sending();
+  sent_.clear();
+  add_reports_of_others(report);
+}
+
+/// Waits until the root has the block before.
+void BlockRun::send(const WarpBlock& block, Samples outputs) {
+  ranks_.finish_sending();
+  sent_ = std::move(outputs);
+  for (std::size_t a = 0; a < sent_.size(); ++a) {
+    ranks_.send({sent_[a].get(), bytes_of(outputs_[a], block.output)});
+  }
+}
+
+BlockRun::Samples BlockRun::receive(const WarpBlock& block, int from) const {
+  Samples outputs = make_outputs(block.output);
+  for (std::size_t a = 0; a < outputs.size(); ++a) {
+    ranks_.receive(from, {outputs[a].get(), bytes_of(outputs_[a], block.output)});
+  }
+  return outputs;
+}
+
+void BlockRun::add_reports_of_others(StepReport& report) const {
+  const auto reports = ranks_.gather(std::as_bytes(std::span(&report, 1)));
+  for (std::size_t r = 1; r < reports.size(); ++r) {
+    StepReport other;
+    std::memcpy(&other, reports[r].data(), sizeof other);
+    report.timings += other.timings;
+    report.counts += other.counts;
+  }
 }
 
 BlockRun::Samples BlockRun::read_window(const Region& window) const {
@@ -115,6 +156,9 @@ BlockRun::Samples BlockRun::compute(const WarpBlock& block,
   });
   report.timings += step.timings;
   report.counts += step.counts;
+  for (const ArrayHeader& array : volume_.arrays) {
+    report.counts.bytes_read += static_cast<std::int64_t>(bytes_of(array, block.source));
+  }
   if (target.tet != nullptr) {
     std::for_each_n(target.tet, block.output.voxel_count(), [&](std::int32_t& t) {
       if (t >= 0) t = block.cells[static_cast<std::size_t>(t)];
@@ -126,11 +170,9 @@ BlockRun::Samples BlockRun::compute(const WarpBlock& block,
   return outputs;
 }
 
-void BlockRun::write(const Region& region,
-                     const Samples& outputs,
-                     BlockVolumeWriter& writer) const {
+void BlockRun::write(const Region& region, const Samples& outputs) {
   const Region written = moved(region, arguments_.warp.region.value_or(Region{}).begin);
-  for (std::size_t a = 0; a < outputs.size(); ++a) writer.write(a, written, outputs[a].get());
+  for (std::size_t a = 0; a < outputs.size(); ++a) writer_->write(a, written, outputs[a].get());
 }
 
 }  // namespace tetwarp::cli

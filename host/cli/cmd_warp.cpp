@@ -6,15 +6,29 @@
 #include "host/cli/batch.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
+#include "host/cli/ranks.hpp"
 #include "host/cli/warp_job.hpp"
+#include "host/warp_backend.hpp"
 
 namespace tetwarp::cli {
 
 namespace {
 
-int run_warp(const WarpArguments& arguments) {
-  const JobResult result = run_warp_job(arguments, {.shows_progress = !arguments.quiet});
-  if (!arguments.quiet) fmt::print("{}", summary(result));
+/// CUDA devices that answer.
+int device_count() {
+  int count = 0;
+  while (cuda_status(count).usable) ++count;
+  return count;
+}
+
+int run_warp(WarpArguments arguments) {
+  Ranks ranks = Ranks::start();
+  const int devices = ranks.count() > 1 ? device_count() : 0;
+  if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
+  const JobResult result =
+      run_warp_job(arguments, {.shows_progress = !arguments.quiet, .ranks = &ranks});
+  if (!arguments.quiet && ranks.is_root()) fmt::print("{}", summary(result));
+  ranks.finish();
   return 0;
 }
 
@@ -33,6 +47,9 @@ void add_warp_command(CLI::App& app, Run& run) {
   declare_warp_options(*command, *arguments);
   command->callback([arguments, command, &run] {
     check_complete(*arguments);
+    if (!arguments->batch.empty() && launched_count() > 1) {
+      throw CLI::ValidationError("--batch", "runs without mpirun; start one mpirun for each job");
+    }
     run = [arguments, command] {
       return arguments->batch.empty() ? run_warp(*arguments) : run_batch(*arguments, *command);
     };

@@ -17,7 +17,7 @@ volatile std::sig_atomic_t polite = 0;  // scopes that ask for politeness
 
 // Only async-signal-safe calls.
 void handle(int) {
-  if (polite != 0 && flag == 0) {
+  if (polite > 0 && flag == 0) {
     flag = 1;
     return;
   }
@@ -34,6 +34,10 @@ void install_interrupt_handlers() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void leave_at_once() {
+  polite = -1'000'000;  // more than scopes will ever ask for
 }
 
 PoliteInterrupts::PoliteInterrupts() {

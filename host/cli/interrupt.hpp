@@ -12,6 +12,9 @@ constexpr int interrupted_exit_code = 130;
 /// disk, with a message and a clean-up.
 void install_interrupt_handlers();
 
+/// From now on the first signal is the last: politeness is for one process alone.
+void leave_at_once();
+
 /// While one exists the first signal only sets a flag; a second one leaves at once all the same.
 class PoliteInterrupts {
  public:

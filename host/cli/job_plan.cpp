@@ -219,6 +219,7 @@ VolumePlan plan_volume(const std::string& path,
       plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
   // On processors beginning a step is computing it: the write of the one before starts first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
+  plan.steps = steps;
   plan.outputs = output_names(output, steps, arguments.temporal);
   return plan;
 }

@@ -20,6 +20,7 @@ struct VolumePlan {
   Grid source_grid;
   Grid output_grid;  ///< before the region cuts it
   Grid written_grid;
+  std::vector<std::int64_t> steps;   ///< of the mesh; of several ranks each has its own
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
   double memory_limit = 0;           ///< to compute in blocks within it; 0: all fits
   double memory = 0;                 ///< that all would take at once

@@ -17,6 +17,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/interrupt.hpp"
+#include "host/cli/ranks.hpp"
 
 namespace tetwarp::cli {
 
@@ -25,7 +26,9 @@ namespace {
 constexpr int failed_exit_code = 1;
 constexpr int usage_exit_code = 2;
 
-int complain(const std::string& problem, int exit_code) {
+/// What every rank finds wrong before they know each other is told by one.
+int complain(const std::string& problem, int exit_code, bool is_found_by_all = false) {
+  if (is_found_by_all && launched_rank() > 0) return exit_code;
   fmt::print(stderr, "tetwarp: {}\n", one_line(problem));
   return exit_code;
 }
@@ -61,7 +64,7 @@ int handle_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "tetwarp" : "tetwarp " + chosen[0]->get_name();
-  return complain(fmt::format("{} (see {} --help)", error.what(), command), usage_exit_code);
+  return complain(fmt::format("{} (see {} --help)", error.what(), command), usage_exit_code, true);
 }
 
 int run_main(int argument_count, const char* const* arguments) {
@@ -102,6 +105,7 @@ int main(int argument_count, char** arguments) {
   tetwarp::cli::install_interrupt_handlers();
   const int exit_code = tetwarp::cli::guarded_main(argument_count, arguments);
   if (exit_code == 0) return 0;
+  tetwarp::cli::abort_ranks(exit_code);
   // HDF5 1.10 crashes in its exit handler when a file could not be closed on a full disk. All our
   // files are closed or removed by now.
   std::fflush(nullptr);

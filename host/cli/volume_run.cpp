@@ -45,11 +45,11 @@ void VolumeRun::read_sources() {
 
 void VolumeRun::write_each_step() {
   const Fingerprint inputs = fingerprint_of_inputs();
-  for (std::size_t s = 0; s < plan_.steps.size(); ++s) {
+  for (std::size_t s = 0; s < volume_.steps.size(); ++s) {
     stop_if_interrupted();
     finish_writing();
     StepReport report;
-    report.step = plan_.steps[s];
+    report.step = volume_.steps[s];
     std::vector<Point3> positions = read_positions(report.step, report);
     Fingerprint fingerprint = inputs;
     fingerprint.add(positions);

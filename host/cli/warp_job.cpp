@@ -7,12 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <tetwarp/version.hpp>
 
-#include "host/cli/block_run.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/job_plan.hpp"
+#include "host/cli/job_share.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/stopwatch.hpp"
-#include "host/cli/volume_run.hpp"
 #include "io/finished_file.hpp"
 #include "io/memory.hpp"
 
@@ -21,32 +20,39 @@ namespace tetwarp::cli {
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {
   const PoliteInterrupts polite;
   const Stopwatch watch;
+  Ranks alone;
+  Ranks& ranks = context.ranks == nullptr ? alone : *context.ranks;
+  if (!ranks.is_root()) ranks.meet();  // what is wrong with the job is told once
   const JobPlan plan = plan_job(arguments);
   JobResult result;
   result.outputs = plan.outputs();
   result.report.version = TETWARP_VERSION;
   result.report.backend = plan.backend;
   result.report.backend_reason = plan.backend_reason;
-  if (!plan.output_folder.empty() && !arguments.dry_run)
-    std::filesystem::create_directory(plan.output_folder);
+  if (ranks.is_root()) {
+    if (!plan.output_folder.empty() && !arguments.dry_run) {
+      std::filesystem::create_directory(plan.output_folder);
+    }
+    ranks.meet();
+  }
   {
-    ProgressBar bar(context.shows_progress, context.label,
+    ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,
                     static_cast<double>(plan.volumes.size() * plan.steps.size()));
+    std::size_t task = 0;
     for (const VolumePlan& volume : plan.volumes) {
-      if (volume.memory_limit > 0) {
-        BlockRun run(arguments, plan, volume, bar, result);
-        arguments.dry_run ? run.plan_only() : run.run();
-      } else if (arguments.dry_run) {
-        for (const std::int64_t step : plan.steps) {
-          result.plans.push_back({volume.path, step, volume.written_grid.dims, volume.memory});
-        }
-      } else {
-        VolumeRun(arguments, plan, volume, bar, result).run();
+      if (!arguments.dry_run) {
+        run_volume(arguments, plan, volume, ranks, task, bar, result);
+      } else if (ranks.is_root()) {
+        plan_only(arguments, plan, volume, bar, result);
       }
+      task += volume.outputs.size();
     }
   }
+  gather_results(ranks, result);
   result.report.timings.total = watch.seconds();
-  if (!arguments.report.empty()) write_finished_file(arguments.report, report_json(result) + "\n");
+  if (!arguments.report.empty() && ranks.is_root()) {
+    write_finished_file(arguments.report, report_json(result) + "\n");
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include <tetwarp/report.hpp>
 
+#include "host/cli/ranks.hpp"
 #include "host/cli/warp_arguments.hpp"
 
 namespace tetwarp::cli {
@@ -16,6 +17,7 @@ namespace tetwarp::cli {
 struct JobContext {
   std::string label = "warp";  ///< names the job in the progress bar
   bool shows_progress = true;
+  Ranks* ranks = nullptr;  ///< that share the job; null: one process does it
 };
 
 /// How one step would be done.
@@ -42,6 +44,9 @@ struct JobResult {
 /// Plans the job, then reads, warps and writes step by step, reusing every buffer; writes the
 /// report last. Nothing is written unless the whole plan is sound. Throws std::invalid_argument,
 /// IoError, CudaError, Cancelled.
+///
+/// Of several ranks each takes outputs of its own; of a volume with a single output, blocks of it,
+/// which the root writes. The result is complete at the root only.
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context);
 
 /// The report with what only the command knows: "status", "outputs", "outputs_skipped".
