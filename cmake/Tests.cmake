@@ -282,7 +282,8 @@ if(TETWARP_IO)
     tests/test_cli_memory.cpp
     tests/test_cli_resume.cpp
     tests/test_cli_rules.cpp
-    tests/test_cli_skip.cpp)
+    tests/test_cli_skip.cpp
+    tests/test_cli_tools.cpp)
   target_compile_definitions(tetwarp_cli_tests PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
   add_dependencies(tetwarp_cli_tests tetwarp_command)

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/block_sum.cuh"
 #include "kernels/contact_block.cuh"
 #include "kernels/exec_cuda.cuh"
 #include "kernels/sweep_graph.cuh"
