@@ -68,9 +68,11 @@ if(NOT BUILD_SHARED_LIBS)
     endforeach()
     set(tetwarp_stage_tests ${tetwarp_stage_units})
   endif()
-  # Loops over the back ends that answer, compiled once for two programs: of one, cuda is emulated.
+  # Loops over the back ends that answer, compiled once for two programs. In one of them cuda is
+  # emulated: that one ctest runs, the other is for devices.
   add_library(tetwarp_rule_tests OBJECT
     tests/test_warp_antialias.cpp
+    tests/test_warp_intensity.cpp
     tests/test_warp_quantities.cpp)
   target_include_directories(tetwarp_rule_tests PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(tetwarp_rule_tests PRIVATE
@@ -82,6 +84,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
     tests/test_blocks.cpp
+    tests/test_convex_part.cpp
     tests/test_face_sign.cpp
     tests/test_hex_split.cpp
     tests/test_volume_filter.cpp
@@ -111,7 +114,7 @@ if(NOT BUILD_SHARED_LIBS)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
   endif()
-  tetwarp_discover(tetwarp_tests unit FILTER "-*cuda*:*Cuda*:*Parity*:*Coverage*")
+  tetwarp_discover(tetwarp_tests unit FILTER "-*cuda*:*Cuda*:*Parity*:*Coverage*:WarpAntialias*:WarpIntensity*:WarpQuantities*")
   tetwarp_discover(tetwarp_tests unit FILTER "*cuda*:*Cuda*:-*Parity*:*Coverage*"
     PROPERTIES RESOURCE_LOCK gpu)
   tetwarp_discover(tetwarp_tests parity FILTER "*Parity*" PROPERTIES RESOURCE_LOCK gpu)
@@ -194,7 +197,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_warp_in_flight.cpp
     $<TARGET_OBJECTS:tetwarp_rule_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:WarpAntialias*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+    FILTER "*Emulated*:WarpAntialias*:WarpIntensity*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)

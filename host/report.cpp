@@ -91,6 +91,11 @@ std::string to_json(const Report& report) {
     steps.push_back({{"step", step.step},
                      {"timings", json_of(step.timings)},
                      {"counts", json_of(step.counts)}});
+    const Totals& totals = step.totals;
+    for (std::size_t c = 0; c < totals.count; ++c) {
+      steps.back()["total_before"].push_back(totals.before[c]);
+      steps.back()["total_after"].push_back(totals.after[c]);
+    }
   }
   const Json json = {{"version", report.version},
                      {"backend", name_of(report.backend)},

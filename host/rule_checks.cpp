@@ -35,6 +35,20 @@ void check_quantity(const VolumeView& source, Quantity quantity) {
   }
 }
 
+/// What would add to a total, or change it, is not asked for.
+void check_conservative(const WarpOptions& options) {
+  const char* wrong = nullptr;
+  if (options.antialias) wrong = "means are exact without antialias";
+  if (options.background != 0) wrong = "the background must be 0";
+  if (options.outside == Outside::identity) wrong = "outside must be background";
+  for (const Quantity quantity : options.quantities) {
+    if (quantity != Quantity::components) wrong = "vectors and tensors take density";
+  }
+  if (wrong != nullptr) {
+    throw std::invalid_argument(std::string("intensity: to keep the total, ") + wrong);
+  }
+}
+
 }  // namespace
 
 void check_rules(std::span<const VolumeView> sources, const WarpOptions& options) {
@@ -48,10 +62,15 @@ void check_rules(std::span<const VolumeView> sources, const WarpOptions& options
                                 std::to_string(sources.size()) + ", got " +
                                 std::to_string(options.quantities.size()));
   }
+  if (options.intensity == Intensity::conservative) check_conservative(options);
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];
     check_quantity(sources[s], quantity);
+    if (options.intensity == Intensity::conservative && sources[s].window) {
+      throw std::invalid_argument(
+          "source: totals are kept of all of it, a window has a part; use density");
+    }
     const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
     const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
     if (computes && (is_wide || options.filter == Filter::labels)) {

@@ -18,6 +18,7 @@
 #include "kernels/node_quantize.hpp"
 #include "kernels/tet_moved.hpp"
 #include "kernels/tet_setup.hpp"
+#include "kernels/voxel_overlap.hpp"
 
 namespace tetwarp {
 
@@ -116,6 +117,7 @@ class WarpPairs {
     tet_setup(exec_, mesh_.tets, nodes(), mesh_.rest, mesh_.orientation, geometry_.frame,
               setup.setups, setup.corner_counts, setup.pair_counts, setup.class_counts,
               mesh_.hexes);
+    if (keeps_totals()) tet_widen(exec_, setup, {});
     sum_up(setup, {});
     if (Exec::reads_are_free) {
       take_totals(read_counters());
@@ -146,6 +148,7 @@ class WarpPairs {
     exec_.zero("warp/setup", setup.corner_counts);
     exec_.zero("warp/setup", setup.pair_counts);
     moved_tet_setup(exec_, moved_offsets_.const_view(tets + 1), most_moved, setup);
+    if (keeps_totals()) tet_widen(exec_, setup, moved_.const_view(tets));
     sum_up(setup, moved_offsets_.const_view(tets + 1));
     List& now = lists_[now_];
     if (Exec::reads_are_free) {
@@ -181,7 +184,8 @@ class WarpPairs {
   void cull(std::int64_t corners, std::int64_t candidates, List& list) {
     const View<const std::int64_t> corner_offsets = corner_offsets_.const_view(tet_count() + 1);
     const View<const std::int64_t> pair_offsets = pair_offsets_.const_view(tet_count() + 1);
-    const CullSwitches switches{options_.skip.rejected_cells, options_.skip.accepted_cells};
+    const CullSwitches switches{options_.skip.rejected_cells && !keeps_totals(),
+                                options_.skip.accepted_cells};
     masks_.reserve(corners);
     candidates_.reserve(candidates);
     cell_verdicts(exec_, setups(), corner_offsets, masks_.view(corners), pair_offsets, switches,
@@ -256,6 +260,8 @@ class WarpPairs {
     return {list.pairs.const_view(list.size), list.ranges.const_view(cell_count() + 1)};
   }
   std::int64_t cell_count() const { return geometry_.frame.cell_count(); }
+  /// Cells then need every tetrahedron that touches a box of their voxels.
+  bool keeps_totals() const { return options_.intensity == Intensity::conservative; }
 
   Exec& exec_;
   const WarpOptions& options_;
@@ -263,8 +269,7 @@ class WarpPairs {
 
   WarpMesh<Exec> mesh_;
   Buffer<TetSetup> setups_;
-  Buffer<std::int64_t> corner_offsets_;
-  Buffer<std::int64_t> pair_offsets_;
+  Buffer<std::int64_t> corner_offsets_, pair_offsets_;
   Buffer<std::uint16_t> masks_;
   Buffer<CellPair> candidates_;
   Buffer<StepCounters> counters_;
@@ -272,22 +277,17 @@ class WarpPairs {
   List lists_[2];
   int now_ = 0;
 
-  Buffer<std::uint8_t> node_moved_;
-  Buffer<std::uint8_t> moved_;
+  Buffer<std::uint8_t> node_moved_, moved_;
   Buffer<std::int64_t> moved_offsets_;
   List fresh_;                       ///< of the moved tetrahedra
   Buffer<std::uint8_t> touched_[2];  ///< by this step and by the one before, in turns
   Buffer<std::uint8_t> touched_in_two_;
   Buffer<std::int64_t> cell_offsets_;
-  bool has_before_ = false;  ///< the step before was completed
-  bool is_update_ = false;
-  bool was_update_ = false;  ///< is_update_ of the step before
+  bool has_before_ = false;                      ///< the step before was completed
+  bool is_update_ = false, was_update_ = false;  ///< of this step and the one before
 
   std::int64_t moved_count_ = 0;
-  std::int64_t corner_capacity_ = 0;
-  std::int64_t pair_capacity_ = 0;
-  std::int64_t corner_total_ = 0;
-  std::int64_t pair_total_ = 0;
+  std::int64_t corner_capacity_ = 0, pair_capacity_ = 0, corner_total_ = 0, pair_total_ = 0;
   std::int64_t pairs_before_ = 0;  ///< length of the list of the step before
 };
 

@@ -1,6 +1,7 @@
 /// @file warp_pipeline.hpp
 /// The warp as a list of stages, for any executor. Read this file first; run() is the method.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -13,10 +14,12 @@
 #include "host/warp_pairs.hpp"
 #include "host/warp_rules.hpp"
 #include "host/warp_sources.hpp"
+#include "host/warp_totals.hpp"
 #include "kernels/cell_raster.hpp"
 #include "kernels/cell_work.hpp"
 #include "kernels/voxel_cells.hpp"
 #include "kernels/voxel_count.hpp"
+#include "kernels/voxel_overlap.hpp"
 
 namespace tetwarp {
 
@@ -31,7 +34,8 @@ class WarpPipeline : public WarpBackend {
         outputs_(exec_, plan_, geometry_.frame),
         rules_(exec_, plan_, geometry_),
         fields_(exec_, plan_, geometry_),
-        sources_(exec_, plan_) {
+        sources_(exec_, plan_),
+        totals_(exec_, plan_, geometry_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
   }
@@ -73,6 +77,7 @@ class WarpPipeline : public WarpBackend {
       compute(flight, {});
     }
     flight.report = complete(flight.target, *flight.counters.view(1).data);
+    report_totals(flight);
     if (flight.target.memory == Memory::host) flight.window = outputs_.window_of(stale_);
   }
 
@@ -108,6 +113,7 @@ class WarpPipeline : public WarpBackend {
     typename Exec::template Staged<double> position_buffer;
     View<const double> positions;
     typename Exec::template HomeBuffer<StepCounters> counters;
+    typename Exec::template HomeBuffer<double> totals;
     WarpTarget target;
     int age = 0;   ///< steps since the target got what it holds; 0: nothing is known
     int slot = 0;  ///< of outputs_
@@ -122,6 +128,10 @@ class WarpPipeline : public WarpBackend {
     run(flight.positions, flight.target, flight.age, progress);
     flight.counters.reserve(1);
     exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
+    if (totals_.are_wanted()) {
+      flight.totals.reserve(totals_.sums().size);
+      exec_.fetch(totals_.sums(), flight.totals);
+    }
     exec_.end_compute();
   }
 
@@ -193,8 +203,46 @@ class WarpPipeline : public WarpBackend {
       job.reorientation = rules_.reorientation(s);
       choose_work(s, job);
       const double share = 1.0 / static_cast<double>(sources_.size());
-      cell_raster(exec_, job, ProgressPart{progress, static_cast<double>(s) * share, share});
+      const ProgressPart part{progress, static_cast<double>(s) * share, share};
+      if (plan_.options.intensity == Intensity::conservative) {
+        overlap(s, job, part);
+      } else {
+        cell_raster(exec_, job, part);
+      }
+      if (totals_.are_wanted()) {
+        totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);
+      }
     });
+  }
+
+  /// Owners, as ever, with the first source; then what lies in the voxels' boxes.
+  template <class T>
+  void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
+    VoxelOverlapBody body = {job.setups,
+                             job.rules,
+                             pairs_.list(),
+                             job.cell_work,
+                             job.frame,
+                             number_view(job.source.data),
+                             {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                             job.source.components,
+                             number_view(job.volume)};
+    job.filter = Interpolation::nearest;
+    job.rules = {};
+    if (s == 0) cell_raster(exec_, job, progress);
+    voxel_overlap(exec_, body);
+    progress.report(1.0);
+  }
+
+  void report_totals(Flight& flight) {
+    if (!totals_.are_wanted()) return;
+    const View<const double> sums = flight.totals.const_view(totals_.sums().size);
+    Totals& totals = flight.report.totals;
+    for (; totals.count < std::min(Totals::most, totals_.before().size()); ++totals.count) {
+      totals.before[totals.count] = totals_.before()[totals.count];
+      totals.after[totals.count] =
+          sums[static_cast<std::int64_t>(totals.count)] * totals_.output_voxel();
+    }
   }
 
   /// Cells to keep and cells to fill. Where there cannot be either, all are sampled.
@@ -235,6 +283,7 @@ class WarpPipeline : public WarpBackend {
   WarpRules<Exec> rules_;
   WarpFields<Exec> fields_;
   WarpSources<Exec> sources_;
+  WarpTotals<Exec> totals_;
 
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;

@@ -73,5 +73,21 @@ TEST(CliRules, AverageInABatchAndResumeOnlyWhatIsTheSame) {
   }
 }
 
+TEST(CliRules, ReportTotalsOfWhatIsKept) {
+  const TurnedScene scene;
+  const auto total = [&](const std::string& intensity) {
+    scene.flow_after({"--intensity", intensity, "--report", "report.json"});
+    const auto step = nlohmann::json::parse(text_of(scene / "report.json"))["steps"][0];
+    EXPECT_EQ(step["total_before"].size(), 4u);  // the ramp, and the three components of the flow
+    return std::pair(step["total_before"][1].get<double>(), step["total_after"][1].get<double>());
+  };
+
+  const auto [before, after] = total("conservative");
+
+  EXPECT_NEAR(before, 24 * 20 * 16, 1e-9);  // a flow of one over the box, which is the grid
+  EXPECT_NEAR(after, before, 1e-5 * before);
+  EXPECT_NE(total("density").second, after);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

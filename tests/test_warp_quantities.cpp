@@ -192,6 +192,18 @@ TEST(WarpQuantities, AreRefusedWhereTheyCannotBe) {
       complaint(PixelType::uint8, 1, {.filter = Filter::labels, .intensity = Intensity::density}),
       "source: labels cannot be scaled or turned; leave out intensity and quantities, or use "
       "another type");
+  const auto conserve = [&](WarpOptions options) {
+    options.intensity = Intensity::conservative;
+    return complaint(PixelType::float32, 3, options);
+  };
+  EXPECT_EQ(conserve({}), "");
+  EXPECT_EQ(conserve({.antialias = true}),
+            "intensity: to keep the total, means are exact without antialias");
+  EXPECT_EQ(conserve({.background = 1}), "intensity: to keep the total, the background must be 0");
+  EXPECT_EQ(conserve({.outside = Outside::identity}),
+            "intensity: to keep the total, outside must be background");
+  EXPECT_EQ(conserve({.quantities = {Quantity::vector}}),
+            "intensity: to keep the total, vectors and tensors take density");
 }
 
 /// Between grids of the same axes; not where the grids, and with them the world, are turned.

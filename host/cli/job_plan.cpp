@@ -119,6 +119,12 @@ void check_streams(const VolumePlan& plan, const WarpArguments& arguments) {
                               "output take {}; allow more --memory or leave out --outputs forward",
                               bytes_text(plan.memory)));
   }
+  if (arguments.warp.intensity == Intensity::conservative) {
+    throw IoError(plan.path, "",
+                  fmt::format("totals are kept of a whole source, it and the output take {}; allow "
+                              "more --memory or use --intensity density",
+                              bytes_text(plan.memory)));
+  }
   if (arguments.warp.filter != Filter::bspline) return;
   throw IoError(plan.path, "",
                 fmt::format("a spline passes through all samples at once, source and output take "

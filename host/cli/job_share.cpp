@@ -49,7 +49,9 @@ void run_volume(const WarpArguments& arguments,
                 ProgressBar& bar,
                 JobResult& result) {
   const bool is_single = plan.volumes.size() == 1 && volume.outputs.size() == 1;
-  if (ranks.count() > 1 && is_single && arguments.warp.filter != Filter::bspline) {
+  const bool has_parts = arguments.warp.filter != Filter::bspline &&
+                         arguments.warp.intensity != Intensity::conservative;
+  if (ranks.count() > 1 && is_single && has_parts) {
     BlockRun(arguments, plan, volume, ranks, bar, result).run();
     return;
   }

@@ -133,17 +133,13 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write 
   if (equals_last_step(positions)) {
     // The outputs hold this step already: what describes them stays, no work was done.
     finish_computing();
-    const Counts& last = last_report_.counts;
-    report.counts.voxels = last.voxels;
-    report.counts.covered = last.covered;
-    report.counts.outside = last.outside;
-    report.counts.tetrahedra = last.tetrahedra;
-    report.counts.inverted = last.inverted;
-    report.counts.flat = last.flat;
-    report.counts.folded = last.folded;
-    report.counts.cells = last.cells;
-    report.counts.tets_averaged = last.tets_averaged;
+    for (const auto count : {&Counts::voxels, &Counts::covered, &Counts::outside,
+                             &Counts::tetrahedra, &Counts::inverted, &Counts::flat, &Counts::folded,
+                             &Counts::cells, &Counts::tets_averaged}) {
+      report.counts.*count = last_report_.counts.*count;
+    }
     report.counts.steps_unchanged = 1;
+    report.totals = last_report_.totals;
     computed_ = Step{report, std::move(write), outputs_[now_].volumes()};
     return;
   }

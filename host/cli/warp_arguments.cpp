@@ -16,7 +16,9 @@ const Choices<Filter> filters{{"linear", Filter::linear},   {"nearest", Filter::
                               {"cubic", Filter::cubic},     {"bspline", Filter::bspline},
                               {"lanczos", Filter::lanczos}, {"labels", Filter::labels}};
 const Choices<Overshoot> overshoots{{"keep", Overshoot::keep}, {"clamp", Overshoot::clamp}};
-const Choices<Intensity> intensities{{"value", Intensity::value}, {"density", Intensity::density}};
+const Choices<Intensity> intensities{{"value", Intensity::value},
+                                     {"density", Intensity::density},
+                                     {"conservative", Intensity::conservative}};
 const Choices<Quantity> vector_laws{{"rotate", Quantity::vector},
                                     {"covariant", Quantity::covariant_vector},
                                     {"contravariant", Quantity::contravariant_vector}};
@@ -148,7 +150,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
              "values beyond those of the source, of cubic, bspline and lanczos [keep]");
   app.add_flag("--antialias", warp.antialias, "average where tetrahedra shrink the source");
   add_choice(app, "--intensity", warp.intensity, intensities,
-             "what a voxel shows, or what it has per volume [value]");
+             "what a voxel shows, has per volume, or has with totals kept [value]");
   add_quantities(app, "--vectors", arguments.quantities, vector_laws,
                  "an array of 3 components that the deformation turns, repeatable [rotate]");
   add_quantities(app, "--tensors", arguments.quantities, tensor_laws,

@@ -16,6 +16,7 @@
 
 #include "host/pixel_dispatch.hpp"
 #include "host/reference/fields.hpp"
+#include "host/reference/overlap.hpp"
 #include "host/reference/ownership.hpp"
 #include "host/reference/rule.hpp"
 #include "host/reference/sample.hpp"
@@ -48,8 +49,13 @@ class ReferenceBackend : public WarpBackend {
     owners_.claim_all(rest, deformed, report.counts, progress);
     make_rules(rest, deformed, report.counts);
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) {
-      with_pixel_type(plan_.sources[s].type,
-                      [&]<class T>(T) { fill<T>(s, static_cast<T*>(target.volumes[s])); });
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        T* const out = static_cast<T*>(target.volumes[s]);
+        fill<T>(s, out);
+        if (plan_.options.intensity != Intensity::value) {
+          conserve(s, rest, deformed, out, report);
+        }
+      });
     }
     for (std::size_t v = 0; v < voxels; ++v) {
       report.counts.covered += owners_.owner[v] >= 0;
@@ -83,6 +89,33 @@ class ReferenceBackend : public WarpBackend {
       rules_[t] = rule_of(owners_.corners_of(number, rest, owners_.source), now, owners_.source,
                           owners_.output, plan_.options);
       counts.tets_averaged += rules_[t].averages();
+    }
+  }
+
+  /// What is kept of a source, and what voxels hold of it.
+  template <class T>
+  void conserve(
+      std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
+    std::vector<MovedTet> tets;
+    for (std::int32_t t = 0; t < std::ssize(plan_.mesh.tets); ++t) {
+      tets.push_back({owners_.corners_of(t, rest, owners_.source),
+                      owners_.corners_of(t, deformed, owners_.output)});
+    }
+    const double source_voxel = std::abs(owners_.source.to_world.determinant());
+    const double output_voxel = std::abs(owners_.output.to_world.determinant());
+    if (plan_.options.intensity == Intensity::conservative) {
+      carry(plan_.sources[s], tets, plan_.region, source_voxel / output_voxel, out);
+    }
+    const std::vector<double> before = total_held<T>(plan_.sources[s], tets);
+    const auto components = static_cast<std::size_t>(plan_.sources[s].components);
+    std::vector<double> after(components, 0.0);
+    for (std::size_t n = 0; n < owners_.owner.size() * components; ++n) {
+      after[n % components] += static_cast<double>(out[n]);
+    }
+    Totals& totals = report.totals;
+    for (std::size_t c = 0; c < components && totals.count < Totals::most; ++c, ++totals.count) {
+      totals.before[totals.count] = before[c] * source_voxel;
+      totals.after[totals.count] = after[c] * output_voxel;
     }
   }
 

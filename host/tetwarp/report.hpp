@@ -1,6 +1,8 @@
 /// @file report.hpp
 /// What a warp did: timings, counts, back end. Field names of the JSON are an interface.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -55,11 +57,22 @@ struct Counts {
   Counts& operator+=(const Counts& other);
 };
 
+/// Integrals over the world, of every component of the first source, then of the next, as far as
+/// there is room. Only where intensities are densities or conserved, and of whole sources.
+struct Totals {
+  static constexpr std::size_t most = 18;
+  std::size_t count = 0;
+  /// Of the source, constant in the box of each voxel, over all tetrahedra at rest.
+  std::array<double, most> before = {};
+  std::array<double, most> after = {};  ///< of the whole output, background and all
+};
+
 /// One step of a series.
 struct StepReport {
   std::int64_t step = 0;
   Timings timings;
   Counts counts;
+  Totals totals;
 };
 
 /// A whole run.

@@ -54,9 +54,12 @@ enum class Quantity {
 
 /// What a voxel gets of a value.
 enum class Intensity {
-  value,   ///< the value: what a material point shows
-  density  ///< divided by |det F|: what a material point has per volume. The integral stays, as far
-           ///< as sampling goes; vectors are turned first
+  value,    ///< the value: what a material point shows
+  density,  ///< divided by |det F|: what a material point has per volume. The integral stays, as
+            ///< far as sampling goes; vectors are turned first
+  /// What tetrahedra bring into the voxel's box of the source, which is constant in the box of each
+  /// of its voxels, over the box's volume: the integral stays to rounding. Filters have no say.
+  conservative
 };
 
 /// What a voxel gets that no tetrahedron covers.
