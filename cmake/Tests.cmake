@@ -282,6 +282,7 @@ if(TETWARP_IO)
     tests/test_cli_batch.cpp
     tests/test_cli_contact.cpp
     tests/test_cli_contact_usage.cpp
+    tests/test_cli_fields.cpp
     tests/test_cli_memory.cpp
     tests/test_cli_resume.cpp
     tests/test_cli_rules.cpp

@@ -14,6 +14,7 @@ namespace tetwarp {
 namespace {
 
 constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
+constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
 
 /// Places of nodes in the mesh by Gmsh's tags.
 using Places = std::unordered_map<std::size_t, std::size_t>;
@@ -54,7 +55,8 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
   gmsh.call<decltype(gmshModelMeshGetElementProperties)>(
       "gmshModelMeshGetElementProperties", type, &name.data, &dimension, &order, &nodes,
       &positions.data, &positions.size, &primary_nodes);
-  return {name.data, dimension, type == gmsh_tetrahedron};
+  const bool is_kept = type == gmsh_tetrahedron || type == gmsh_hexahedron;
+  return {name.data, dimension, is_kept ? nodes : 0};
 }
 
 void add_cells(const std::string& path,
@@ -69,13 +71,11 @@ void add_cells(const std::string& path,
   for (std::size_t type = 0; type < types.size; ++type) {
     const CellKind kind = kind_of_type(gmsh, types[type]);
     for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
-      if (!keeps_cell(path, kind, static_cast<std::int64_t>(tags.data[type][c]), into)) continue;
-      std::array<std::int32_t, 4> tet;
-      for (std::size_t node = 0; node < tet.size(); ++node) {
-        tet[node] = static_cast<std::int32_t>(
-            place_of(path, places, nodes.data[type][tet.size() * c + node]));
-      }
-      into.mesh.tets.push_back(tet);
+      const std::size_t* const tags_of_cell =
+          nodes.data[type] + c * static_cast<std::size_t>(kind.kept_nodes);
+      add_cell(
+          path, kind, static_cast<std::int64_t>(tags.data[type][c]),
+          [&](std::size_t n) { return place_of(path, places, tags_of_cell[n]); }, into);
     }
   }
 }

@@ -24,8 +24,9 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   }
   ImportedMesh mesh =
       path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
-  if (mesh.mesh.tets.empty()) {
-    throw IoError(path, "", "holds no tetrahedron: damaged, or the mesh of a surface alone");
+  if (mesh.mesh.cell_count() == 0) {
+    throw IoError(path, "",
+                  "holds no tetrahedron or hexahedron: damaged, or the mesh of a surface alone");
   }
   if (mesh.mesh.rest_positions.size() > std::numeric_limits<std::int32_t>::max()) {
     throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
@@ -33,18 +34,17 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   return mesh;
 }
 
-bool keeps_cell(const std::string& path,
-                const CellKind& kind,
-                std::int64_t number,
-                ImportedMesh& into) {
-  if (kind.is_tetrahedron) return true;
+void leave_out_cell(const std::string& path,
+                    const CellKind& kind,
+                    std::int64_t number,
+                    ImportedMesh& into) {
   if (kind.dimension == 3) {
     throw IoError(path, "",
                   "cell " + std::to_string(number) + " is a " + kind.name +
-                      ", expected tetrahedra of four nodes; split the cells into such");
+                      ", expected tetrahedra of four nodes and hexahedra of eight; split the "
+                      "cells into such");
   }
   ++into.skipped[kind.name];
-  return false;
 }
 
 std::optional<std::string> choose_displacement(const std::string& path,

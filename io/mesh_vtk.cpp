@@ -36,7 +36,8 @@ class QuietVtk {
 CellKind kind_of_type(int type) {
   const char* const name = vtkCellTypes::GetClassNameFromTypeId(type);
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  return {name, cell ? cell->GetCellDimension() : 3, type == VTK_TETRA};
+  const int kept_nodes = type == VTK_TETRA ? 4 : type == VTK_HEXAHEDRON ? 8 : 0;
+  return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
 }
 
 void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
@@ -45,20 +46,17 @@ void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh&
   for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
     const int type = grid.GetCellType(c);
     if (!kinds.contains(type)) kinds[type] = kind_of_type(type);
-    if (!keeps_cell(path, kinds[type], c, into)) continue;
     grid.GetCellPoints(c, nodes);
-    std::array<std::int32_t, 4> tet;
-    for (vtkIdType node = 0; node < 4; ++node) {
+    const auto node_at = [&](std::size_t n) {
+      const auto node = static_cast<vtkIdType>(n);
       const vtkIdType id = node < nodes->GetNumberOfIds() ? nodes->GetId(node) : -1;
-      if (id < 0 || id >= grid.GetNumberOfPoints()) {
-        throw IoError(path, "",
-                      "cell " + std::to_string(c) + " is no tetrahedron of nodes 0 to " +
-                          std::to_string(grid.GetNumberOfPoints() - 1) +
-                          ": damaged, write it again");
-      }
-      tet[static_cast<std::size_t>(node)] = static_cast<std::int32_t>(id);
-    }
-    into.mesh.tets.push_back(tet);
+      if (id >= 0 && id < grid.GetNumberOfPoints()) return id;
+      throw IoError(path, "",
+                    "cell " + std::to_string(c) + " has not the nodes of a " + kinds[type].name +
+                        ", from 0 to " + std::to_string(grid.GetNumberOfPoints() - 1) +
+                        ": damaged, write it again");
+    };
+    add_cell(path, kinds[type], c, node_at, into);
   }
 }
 
@@ -91,7 +89,7 @@ void add_step(const std::string& path,
               double time,
               const MeshImportOptions& options,
               ImportedMesh& into) {
-  if (into.mesh.tets.empty()) {
+  if (into.mesh.rest_positions.empty()) {
     into.mesh.rest_positions = rows_of(*grid.GetPoints()->GetData());
     add_cells(path, grid, into);
   }

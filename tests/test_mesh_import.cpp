@@ -148,11 +148,36 @@ TEST_F(MeshImport, ReadsGmshFilesOfBothVersionsWithSteps) {
   }
 }
 
+/// A unit cube in Gmsh's numbers and in VTK's, which have one order.
+TEST_F(MeshImport, KeepsHexahedra) {
+  const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
+  std::string numbered;
+  for (std::size_t n = 0; n < 8; ++n) {
+    numbered += std::to_string(n + 1) + " " + corners.substr(6 * n, 6);
+  }
+  const auto gmsh =
+      imported("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n" + numbered +
+                            "$EndNodes\n$Elements\n1\n1 5 2 0 1 1 2 3 4 5 6 7 8\n"
+                            "$EndElements\n");
+  const auto vtk = imported("b.vtk",
+                            "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                            "POINTS 8 float\n" +
+                                corners + "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n");
+  if (!gmsh && !vtk) GTEST_SKIP() << error;
+
+  for (const auto& mesh : {gmsh, vtk}) {
+    if (!mesh) continue;
+    EXPECT_EQ(mesh->mesh.hexes,
+              (std::vector<std::array<std::int32_t, 8>>{{0, 1, 2, 3, 4, 5, 6, 7}}));
+    EXPECT_EQ(mesh->mesh.rest_positions[6], (Point3{1, 1, 1}));
+  }
+}
+
 TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
-  std::string hexahedron = legacy_file();
-  hexahedron.replace(hexahedron.find("4 1 2 3 4\n"), 10, "8 0 1 2 3 0 1 2 3\n");
-  hexahedron.replace(hexahedron.find("3 14"), 4, "3 18");
-  hexahedron.replace(hexahedron.find("5\n10\n"), 5, "5\n12\n");
+  std::string wedge = legacy_file();
+  wedge.replace(wedge.find("4 1 2 3 4\n"), 10, "6 0 1 2 3 0 1\n");
+  wedge.replace(wedge.find("3 14"), 4, "3 16");
+  wedge.replace(wedge.find("5\n10\n"), 5, "5\n13\n");
   std::string surface = legacy_file();
   surface.replace(surface.find("CELLS"), surface.find("POINT_DATA") - surface.find("CELLS"),
                   "CELLS 1 4\n3 1 2 3\nCELL_TYPES 1\n5\n");
@@ -167,10 +192,10 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
     MeshImportOptions options;
     const char* told;
   } cases[] = {
-      {"a.vtk", hexahedron, {}, "cell 2 is a vtkHexahedron"},
+      {"a.vtk", wedge, {}, "cell 2 is a vtkWedge"},
       {"b.vtk", surface, {}, "holds no tetrahedron"},
-      {"s.vtk", short_cell, {}, "cell 0 is no tetrahedron of nodes 0 to 4"},
-      {"t.vtk", stray_node, {}, "cell 2 is no tetrahedron of nodes 0 to 4"},
+      {"s.vtk", short_cell, {}, "cell 0 has not the nodes of a vtkTetra, from 0 to 4"},
+      {"t.vtk", stray_node, {}, "cell 2 has not the nodes of a vtkTetra, from 0 to 4"},
       {"c.vtk", legacy_file(), {.displacement = "u"}, "the file has heat, displacement"},
       {"d.vtk", legacy_file(), {.displacement = "heat"}, "three components"},
       {"e.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", {}, "no unstructured"},

@@ -41,9 +41,9 @@ void run_mesh_import(const ImportArguments& arguments) {
   for (const auto& [kind, count] : mesh.skipped) {
     skipped += fmt::format("{}{} {}", skipped.empty() ? ", left out: " : ", ", count, kind);
   }
-  fmt::print("{} nodes, {} tetrahedra, {} steps of displacement{}: {}\n",
-             mesh.mesh.rest_positions.size(), mesh.mesh.tets.size(), mesh.displacements.size(),
-             skipped, arguments.output);
+  fmt::print("{} nodes, {} tetrahedra, {} hexahedra, {} steps of displacement{}: {}\n",
+             mesh.mesh.rest_positions.size(), mesh.mesh.tets.size(), mesh.mesh.hexes.size(),
+             mesh.displacements.size(), skipped, arguments.output);
 }
 
 int run_import(const ImportArguments& arguments) {
@@ -67,9 +67,10 @@ void add_import_command(CLI::App& app, Run& run) {
       "  tetwarp import brain.nii.gz -o brain.vtkhdf\n"
       "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
   command
-      ->add_option("FILE", arguments->input,
-                   "NIfTI image, .nii or .nii.gz; or mesh of tetrahedra: Gmsh's .msh 2 and 4, "
-                   "VTK's .vtu and .vtk")
+      ->add_option(
+          "FILE", arguments->input,
+          "NIfTI image, .nii or .nii.gz; or mesh of tetrahedra and hexahedra: Gmsh's .msh 2 and 4, "
+          "VTK's .vtu and .vtk")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")

@@ -31,8 +31,8 @@ struct ImportedMesh {
 /// True for names that end in .msh, .vtu or .vtk.
 bool has_mesh_extension(const std::string& path);
 
-/// Reads a mesh of tetrahedra with its displacement, step by step where the file has several. Files
-/// are told apart by the end of their name.
+/// Reads a mesh of tetrahedra and hexahedra with its displacement, step by step where the file has
+/// several. Files are told apart by the end of their name.
 ///
 /// Throws IoError on other cells of three dimensions, naming kind and number; on files that are
 /// damaged; and, naming the package, where this build lacks the library.
