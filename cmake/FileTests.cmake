@@ -1,0 +1,74 @@
+# Tests of files, of the command and of the benchmark's scripts; needs tetwarp::io.
+# ---- files, private code included -------------------------------------------------------------
+if(NOT BUILD_SHARED_LIBS)
+  tetwarp_add_tests(tetwarp_io_tests LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
+    SOURCES
+    tests/test_io_vtkhdf_volume.cpp
+    tests/test_io_vtkhdf_mesh.cpp
+    tests/test_io_nifti.cpp
+    tests/test_io_png.cpp
+    tests/test_io_bad_files.cpp
+    tests/test_mesh_import.cpp
+    tests/test_contact_certified.cpp
+    tests/test_contact_reference_certified.cpp
+    tests/test_io_checkpoint.cpp
+    tests/test_io_fclib.cpp
+    tests/test_io_fclib_bad.cpp
+    tests/test_io_fclib_solution.cpp
+    tests/test_skip_chunks.cpp)
+  tetwarp_discover(tetwarp_io_tests io)
+  include(cmake/ItkTests.cmake)
+endif()
+
+# What the contact benchmark rests on: the judge of results.
+tetwarp_add_tests(tetwarp_bench_contact_tests LIBRARIES tetwarp_io fmt::fmt SOURCES
+  bench/contact_cases.cpp
+  bench/contact_judge.cpp
+  tests/test_bench_contact.cpp)
+tetwarp_discover(tetwarp_bench_contact_tests unit)
+
+add_executable(fuzz_io tests/fuzz_io.cpp tests/fuzz_memory.cpp)
+target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
+target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
+add_test(NAME fuzz_io COMMAND fuzz_io 5 1)
+set_tests_properties(fuzz_io PROPERTIES LABELS io)
+
+# The distribution's interpreter first: its VTK is what the packages in ./dev install.
+find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(TETWARP_PYTHON python3)
+if(TETWARP_PYTHON)
+  add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  add_test(NAME bench_compare COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/bench/compare.py --self-test)
+  add_test(NAME bench_gpu_rows COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/bench/gpu_rows.py)
+  set_tests_properties(bench_compare bench_gpu_rows PROPERTIES
+    LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+endif()
+
+# ---- the command and the example in the README ---------------------------------------------
+tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json
+  SOURCES
+  tests/test_cli.cpp
+  tests/test_cli_bad_input.cpp
+  tests/test_cli_batch.cpp
+  tests/test_cli_contact.cpp
+  tests/test_cli_contact_usage.cpp
+  tests/test_cli_fields.cpp
+  tests/test_cli_memory.cpp
+  tests/test_cli_resume.cpp
+  tests/test_cli_rules.cpp
+  tests/test_cli_skip.cpp
+  tests/test_cli_tools.cpp)
+target_compile_definitions(tetwarp_cli_tests PRIVATE
+  TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
+add_dependencies(tetwarp_cli_tests tetwarp_command)
+tetwarp_discover(tetwarp_cli_tests cli)
+
+add_executable(example_quickstart tests/example_quickstart.cpp)
+target_link_libraries(example_quickstart PRIVATE tetwarp_io tetwarp_options)
+add_test(NAME example_quickstart COMMAND example_quickstart
+  WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
+set_tests_properties(example_quickstart PROPERTIES LABELS cli)
