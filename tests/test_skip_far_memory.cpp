@@ -90,6 +90,7 @@ TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
     options.region = region;
     options.skip.unchanged_tets = false;
     Series anew(sources, scene, options), out(sources, scene, options);
+    anew.fields = out.fields = FieldBuffers();  // none
     std::vector<void*> pointers;
     for (Volume& volume : out.volumes) pointers.push_back(volume.data.data());
     const WarpTarget target = {.volumes = pointers,
@@ -134,6 +135,7 @@ TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
   WarpOptions options;
   options.backend = Backend::cpu;
   Series anew(sources, scene, options), out(sources, scene, options);
+  anew.fields = out.fields = FieldBuffers();  // none
   void* const volume = out.volumes[0].data.data();
   const WarpTarget target = {.volumes = std::span(&volume, 1),
                              .mask = out.mask.data(),
