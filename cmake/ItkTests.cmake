@@ -3,6 +3,7 @@ set(TETWARP_ITK_TESTS AUTO CACHE STRING "Tests against ITK: AUTO, ON or OFF")
 set_property(CACHE TETWARP_ITK_TESTS PROPERTY STRINGS AUTO ON OFF)
 
 function(tetwarp_add_itk_tests)  # a function: ITK sets variables by the hundred
+  set(ITK_FOUND FALSE)
   if(NOT TETWARP_ITK_TESTS STREQUAL "OFF")
     set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # it looks for programs nobody needs, and says so
     find_package(ITK 5 QUIET COMPONENTS ITKImageGrid ITKIONIFTI)

@@ -61,6 +61,21 @@ TETWARP_HD void displacement_of(const DisplacementMap& map,
   }
 }
 
+/// Strain at a voxel of a hexahedron. Out of line, or registers would not do.
+/// @param strain  in and out: that of the tetrahedron stays where there is no gradient
+TETWARP_HD_RARE void set_hex_strain(const HexMap& hex,
+                                    const TetSetup& tet,
+                                    const GridAxes& axes,
+                                    const int* voxel,
+                                    TetStrain& strain) {
+  double u[3];
+  Matrix3 backward;
+  hex_local(hex, tet, voxel, u);
+  if (hex_gradient(hex, u, backward)) {
+    strain = strain_of(axes.source * backward * axes.output_index);
+  }
+}
+
 /// Displacements along a row of voxels of one tetrahedron: base + (i - first) step. They begin at
 /// its anchor, so that no other voxel of the row has a say in them.
 struct RowDisplacement {
@@ -88,8 +103,8 @@ TETWARP_HD RowDisplacement row_displacement(const DisplacementMap& map,
   return row;
 }
 
-/// One index = a stretch of voxels of a row; any order.
-struct VoxelFieldsBody {
+/// What the bodies below read and write, and how.
+struct VoxelFieldsJob {
   View<const TetSetup> setups;
   HexMesh mesh;
   GridAxes axes;
@@ -108,7 +123,9 @@ struct VoxelFieldsBody {
     return stretches_per_row() * (frame.end[1] - frame.begin[1]) * (frame.end[2] - frame.begin[2]);
   }
 
-  TETWARP_HD void operator()(std::int64_t index) const {
+  /// Writes a stretch: voxels within hexahedra, or all others.
+  template <bool in_hexes>
+  TETWARP_HD void write_stretch(std::int64_t index) const {
     const std::int64_t row = index / stretches_per_row();
     const int ny = frame.end[1] - frame.begin[1];
     const int first = frame.begin[0] + static_cast<int>(index % stretches_per_row()) * stretch;
@@ -118,7 +135,14 @@ struct VoxelFieldsBody {
     std::int64_t at = frame.offset_of(voxel[0], voxel[1], voxel[2]);
     while (voxel[0] < past) {
       const int count = run_length(voxel[0], past, at);
-      if (touched.size == 0 || touched[cell_of_voxel(voxel)] != 0) write(voxel, at, count);
+      if (is_in_hex(owners[at]) == in_hexes &&
+          (touched.size == 0 || touched[cell_of_voxel(voxel)] != 0)) {
+        if constexpr (in_hexes) {
+          write_in_hex(owners[at], voxel, at, count);
+        } else {
+          write(owners[at], voxel, at, count);
+        }
+      }
       voxel[0] += count;
       at += count;
     }
@@ -132,12 +156,15 @@ struct VoxelFieldsBody {
     return count;
   }
 
+  TETWARP_HD bool is_in_hex(std::int32_t owner) const {
+    return mesh.hexes.has(owner) && setups[owner].kind == MapKind::trilinear;
+  }
+
   TETWARP_HD std::int64_t cell_of_voxel(const int* voxel) const {
     return frame.cell_index(voxel[0] >> cell_shift, voxel[1] >> cell_shift, voxel[2] >> cell_shift);
   }
 
-  TETWARP_HD void write(const int* voxel, std::int64_t at, int count) const {
-    const std::int32_t owner = owners[at];
+  TETWARP_HD void write(std::int32_t owner, const int* voxel, std::int64_t at, int count) const {
     if (owner < 0) {
       const float zeros[9] = {};
       repeat<3>(zeros, fields.displacement, at, count);
@@ -146,7 +173,6 @@ struct VoxelFieldsBody {
       repeat<6>(zeros, fields.strain, at, count);
       return;
     }
-    if (setups[owner].kind == MapKind::trilinear) return write_in_hex(owner, voxel, at, count);
     if (fields.displacement != nullptr) {
       const RowDisplacement row = row_displacement(map, setups[owner], voxel);
       float* const out = fields.displacement + 3 * at;
@@ -180,12 +206,9 @@ struct VoxelFieldsBody {
         }
       }
       if (strains.size == 0) continue;
-      double u[3];
-      Matrix3 backward;
-      hex_local(hex, tet, voxel, u);
-      repeat(hex_gradient(hex, u, backward) ? strain_of(axes.source * backward * axes.output_index)
-                                            : strains[owner],
-             at + v, 1);
+      TetStrain strain = strains[owner];
+      set_hex_strain(hex, tet, axes, voxel, strain);
+      repeat(strain, at + v, 1);
     }
   }
 
@@ -204,10 +227,22 @@ struct VoxelFieldsBody {
   }
 };
 
+/// One index = a stretch of voxels of a row; any order.
+struct VoxelFieldsBody {
+  VoxelFieldsJob job;
+  TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
+};
+
+/// The same for voxels within hexahedra, whose maps take many registers: apart from the others.
+struct HexFieldsBody {
+  VoxelFieldsJob job;
+  TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }
+};
+
 /// Writes the wanted fields of every voxel of the cells to write; zeros where nothing covers.
 ///
 /// @param exec  where to run
-/// @param body  what to write; its stretch is chosen here: whole rows for a thread that runs
+/// @param job   what to write; its stretch is chosen here: whole rows for a thread that runs
 ///              through memory, single voxels where neighbouring threads share it
 /// @pre   `owners` holds what the raster found, also of cells that are not written
 ///
@@ -215,9 +250,12 @@ struct VoxelFieldsBody {
 /// back ends; the rest is copied. Cost: 4 bytes read and those of the fields written per voxel; 80
 /// operations per run of voxels with one owner, and 6 more per voxel, for displacements.
 template <class Exec>
-void voxel_fields(Exec& exec, VoxelFieldsBody body) {
-  body.stretch = Exec::reads_are_free ? body.frame.end[0] - body.frame.begin[0] : 1;
-  exec.for_each("warp/fields", body.index_count(), body);
+void voxel_fields(Exec& exec, VoxelFieldsJob job) {
+  job.stretch = Exec::reads_are_free ? job.frame.end[0] - job.frame.begin[0] : 1;
+  exec.for_each("warp/fields", job.index_count(), VoxelFieldsBody{job});
+  if (job.mesh.hexes.nodes.size > 0) {
+    exec.for_each("warp/fields", job.index_count(), HexFieldsBody{job});
+  }
 }
 
 }  // namespace tetwarp
