@@ -2,7 +2,7 @@
 /// `mpirun -n 3 tetwarp warp`: outputs and blocks shared out, errors told once.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -100,7 +100,7 @@ TEST_F(Ranks, ShareBlocksOfASingleOutput) {
 
 TEST_F(Ranks, EndTogetherWithOneLineWhenOneOfThemFails) {
   auto steps = shifts({0, 1, 1, 3});
-  steps[2][3][1] = std::nan("");
+  steps[2][3][1] = 1e300;
   write_mesh(scene / "mesh.vtkhdf", box_mesh(), steps, {0, 1, 2, 3});
 
   for (const Names& more : {Names{}, Names{"--temporal"}, Names{"--steps", "2"}}) {
@@ -110,7 +110,7 @@ TEST_F(Ranks, EndTogetherWithOneLineWhenOneOfThemFails) {
 
     EXPECT_NE(result.exit_code, 0);
     EXPECT_GE(lines_of_ours(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("is not finite"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("2^40 voxels"), std::string::npos) << result.err;
     for (const std::string& name : scene.names()) EXPECT_FALSE(name.starts_with(".")) << name;
     EXPECT_FALSE(fs::exists(scene / "out.vtkhdf"));
     EXPECT_FALSE(fs::exists(scene / "out_0002.vtkhdf"));
