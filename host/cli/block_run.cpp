@@ -97,7 +97,7 @@ Fingerprint BlockRun::scan_sources() {
   const bool wants_range = arguments_.warp.overshoot == Overshoot::clamp;
   ranges_.resize(readers_.size());
   if (!ranks_.is_root() && !wants_range) return fingerprint;
-  const double bytes = std::clamp(0.5 * limits().host, 1e6, 1e9);
+  const double bytes = std::clamp(0.5 * limits().host, 1e6, 2.5e8);
   for (std::size_t s = 0; s < readers_.size(); ++s) {
     const VolumeReader& reader = readers_[s];
     ranges_[s] = scan_source(reader, bytes, wants_range, fingerprint);
