@@ -3,6 +3,7 @@
 if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_io_tests LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
+    tests/test_io_blocks.cpp
     tests/test_io_vtkhdf_volume.cpp
     tests/test_io_vtkhdf_mesh.cpp
     tests/test_io_nifti.cpp
@@ -58,12 +59,14 @@ tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_j
   tests/test_cli_contact_usage.cpp
   tests/test_cli_fields.cpp
   tests/test_cli_memory.cpp
+  tests/test_cli_ranks.cpp
   tests/test_cli_resume.cpp
   tests/test_cli_rules.cpp
   tests/test_cli_skip.cpp
   tests/test_cli_tools.cpp)
 target_compile_definitions(tetwarp_cli_tests PRIVATE
-  TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>")
+  TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"
+  TETWARP_MPIRUN="$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
 add_dependencies(tetwarp_cli_tests tetwarp_command)
 tetwarp_discover(tetwarp_cli_tests cli)
 

@@ -39,6 +39,19 @@ std::string too_large(const WarpBlock& block, const BlockLimits& limits) {
          " are left, allow more or choose a finer output grid";
 }
 
+std::int64_t voxels_of(const Box& box) {
+  return (box.end[0] - box.begin[0]) * (box.end[1] - box.begin[1]) * (box.end[2] - box.begin[2]);
+}
+
+/// A box cut in two.
+std::pair<Box, Box> halves(const Box& box, int axis, const BlockLimits& limits) {
+  const std::int64_t step = limits.step[static_cast<std::size_t>(axis)];
+  const std::int64_t steps = (box.end[axis] - box.begin[axis] + step - 1) / step;
+  Box low = box, high = box;
+  low.end[axis] = high.begin[axis] = box.begin[axis] + steps / 2 * step;
+  return {low, high};
+}
+
 WarpPlan plan_of(const Grid& source, const TetMesh& mesh, const WarpOptions& options) {
   check_grid(source, "source");
   check_mesh(mesh);
@@ -69,6 +82,10 @@ struct BlockPlanner::State {
   WarpBlock make_block(const Box& box,
                        const std::vector<std::int32_t>& cells,
                        const BlockLimits& limits) const;
+  /// Where to cut a box so that its halves read least; the longest of equal axes; -1: nowhere.
+  int best_axis(const Box& box,
+                const std::vector<std::int32_t>& cells,
+                const BlockLimits& limits) const;
   /// What is read for the voxels of a box.
   Box source_of(const Box& box, const std::vector<std::int32_t>& cells) const;
 };
@@ -162,7 +179,7 @@ Box BlockPlanner::State::source_of(const Box& box, const std::vector<std::int32_
   }
   for (const std::int32_t t : cells) {
     const Footprint& footprint = footprints[static_cast<std::size_t>(t)];
-    enclose(all, samples_of(footprint, box));
+    if (meets(footprint, box)) enclose(all, samples_of(footprint, box));
   }
   const int reach = reach_of(interpolation_of(options.filter));
   for (int axis = 0; axis < 3; ++axis) {
@@ -206,6 +223,24 @@ WarpBlock BlockPlanner::State::make_block(const Box& box,
   return block;
 }
 
+int BlockPlanner::State::best_axis(const Box& box,
+                                   const std::vector<std::int32_t>& cells,
+                                   const BlockLimits& limits) const {
+  int best = -1;
+  std::int64_t least = 0, longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t length = box.end[axis] - box.begin[axis];
+    if (length <= limits.step[static_cast<std::size_t>(axis)]) continue;
+    const auto [low, high] = halves(box, axis, limits);
+    const std::int64_t reads = voxels_of(source_of(low, cells)) + voxels_of(source_of(high, cells));
+    if (best >= 0 && (reads > least || (reads == least && length <= longest))) continue;
+    best = axis;
+    least = reads;
+    longest = length;
+  }
+  return best;
+}
+
 void BlockPlanner::State::cut(const Box& box,
                               std::vector<std::int32_t> cells,
                               const BlockLimits& limits,
@@ -213,23 +248,16 @@ void BlockPlanner::State::cut(const Box& box,
   std::erase_if(
       cells, [&](std::int32_t t) { return !meets(footprints[static_cast<std::size_t>(t)], box); });
   WarpBlock block = make_block(box, cells, limits);
-  if (block.host_bytes <= limits.host && block.device_bytes <= limits.device &&
-      block.output.voxel_count() <= limits.most_voxels) {
+  const bool fits = block.host_bytes <= limits.host && block.device_bytes <= limits.device;
+  const bool is_small = block.output.voxel_count() <= limits.most_voxels;
+  const int axis = fits && is_small ? -1 : best_axis(box, cells, limits);
+  if (axis < 0) {
+    if (!fits) throw std::invalid_argument(too_large(block, limits));
     block.cells = std::move(cells);
     plan.blocks.push_back(std::move(block));
     return;
   }
-  int longest = -1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t length = box.end[axis] - box.begin[axis];
-    if (length <= limits.step[static_cast<std::size_t>(axis)]) continue;
-    if (longest < 0 || length > box.end[longest] - box.begin[longest]) longest = axis;
-  }
-  if (longest < 0) throw std::invalid_argument(too_large(block, limits));
-  const std::int64_t step = limits.step[static_cast<std::size_t>(longest)];
-  const std::int64_t steps = (box.end[longest] - box.begin[longest] + step - 1) / step;
-  Box low = box, high = box;
-  low.end[longest] = high.begin[longest] = box.begin[longest] + steps / 2 * step;
+  const auto [low, high] = halves(box, axis, limits);
   cut(low, cells, limits, plan);
   cut(high, std::move(cells), limits, plan);
 }
@@ -246,41 +274,6 @@ BlockPlan BlockPlanner::plan(const PositionsView& deformed, const BlockLimits& l
   std::iota(cells.begin(), cells.end(), 0);
   state_->cut(all, std::move(cells), limits, plan);
   return plan;
-}
-
-std::vector<Point3> BlockMesh::of(const std::vector<Point3>& positions) const {
-  std::vector<Point3> part;
-  part.reserve(nodes.size());
-  for (const std::int32_t n : nodes) part.push_back(positions[static_cast<std::size_t>(n)]);
-  return part;
-}
-
-BlockMesh block_mesh(const TetMesh& mesh, const WarpBlock& block) {
-  BlockMesh part;
-  for (const std::int32_t cell : block.cells) {
-    const auto c = static_cast<std::size_t>(cell);
-    if (c < mesh.tets.size()) {
-      part.mesh.tets.push_back(mesh.tets[c]);
-    } else {
-      part.mesh.hexes.push_back(mesh.hexes[c - mesh.tets.size()]);
-    }
-  }
-  if (block.cells.empty() && !mesh.tets.empty()) part.mesh.tets.push_back(mesh.tets.front());
-  if (part.mesh.cell_count() == 0) part.mesh.hexes.push_back(mesh.hexes.front());
-  std::vector<std::int32_t> place(mesh.rest_positions.size(), 0);
-  const auto for_nodes = [&](auto&& visit) {
-    for (auto& tet : part.mesh.tets) std::ranges::for_each(tet, visit);
-    for (auto& hex : part.mesh.hexes) std::ranges::for_each(hex, visit);
-  };
-  for_nodes([&](std::int32_t& node) { place[static_cast<std::size_t>(node)] = 1; });
-  for (std::size_t n = 0; n < place.size(); ++n) {
-    if (place[n] == 0) continue;
-    place[n] = static_cast<std::int32_t>(part.nodes.size());
-    part.nodes.push_back(static_cast<std::int32_t>(n));
-  }
-  for_nodes([&](std::int32_t& node) { node = place[static_cast<std::size_t>(node)]; });
-  part.mesh.rest_positions = part.of(mesh.rest_positions);
-  return part;
 }
 
 }  // namespace tetwarp

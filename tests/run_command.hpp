@@ -80,6 +80,7 @@ struct CommandResult {
 struct RunOptions {
   rlim_t file_size_limit = RLIM_INFINITY;  ///< bytes; a larger write fails as on a full disk
   std::string out = {};                    ///< where standard output goes; empty: collected
+  std::vector<std::string> launcher = {};  ///< words before the command's name
 };
 
 /// The executable with its working folder set to `folder`, from its start to its end.
@@ -90,6 +91,7 @@ class RunningCommand {
                  const RunOptions& options = {})
       : out_(options.out.empty() ? streams_ / "out" : options.out), err_(streams_ / "err") {
     words.insert(words.begin(), TETWARP_COMMAND);
+    words.insert(words.begin(), options.launcher.begin(), options.launcher.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -120,7 +122,7 @@ class RunningCommand {
     const int err = open(err_.c_str(), O_WRONLY | O_CREAT, 0600);
     if (dup2(out, STDOUT_FILENO) >= 0 && dup2(err, STDERR_FILENO) >= 0 &&
         chdir(folder.path().c_str()) == 0) {
-      execv(TETWARP_COMMAND, arguments.data());
+      execv(arguments.front(), arguments.data());
     }
     _exit(127);
   }

@@ -26,6 +26,14 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
   return bytes;
 }
 
+/// A tetrahedron counts once, however many blocks it meets.
+void describe(const BlockPlan& plan, Counts& counts) {
+  counts.blocks = std::ssize(plan.blocks);
+  counts.tetrahedra = plan.tetrahedra;
+  counts.inverted = plan.inverted;
+  counts.flat = plan.flat;
+}
+
 }  // namespace
 
 BlockRun::BlockRun(const WarpArguments& arguments,
@@ -89,7 +97,7 @@ Fingerprint BlockRun::scan_sources() {
   const bool wants_range = arguments_.warp.overshoot == Overshoot::clamp;
   ranges_.resize(readers_.size());
   if (!ranks_.is_root() && !wants_range) return fingerprint;
-  const double bytes = std::clamp(0.5 * limits().host, 1e6, 1e9);
+  const double bytes = std::clamp(0.5 * limits().host, 1e6, 2.5e8);
   for (std::size_t s = 0; s < readers_.size(); ++s) {
     const VolumeReader& reader = readers_[s];
     ranges_[s] = scan_source(reader, bytes, wants_range, fingerprint);
@@ -108,14 +116,15 @@ void BlockRun::run_each_step(const Fingerprint& inputs) {
     Fingerprint fingerprint = inputs;
     fingerprint.add(positions);
     if (may_keep(volume_.outputs[s], fingerprint)) {
-      finish_step(report, {});
+      finish_step(report);
       continue;
     }
     const BlockPlan plan = plan_step(positions);
     begin_file(volume_.outputs[s], fingerprint, false);
     run_step(plan, positions, report);
     report.counts += finish_file();
-    finish_step(report, plan);
+    describe(plan, report.counts);
+    finish_step(report);
   }
 }
 
@@ -136,16 +145,18 @@ void BlockRun::run_temporal(Fingerprint fingerprint) {
     report.step = step;
     std::vector<Point3> positions = plan_.mesh.read_step(step);
     const double time = times[static_cast<std::size_t>(step)];
-    BlockPlan plan;
     if (arguments_.warp.skip.unchanged_steps && positions == last_positions) {
-      if (writer_) writer_->repeat_step(time);
-      report.counts.steps_unchanged = 1;
+      if (writer_) {
+        writer_->repeat_step(time);
+        repeat_report(result_.report.steps.back(), report);
+      }
     } else {
-      plan = plan_step(positions);
+      const BlockPlan plan = plan_step(positions);
       if (writer_) writer_->begin_step(time);
       run_step(plan, positions, report);
+      describe(plan, report.counts);
     }
-    finish_step(report, plan);
+    finish_step(report);
     last_positions = std::move(positions);
   }
   result_.report.counts += finish_file();
@@ -210,14 +221,8 @@ BlockPlan BlockRun::plan_step(const std::vector<Point3>& positions) {
   return planner_->plan(positions, common);
 }
 
-/// What a tetrahedron is counts once, however many blocks it meets.
-void BlockRun::finish_step(StepReport report, const BlockPlan& plan) {
+void BlockRun::finish_step(const StepReport& report) {
   if (!ranks_.is_root()) return;
-  Counts& counts = report.counts;
-  counts.blocks = std::ssize(plan.blocks);
-  counts.tetrahedra = plan.blocks.empty() ? 0 : plan.tetrahedra;
-  counts.inverted = plan.inverted;
-  counts.flat = plan.flat;
   Report& total = result_.report;
   total.timings += report.timings;
   total.counts += report.counts;

@@ -67,7 +67,7 @@ class BlockRun {
                   StepReport& report);
   Samples make_outputs(const Region& region) const;
   void write(const Region& region, const Samples& outputs);
-  void finish_step(StepReport report, const BlockPlan& plan);
+  void finish_step(const StepReport& report);
 
   const WarpArguments& arguments_;
   const JobPlan& plan_;

@@ -149,7 +149,7 @@ BlockRun::Samples BlockRun::compute(const WarpBlock& block,
   const auto voxels_done = static_cast<double>(result_.report.counts.voxels + report.counts.voxels);
   const auto voxels = static_cast<double>(block.output.voxel_count());
   const auto before = static_cast<double>(report.counts.voxels);
-  const auto all = static_cast<double>(volume_.written_grid.voxel_count());
+  const auto all = static_cast<double>(volume_.written_grid.voxel_count()) / ranks_.count();
   const StepReport step = warper.step(part.of(positions), target, [&](double share) {
     bar_.update(steps_done + (before + share * voxels) / all, voxels_done + share * voxels);
     return !is_interrupted();

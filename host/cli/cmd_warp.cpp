@@ -43,7 +43,9 @@ void add_warp_command(CLI::App& app, Run& run) {
       "--steps 0:10:2 --outputs mask --resume\n"
       "  tetwarp warp atlas.vtkhdf mesh.vtkhdf -o atlas_warped.vtkhdf "
       "--filter labels\n"
-      "  tetwarp warp --batch jobs.json --compress 1\n");
+      "  tetwarp warp --batch jobs.json --compress 1\n"
+      "  tetwarp warp large.vtkhdf mesh.vtkhdf -o warped.vtkhdf --memory 4G\n"
+      "  mpirun -n 4 tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n");
   declare_warp_options(*command, *arguments);
   command->callback([arguments, command, &run] {
     check_complete(*arguments);

@@ -14,7 +14,7 @@
 #include "host/cli/array_checks.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
-#include "io/memory.hpp"
+#include "host/cli/memory_plan.hpp"
 
 namespace tetwarp::cli {
 
@@ -109,64 +109,6 @@ bool leaves_time(Backend backend, const WarpArguments& arguments) {
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = arguments.warp.threads > 0 ? arguments.warp.threads : processors;
   return backend != Backend::cpu || threads < processors || arguments.compress > 0;
-}
-
-/// What cannot be done from windows of the source.
-void check_streams(const VolumePlan& plan, const WarpArguments& arguments) {
-  if (arguments.extra.contains(forward_output)) {
-    throw IoError(plan.path, "",
-                  fmt::format("the forward displacement needs the whole mesh at once, source and "
-                              "output take {}; allow more --memory or leave out --outputs forward",
-                              bytes_text(plan.memory)));
-  }
-  if (arguments.warp.intensity == Intensity::conservative) {
-    throw IoError(plan.path, "",
-                  fmt::format("totals are kept of a whole source, it and the output take {}; allow "
-                              "more --memory or use --intensity density",
-                              bytes_text(plan.memory)));
-  }
-  if (arguments.warp.filter != Filter::bspline) return;
-  throw IoError(plan.path, "",
-                fmt::format("a spline passes through all samples at once, source and output take "
-                            "{}; allow more --memory or use --filter cubic",
-                            bytes_text(plan.memory)));
-}
-
-/// Source and output and the extra outputs must fit, or blocks of them where a limit is given.
-/// @returns whether the outputs fit once more
-bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
-  const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
-  const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
-  double source_bytes = 0, output_bytes = 0;
-  for (const std::size_t e : arguments.extra) {
-    output_bytes += output_voxels * extra_outputs[e].components *
-                    static_cast<double>(size_of(extra_outputs[e].type));
-  }
-  for (const ArrayHeader& array : plan.arrays) {
-    const double voxel_bytes = array.components * static_cast<double>(size_of(array.type));
-    source_bytes += source_voxels * voxel_bytes;
-    output_bytes += output_voxels * voxel_bytes;
-  }
-  const double bytes = source_bytes + output_bytes;
-  plan.memory = bytes;
-  if (arguments.memory > 0) {
-    // Lists of cells and tetrahedra, and what is there already.
-    const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
-    if (bytes > limit) {
-      plan.memory_limit = arguments.memory;
-      check_streams(plan, arguments);
-    }
-    return bytes + output_bytes <= limit;
-  }
-  const double available = available_memory();
-  if (bytes > available && !arguments.dry_run) {
-    throw std::invalid_argument(fmt::format(
-        "{}: {} x {} x {} output voxels need {} of memory with the source, {} are available; use "
-        "--memory to stream them, a smaller --roi, coarser --dims and --spacing, or fewer arrays",
-        plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
-        bytes_text(bytes), bytes_text(available)));
-  }
-  return bytes + output_bytes <= available;
 }
 
 void check_axes(const VolumePlan& plan) {

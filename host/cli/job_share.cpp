@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/cli/block_run.hpp"
+#include "host/cli/memory_plan.hpp"
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
@@ -49,9 +50,7 @@ void run_volume(const WarpArguments& arguments,
                 ProgressBar& bar,
                 JobResult& result) {
   const bool is_single = plan.volumes.size() == 1 && volume.outputs.size() == 1;
-  const bool has_parts = arguments.warp.filter != Filter::bspline &&
-                         arguments.warp.intensity != Intensity::conservative;
-  if (ranks.count() > 1 && is_single && has_parts) {
+  if (ranks.count() > 1 && is_single && needs_all_at_once(arguments).empty()) {
     BlockRun(arguments, plan, volume, ranks, bar, result).run();
     return;
   }

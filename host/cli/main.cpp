@@ -29,6 +29,7 @@ constexpr int usage_exit_code = 2;
 /// What every rank finds wrong before they know each other is told by one.
 int complain(const std::string& problem, int exit_code, bool is_found_by_all = false) {
   if (is_found_by_all && launched_rank() > 0) return exit_code;
+  wait_for_turn();
   fmt::print(stderr, "tetwarp: {}\n", one_line(problem));
   return exit_code;
 }

@@ -44,6 +44,16 @@ VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerpri
           .fingerprint = fingerprint.text()};
 }
 
+void repeat_report(const StepReport& last, StepReport& report) {
+  for (const auto count :
+       {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra, &Counts::inverted,
+        &Counts::flat, &Counts::folded, &Counts::cells, &Counts::tets_averaged}) {
+    report.counts.*count = last.counts.*count;
+  }
+  report.counts.steps_unchanged = 1;
+  report.totals = last.totals;
+}
+
 Counts counts_of(const WrittenFile& file) {
   Counts counts;
   counts.bytes_written = file.bytes;

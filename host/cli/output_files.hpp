@@ -28,6 +28,10 @@ bool is_up_to_date(const WarpArguments& arguments,
 
 VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerprint& fingerprint);
 
+/// The report of a step that equals the last one: what describes its outputs stays, no work was
+/// done.
+void repeat_report(const StepReport& last, StepReport& report);
+
 /// What a written file adds to a report.
 Counts counts_of(const WrittenFile& file);
 

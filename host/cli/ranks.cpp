@@ -2,8 +2,11 @@
 /// What mpirun tells its children before they say a word: Open MPI's and MPICH's names.
 #include "host/cli/ranks.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <initializer_list>
+#include <thread>
 
 namespace tetwarp::cli {
 
@@ -29,6 +32,11 @@ int launched_local_rank() {
 
 int launched_count() {
   return number_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1);
+}
+
+void wait_for_turn() {
+  constexpr int longest = 20;
+  std::this_thread::sleep_for(std::min(launched_rank(), longest) * std::chrono::milliseconds(100));
 }
 
 }  // namespace tetwarp::cli

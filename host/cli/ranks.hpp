@@ -68,6 +68,9 @@ int launched_rank();
 /// The same among those on this machine.
 int launched_local_rank();
 
+/// Lets lower ranks speak first: what several find wrong is then told by one, who ends the others.
+void wait_for_turn();
+
 /// Ends all ranks where there are several and this one is not done; else comes back.
 void abort_ranks(int exit_code);
 

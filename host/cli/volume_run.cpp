@@ -131,15 +131,8 @@ bool VolumeRun::equals_last_step(const std::vector<Point3>& positions) const {
 
 void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write write) {
   if (equals_last_step(positions)) {
-    // The outputs hold this step already: what describes them stays, no work was done.
     finish_computing();
-    for (const auto count : {&Counts::voxels, &Counts::covered, &Counts::outside,
-                             &Counts::tetrahedra, &Counts::inverted, &Counts::flat, &Counts::folded,
-                             &Counts::cells, &Counts::tets_averaged}) {
-      report.counts.*count = last_report_.counts.*count;
-    }
-    report.counts.steps_unchanged = 1;
-    report.totals = last_report_.totals;
+    repeat_report(last_report_, report);
     computed_ = Step{report, std::move(write), outputs_[now_].volumes()};
     return;
   }

@@ -17,6 +17,28 @@
 
 namespace tetwarp::cli {
 
+namespace {
+
+/// Steps that the root shows, which are its own when whole outputs are shared out.
+std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
+  const std::size_t outputs = plan.outputs().size();
+  const auto count = static_cast<std::size_t>(ranks.count());
+  if (outputs == 1) return plan.steps.size();
+  return (plan.volumes.size() * plan.steps.size() + count - 1) / count;
+}
+
+std::string plan_text(const StepPlan& plan) {
+  std::string text =
+      fmt::format("{} step {}: {} x {} x {} voxels, {} of memory", plan.volume, plan.step,
+                  plan.dims[0], plan.dims[1], plan.dims[2], bytes_text(plan.memory));
+  if (plan.blocks == 0) return text + "\n";
+  return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
+                            plan.blocks, plan.largest_block, plan.largest_window,
+                            bytes_text(plan.bytes_read));
+}
+
+}  // namespace
+
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {
   const PoliteInterrupts polite;
   const Stopwatch watch;
@@ -37,7 +59,7 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   }
   {
     ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,
-                    static_cast<double>(plan.volumes.size() * plan.steps.size()));
+                    static_cast<double>(progress_steps(plan, ranks)));
     std::size_t task = 0;
     for (const VolumePlan& volume : plan.volumes) {
       if (!arguments.dry_run) {
@@ -55,20 +77,6 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   }
   return result;
 }
-
-namespace {
-
-std::string plan_text(const StepPlan& plan) {
-  std::string text =
-      fmt::format("{} step {}: {} x {} x {} voxels, {} of memory", plan.volume, plan.step,
-                  plan.dims[0], plan.dims[1], plan.dims[2], bytes_text(plan.memory));
-  if (plan.blocks == 0) return text + "\n";
-  return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
-                            plan.blocks, plan.largest_block, plan.largest_window,
-                            bytes_text(plan.bytes_read));
-}
-
-}  // namespace
 
 std::string report_json(const JobResult& result) {
   auto json = nlohmann::ordered_json::parse(to_json(result.report));

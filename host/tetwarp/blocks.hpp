@@ -20,24 +20,26 @@ namespace tetwarp {
 
 /// What a block may hold, and how large a voxel is [byte].
 struct BlockLimits {
-  double host = std::numeric_limits<double>::infinity();    ///< source and output twice: one is
-                                                            ///< read or written meanwhile
-  double device = std::numeric_limits<double>::infinity();  ///< once
-  double source_voxel = 4;                                  ///< of all sources together
-  double output_voxel = 4;                                  ///< of all outputs together
+  /// Source and output twice, for one of each is read or written meanwhile.
+  double host = std::numeric_limits<double>::infinity();
+  /// Source and output once.
+  double device = std::numeric_limits<double>::infinity();
+  double source_voxel = 4;   ///< of all sources together
+  double output_voxel = 4;   ///< of all outputs together
   double scratch_voxel = 0;  ///< that a back end needs beside an output voxel
-  std::array<std::int64_t, 3> step{8, 8,
-                                   8};  ///< cut at multiples of it, from the region's begin on
-  std::int64_t most_voxels = std::numeric_limits<std::int64_t>::max();  ///< of the output
+  /// Blocks are cut at multiples of it, from the region's begin on [voxel].
+  std::array<std::int64_t, 3> step{8, 8, 8};
+  /// Of the output; larger blocks are cut as long as steps allow.
+  std::int64_t most_voxels = std::numeric_limits<std::int64_t>::max();
 };
 
 /// A part of the output and all that it depends on.
 struct WarpBlock {
-  Region output;                   ///< in the output grid
-  Region source;                   ///< in the source grid, one voxel at least
+  Region output;                    ///< in the output grid
+  Region source;                    ///< in the source grid, one voxel at least
   std::vector<std::int32_t> cells;  ///< of the mesh that may own voxels of it, ascending:
                                     ///< tetrahedra first, then hexahedra
-  double host_bytes = 0;           ///< as the limits count them
+  double host_bytes = 0;            ///< as the limits count them
   double device_bytes = 0;
 };
 
@@ -60,8 +62,8 @@ class BlockPlanner {
   BlockPlanner(BlockPlanner&&) noexcept;
   ~BlockPlanner();
 
-  /// Halves the region along its longest axis until every block keeps to the limits. Costs about as
-  /// much as the setup of a step; memory: 100 bytes per tetrahedron.
+  /// Halves the region, along the axis that lets its halves read least, until every block keeps to
+  /// the limits. Costs a few times the setup of a step; memory: 100 bytes per tetrahedron.
   /// @param deformed  world, host memory, as many nodes as the mesh
   /// @throws std::invalid_argument  on positions too far away, or when the smallest block exceeds
   ///                                the limits
