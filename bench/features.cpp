@@ -22,8 +22,9 @@ struct Feature {
   std::string name;
   WarpOptions options = {};
   int components = 1;
-  double shrink = 1;       ///< of the deformed mesh
-  bool hexahedra = false;  ///< instead of tetrahedra
+  double shrink = 1;         ///< of the deformed mesh
+  bool hexahedra = false;    ///< instead of tetrahedra
+  std::int64_t divisor = 1;  ///< of the voxels per axis: what takes long is timed on fewer
 };
 
 std::vector<Feature> features() {
@@ -31,6 +32,7 @@ std::vector<Feature> features() {
           {.name = "vectors", .options = {.quantities = {Quantity::vector}}, .components = 3},
           {.name = "tensors", .options = {.quantities = {Quantity::tensor}}, .components = 6},
           {.name = "density", .options = {.intensity = Intensity::density}},
+          {.name = "conservative", .options = {.intensity = Intensity::conservative}, .divisor = 4},
           {.name = "hexahedra", .hexahedra = true}};
 }
 
@@ -112,7 +114,7 @@ class Job {
 
 /// Largest difference from the reference on a small volume.
 double error_of(const Feature& feature, int threads) {
-  const scenes::Scene scene = scene_of(feature, 4);
+  const scenes::Scene scene = scene_of(feature, 4 * feature.divisor);
   const Buffer image =
       make_image(scene.source_grid, PixelType::float32, Image::textured, feature.components);
   const VolumeView source{scene.source_grid, PixelType::float32, feature.components, image.data(),
@@ -127,7 +129,7 @@ double error_of(const Feature& feature, int threads) {
 void run(benchmark::State& state, const Feature& feature, int threads) {
   const double error = error_of(feature, threads);
   if (!(error <= 2e-5)) return refuse(state, "differs from the reference");
-  const scenes::Scene scene = scene_of(feature, 1);
+  const scenes::Scene scene = scene_of(feature, feature.divisor);
   const Buffer image =
       make_image(scene.source_grid, PixelType::float32, Image::textured, feature.components);
   const VolumeView source{scene.source_grid, PixelType::float32, feature.components, image.data(),

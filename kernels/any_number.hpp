@@ -48,14 +48,14 @@ struct NumberView {
   void* data;
   NumberKind kind;
 
-  TETWARP_HD double at(std::int64_t i) const {
+  TETWARP_HD_RARE double at(std::int64_t i) const {
     double number = 0;
     with_numbers(data, kind,
                  [&](const auto* numbers) { number = static_cast<double>(numbers[i]); });
     return number;
   }
   /// Rounds once, saturates.
-  TETWARP_HD void set(std::int64_t i, double number) const {
+  TETWARP_HD_RARE void set(std::int64_t i, double number) const {
     with_numbers(data, kind, [&](auto* numbers) {
       numbers[i] = rounded_to<std::remove_reference_t<decltype(*numbers)>>(number);
     });

@@ -134,7 +134,7 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
 
 /// Volume [voxel]: a sum of tetrahedra over the edges, from a corner of the body and one of each
 /// face.
-TETWARP_HD double volume_of(const ConvexPart& part) {
+TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
   const double* const apex = part.corner[0];
   int base[most_faces];
   for (int face = 0; face < most_faces; ++face) base[face] = -1;
@@ -159,7 +159,7 @@ TETWARP_HD double volume_of(const ConvexPart& part) {
 /// @param part   out
 /// @param other  scratch
 /// @returns the one of them that holds it; null where there is none
-TETWARP_HD const ConvexPart* part_in_tet(
+TETWARP_HD_RARE const ConvexPart* part_in_tet(
     const TetSetup& tet, int i, int j, int k, ConvexPart& part, ConvexPart& other) {
   const double from[3] = {static_cast<double>(i - tet.anchor[0]),
                           static_cast<double>(j - tet.anchor[1]),

@@ -122,6 +122,7 @@ TETWARP_HD Int128 volume6_of(const TetNodes& tet) {
 
 /// One index = one tetrahedron; any order.
 struct TetRuleBody {
+  static constexpr int resident_blocks = 2;  ///< of 128 registers a thread: no spills
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
   View<const Node> nodes;

@@ -70,7 +70,7 @@ void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> m
 
 /// One index = one voxel of the output; any order.
 struct VoxelOverlapBody {
-  static constexpr int resident_blocks = 1;
+  static constexpr int resident_blocks = 1;  ///< all registers: no spills
   View<const TetSetup> setups;
   View<const TetRule> rules;           ///< their scale
   PairList list;                       ///< of widened boxes, none rejected
@@ -81,9 +81,10 @@ struct VoxelOverlapBody {
   int components;
   NumberView volume;
 
-  /// Parts of a body: whole, cut along the axes of the source one after the other, and scratch.
+  /// Room for a body and scratch, and for what is cut along the axes of the source in turn.
   struct Parts {
-    ConvexPart whole, spare, cut[3];
+    ConvexPart two[2], cut[3];
+    ConvexPart* spare;
   };
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
@@ -110,13 +111,13 @@ struct VoxelOverlapBody {
       if (x[axis] < tet.begin[axis] || x[axis] >= tet.end[axis]) return;
     }
     Parts parts;
-    const ConvexPart* const whole = part_in_tet(tet, x[0], x[1], x[2], parts.whole, parts.cut[2]);
+    const ConvexPart* const whole = part_in_tet(tet, x[0], x[1], x[2], parts.two[0], parts.two[1]);
     if (whole == nullptr) return;
-    if (whole != &parts.whole) parts.whole = *whole;
+    parts.spare = parts.two + (whole == parts.two ? 1 : 0);
     double start[3], linear[3][3];
     map_start(tet, x[0], x[1], x[2], start, linear);
     const auto map = make_source_map<double>(start, linear);
-    for_slabs(parts, map, 2, parts.whole, [&](std::int64_t k, const ConvexPart& slab) {
+    for_slabs(parts, map, 2, *whole, [&](std::int64_t k, const ConvexPart& slab) {
       for_slabs(parts, map, 1, slab, [&](std::int64_t j, const ConvexPart& bar) {
         for_slabs(parts, map, 0, bar, [&](std::int64_t i, const ConvexPart& piece) {
           const double share = volume_of(piece) * rules[t].scale;
@@ -135,32 +136,53 @@ struct VoxelOverlapBody {
                             int row,
                             const ConvexPart& body,
                             Visit&& visit) const {
+    const Extent extent = extent_of(body, map, row);
+    const double first = max_of(floor(extent.low + 0.5), -static_cast<double>(map.whole[row]));
+    const double last =
+        min_of(ceil(extent.high - 0.5), static_cast<double>(dims[row] - 1) - map.whole[row]);
+    for (double n = first; n <= last; ++n) {
+      const ConvexPart* const part = slab_of(body, map, row, extent, n, parts);
+      if (part != nullptr) visit(map.whole[row] + static_cast<std::int64_t>(n), *part);
+    }
+  }
+
+  /// Of a body along an axis of the source, from map.whole on.
+  struct Extent {
+    double low, high;
+  };
+  TETWARP_HD_RARE static Extent extent_of(const ConvexPart& body,
+                                          const SourceMap<double>& map,
+                                          int row) {
+    const double normal[3] = {map.axis[0][row], map.axis[1][row], map.axis[2][row]};
+    Extent extent = {height_over(normal, map.base[row], body.corner[0]), 0};
+    extent.high = extent.low;
+    for (int c = 1; c < body.corner_count; ++c) {
+      const double height = height_over(normal, map.base[row], body.corner[c]);
+      extent.low = min_of(extent.low, height);
+      extent.high = max_of(extent.high, height);
+    }
+    return extent;
+  }
+
+  /// What of a body lies in slab n of the source: the body itself, or a cut one, or null.
+  TETWARP_HD_RARE static const ConvexPart* slab_of(const ConvexPart& body,
+                                                   const SourceMap<double>& map,
+                                                   int row,
+                                                   const Extent& extent,
+                                                   double n,
+                                                   Parts& parts) {
     const double normal[3] = {map.axis[0][row], map.axis[1][row], map.axis[2][row]};
     const double opposite[3] = {-normal[0], -normal[1], -normal[2]};
-    const double at = map.base[row];  // of the voxel's centre, from map.whole on
-    double low = height_over(normal, at, body.corner[0]), high = low;
-    for (int c = 1; c < body.corner_count; ++c) {
-      const double height = height_over(normal, at, body.corner[c]);
-      low = min_of(low, height);
-      high = max_of(high, height);
+    const bool ends = extent.high > n + 0.5;
+    const ConvexPart* part = &body;
+    if (extent.low < n - 0.5) {
+      ConvexPart& to = ends ? *parts.spare : parts.cut[row];
+      if (!clip_part(*part, normal, map.base[row] - (n - 0.5), to)) return nullptr;
+      part = &to;
     }
-    const double first = max_of(floor(low + 0.5), -static_cast<double>(map.whole[row]));
-    const double last =
-        min_of(ceil(high - 0.5), static_cast<double>(dims[row] - 1) - map.whole[row]);
-    ConvexPart& cut = parts.cut[row];
-    for (double n = first; n <= last; ++n) {
-      const ConvexPart* part = &body;
-      if (low < n - 0.5) {
-        ConvexPart& to = high > n + 0.5 ? parts.spare : cut;
-        if (!clip_part(*part, normal, at - (n - 0.5), to)) continue;
-        part = &to;
-      }
-      if (high > n + 0.5) {
-        if (!clip_part(*part, opposite, n + 0.5 - at, cut)) continue;
-        part = &cut;
-      }
-      visit(map.whole[row] + static_cast<std::int64_t>(n), *part);
-    }
+    if (!ends) return part;
+    const double offset = n + 0.5 - map.base[row];
+    return clip_part(*part, opposite, offset, parts.cut[row]) ? &parts.cut[row] : nullptr;
   }
 };
 
