@@ -160,6 +160,9 @@ TEST_P(Blocks, OfEveryFilterAndPixelTypeHaveTheBitsOfTheWhole) {
         const bool is_label = filter == Filter::labels;
         if (is_label && (!is_integer(type) || components > 1)) continue;
         if (type == PixelType::int64 && !is_label && filter != Filter::nearest) continue;
+        // The reference has one function that knows of windows, and is slow.
+        const bool is_told = type == PixelType::uint8 && filter == Filter::cubic;
+        if (GetParam() == Backend::reference && !is_told) continue;
         SCOPED_TRACE(name + " " + name_of(type) + " filter " +
                      std::to_string(static_cast<int>(filter)));
         WarpOptions options;
