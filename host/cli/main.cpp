@@ -26,9 +26,10 @@ namespace {
 constexpr int failed_exit_code = 1;
 constexpr int usage_exit_code = 2;
 
-/// What every rank finds wrong before they know each other is told by one.
+/// What every rank finds wrong before they know each other is told by the first; the others end as
+/// if all were well, or mpirun would end the first before it has spoken.
 int complain(const std::string& problem, int exit_code, bool is_found_by_all = false) {
-  if (is_found_by_all && launched_rank() > 0) return exit_code;
+  if (is_found_by_all && launched_rank() > 0) return 0;
   wait_for_turn();
   fmt::print(stderr, "tetwarp: {}\n", one_line(problem));
   return exit_code;
