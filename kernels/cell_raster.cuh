@@ -143,7 +143,7 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
         store_filled(job, work, voxel);
       } else if (ruled) {
         store_ruled(job, t, corner, i, j, k, voxel);
-      } else if (chunk.alone[slot]) {
+      } else if ((Wide || sizeof(Real) == 4) && chunk.alone[slot]) {
         store_owned<Wide, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
         store_sample<Wide>(job, chunk.copied[slot] ? Interpolation::nearest : job.filter,
@@ -180,11 +180,11 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
   }
 }
 
-/// The kernel for a job: wide filters and rules have their own, whose registers the others need not
-/// pay for.
+/// The kernel for a job: wide filters, rules and hexahedra have their own, whose registers the
+/// others need not pay for.
 template <class T>
 auto raster_kernel(const RasterJob<T>& job) {
-  const bool is_plain = !is_wide(job.filter) && job.rules.size == 0;
+  const bool is_plain = !is_wide(job.filter) && job.rules.size == 0 && job.hexes.nodes.size == 0;
   return is_plain ? cell_raster_kernel<T, false> : cell_raster_kernel<T, true>;
 }
 

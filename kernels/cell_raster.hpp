@@ -256,10 +256,12 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
                             int k,
                             std::int64_t voxel) {
   const TetSetup& tet = job.setups[t];
-  if (tet.kind == MapKind::trilinear) {
-    const int x[3] = {cx + i, cy + j, cz + k};
-    store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
-    return;
+  if constexpr (Wide) {
+    if (tet.kind == MapKind::trilinear) {
+      const int x[3] = {cx + i, cy + j, cz + k};
+      store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
+      return;
+    }
   }
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
