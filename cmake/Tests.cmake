@@ -56,34 +56,50 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_volume_prefilter.cpp
     tests/test_volume_range.cpp
     tests/test_volume_uniform.cpp)
+  # By nvcc they also run on a device, which takes it a minute: where there is one, or will be.
+  set(TETWARP_DEVICE_TESTS AUTO CACHE STRING "stages on a CUDA device: AUTO, ON or OFF")
+  set(tetwarp_stage_kind cpp)
   if(TETWARP_HAS_CUDA)
-    # Two units of six files: nvcc parses GoogleTest thrice per unit, for seconds.
-    foreach(first 0 6)
-      list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
-      list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
-      list(JOIN unit "\n" TETWARP_UNIT)
-      set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
-      file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
-      list(APPEND tetwarp_stage_units ${file})
-    endforeach()
-    set(tetwarp_stage_tests ${tetwarp_stage_units})
+    execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_device OUTPUT_QUIET ERROR_QUIET)
+    if(TETWARP_DEVICE_TESTS STREQUAL "ON" OR TETWARP_BUNDLE OR
+       (TETWARP_DEVICE_TESTS STREQUAL "AUTO" AND "${no_device}" STREQUAL "0"))
+      set(tetwarp_stage_kind cu)
+    else()
+      add_test(NAME stages_on_device COMMAND ${CMAKE_COMMAND} -E echo
+        "skipped: no CUDA device answered when the build was configured (TETWARP_DEVICE_TESTS=ON)")
+      set_tests_properties(stages_on_device PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION skipped)
+    endif()
   endif()
-  # Loops over the back ends that answer, compiled once for two programs. In one of them cuda is
-  # emulated: that one ctest runs, the other is for devices.
-  add_library(tetwarp_rule_tests OBJECT
+  # Two units of six files: nvcc parses GoogleTest thrice per unit, for seconds.
+  foreach(first 0 6)
+    list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
+    list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
+    list(JOIN unit "\n" TETWARP_UNIT)
+    set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.${tetwarp_stage_kind})
+    file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
+    list(APPEND tetwarp_stage_units ${file})
+  endforeach()
+  set(tetwarp_stage_tests ${tetwarp_stage_units})
+  # Compiled once for two programs; in one of them cuda is emulated. Of loops over the back ends that
+  # answer that one is run by ctest, the other is for devices.
+  add_library(tetwarp_backend_tests OBJECT
+    tests/test_blocks.cpp
+    tests/test_parity.cpp
     tests/test_warp_antialias.cpp
+    tests/test_warp_fields.cpp
+    tests/test_warp_hexahedra.cpp
+    tests/test_warp_in_flight.cpp
     tests/test_warp_intensity.cpp
     tests/test_warp_quantities.cpp)
-  target_include_directories(tetwarp_rule_tests PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(tetwarp_rule_tests PRIVATE
+  target_include_directories(tetwarp_backend_tests PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(tetwarp_backend_tests PRIVATE
     tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
-  target_compile_options(tetwarp_rule_tests PRIVATE ${tetwarp_test_options})
-  target_precompile_headers(tetwarp_rule_tests REUSE_FROM tetwarp_scenes)
-  set_target_properties(tetwarp_rule_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(tetwarp_backend_tests PRIVATE ${tetwarp_test_options})
+  target_precompile_headers(tetwarp_backend_tests REUSE_FROM tetwarp_scenes)
+  set_target_properties(tetwarp_backend_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
 
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
-    tests/test_blocks.cpp
     tests/test_convex_part.cpp
     tests/test_face_sign.cpp
     tests/test_hex_split.cpp
@@ -102,15 +118,11 @@ if(NOT BUILD_SHARED_LIBS)
     tests/test_skip_unchanged.cpp
     tests/test_warp.cpp
     tests/test_warp_arguments.cpp
-    tests/test_warp_fields.cpp
     tests/test_warp_filters.cpp
-    tests/test_warp_hexahedra.cpp
-    tests/test_warp_in_flight.cpp
     tests/test_warp_invariance.cpp
     tests/test_warp_values.cpp
     tests/test_coverage.cpp
-    tests/test_parity.cpp
-    $<TARGET_OBJECTS:tetwarp_rule_tests>)
+    $<TARGET_OBJECTS:tetwarp_backend_tests>)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
   endif()
@@ -188,14 +200,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emulated_contact.cpp
     tests/test_contact_emulated.cpp
     tests/test_contact_cuda.cpp
-    tests/test_blocks.cpp
-    tests/test_parity.cpp
     tests/test_warp_emulated.cpp
     tests/test_warp_emulated_overlap.cpp
-    tests/test_warp_fields.cpp
-    tests/test_warp_hexahedra.cpp
-    tests/test_warp_in_flight.cpp
-    $<TARGET_OBJECTS:tetwarp_rule_tests>)
+    $<TARGET_OBJECTS:tetwarp_backend_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
     FILTER "*Emulated*:WarpAntialias*:WarpIntensity*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
 

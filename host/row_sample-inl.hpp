@@ -107,7 +107,7 @@ class RowSampler {
         copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
       } else if (source.setup().kind == MapKind::trilinear) {
-        sample_hex(job_, source, run.bits, j, k, cell_row);
+        sample_row_hex(job_, source.tet(), source.corner(), run.bits, j, k, cell_row);
       } else {
         const RowMap map = {source.setup(), source.corner(), source.base, source.axis,
                             source.whole};

@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "host/row_hex.hpp"
 #include "host/row_source-inl.hpp"
 #include "host/row_vector-inl.hpp"
 #include "kernels/cell_raster.hpp"
@@ -170,23 +171,6 @@ inline void sample_narrow(const RasterJob<T>& job,
   }
 }
 
-/// The same for voxels of a hexahedron.
-template <class T>
-inline void sample_hex(const RasterJob<T>& job,
-                       const RowSource& source,
-                       unsigned bits,
-                       int j,
-                       int k,
-                       std::int64_t row) {
-  const HexMap map = hex_map_of(job, source.tet());
-  const int* corner = source.corner();
-  for (; bits != 0; bits &= bits - 1) {
-    const int i = std::countr_zero(bits);
-    const int x[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
-    store_hex_voxel<true>(job, source.setup(), map, x, row + i);
-  }
-}
-
 /// Either, as pixel type and map demand.
 template <class T>
 inline void sample_alone(const RasterJob<T>& job,
@@ -196,7 +180,7 @@ inline void sample_alone(const RasterJob<T>& job,
                          int k,
                          std::int64_t row) {
   if (source.setup().kind == MapKind::trilinear) {
-    sample_hex(job, source, bits, j, k, row);
+    sample_row_hex(job, source.tet(), source.corner(), bits, j, k, row);
   } else if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
     sample_narrow(job, source, bits, j, k, row);
   } else {

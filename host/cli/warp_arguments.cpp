@@ -160,7 +160,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
   ExtraChoice& extra = arguments.extra;
   add_word_list(
       app, "--outputs", extra_choices(), [&extra](std::size_t wanted) { extra.insert(wanted); },
-      "extra arrays tetwarp_mask and so on: covered or not; owning tetrahedron; rest less output "
+      "extra arrays tetwarp_mask and so on: covered or not; owning cell; rest less output "
       "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
       "deformed less rest position, of the source's voxels; zero (tet: -1) where nothing covers");
   app.add_flag("--temporal", arguments.temporal, "one file with all steps");

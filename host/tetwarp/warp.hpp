@@ -128,7 +128,7 @@ struct FieldTarget {
 struct WarpTarget {
   std::span<void* const> volumes;
   std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
-  std::int32_t* tet = nullptr;   ///< owning tetrahedron, -1 outside
+  std::int32_t* tet = nullptr;   ///< owning cell of the mesh, -1 outside
   FieldTarget fields = {};
   Memory memory = Memory::host;
   /// The buffers hold what a step wrote to them last, untouched: a step then leaves alone what it
