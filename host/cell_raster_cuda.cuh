@@ -11,9 +11,8 @@ namespace tetwarp {
 template <class T>
 void cell_raster(CudaExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
   const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
-  exec.timed("warp/raster", [&] {
-    launch(exec.stream(), raster_kernel(job), cells, raster_threads, 0, job);
-  });
+  exec.timed("warp/raster",
+             [&] { launch(exec.stream(), raster_kernel(job), cells, raster_threads, 0, job); });
   progress.report(1.0);
 }
 
