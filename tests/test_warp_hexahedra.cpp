@@ -155,7 +155,7 @@ TEST_P(WarpHexahedra, AreTheLimitOfEverFinerTetrahedra) {
   EXPECT_GT(error[0], 0.05);
   EXPECT_LT(error[1], error[0] / 3);
   EXPECT_LT(error[2], error[1] / 3);
-  EXPECT_LT(beside_faces, 0.5);
+  EXPECT_LT(beside_faces, 0.12);
 }
 
 TEST_P(WarpHexahedra, CopyWhatMovesByWholeVoxelsAndOnlyThat) {
