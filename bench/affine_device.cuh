@@ -6,8 +6,8 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/launch.hpp"
-#include "kernels/volume_sample.hpp"
+#include "kernels/exec/launch.hpp"
+#include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp::bench {
 

@@ -15,7 +15,7 @@
 #include "bench/inputs.hpp"
 #include "bench/measure.hpp"
 #include "bench/truth.hpp"
-#include "host/pixel_dispatch.hpp"
+#include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
 
@@ -220,7 +220,7 @@ void run_position(benchmark::State& state, const Workload& workload, PixelType t
     Warper warper(std::span(&source, 1), scene.mesh,
                   {.output_grid = scene.output_grid, .backend = Backend::cpu, .threads = threads});
     seconds += seconds_of(
-        [&] { warper.step(scene.deformed, {.volumes = std::span(&out, 1), .tet = tet.get()}); });
+        [&] { warper.step(scene.deformed, {.volumes = std::span(&out, 1), .owner = tet.get()}); });
     accuracy = compare(truth, source, Filter::linear, out, tet.get());
     const double last = static_cast<double>(scene.source_grid.dims[axis] - 1);
     with_pixel_type(type, [&]<class T>(T) {

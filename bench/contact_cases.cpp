@@ -8,7 +8,7 @@
 
 #include <tetwarp/io.hpp>
 
-#include "tests/contact_scenes.hpp"
+#include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::bench {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/affine_device.cuh"
-#include "kernels/exec_cuda.cuh"
+#include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp::bench {
 

@@ -53,7 +53,7 @@ scenes::Scene scene_of(const Feature& feature, std::int64_t divisor) {
 }
 
 /// The lattice's cubes in place of their tetrahedra.
-void take_cubes(TetMesh& mesh, const std::array<int, 3>& cells) {
+void take_cubes(Mesh& mesh, const std::array<int, 3>& cells) {
   mesh.tets.clear();
   const auto node = [&](int a, int b, int c) {
     return (c * (cells[1] + 1) + b) * (cells[0] + 1) + a;
@@ -78,7 +78,7 @@ class Job {
       Backend backend,
       int threads)
       : deformed_(scene.deformed) {
-    TetMesh mesh = scene.mesh;
+    Mesh mesh = scene.mesh;
     if (feature.hexahedra) take_cubes(mesh, torso_700().cells);
     WarpOptions options = feature.options;
     options.output_grid = scene.output_grid;

@@ -55,7 +55,7 @@ struct Subject {
 
   StepReport step(std::int32_t* tet = nullptr) {
     void* const out = output.data();
-    return warper->step(scene.deformed, {.volumes = std::span(&out, 1), .tet = tet});
+    return warper->step(scene.deformed, {.volumes = std::span(&out, 1), .owner = tet});
   }
 
   void timed_step() {

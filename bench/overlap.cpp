@@ -47,7 +47,7 @@ class TwoBuffers {
   }
 
   Counts even_step(std::int32_t* tet) {
-    return warper_.step(poses_[0], {.volumes = {&pointers_[0], 1}, .tet = tet}).counts;
+    return warper_.step(poses_[0], {.volumes = {&pointers_[0], 1}, .owner = tet}).counts;
   }
 
   void one_by_one() {

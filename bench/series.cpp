@@ -43,8 +43,8 @@ class Swing {
   /// On to the other pose.
   void step(std::int32_t* tet = nullptr) {
     void* const out = output_.data();
-    last_ = warper_.step(poses_[pose_],
-                         {.volumes = std::span(&out, 1), .tet = tet, .holds_previous = is_update_});
+    last_ = warper_.step(
+        poses_[pose_], {.volumes = std::span(&out, 1), .owner = tet, .holds_previous = is_update_});
     pose_ = 1 - pose_;
   }
 

@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "bench/workloads.hpp"
-#include "host/counter_hash.hpp"
-#include "host/pixel_dispatch.hpp"
-#include "host/reference/exact_geometry.hpp"
+#include "host/base/counter_hash.hpp"
+#include "host/base/pixel_dispatch.hpp"
+#include "host/reference/warp/exact_geometry.hpp"
 
 namespace tetwarp::bench {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/counter_hash.hpp"
-#include "host/pixel_dispatch.hpp"
+#include "host/base/counter_hash.hpp"
+#include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
 

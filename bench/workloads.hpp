@@ -12,7 +12,7 @@
 #include <tetwarp/volume.hpp>
 
 #include "bench/buffer.hpp"
-#include "tests/scenes.hpp"
+#include "tests/scenes/scenes.hpp"
 
 namespace tetwarp::bench {
 

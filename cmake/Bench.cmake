@@ -32,7 +32,7 @@ add_executable(tetwarp_bench
   bench/truth.cpp
   bench/warp_cases.cpp
   bench/workloads.cpp
-  tests/scenes.cpp)
+  tests/scenes/scenes.cpp)
 if(TETWARP_HAS_CUDA)
   target_sources(tetwarp_bench PRIVATE bench/device_floors.cu)
   target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
@@ -61,9 +61,9 @@ if(TETWARP_IO)
     bench/program.cpp
     bench/timed_row.cpp
     bench/timing.cpp
-    tests/contact_scenes.cpp
-    tests/contact_scenes_slab.cpp
-    tests/scenes.cpp)
+    tests/scenes/contact_scenes.cpp
+    tests/scenes/contact_scenes_slab.cpp
+    tests/scenes/scenes.cpp)
   target_include_directories(tetwarp_bench_contact PRIVATE
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
   target_link_libraries(tetwarp_bench_contact PRIVATE

@@ -90,7 +90,12 @@ if(TETWARP_IO)
     if(TETWARP_MPI STREQUAL "ON")
       find_package(MPI REQUIRED COMPONENTS CXX)
     else()
-      find_package(MPI QUIET COMPONENTS CXX)
+      # Without its headers, as where only the run-time package is, FindMPI stops the configuration.
+      find_path(TETWARP_MPI_HEADER mpi.h PATH_SUFFIXES openmpi/include openmpi mpich mpi
+        PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} /usr/include/${CMAKE_LIBRARY_ARCHITECTURE})
+      if(TETWARP_MPI_HEADER)
+        find_package(MPI QUIET COMPONENTS CXX)
+      endif()
     endif()
     set(TETWARP_HAS_MPI ${MPI_CXX_FOUND})
   endif()

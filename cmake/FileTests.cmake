@@ -3,20 +3,20 @@
 if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_io_tests LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
-    tests/test_io_blocks.cpp
-    tests/test_io_vtkhdf_volume.cpp
-    tests/test_io_vtkhdf_mesh.cpp
-    tests/test_io_nifti.cpp
-    tests/test_io_png.cpp
-    tests/test_io_bad_files.cpp
-    tests/test_mesh_import.cpp
-    tests/test_contact_certified.cpp
-    tests/test_contact_reference_certified.cpp
-    tests/test_io_checkpoint.cpp
-    tests/test_io_fclib.cpp
-    tests/test_io_fclib_bad.cpp
-    tests/test_io_fclib_solution.cpp
-    tests/test_skip_chunks.cpp)
+    tests/io/test_io_blocks.cpp
+    tests/io/test_io_vtkhdf_volume.cpp
+    tests/io/test_io_vtkhdf_mesh.cpp
+    tests/io/test_io_nifti.cpp
+    tests/io/test_io_png.cpp
+    tests/io/test_io_bad_files.cpp
+    tests/io/test_mesh_import.cpp
+    tests/io/test_contact_certified.cpp
+    tests/io/test_contact_reference_certified.cpp
+    tests/io/test_io_checkpoint.cpp
+    tests/io/test_io_fclib.cpp
+    tests/io/test_io_fclib_bad.cpp
+    tests/io/test_io_fclib_solution.cpp
+    tests/io/test_skip_chunks.cpp)
   tetwarp_discover(tetwarp_io_tests io)
   include(cmake/ItkTests.cmake)
 endif()
@@ -25,10 +25,10 @@ endif()
 tetwarp_add_tests(tetwarp_bench_contact_tests LIBRARIES tetwarp_io fmt::fmt SOURCES
   bench/contact_cases.cpp
   bench/contact_judge.cpp
-  tests/test_bench_contact.cpp)
+  tests/bench/test_bench_contact.cpp)
 tetwarp_discover(tetwarp_bench_contact_tests unit)
 
-add_executable(fuzz_io tests/fuzz_io.cpp tests/fuzz_memory.cpp)
+add_executable(fuzz_io tests/io/fuzz_io.cpp tests/io/fuzz_memory.cpp)
 target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
 add_test(NAME fuzz_io COMMAND fuzz_io 5 1)
@@ -52,18 +52,18 @@ endif()
 # ---- the command and the example in the README ---------------------------------------------
 tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json
   SOURCES
-  tests/test_cli.cpp
-  tests/test_cli_bad_input.cpp
-  tests/test_cli_batch.cpp
-  tests/test_cli_contact.cpp
-  tests/test_cli_contact_usage.cpp
-  tests/test_cli_fields.cpp
-  tests/test_cli_memory.cpp
-  tests/test_cli_ranks.cpp
-  tests/test_cli_resume.cpp
-  tests/test_cli_rules.cpp
-  tests/test_cli_skip.cpp
-  tests/test_cli_tools.cpp)
+  tests/cli/test_cli.cpp
+  tests/cli/test_cli_bad_input.cpp
+  tests/cli/test_cli_batch.cpp
+  tests/cli/test_cli_contact.cpp
+  tests/cli/test_cli_contact_usage.cpp
+  tests/cli/test_cli_fields.cpp
+  tests/cli/test_cli_memory.cpp
+  tests/cli/test_cli_ranks.cpp
+  tests/cli/test_cli_resume.cpp
+  tests/cli/test_cli_rules.cpp
+  tests/cli/test_cli_skip.cpp
+  tests/cli/test_cli_tools.cpp)
 target_compile_definitions(tetwarp_cli_tests PRIVATE
   TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"
   TETWARP_MPIRUN="$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")

@@ -20,7 +20,7 @@ function(tetwarp_add_itk_tests)  # a function: ITK sets variables by the hundred
     return()
   endif()
   tetwarp_add_tests(tetwarp_itk_tests LIBRARIES tetwarp_io tetwarp_hdf5 ${ITK_LIBRARIES} SOURCES
-    tests/test_itk_warp.cpp)
+    tests/io/test_itk_warp.cpp)
   target_include_directories(tetwarp_itk_tests SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
   tetwarp_discover(tetwarp_itk_tests io)
 endfunction()

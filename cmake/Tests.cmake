@@ -4,12 +4,12 @@ include(GoogleTest)
 
 # What several programs share: synthetic inputs, and headers parsed once for all of them.
 add_library(tetwarp_scenes STATIC
-  tests/contact_scenes.cpp
-  tests/contact_scenes_slab.cpp
-  tests/contact_transforms.cpp
-  tests/elastic_block.cpp
-  tests/rigid_bodies.cpp
-  tests/scenes.cpp)
+  tests/scenes/contact_scenes.cpp
+  tests/scenes/contact_scenes_slab.cpp
+  tests/scenes/contact_transforms.cpp
+  tests/scenes/elastic_block.cpp
+  tests/scenes/rigid_bodies.cpp
+  tests/scenes/scenes.cpp)
 target_include_directories(tetwarp_scenes PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_scenes PRIVATE
   tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
@@ -44,18 +44,18 @@ endfunction()
 # ---- stages and whole warps. They reach private code, which a shared library hides ------------
 if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_stage_tests
-    tests/test_exec.cpp
-    tests/test_node_quantize.cpp
-    tests/test_tet_setup.cpp
-    tests/test_corner_mask.cpp
-    tests/test_cell_cull.cpp
-    tests/test_cell_pairs.cpp
-    tests/test_cell_merge.cpp
-    tests/test_cell_work.cpp
-    tests/test_tet_moved.cpp
-    tests/test_volume_prefilter.cpp
-    tests/test_volume_range.cpp
-    tests/test_volume_uniform.cpp)
+    tests/base/test_exec.cpp
+    tests/warp/test_node_quantize.cpp
+    tests/warp/test_tet_setup.cpp
+    tests/warp/test_corner_mask.cpp
+    tests/warp/test_cell_cull.cpp
+    tests/warp/test_cell_pairs.cpp
+    tests/warp/test_cell_merge.cpp
+    tests/warp/test_cell_work.cpp
+    tests/warp/test_tet_moved.cpp
+    tests/warp/test_volume_prefilter.cpp
+    tests/warp/test_volume_range.cpp
+    tests/warp/test_volume_uniform.cpp)
   # By nvcc they also run on a device, which takes it a minute: where there is one, or will be.
   set(TETWARP_DEVICE_TESTS AUTO CACHE STRING "stages on a CUDA device: AUTO, ON or OFF")
   set(tetwarp_stage_kind cpp)
@@ -83,14 +83,14 @@ if(NOT BUILD_SHARED_LIBS)
   # Compiled once for two programs; in one of them cuda is emulated. Of loops over the back ends that
   # answer that one is run by ctest, the other is for devices.
   add_library(tetwarp_backend_tests OBJECT
-    tests/test_blocks.cpp
-    tests/test_parity.cpp
-    tests/test_warp_antialias.cpp
-    tests/test_warp_fields.cpp
-    tests/test_warp_hexahedra.cpp
-    tests/test_warp_in_flight.cpp
-    tests/test_warp_intensity.cpp
-    tests/test_warp_quantities.cpp)
+    tests/warp/test_blocks.cpp
+    tests/warp/test_parity.cpp
+    tests/warp/test_warp_antialias.cpp
+    tests/warp/test_warp_fields.cpp
+    tests/warp/test_warp_hexahedra.cpp
+    tests/warp/test_warp_in_flight.cpp
+    tests/warp/test_warp_intensity.cpp
+    tests/warp/test_warp_quantities.cpp)
   target_include_directories(tetwarp_backend_tests PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(tetwarp_backend_tests PRIVATE
     tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
@@ -100,28 +100,28 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_tests}
-    tests/test_convex_part.cpp
-    tests/test_face_sign.cpp
-    tests/test_hex_split.cpp
-    tests/test_volume_filter.cpp
-    tests/test_volume_label.cpp
-    tests/test_volume_sample.cpp
-    tests/test_lattice_mesh.cpp
-    tests/test_deform_mesh.cpp
-    tests/test_output_edges.cpp
-    tests/test_phantom.cpp
-    tests/test_render_volume.cpp
-    tests/test_report.cpp
-    tests/test_skip_constant.cpp
-    tests/test_skip_far_memory.cpp
-    tests/test_source_end.cpp
-    tests/test_skip_unchanged.cpp
-    tests/test_warp.cpp
-    tests/test_warp_arguments.cpp
-    tests/test_warp_filters.cpp
-    tests/test_warp_invariance.cpp
-    tests/test_warp_values.cpp
-    tests/test_coverage.cpp
+    tests/warp/test_convex_part.cpp
+    tests/warp/test_face_sign.cpp
+    tests/warp/test_hex_split.cpp
+    tests/warp/test_volume_filter.cpp
+    tests/warp/test_volume_label.cpp
+    tests/warp/test_volume_sample.cpp
+    tests/make/test_lattice_mesh.cpp
+    tests/make/test_deform_mesh.cpp
+    tests/warp/test_output_edges.cpp
+    tests/make/test_phantom.cpp
+    tests/make/test_render_volume.cpp
+    tests/base/test_report.cpp
+    tests/warp/test_skip_constant.cpp
+    tests/warp/test_skip_far_memory.cpp
+    tests/warp/test_source_end.cpp
+    tests/warp/test_skip_unchanged.cpp
+    tests/warp/test_warp.cpp
+    tests/warp/test_warp_arguments.cpp
+    tests/warp/test_warp_filters.cpp
+    tests/warp/test_warp_invariance.cpp
+    tests/warp/test_warp_values.cpp
+    tests/warp/test_coverage.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
@@ -133,50 +133,50 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_discover(tetwarp_tests reference FILTER "*Coverage*")
 
   tetwarp_add_tests(tetwarp_stress_tests SOURCES
-    tests/test_warp_error.cpp
-    tests/test_warp_stress.cpp
-    tests/test_warp_stress_data.cpp
-    tests/test_warp_stress_grids.cpp
-    tests/test_warp_stress_size.cpp)
+    tests/warp/test_warp_error.cpp
+    tests/warp/test_warp_stress.cpp
+    tests/warp/test_warp_stress_data.cpp
+    tests/warp/test_warp_stress_grids.cpp
+    tests/warp/test_warp_stress_size.cpp)
   tetwarp_discover(tetwarp_stress_tests stress FILTER "-*/cuda")
   tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_tests SOURCES
-    tests/test_body_relax.cpp
-    tests/test_contact.cpp
-    tests/test_contact_acceptance.cpp
-    tests/test_contact_adhesion.cpp
-    tests/test_contact_bad_options.cpp
-    tests/test_contact_bound.cpp
-    tests/test_contact_color.cpp
-    tests/test_contact_coupled.cpp
-    tests/test_contact_cuda.cpp
-    tests/test_contact_law.cpp
-    tests/test_contact_limits.cpp
-    tests/test_contact_linear.cpp
-    tests/test_contact_associated.cpp
-    tests/test_contact_newton.cpp
-    tests/test_lorentz_cone.cpp
-    tests/test_contact_outer.cpp
-    tests/test_contact_problem.cpp
-    tests/test_contact_reference.cpp
-    tests/test_contact_reference_limits.cpp
-    tests/test_contact_report.cpp
-    tests/test_contact_residual.cpp
-    tests/test_contact_skip.cpp
-    tests/test_contact_solver.cpp
-    tests/test_contact_sweep.cpp
-    tests/test_contact_threads.cpp
-    tests/test_contact_tracker.cpp)
+    tests/contact/test_body_relax.cpp
+    tests/contact/test_contact.cpp
+    tests/contact/test_contact_acceptance.cpp
+    tests/contact/test_contact_adhesion.cpp
+    tests/contact/test_contact_bad_options.cpp
+    tests/contact/test_contact_bound.cpp
+    tests/contact/test_contact_color.cpp
+    tests/contact/test_contact_coupled.cpp
+    tests/contact/test_contact_cuda.cpp
+    tests/contact/test_contact_law.cpp
+    tests/contact/test_contact_limits.cpp
+    tests/contact/test_contact_linear.cpp
+    tests/contact/test_contact_associated.cpp
+    tests/contact/test_contact_newton.cpp
+    tests/contact/test_lorentz_cone.cpp
+    tests/contact/test_contact_outer.cpp
+    tests/contact/test_contact_problem.cpp
+    tests/contact/test_contact_reference.cpp
+    tests/contact/test_contact_reference_limits.cpp
+    tests/contact/test_contact_report.cpp
+    tests/contact/test_contact_residual.cpp
+    tests/contact/test_contact_skip.cpp
+    tests/contact/test_contact_solver.cpp
+    tests/contact/test_contact_sweep.cpp
+    tests/contact/test_contact_threads.cpp
+    tests/contact/test_contact_tracker.cpp)
   # Four files at a time: what they include and instantiate costs more than they do.
   set_target_properties(tetwarp_contact_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
   tetwarp_discover(tetwarp_contact_tests unit FILTER "-*Cuda*")
   tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
-    tests/test_contact_stress.cpp
-    tests/test_contact_stress_invariance.cpp
-    tests/test_contact_stress_stacks.cpp)
+    tests/contact/test_contact_stress.cpp
+    tests/contact/test_contact_stress_invariance.cpp
+    tests/contact/test_contact_stress_stacks.cpp)
   tetwarp_discover(tetwarp_contact_stress_tests stress)
 
   add_executable(example_contact tests/example_contact.cpp)
@@ -188,20 +188,20 @@ if(NOT BUILD_SHARED_LIBS)
 
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
-    tests/test_affine_simt.cpp
-    tests/test_simt.cpp
-    tests/test_cell_raster_simt.cpp
-    tests/test_contact_simt.cpp)
+    tests/emu/test_affine_simt.cpp
+    tests/emu/test_simt.cpp
+    tests/emu/test_cell_raster_simt.cpp
+    tests/emu/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
   # Back end cuda on an emulated device: whole warps and contacts through the public calls.
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
-    tests/emulated_backend.cpp
-    tests/emulated_contact.cpp
-    tests/test_contact_emulated.cpp
-    tests/test_contact_cuda.cpp
-    tests/test_warp_emulated.cpp
-    tests/test_warp_emulated_overlap.cpp
+    tests/emu/emulated_backend.cpp
+    tests/emu/emulated_contact.cpp
+    tests/emu/test_contact_emulated.cpp
+    tests/contact/test_contact_cuda.cpp
+    tests/emu/test_warp_emulated.cpp
+    tests/emu/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
   tetwarp_discover(tetwarp_emulated_tests simt
     FILTER "*Emulated*:WarpAntialias*:WarpIntensity*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
@@ -213,22 +213,22 @@ if(NOT BUILD_SHARED_LIBS)
     bench/timing.cpp
     bench/truth.cpp
     bench/workloads.cpp
-    tests/test_bench.cpp)
+    tests/bench/test_bench.cpp)
   tetwarp_discover(tetwarp_bench_tests unit)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks contact contact_problem contact_tracker error make mesh page_lock report tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks choices contact contact_problem contact_tracker error make mesh names page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers io mesh_import)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
-  configure_file(tests/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
+  configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
   list(APPEND tetwarp_header_sources ${PROJECT_BINARY_DIR}/test_headers/${TETWARP_HEADER}.cpp)
 endforeach()
 add_library(tetwarp_header_tests OBJECT ${tetwarp_header_sources})
 target_compile_features(tetwarp_header_tests PRIVATE cxx_std_20)
-target_include_directories(tetwarp_header_tests PRIVATE host io)
+target_include_directories(tetwarp_header_tests PRIVATE host kernels/base io)
 target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
 
 if(TETWARP_IO)

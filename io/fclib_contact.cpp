@@ -159,7 +159,7 @@ ContactProblem read_contact_problem(const std::string& path, ContactStart start)
   if (!is_local && h5::has_child(file, "blocks")) problem.block_start = read_blocks(file);
   if (start == ContactStart::stored) problem.impulse_guess = read_start(file, contacts);
   try {
-    check(problem);
+    check_problem(problem);
   } catch (const ContactProblemError& error) {
     throw IoError(path, fclib::path_of(error.field(), is_local), error.what());
   }

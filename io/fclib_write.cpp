@@ -157,7 +157,7 @@ std::int64_t write_contact_problem(const std::string& path,
                                    const std::string& description) {
   const h5::Silence silence;
   try {
-    check(problem);
+    check_problem(problem);
   } catch (const ContactProblemError& error) {
     throw IoError(path, fclib::path_of(error.field(), problem.is_local()), error.what());
   }

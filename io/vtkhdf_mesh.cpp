@@ -10,7 +10,7 @@ namespace tetwarp {
 struct MeshReader::State {
   MeshFile file;
   MeshHeader header;
-  TetMesh mesh;
+  Mesh mesh;
   std::vector<MeshPart> parts;  // that `mesh` was read from
 };
 
@@ -60,7 +60,7 @@ MeshReader::~MeshReader() = default;
 const MeshHeader& MeshReader::header() const {
   return state_->header;
 }
-const TetMesh& MeshReader::mesh() const {
+const Mesh& MeshReader::mesh() const {
   return state_->mesh;
 }
 

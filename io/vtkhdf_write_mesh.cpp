@@ -15,7 +15,7 @@ constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_hexahedron = 12;
 
 void check_arguments(const std::string& path,
-                     const TetMesh& mesh,
+                     const Mesh& mesh,
                      const std::vector<std::vector<Point3>>& displacements,
                      const std::vector<double>& times) {
   try {
@@ -54,7 +54,7 @@ void write_integers(const h5::Object& parent,
                     {dims, is_column ? std::size_t{2} : std::size_t{1}}, values.data());
 }
 
-void write_topology(const h5::Object& root, const TetMesh& mesh) {
+void write_topology(const h5::Object& root, const Mesh& mesh) {
   const auto cell_count = static_cast<std::int64_t>(mesh.cell_count());
   std::vector<std::int32_t> ids;
   std::vector<std::int64_t> offsets;
@@ -124,7 +124,7 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
 }  // namespace
 
 void write_mesh(const std::string& path,
-                const TetMesh& mesh,
+                const Mesh& mesh,
                 const std::vector<std::vector<Point3>>& displacements,
                 const std::vector<double>& times) {
   const h5::Silence silence;

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string>
 
-#include "tests/rigid_bodies.hpp"
+#include "tests/scenes/rigid_bodies.hpp"
 
 namespace {
 

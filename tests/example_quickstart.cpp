@@ -28,7 +28,7 @@ int main() {
 
   // [quickstart]
   tetwarp::Volume phantom = tetwarp::make_phantom({128, 80, 61});
-  tetwarp::TetMesh mesh = tetwarp::make_lattice_mesh(phantom);
+  tetwarp::Mesh mesh = tetwarp::make_lattice_mesh(phantom);
   auto twisted = tetwarp::deform_positions(mesh, {.kind = tetwarp::Deformation::twist}, 1.0);
   tetwarp::WarpResult result = tetwarp::warp(phantom, mesh, twisted);
   tetwarp::write_volumes("twisted.vtkhdf", {&result.volume});

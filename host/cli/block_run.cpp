@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/base/warp_backend.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/output_files.hpp"
 #include "host/cli/source_scan.hpp"
 #include "host/cli/stopwatch.hpp"
-#include "host/warp_backend.hpp"
 #include "io/memory.hpp"
-#include "kernels/hex_view.hpp"
+#include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
 
@@ -204,8 +204,7 @@ BlockLimits BlockRun::limits() const {
   // Enough blocks to share out, the last of which keep few waiting.
   constexpr std::int64_t blocks_per_rank = 4;
   if (ranks_.count() > 1) {
-    limits.most_voxels =
-        volume_.written_grid.voxel_count() / (blocks_per_rank * ranks_.count()) + 1;
+    limits.max_voxels = volume_.written_grid.voxel_count() / (blocks_per_rank * ranks_.count()) + 1;
   }
   limits.source_voxel = voxel_bytes(volume_.arrays);
   limits.output_voxel = voxel_bytes(outputs_);

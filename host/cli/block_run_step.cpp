@@ -159,8 +159,8 @@ BlockRun::Samples BlockRun::compute(const WarpBlock& block,
   for (const ArrayHeader& array : volume_.arrays) {
     report.counts.bytes_read += static_cast<std::int64_t>(bytes_of(array, block.source));
   }
-  if (target.tet != nullptr) {
-    std::for_each_n(target.tet, block.output.voxel_count(), [&](std::int32_t& t) {
+  if (target.owner != nullptr) {
+    std::for_each_n(target.owner, block.output.voxel_count(), [&](std::int32_t& t) {
       if (t >= 0) t = block.cells[static_cast<std::size_t>(t)];
     });
   }

@@ -18,10 +18,6 @@ namespace tetwarp::cli {
 
 namespace {
 
-const Choices<Deformation> kinds{
-    {"twist", Deformation::twist},   {"bend", Deformation::bend},
-    {"swim", Deformation::swim},     {"random", Deformation::random},
-    {"rotate", Deformation::rotate}, {"translate", Deformation::translate}};
 const Choices<int> axes{{"x", 0}, {"y", 1}, {"z", 2}};
 
 struct DeformArguments {
@@ -56,7 +52,7 @@ void add_deform_command(CLI::App& app, Run& run) {
   command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
       ->required()
       ->type_name("MESH");
-  add_choice(*command, "--kind", deform.kind, kinds, "[twist]");
+  add_choice(*command, "--kind", deform.kind, choices_of<Deformation>(), "[twist]");
   command
       ->add_option("--steps", arguments->steps,
                    "steps at times 0 to 1; a single one is at time 1 [8]")

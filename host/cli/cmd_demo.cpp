@@ -46,7 +46,7 @@ struct DemoFiles {
 void make_inputs(const DemoArguments& arguments, const DemoFiles& files) {
   const Volume volume = make_phantom(arguments.dims);
   write_volumes(files.volume, {&volume});
-  const TetMesh mesh = make_lattice_mesh(volume, {.cells = arguments.cells, .threshold = {}});
+  const Mesh mesh = make_lattice_mesh(volume, {.cells = arguments.cells, .threshold = {}});
   write_deformed_mesh(files.mesh, mesh, {.kind = Deformation::twist}, arguments.steps);
   fmt::print("phantom of {} x {} x {} voxels, {} tetrahedra, {} steps of twisting\n",
              arguments.dims[0], arguments.dims[1], arguments.dims[2], mesh.tets.size(),

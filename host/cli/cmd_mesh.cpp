@@ -28,7 +28,7 @@ int run_mesh(const MeshArguments& arguments) {
   check_hdf_name(arguments.output);
   check_output_file(arguments.output, {arguments.volume});
   const Volume volume = read_volume(arguments.volume, arguments.array, arguments.step);
-  TetMesh mesh;
+  Mesh mesh;
   try {
     mesh = make_lattice_mesh(volume, arguments.lattice);
   } catch (const std::invalid_argument& error) {

@@ -3,12 +3,12 @@
 
 #include <memory>
 
+#include "host/base/warp_backend.hpp"
 #include "host/cli/batch.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/ranks.hpp"
 #include "host/cli/warp_job.hpp"
-#include "host/warp_backend.hpp"
 
 namespace tetwarp::cli {
 

@@ -9,23 +9,6 @@ namespace tetwarp::cli {
 
 namespace {
 
-const Choices<FrictionLaw> laws{{"cone", FrictionLaw::cone}, {"pyramid", FrictionLaw::pyramid}};
-const Choices<AdhesionRule> rules{{"parallel", AdhesionRule::parallel},
-                                  {"restrictive", AdhesionRule::restrictive}};
-const Choices<ContactMeasure> measures{{"eta", ContactMeasure::eta},
-                                       {"fclib", ContactMeasure::fclib}};
-const Choices<ContactMethod> solvers{{"auto", ContactMethod::automatic},
-                                     {"gs", ContactMethod::gauss_seidel},
-                                     {"nncg", ContactMethod::nonlinear_cg},
-                                     {"anderson", ContactMethod::anderson},
-                                     {"mass-splitting", ContactMethod::mass_splitting},
-                                     {"newton", ContactMethod::newton}};
-const Choices<ContactCoupling> couplings{{"auto", ContactCoupling::automatic},
-                                         {"condensed", ContactCoupling::condensed},
-                                         {"iterated", ContactCoupling::iterated}};
-const Choices<ContactPrecision> precisions{{"double", ContactPrecision::float64},
-                                           {"single", ContactPrecision::float32}};
-
 void declare_model(CLI::App& app, ContactArguments& arguments) {
   ContactOptions& options = arguments.options;
   app.add_option("PROBLEM", arguments.problem,
@@ -37,8 +20,8 @@ void declare_model(CLI::App& app, ContactArguments& arguments) {
                  "file to write: the problem with its solution, also when it did not converge")
       ->required()
       ->type_name("SOLUTION");
-  add_choice(app, "--law", options.law, laws, "friction law [cone]");
-  add_choice(app, "--rule", options.rule, rules,
+  add_choice(app, "--law", options.law, choices_of<FrictionLaw>(), "friction law [cone]");
+  add_choice(app, "--rule", options.rule, choices_of<AdhesionRule>(),
              "friction beside the adhesive spring, or topping it up [parallel]");
   app.add_option("--recovery-speed", options.recovery_speed,
                  "penetration is undone at most this fast, in m/s [any speed]")
@@ -53,13 +36,13 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
   app.add_option("--tolerance", options.tolerance, "residual to reach [1e-6]")
       ->check(above_zero())
       ->type_name("E");
-  add_choice(app, "--measure", options.measure, measures,
+  add_choice(app, "--measure", options.measure, choices_of<ContactMeasure>(),
              "what the tolerance bounds: energy-weighted residual or FCLIB's error [eta]");
   app.add_option("--max-sweeps", options.max_sweeps, "passes over all contacts [20000]")
       ->check(above_zero())
       ->type_name("N");
-  add_choice(app, "--solver", options.method, solvers, "method [auto]");
-  add_choice(app, "--coupling", options.coupling, couplings,
+  add_choice(app, "--solver", options.method, choices_of<ContactMethod>(), "method [auto]");
+  add_choice(app, "--coupling", options.coupling, choices_of<ContactCoupling>(),
              "bodies that A couples: condensed onto their contacts, or an outer iteration [auto]");
   app.add_option("--relaxation", options.relaxation,
                  "of the outer iteration, above 0 and below 2 [0.5]")
@@ -96,8 +79,9 @@ void declare_skips(CLI::App& app, ContactSkipOptions& skip) {
 
 void declare_running(CLI::App& app, ContactArguments& arguments) {
   ContactOptions& options = arguments.options;
-  add_choice(app, "--backend", options.backend, backend_choices(), "where to compute [auto]");
-  add_choice(app, "--precision", options.precision, precisions, "of the iterations [double]");
+  add_choice(app, "--backend", options.backend, choices_of<Backend>(), "where to compute [auto]");
+  add_choice(app, "--precision", options.precision, choices_of<ContactPrecision>(),
+             "of the iterations [double]");
   app.add_option("--device", options.device, "CUDA device number [0]")
       ->check(at_least_zero())
       ->type_name("N");

@@ -78,12 +78,4 @@ CLI::Validator above_zero() {
   return {check, ""};
 }
 
-const Choices<Backend>& backend_choices() {
-  static const Choices<Backend> choices{{"auto", Backend::automatic},
-                                        {"cuda", Backend::cuda},
-                                        {"cpu", Backend::cpu},
-                                        {"reference", Backend::reference}};
-  return choices;
-}
-
 }  // namespace tetwarp::cli

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
-#include <tetwarp/backend.hpp>
+#include <tetwarp/names.hpp>
 #include <utility>
 #include <vector>
 
@@ -34,8 +34,13 @@ CLI::Validator above_zero();  // infinity is
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// What --backend takes.
-const Choices<Backend>& backend_choices();
+/// All words of a public enum.
+template <class T>
+Choices<T> choices_of() {
+  Choices<T> choices;
+  for (const EnumName<T>& entry : names_of<T>()) choices.emplace_back(entry.name, entry.value);
+  return choices;
+}
 
 /// The words alone.
 template <class T>

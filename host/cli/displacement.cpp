@@ -8,7 +8,7 @@
 namespace tetwarp::cli {
 
 void write_deformed_mesh(const std::string& path,
-                         const TetMesh& mesh,
+                         const Mesh& mesh,
                          const DeformOptions& options,
                          int step_count) {
   std::vector<double> times;

@@ -12,7 +12,7 @@ void set_extra_output(WarpTarget& target, std::size_t number, void* samples) {
   if (number == 0) {
     target.mask = static_cast<std::uint8_t*>(samples);
   } else if (number == 1) {
-    target.tet = static_cast<std::int32_t*>(samples);
+    target.owner = static_cast<std::int32_t*>(samples);
   } else {
     *reals[number - 2] = static_cast<float*>(samples);
   }

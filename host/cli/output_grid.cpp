@@ -8,9 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/base/index_space.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/step_selection.hpp"
-#include "host/index_space.hpp"
 
 namespace tetwarp::cli {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "host/pixel_dispatch.hpp"
+#include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::cli {
 

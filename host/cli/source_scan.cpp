@@ -7,8 +7,8 @@
 #include <limits>
 #include <span>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "host/cli/interrupt.hpp"
-#include "host/pixel_dispatch.hpp"
 
 namespace tetwarp::cli {
 
@@ -43,10 +43,10 @@ std::vector<double> scan_source(const VolumeReader& source,
     range.insert(range.end(), {beyond, -beyond});
   }
   fingerprint.begin(array, source.grid());
-  const auto most_rows =
+  const auto max_rows =
       static_cast<std::int64_t>(std::max(1.0, bytes / static_cast<double>(dims[0] * voxel)));
-  const std::int64_t rows = std::min(most_rows, dims[1]);
-  const std::int64_t slices = std::clamp<std::int64_t>(most_rows / dims[1], 1, dims[2]);
+  const std::int64_t rows = std::min(max_rows, dims[1]);
+  const std::int64_t slices = std::clamp<std::int64_t>(max_rows / dims[1], 1, dims[2]);
   std::vector<std::byte> part(static_cast<std::size_t>(slices * rows * dims[0] * voxel));
   Region region{{0, 0, 0}, {dims[0], 0, 0}};
   for (std::int64_t k = 0; k < dims[2]; k = region.end[2]) {

@@ -12,20 +12,13 @@ namespace tetwarp::cli {
 
 namespace {
 
-const Choices<Filter> filters{{"linear", Filter::linear},   {"nearest", Filter::nearest},
-                              {"cubic", Filter::cubic},     {"bspline", Filter::bspline},
-                              {"lanczos", Filter::lanczos}, {"labels", Filter::labels}};
-const Choices<Overshoot> overshoots{{"keep", Overshoot::keep}, {"clamp", Overshoot::clamp}};
-const Choices<Intensity> intensities{{"value", Intensity::value},
-                                     {"density", Intensity::density},
-                                     {"conservative", Intensity::conservative}};
-const Choices<Quantity> vector_laws{{"rotate", Quantity::vector},
-                                    {"covariant", Quantity::covariant_vector},
-                                    {"contravariant", Quantity::contravariant_vector}};
-const Choices<Quantity> tensor_laws{{"finite-strain", Quantity::tensor},
-                                    {"principal", Quantity::principal_tensor}};
-const Choices<Outside> outsides{{"background", Outside::background},
-                                {"identity", Outside::identity}};
+const Choices<Quantity> vector_laws{
+    {name_of(Quantity::vector), Quantity::vector},
+    {name_of(Quantity::covariant_vector), Quantity::covariant_vector},
+    {name_of(Quantity::contravariant_vector), Quantity::contravariant_vector}};
+const Choices<Quantity> tensor_laws{
+    {name_of(Quantity::tensor), Quantity::tensor},
+    {name_of(Quantity::principal_tensor), Quantity::principal_tensor}};
 
 /// Words of --outputs with their place in the table.
 Choices<std::size_t> extra_choices() {
@@ -145,17 +138,18 @@ void declare_grid(CLI::App& app, WarpArguments& arguments) {
 
 void declare_result(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
-  add_choice(app, "--filter", warp.filter, filters, "between voxel centres [linear]");
-  add_choice(app, "--overshoot", warp.overshoot, overshoots,
+  add_choice(app, "--filter", warp.filter, choices_of<Filter>(), "between voxel centres [linear]");
+  add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
              "values beyond those of the source, of cubic, bspline and lanczos [keep]");
   app.add_flag("--antialias", warp.antialias, "average where tetrahedra shrink the source");
-  add_choice(app, "--intensity", warp.intensity, intensities,
+  add_choice(app, "--intensity", warp.intensity, choices_of<Intensity>(),
              "what a voxel shows, has per volume, or has with totals kept [value]");
   add_quantities(app, "--vectors", arguments.quantities, vector_laws,
                  "an array of 3 components that the deformation turns, repeatable [rotate]");
   add_quantities(app, "--tensors", arguments.quantities, tensor_laws,
                  "the same of 6: XX YY ZZ XY YZ XZ [finite-strain]");
-  add_choice(app, "--outside", warp.outside, outsides, "what no tetrahedron covers [background]");
+  add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
+             "what no tetrahedron covers [background]");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
   ExtraChoice& extra = arguments.extra;
   add_word_list(
@@ -172,7 +166,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
 
 void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
-  add_choice(app, "--backend", warp.backend, backend_choices(), "where to compute [auto]");
+  add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
   app.add_option("--device", warp.device, "CUDA device number [0]")
       ->check(at_least_zero())
       ->type_name("N");

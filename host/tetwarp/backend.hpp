@@ -5,13 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include <tetwarp/names.hpp>
+
 namespace tetwarp {
 
 /// Where a warp runs. `automatic` takes cuda when a device answers, else cpu.
 enum class Backend { automatic, cuda, cpu, reference };
-
-/// "auto", "cuda", "cpu" or "reference".
-const char* name_of(Backend backend);
 
 /// One back end on this machine.
 struct BackendStatus {

@@ -30,7 +30,7 @@ struct BlockLimits {
   /// Blocks are cut at multiples of it, from the region's begin on [voxel].
   std::array<std::int64_t, 3> step{8, 8, 8};
   /// Of the output; larger blocks are cut as long as steps allow.
-  std::int64_t most_voxels = std::numeric_limits<std::int64_t>::max();
+  std::int64_t max_voxels = std::numeric_limits<std::int64_t>::max();
 };
 
 /// A part of the output and all that it depends on.
@@ -58,7 +58,7 @@ class BlockPlanner {
   /// @param mesh     kept by the caller, unchanged
   /// @param options  as for a Warper of the whole
   /// @throws std::invalid_argument on a bad mesh
-  BlockPlanner(const Grid& source, const TetMesh& mesh, const WarpOptions& options);
+  BlockPlanner(const Grid& source, const Mesh& mesh, const WarpOptions& options);
   BlockPlanner(BlockPlanner&&) noexcept;
   ~BlockPlanner();
 
@@ -76,7 +76,7 @@ class BlockPlanner {
 
 /// The part of a mesh that a block needs.
 struct BlockMesh {
-  TetMesh mesh;
+  Mesh mesh;
   std::vector<std::int32_t> nodes;  ///< of the whole mesh, one per node of the part
 
   /// The positions of these nodes.
@@ -85,6 +85,6 @@ struct BlockMesh {
 
 /// Cuts out a block's cells, or the first of all where it has none: a mesh has one at least. Nodes
 /// keep their order, so that hexahedra are split alike.
-BlockMesh block_mesh(const TetMesh& mesh, const WarpBlock& block);
+BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
 
 }  // namespace tetwarp

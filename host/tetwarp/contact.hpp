@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <tetwarp/backend.hpp>
+#include <tetwarp/choices.hpp>
 #include <tetwarp/contact_problem.hpp>
 
 namespace tetwarp {
@@ -28,15 +29,6 @@ enum class FrictionLaw { cone, pyramid };
 enum class AdhesionRule {
   parallel,    ///< spring and Coulomb slider side by side
   restrictive  ///< friction only tops the spring up: the larger of both resists sliding
-};
-
-enum class ContactMethod {
-  automatic,       ///< accelerated sweeps, and others in turn when the residual stops dropping
-  gauss_seidel,    ///< projected Gauss-Seidel over colors
-  nonlinear_cg,    ///< nonsmooth nonlinear conjugate gradients over sweeps
-  anderson,        ///< Anderson acceleration of sweeps, window 8
-  mass_splitting,  ///< no colors: split masses, Nesterov with restart
-  newton           ///< sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
 /// What is done with islands of bodies that A couples, as it does the nodes of elastic bodies.
@@ -58,12 +50,6 @@ enum class ContactCoupling {
   condensed,  ///< sparse Cholesky of A, the Delassus matrix dense: 72 bytes per pair of contacts,
               ///< about three times over
   iterated    ///< outer block-Jacobi iteration around sweeps: memory as for A itself
-};
-
-/// What `tolerance` bounds.
-enum class ContactMeasure {
-  eta,   ///< energy-weighted natural residual, relative, with the true A; free of units
-  fclib  ///< FCLIB's natural-map error: |u~ - P(u~ - r)| accumulated, relative to |q|
 };
 
 enum class ContactPrecision { float64, float32 };
@@ -105,9 +91,6 @@ enum class ContactStatus {
   not_converged,  ///< the best iterate is returned
   infeasible      ///< no velocity satisfies all contacts; offsets were clamped to a recovery speed
 };
-
-/// "converged", "not converged" or "infeasible".
-const char* name_of(ContactStatus status);
 
 /// How far a pair of impulses and velocities is from solving a problem.
 struct ContactResidual {
@@ -192,7 +175,7 @@ class ContactSolver {
   ContactSolver& operator=(ContactSolver&&) noexcept;
   ~ContactSolver();
 
-  /// @throws ContactProblemError  see check(); never for a problem that is merely hard
+  /// @throws ContactProblemError  see check_problem(); never for a problem that is merely hard
   ContactSolution solve(const ContactProblem& problem);
 
   /// evolve_adhesion() where this solver runs.

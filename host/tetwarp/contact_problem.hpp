@@ -85,6 +85,6 @@ class ContactProblemError : public std::invalid_argument {
 /// 1e-9 relative, diagonal blocks of A that are not positive definite, rows of W without a positive
 /// normal diagonal, NaN or infinity anywhere.
 /// @throws ContactProblemError
-void check(const ContactProblem& problem);
+void check_problem(const ContactProblem& problem);
 
 }  // namespace tetwarp

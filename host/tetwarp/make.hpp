@@ -25,14 +25,10 @@ struct LatticeOptions {
 /// centres), five tetrahedra per cell, mirrored on odd cells so that faces match, all with positive
 /// volume; tetrahedra whose cell holds no foreground voxel are dropped, and unused nodes with them.
 /// The lattice follows the grid's axes. Throws std::invalid_argument when there is no foreground.
-TetMesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options = {});
+Mesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options = {});
 
 /// Kinds of procedural deformation.
 enum class Deformation { twist, bend, swim, random, rotate, translate };
-
-/// "twist" and so on; parses the same words. `parse` throws std::invalid_argument listing them.
-const char* name_of(Deformation kind);
-Deformation parse_deformation(const std::string& word);
 
 /// Choices of deform_positions().
 struct DeformOptions {
@@ -46,9 +42,7 @@ struct DeformOptions {
 
 /// Node positions at phase `time` in [0, 1] of a smooth deformation about the box of the rest
 /// positions; time 0 is rest, time 1 the full amount. Deterministic.
-std::vector<Point3> deform_positions(const TetMesh& mesh,
-                                     const DeformOptions& options,
-                                     double time);
+std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& options, double time);
 
 /// A torso with ribs, spine, lungs, heart and vessels: analytic, deterministic, float32 in [0, 1].
 /// x points to the left of the body, y to its back, z to its head; the box is 384 x 240 x 366 mm

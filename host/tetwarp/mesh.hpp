@@ -12,7 +12,7 @@
 namespace tetwarp {
 
 /// Nodes at rest and the nodes of each cell. Cells are numbered tetrahedra first, then hexahedra.
-struct TetMesh {
+struct Mesh {
   std::vector<Point3> rest_positions;             ///< [node_count], world
   std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], either orientation; indices
                                                   ///< into rest_positions
@@ -26,7 +26,7 @@ struct TetMesh {
 
 /// Throws std::invalid_argument naming the first offender unless there is a cell, every
 /// index is in range and every position finite.
-void check_mesh(const TetMesh& mesh);
+void check_mesh(const Mesh& mesh);
 
 /// Node positions owned by somebody else, possibly on the GPU: x y z per node, float64, world.
 struct PositionsView {

@@ -3,9 +3,14 @@
 #pragma once
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>
+#include <tetwarp/choices.hpp>
+#include <tetwarp/contact.hpp>
+#include <tetwarp/contact_problem.hpp>
+#include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/names.hpp>
 #include <tetwarp/page_lock.hpp>
 #include <tetwarp/report.hpp>
 #include <tetwarp/version.hpp>

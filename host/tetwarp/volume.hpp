@@ -8,48 +8,20 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
+
+#include <tetwarp/choices.hpp>
+#include <tetwarp/names.hpp>
 
 namespace tetwarp {
 
 using Point3 = std::array<double, 3>;
 
-/// Type of one sample.
-enum class PixelType : std::uint8_t {
-  uint8,
-  int8,
-  uint16,
-  int16,
-  uint32,
-  int32,
-  uint64,
-  int64,
-  float32,
-  float64
-};
-
 /// Bytes of one sample.
 std::size_t size_of(PixelType type);
 
-/// Name as in the enum, e.g. "int16".
-const char* name_of(PixelType type);
-
 /// True for the eight integer types.
 bool is_integer(PixelType type);
-
-/// The enumerator of a C++ type.
-template <class T>
-constexpr PixelType pixel_type_of() {
-  static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a numeric pixel type");
-  if constexpr (std::is_floating_point_v<T>) {
-    static_assert(sizeof(T) == 4 || sizeof(T) == 8, "float32 or float64");
-    return sizeof(T) == 4 ? PixelType::float32 : PixelType::float64;
-  } else {
-    constexpr int size = sizeof(T) == 1 ? 0 : sizeof(T) == 2 ? 2 : sizeof(T) == 4 ? 4 : 6;
-    return static_cast<PixelType>(size + (std::is_signed_v<T> ? 1 : 0));
-  }
-}
 
 /// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k))
 /// [world].

@@ -15,41 +15,17 @@
 #include <vector>
 
 #include <tetwarp/backend.hpp>
+#include <tetwarp/choices.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/report.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
 
-/// How the source is sampled between voxel centres. At a centre every one gives its sample. The
-/// order is that of the error as voxels get smaller.
-enum class Filter {
-  nearest,  ///< order 1
-  linear,   ///< order 2
-  cubic,    ///< Catmull-Rom, 4x4x4 samples: order 3
-  bspline,  ///< cubic spline through the samples, mirrored at the source's rim: order 4
-  lanczos,  ///< windowed sinc, 6x6x6 samples: the sharpest for coarse images, but of no high order
-  labels    ///< the label with the most linear weight, of several the lowest; integers only
-};
-
 /// What becomes of values beyond the range of the samples, as cubic, bspline and lanczos make them.
 enum class Overshoot {
   keep,
   clamp  ///< to the least and largest sample of the source, component by component
-};
-
-/// What the components of a source are, and how they follow the deformation: F is its gradient in
-/// world axes, constant in a tetrahedron, R the rotation nearest to F. Components are along world
-/// axes, on oblique grids too, as VTK has them. Of tetrahedra that are inverted R is the nearest
-/// proper rotation, without the reflection.
-enum class Quantity {
-  components,            ///< numbers that stay what they are
-  vector,                ///< 3 components: R v
-  covariant_vector,      ///< F^-T v, as gradients go
-  contravariant_vector,  ///< F v, as material lines go
-  tensor,                ///< symmetric, 6 components XX YY ZZ XY YZ XZ: R D R^T
-  principal_tensor  ///< the same: eigenvalues stay, the first eigenvector follows F, the second
-                    ///< stays in the plane of both (D. C. Alexander et al., 2001)
 };
 
 /// What a voxel gets of a value.
@@ -127,8 +103,8 @@ struct FieldTarget {
 /// each [k][j][i][component] over Warper::output_grid() in the source's pixel type.
 struct WarpTarget {
   std::span<void* const> volumes;
-  std::uint8_t* mask = nullptr;  ///< 1 where a tetrahedron covers the voxel, else 0
-  std::int32_t* tet = nullptr;   ///< owning cell of the mesh, -1 outside
+  std::uint8_t* mask = nullptr;   ///< 1 where a tetrahedron covers the voxel, else 0
+  std::int32_t* owner = nullptr;  ///< owning cell of the mesh, -1 outside
   FieldTarget fields = {};
   Memory memory = Memory::host;
   /// The buffers hold what a step wrote to them last, untouched: a step then leaves alone what it
@@ -144,8 +120,6 @@ struct WarpResult {
   Report report;
 };
 
-class WarpBackend;
-
 /// Warps volumes step by step, keeping every buffer between steps; on CUDA the sources stay
 /// resident.
 ///
@@ -160,8 +134,8 @@ class Warper {
   /// @param options  see WarpOptions
   /// @throws std::invalid_argument  on any bad argument, naming it
   /// @throws CudaError              when cuda was asked for and no device answers
-  Warper(std::span<const VolumeView> sources, const TetMesh& mesh, const WarpOptions& options = {});
-  Warper(const Volume& source, const TetMesh& mesh, const WarpOptions& options = {});
+  Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
+  Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options = {});
   Warper(Warper&&) noexcept;
   Warper& operator=(Warper&&) noexcept;
   ~Warper();
@@ -198,7 +172,7 @@ class Warper {
   /// @param target    as in step(); its buffers, but not the span, belong to the step until
   ///                  finish_step()
   /// @throws std::invalid_argument  on bad arguments; the step has not begun
-  /// @throws std::logic_error       when most_in_flight steps are in flight
+  /// @throws std::logic_error       when max_steps_in_flight steps are in flight
   void begin_step(const PositionsView& deformed,
                   const WarpTarget& target,
                   const Progress& progress = {});
@@ -211,7 +185,7 @@ class Warper {
   StepReport finish_step();
 
   std::size_t steps_in_flight() const;
-  static constexpr std::size_t most_in_flight = 2;
+  static constexpr std::size_t max_steps_in_flight = 2;
 
   /// The same for a single source, into a new volume.
   Volume step(const PositionsView& deformed);
@@ -226,7 +200,7 @@ class Warper {
 
 /// One volume, one step. For several steps keep a Warper.
 WarpResult warp(const Volume& source,
-                const TetMesh& mesh,
+                const Mesh& mesh,
                 const std::vector<Point3>& deformed,
                 const WarpOptions& options = {});
 

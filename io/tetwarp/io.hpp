@@ -96,7 +96,7 @@ class MeshReader {
   ~MeshReader();
 
   const MeshHeader& header() const;
-  const TetMesh& mesh() const;  ///< rest positions and checked tetrahedra
+  const Mesh& mesh() const;  ///< rest positions and checked tetrahedra
 
   /// Deformed node positions of one step. Throws IoError for a step that does not exist.
   std::vector<Point3> read_step(std::int64_t step) const;
@@ -182,7 +182,7 @@ std::array<std::int64_t, 3> block_step(const Grid& grid, const std::vector<Array
 
 /// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
 void write_mesh(const std::string& path,
-                const TetMesh& mesh,
+                const Mesh& mesh,
                 const std::vector<std::vector<Point3>>& displacements = {},
                 const std::vector<double>& times = {});
 
@@ -232,16 +232,17 @@ enum class ContactStart {
   stored  ///< the impulses of /solution or, when there are none or all are zero, of /guesses/1
 };
 
-/// Reads a contact problem in FCLIB's HDF5 format, checked by check(): /fclib_local (W, q, mu) or
-/// /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets, and, where they
-/// are there, /adhesion and /blocks. Numbers may be stored in any width, vectors in any shape.
+/// Reads a contact problem in FCLIB's HDF5 format, checked by check_problem(): /fclib_local (W, q,
+/// mu) or /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets, and,
+/// where they are there, /adhesion and /blocks. Numbers may be stored in any width, vectors in any
+/// shape.
 ///
 /// Three dimensions, no equality constraints (G, or V and R) and no rolling friction.
 /// In /adhesion a missing `intensity` is 0; other vectors that are missing stay empty.
 ContactProblem read_contact_problem(const std::string& path,
                                     ContactStart start = ContactStart::zero);
 
-/// Writes a problem that check() accepts as an FCLIB file; matrices by rows, H by columns.
+/// Writes a problem that check_problem() accepts as an FCLIB file; matrices by rows, H by columns.
 /// @returns bytes of the file
 std::int64_t write_contact_problem(const std::string& path,
                                    const ContactProblem& problem,

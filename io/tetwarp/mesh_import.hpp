@@ -21,7 +21,7 @@ struct MeshImportOptions {
 
 /// What a file holds. write_mesh() takes it as it is.
 struct ImportedMesh {
-  TetMesh mesh;  ///< every node of the file, in its order, at rest
+  Mesh mesh;  ///< every node of the file, in its order, at rest
   std::vector<std::vector<Point3>> displacements;  ///< one per step; empty: none
   std::vector<double> times;                       ///< one per step
   /// Cells of fewer dimensions, which move nothing, counted by what the format calls them.

@@ -10,7 +10,7 @@
 
 int main() {
   const tetwarp::Volume source = tetwarp::make_phantom({32, 20, 16});
-  const tetwarp::TetMesh mesh = tetwarp::make_lattice_mesh(source);
+  const tetwarp::Mesh mesh = tetwarp::make_lattice_mesh(source);
   const tetwarp::WarpOptions options{.backend = tetwarp::Backend::cpu};
   const tetwarp::WarpResult still = tetwarp::warp(source, mesh, mesh.rest_positions, options);
   if (still.volume.data != source.data) {

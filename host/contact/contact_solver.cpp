@@ -1,0 +1,280 @@
+/// @file contact_solver.cpp
+/// The public calls of the contact solver: options, back end, structure, run, report.
+#include <tetwarp/contact.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <tetwarp/version.hpp>
+
+#include "host/base/warp_backend.hpp"
+#include "host/contact/engine.hpp"
+#include "host/reference/contact/contact.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check_options(const ContactOptions& options) {
+  const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
+  if (!(options.tolerance > 0) || !std::isfinite(options.tolerance)) {
+    fail("tolerance: expected a finite number above 0");
+  }
+  if (options.max_sweeps < 1) fail("max_sweeps: expected 1 or more");
+  if (!(options.relaxation > 0 && options.relaxation < 2)) {
+    fail("relaxation: expected a number above 0 and below 2");
+  }
+  if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
+  if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
+  if (options.threads < 0) fail("threads: expected 0 (all cores) or more");
+}
+
+/// Sums of all islands; the largest contact by its index in the problem.
+struct WholeResidual {
+  ContactSums sums, free;
+  double free_square = 0;
+
+  /// Root of an energy as a share of eta.
+  double eta_of(double square) const {
+    const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
+    return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
+  }
+  double eta() const { return eta_of(sums.eta); }
+  double fclib() const {
+    return sums.fclib > 0 ? std::sqrt(sums.fclib / std::max(free_square, 1e-300)) : 0;
+  }
+};
+
+WholeResidual whole_residual(const std::vector<IslandOutcome>& outcomes) {
+  WholeResidual whole;
+  for (const IslandOutcome& outcome : outcomes) {
+    whole.sums += outcome.sums;
+    whole.free += outcome.free;
+    whole.free_square += outcome.free_square;
+  }
+  return whole;
+}
+
+/// The residual of the whole whenever that of an island was measured: each island counts with the
+/// last error it had by then.
+std::vector<double> merged_history(const std::vector<IslandOutcome>& outcomes, double scale) {
+  struct Step {
+    std::int64_t sweep;
+    std::size_t island;
+    double square;
+  };
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (const ContactEvent& event : outcomes[i].events) {
+      steps.push_back({event.sweep, i, event.error * event.error});
+    }
+  }
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.sweep < b.sweep; });
+  // A tree of sums, its root at 1: adding differences up would leave the rounding of the first,
+  // large squares in the last, small ones.
+  std::vector<double> sums(2 * outcomes.size(), 0.0);
+  std::vector<double> history;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    std::size_t node = outcomes.size() + steps[k].island;
+    sums[node] = steps[k].square;
+    for (node /= 2; node > 0; node /= 2) sums[node] = sums[2 * node] + sums[2 * node + 1];
+    if (k + 1 < steps.size() && steps[k + 1].sweep == steps[k].sweep) continue;
+    history.push_back(std::sqrt(sums[1]) / std::max(scale, 1e-300));
+  }
+  return history;
+}
+
+void count_outcomes(const std::vector<IslandOutcome>& outcomes, ContactReport& report) {
+  std::vector<std::string> methods;
+  for (const IslandOutcome& outcome : outcomes) {
+    report.sweeps = std::max(report.sweeps, outcome.sweeps);
+    report.outer_iterations = std::max(report.outer_iterations, outcome.outer_iterations);
+    report.newton_iterations += outcome.newton_iterations;
+    report.contact_updates += outcome.contact_updates;
+    for (const char* method : outcome.methods) {
+      if (std::find(methods.begin(), methods.end(), method) == methods.end()) {
+        methods.emplace_back(method);
+      }
+    }
+  }
+  for (const IslandOutcome& outcome : outcomes) {
+    if (outcome.sweeps < report.sweeps) ++report.islands_stopped;
+  }
+  for (const std::string& method : methods) {
+    report.method += (report.method.empty() ? "" : ", ") + method;
+  }
+}
+
+std::string text_of(double value) {
+  std::ostringstream text;
+  text << std::setprecision(2) << value;
+  return text.str();
+}
+
+void set_status(const EngineResult& result, const ContactOptions& options, ContactReport& report) {
+  const bool by_eta = options.measure == ContactMeasure::eta;
+  const double residual = by_eta ? report.residual.eta : report.residual.fclib;
+  constexpr double rounding = 1e-10;  // of A v, where A is badly conditioned
+  const bool is_within = residual <= options.tolerance;
+  const bool is_balanced = report.residual.balance <= std::max(options.tolerance, rounding);
+  report.status =
+      is_within && is_balanced ? ContactStatus::converged : ContactStatus::not_converged;
+  if (!is_balanced) {
+    report.status_reason = "A v - J^T r - b is " + text_of(report.residual.balance) +
+                           " of its terms, asked for " + text_of(options.tolerance);
+  }
+  if (!is_within) {
+    report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
+                           text_of(residual) + " after " + std::to_string(report.sweeps) +
+                           " sweeps, asked for " + text_of(options.tolerance);
+  }
+  if (result.clamped.empty()) return;
+  report.status = ContactStatus::infeasible;
+  report.status_reason =
+      "no velocity satisfies contact " + std::to_string(result.clamped.front()) + " and " +
+      std::to_string(result.clamped.size() - 1) +
+      " others together; their normal offsets were raised to 0, which the residual refers to";
+}
+
+/// row + matrix x, added in the order of the entries.
+void add_product(const SparseMatrix& matrix,
+                 const std::vector<double>& x,
+                 std::vector<double>& row) {
+  for (std::size_t r = 0; r < row.size(); ++r) {
+    const auto end = static_cast<std::size_t>(matrix.row_start[r + 1]);
+    for (auto e = static_cast<std::size_t>(matrix.row_start[r]); e < end; ++e) {
+      row[r] += matrix.value[e] * x[static_cast<std::size_t>(matrix.column[e])];
+    }
+  }
+}
+
+/// |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form.
+double imbalance(const ContactProblem& problem, const ContactSolution& solution) {
+  if (problem.is_local()) return 0;
+  std::vector<double> push(problem.load.size(), 0.0), defect(problem.load.size(), 0.0);
+  const SparseMatrix& jacobian = problem.jacobian;
+  for (std::size_t row = 0; row < solution.impulse.size(); ++row) {
+    const auto end = static_cast<std::size_t>(jacobian.row_start[row + 1]);
+    for (auto e = static_cast<std::size_t>(jacobian.row_start[row]); e < end; ++e) {
+      push[static_cast<std::size_t>(jacobian.column[e])] +=
+          jacobian.value[e] * solution.impulse[row];
+    }
+  }
+  add_product(problem.system, solution.body_velocity, defect);
+  double square = 0, push_square = 0, load_square = 0;
+  for (std::size_t dof = 0; dof < defect.size(); ++dof) {
+    const double left = defect[dof] - push[dof] - problem.load[dof];
+    square += left * left;
+    push_square += push[dof] * push[dof];
+    load_square += problem.load[dof] * problem.load[dof];
+  }
+  const double scale = std::sqrt(std::max(push_square, load_square));
+  return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
+}
+
+/// u = W r + q, or u = J v + w.
+std::vector<double> contact_velocity(const ContactProblem& problem,
+                                     const ContactSolution& solution) {
+  std::vector<double> u = problem.is_local() ? problem.free_velocity : problem.velocity_offset;
+  if (problem.is_local()) {
+    add_product(problem.delassus, solution.impulse, u);
+  } else {
+    add_product(problem.jacobian, solution.body_velocity, u);
+  }
+  return u;
+}
+
+}  // namespace
+
+struct ContactSolver::State {
+  ContactOptions options;
+  int threads = 1;
+  std::unique_ptr<ContactDevice> device;  ///< null: the host solves
+  ContactEngine engine;
+};
+
+ContactSolver::ContactSolver(const ContactOptions& options) {
+  check_options(options);
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
+  std::unique_ptr<ContactDevice> device;
+  if (options.backend == Backend::cuda) device = make_contact_device(options.device);
+  ContactEngine engine(options, threads, device.get());
+  state_ = std::make_unique<State>(State{options, threads, std::move(device), std::move(engine)});
+}
+
+ContactSolver::ContactSolver(ContactSolver&&) noexcept = default;
+ContactSolver& ContactSolver::operator=(ContactSolver&&) noexcept = default;
+ContactSolver::~ContactSolver() = default;
+
+ContactSolution ContactSolver::solve(const ContactProblem& problem) {
+  State& s = *state_;
+  if (s.options.backend == Backend::reference) {
+    return solve_contacts_reference(problem, s.options);
+  }
+  const auto start = Clock::now();
+  check_problem(problem);
+  EngineResult result = s.engine.solve(problem);
+  ContactSolution solution;
+  ContactReport& report = solution.report;
+  report.version = TETWARP_VERSION;
+  report.backend = s.device != nullptr ? Backend::cuda : Backend::cpu;
+  report.device = s.device != nullptr ? s.device->name() : processor_name();
+  report.threads = s.threads;
+  report.contacts = problem.contact_count();
+  report.colors = result.colors;
+  report.islands = static_cast<std::int64_t>(result.outcomes.size());
+  report.rows_skipped = result.savings.rows;
+  report.springs_skipped = result.savings.springs;
+  report.bodies_skipped = result.bodies_skipped;
+  report.updates_skipped = result.updates_skipped;
+  report.condensations_kept = result.condensations_kept;
+  count_outcomes(result.outcomes, report);
+  report.contact_updates -= result.updates_skipped;
+
+  const WholeResidual whole = whole_residual(result.outcomes);
+  report.residual.eta = whole.eta();
+  report.residual.fclib = whole.fclib();
+  report.residual.largest = whole.eta_of(whole.sums.largest);
+  report.residual.largest_contact = whole.sums.largest_contact;
+  report.residual.penetration = whole.sums.deepest;
+  const double error = s.options.measure == ContactMeasure::eta ? std::sqrt(whole.sums.eta)
+                                                                : std::sqrt(whole.sums.fclib);
+  const double residual = s.options.measure == ContactMeasure::eta ? whole.eta() : whole.fclib();
+  report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
+  solution.impulse = std::move(result.impulse);
+  solution.body_velocity = std::move(result.body_velocity);
+  solution.velocity = contact_velocity(problem, solution);
+  report.residual.balance = imbalance(problem, solution);
+  set_status(result, s.options, report);
+  report.setup_seconds = result.setup_seconds;
+  report.total_seconds = seconds_since(start);
+  report.solve_seconds = report.total_seconds - report.setup_seconds;
+  return solution;
+}
+
+AdhesionStep ContactSolver::evolve(const ContactProblem& problem,
+                                   const ContactSolution& solution,
+                                   const EvolutionOptions& options) {
+  return evolve_adhesion(problem, solution, options, state_->device.get());
+}
+
+ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
+  return ContactSolver(options).solve(problem);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,16 @@
+/// @file contact_cuda.cu
+// Executors of the host and of blocks share functions that run where their executor does.
+#pragma nv_diag_suppress 20011, 20014
+#include "host/base/warp_backend.hpp"
+#include "host/contact/cuda/contact_cuda.cuh"
+
+namespace tetwarp {
+
+std::unique_ptr<ContactDevice> make_contact_device(int device) {
+  const BackendStatus status = cuda_status(device);
+  if (!status.usable)
+    throw CudaError("cuda device " + std::to_string(device) + ": " + status.reason);
+  return std::make_unique<CudaContactDevice>(device, status.device);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,85 @@
+/// @file associated.hpp
+/// Contact with associated friction: the convex relative of Coulomb's law.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact/newton/lorentz_cone.hpp"
+#include "host/contact/newton/newton_system.hpp"
+#include "host/contact/problem/delassus.hpp"
+#include "host/contact/problem/measure.hpp"
+
+namespace tetwarp {
+
+/// With nu = r + K (u + o), u = B r + q, a lift s >= 0 and K' the friction cone or pyramid:
+///
+///     nu in K',   y = u + s n in its dual cone,   nu . y = 0   at every contact
+///
+/// A convex problem: u is unique, redundant contacts or not. Where s = mu |u_t| (pyramid:
+/// mu (|u_1| + |u_2|)) its solutions are those of Coulomb's law, rule parallel; s = 0 is right
+/// where nothing slides.
+///
+/// Source: De Saxce, Feng 1998 (the lift); Nesterov, Todd 1998; Mehrotra 1992.
+class AssociatedContact {
+ public:
+  /// @param contacts  with their diagonal blocks; outlived by this, as all other arguments
+  AssociatedContact(const std::vector<MeasuredContact>& contacts,
+                    FrictionLaw law,
+                    const Delassus& delassus,
+                    NewtonSystem& system);
+
+  /// Finds the impulses [N s], [3 contacts], by a primal-dual interior point method.
+  ///
+  /// Close to a solution rather than at it: rounding ends the iteration at a gap of 1e-6 to 1e-12
+  /// of the free motion's.
+  /// @param lift  s, [contacts], m/s
+  Eigen::VectorXd solve(const Eigen::VectorXd& lift);
+
+  /// s of Coulomb's law at these velocities.
+  Eigen::VectorXd lift_of(const Eigen::VectorXd& velocity) const;
+
+  /// Linear systems solved so far.
+  std::int64_t iterations() const { return iterations_; }
+
+ private:
+  /// g = P nu and z, both in a Lorentz cone [sqrt(J)]; y is the sum of P^T z over the contact's.
+  struct Cone {
+    Eigen::Index contact;
+    Eigen::Matrix3d part;      ///< P
+    lorentz::Vector impulse;   ///< g
+    lorentz::Vector velocity;  ///< z
+    lorentz::Vector impulse_step;
+    lorentz::Vector velocity_step;
+    lorentz::Vector mismatch;  ///< P nu - g
+    lorentz::Scaling scaling;
+  };
+
+  void start(const Eigen::VectorXd& lift);
+  double gap() const;
+  double mismatch(const Eigen::VectorXd& lift);
+  bool factorize();
+  template <class TargetOf>
+  bool find_step(const TargetOf& target_of);
+  double longest_step() const;
+  Eigen::Vector3d nu_of(std::size_t c) const;
+  double weight_of(const Cone& cone) const;
+
+  const std::vector<MeasuredContact>& contacts_;
+  FrictionLaw law_;
+  const Delassus& delassus_;
+  NewtonSystem& system_;
+  std::vector<Cone> cones_;
+  std::vector<MapDerivative> derivatives_;
+  Eigen::VectorXd impulse_;
+  Eigen::VectorXd velocity_;
+  Eigen::VectorXd impulse_step_;
+  Eigen::VectorXd velocity_step_;
+  Eigen::VectorXd residual_;  ///< P^T z - (u + s n)
+  double unit_ = 0;           ///< sqrt(J)
+  std::int64_t iterations_ = 0;
+};
+
+}  // namespace tetwarp

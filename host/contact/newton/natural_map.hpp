@@ -1,0 +1,73 @@
+/// @file natural_map.hpp
+/// The contact laws as equations F(r, u) = 0 that are differentiable almost everywhere.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "host/contact/problem/measure.hpp"
+
+namespace tetwarp {
+
+/// Derivatives of one contact's three equations.
+struct MapDerivative {
+  Eigen::Matrix3d by_impulse;
+  Eigen::Matrix3d by_velocity;
+};
+
+/// With nu = r + K (u + o), steepness s, P the projection on the disc or square of radius R and rho
+/// as in natural_energy():
+///
+///     F_n = min(nu_n, s rho_n u_n) / sqrt(s rho_n)
+///     F_t = (nu_t - P(nu_t - s rho_t u_t)) / sqrt(s rho_t)
+///
+/// Every s > 0 has the same zeros. At s = 1, |F|^2 is the sum of natural_energy(); a steep map
+/// keeps contacts closed and sticking for longer.
+///
+/// Source: Alart, Curnier 1991; adhesion and the radius R as in contact.hpp.
+class NaturalMap {
+ public:
+  /// @param contacts  with their diagonal blocks
+  NaturalMap(std::vector<MeasuredContact> contacts, FrictionLaw law, AdhesionRule rule);
+
+  /// F, [3 contacts].
+  Eigen::VectorXd value(const Eigen::VectorXd& impulse,
+                        const Eigen::VectorXd& velocity,
+                        double steepness) const;
+
+  /// F, and one element of its generalized derivative.
+  Eigen::VectorXd linearize(const Eigen::VectorXd& impulse,
+                            const Eigen::VectorXd& velocity,
+                            double steepness,
+                            std::vector<MapDerivative>& derivatives) const;
+
+  /// 1 / rho of every row, [3 contacts], 1/kg.
+  const Eigen::VectorXd& compliance() const { return compliance_; }
+
+ private:
+  /// F of one contact, before the division, and its derivative by nu and by u with nu held.
+  Eigen::Vector3d contact_value(std::size_t c,
+                                const Eigen::Vector3d& impulse,
+                                const Eigen::Vector3d& velocity,
+                                double steepness,
+                                MapDerivative& derivative) const;
+  void slide_on_disc(const MeasuredContact& contact,
+                     const Eigen::Vector3d& nu,
+                     const Eigen::Vector3d& velocity,
+                     double rho,
+                     Eigen::Vector3d& value,
+                     MapDerivative& derivative) const;
+  void slide_on_axis(const MeasuredContact& contact,
+                     const Eigen::Vector3d& nu,
+                     const Eigen::Vector3d& velocity,
+                     double rho,
+                     int axis,
+                     Eigen::Vector3d& value,
+                     MapDerivative& derivative) const;
+
+  std::vector<MeasuredContact> contacts_;
+  FrictionLaw law_;
+  double chi_;
+  Eigen::VectorXd compliance_;
+};
+
+}  // namespace tetwarp

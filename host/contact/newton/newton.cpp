@@ -1,0 +1,256 @@
+/// @file newton.cpp
+#include "host/contact/newton/newton.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "host/contact/newton/associated.hpp"
+#include "host/contact/newton/natural_map.hpp"
+#include "host/contact/newton/newton_system.hpp"
+#include "host/contact/problem/delassus.hpp"
+#include "host/contact/problem/measure.hpp"
+
+namespace tetwarp {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+// All found by trial on stacks, packings and problems recorded in other simulators, their contacts
+// thinned out, permuted, and with other friction and loads.
+constexpr double first_epsilon = 1e-3;
+constexpr double min_epsilon = 1e-12;
+constexpr double max_epsilon = 100;
+constexpr double epsilon_drop = 0.3;
+constexpr double rounding_error = 1e-13;
+constexpr int inner_limit = 12;     ///< Newton steps to a proximal point
+constexpr int halving_limit = 12;   ///< of one step's length
+constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop again
+/// A map of steepness epsilon^-p; where Newton misses one proximal point, the next is sought with
+/// the other p.
+constexpr double steepness_powers[] = {0.5, 0.75};
+/// Of proximal points that start from an associated problem's solution.
+constexpr double lift_epsilon = 1e-6;
+constexpr std::int64_t lift_steps = 20;
+
+std::int64_t iteration_limit(std::size_t contacts) {
+  return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
+}
+
+/// Impulses, the velocities they cause, and how far both are from a solution.
+struct Iterate {
+  VectorXd impulse;
+  VectorXd velocity;
+  double eta = 0;
+  double fclib = 0;
+};
+
+/// A proximal point iteration, to go on with.
+struct Approach {
+  Iterate center;
+  double epsilon = first_epsilon;
+  int misses = 0;
+  int hold = 0;
+};
+
+class NewtonPolish {
+ public:
+  NewtonPolish(const ContactProblem& problem,
+               const ContactOptions& options,
+               const Delassus& delassus)
+      : options_(options),
+        delassus_(delassus),
+        contacts_(make_contacts(problem, delassus)),
+        map_(contacts_, options.law, options.rule),
+        system_(problem, delassus) {
+    const VectorXd none = VectorXd::Zero(delassus.free_velocity().size());
+    free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
+  }
+
+  void run(const VectorXd& start);
+
+  const Iterate& best() const { return best_; }
+  bool is_done(const Iterate& iterate) const { return error_of(iterate) <= options_.tolerance; }
+  std::int64_t iterations() const { return iterations_; }
+
+ private:
+  Iterate make_iterate(const VectorXd& impulse) const {
+    const VectorXd change = delassus_.velocity_change(impulse);
+    Iterate iterate{impulse, change + delassus_.free_velocity(), 0, 0};
+    const double scale = std::sqrt(free_energy_) + std::sqrt(std::max(impulse.dot(change), 0.0));
+    iterate.eta = residual_of(iterate) / std::max(scale, std::numeric_limits<double>::min());
+    double square = 0;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const Index row = 3 * static_cast<Index>(c);
+      square += fclib_square(contacts_[c], impulse.segment<3>(row),
+                             iterate.velocity.segment<3>(row), options_.law, options_.rule);
+    }
+    iterate.fclib = std::sqrt(square) /
+                    std::max(delassus_.free_velocity().norm(), std::numeric_limits<double>::min());
+    return iterate;
+  }
+
+  double error_of(const Iterate& iterate) const {
+    return options_.measure == ContactMeasure::eta ? iterate.eta : iterate.fclib;
+  }
+
+  /// What is left is rounding.
+  bool is_settled() const { return is_done(best_) || error_of(best_) < rounding_error; }
+
+  void keep(const Iterate& iterate) {
+    if (error_of(iterate) < error_of(best_)) best_ = iterate;
+  }
+
+  static std::vector<MeasuredContact> make_contacts(const ContactProblem& problem,
+                                                    const Delassus& delassus) {
+    std::vector<MeasuredContact> contacts = measured_contacts(problem);
+    const std::vector<Eigen::Matrix3d> blocks = delassus.diagonal_blocks();
+    for (std::size_t c = 0; c < contacts.size(); ++c) contacts[c].diagonal_block = blocks[c];
+    return contacts;
+  }
+
+  double residual_of(const Iterate& iterate) const {
+    return map_.value(iterate.impulse, iterate.velocity, 1).norm();
+  }
+
+  /// Proximal points, one after the other, until done or after a number of linear systems.
+  void advance(Approach& approach, std::int64_t limit);
+
+  /// De Saxce's fixed point iteration on the lifts: convex problems, the solution of each of which
+  /// proximal points try to complete.
+  void solve_associated(std::int64_t limit);
+
+  /// Newton steps on F(r, u + epsilon / rho (r - center)) = 0 from the center.
+  /// @return whether |F| has dropped to a tenth, or the whole problem is solved on the way
+  bool find_proximal_point(const VectorXd& pull, double steepness, Iterate& iterate);
+
+  const ContactOptions& options_;
+  const Delassus& delassus_;
+  const std::vector<MeasuredContact> contacts_;
+  const NaturalMap map_;
+  NewtonSystem system_;
+  std::vector<MapDerivative> derivatives_;
+  double free_energy_ = 0;
+  Iterate best_;
+  std::int64_t iterations_ = 0;
+};
+
+void NewtonPolish::run(const VectorXd& start) {
+  best_ = make_iterate(start);
+  const std::int64_t limit = iteration_limit(contacts_.size());
+  Approach approach{.center = best_};
+  advance(approach, limit / 4);
+  if (is_settled()) return;
+  solve_associated(limit / 2);
+  if (is_settled()) return;
+  advance(approach, limit - limit / 4);
+  if (is_settled()) return;
+  Approach again{.center = best_};
+  advance(again, limit / 2);
+}
+
+void NewtonPolish::advance(Approach& approach, std::int64_t limit) {
+  double& epsilon = approach.epsilon;
+  int idle = 0;
+  const std::int64_t end = iterations_ + limit;
+  while (!is_done(best_) && iterations_ < end) {
+    const double best_before = error_of(best_);
+    const double steepness = std::pow(epsilon, -steepness_powers[approach.misses % 2]);
+    Iterate iterate = approach.center;
+    const std::int64_t before = iterations_;
+    if (find_proximal_point(epsilon * map_.compliance(), steepness, iterate)) {
+      approach.center = std::move(iterate);
+      if (approach.hold > 0) {
+        --approach.hold;
+      } else if (iterations_ - before <= 8) {
+        epsilon *= iterations_ - before <= 3 ? epsilon_drop : std::sqrt(epsilon_drop);
+        epsilon = std::max(epsilon, min_epsilon);
+      }
+    } else {
+      ++approach.misses;
+      approach.hold = hold_after_miss;
+      epsilon = std::min(epsilon / epsilon_drop, max_epsilon);
+    }
+    idle = error_of(best_) < 0.9 * best_before ? 0 : idle + 1;
+    if (best_.eta < rounding_error && idle > 5) return;
+  }
+}
+
+void NewtonPolish::solve_associated(std::int64_t limit) {
+  AssociatedContact associated(contacts_, options_.law, delassus_, system_);
+  VectorXd lift = VectorXd::Zero(static_cast<Index>(contacts_.size()));
+  const std::int64_t end = iterations_ + limit;
+  while (!is_settled() && iterations_ < end) {
+    const std::int64_t before = associated.iterations();
+    Approach approach{.center = make_iterate(associated.solve(lift)), .epsilon = lift_epsilon};
+    iterations_ += associated.iterations() - before;
+    keep(approach.center);
+    lift = associated.lift_of(approach.center.velocity);
+    advance(approach, lift_steps);
+  }
+}
+
+bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, Iterate& iterate) {
+  const VectorXd center = iterate.impulse;
+  const auto pulled = [&](const VectorXd& impulse, const VectorXd& velocity) {
+    return VectorXd(velocity + pull.cwiseProduct(impulse - center));
+  };
+  double norm = map_.value(iterate.impulse, iterate.velocity, steepness).norm();
+  const double goal = 0.1 * norm;
+  for (int step = 0; step < inner_limit; ++step) {
+    const VectorXd residual = map_.linearize(
+        iterate.impulse, pulled(iterate.impulse, iterate.velocity), steepness, derivatives_);
+    for (std::size_t c = 0; c < derivatives_.size(); ++c) {
+      derivatives_[c].by_impulse +=
+          derivatives_[c].by_velocity * pull.segment<3>(3 * static_cast<Index>(c)).asDiagonal();
+    }
+    ++iterations_;
+    if (!system_.factorize(derivatives_)) return false;
+    const VectorXd impulse_step = system_.solve(-residual);
+    if (!impulse_step.allFinite()) return false;
+    const VectorXd velocity_step = delassus_.velocity_change(impulse_step);
+    double length = 1;
+    double next = 0;
+    for (int halving = 0;; ++halving, length /= 2) {
+      if (halving == halving_limit) return false;
+      const VectorXd impulse = iterate.impulse + length * impulse_step;
+      next =
+          map_.value(impulse, pulled(impulse, iterate.velocity + length * velocity_step), steepness)
+              .norm();
+      if (next <= (1 - 1e-4 * length) * norm) break;
+    }
+    norm = next;
+    iterate = make_iterate(iterate.impulse + length * impulse_step);
+    keep(iterate);
+    if (norm <= goal || is_done(iterate)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+NewtonResult newton_polish(const ContactProblem& problem,
+                           const ContactOptions& options,
+                           std::vector<double>& impulse,
+                           std::vector<double>& body_velocity) {
+  const Delassus delassus(problem, options.recovery_speed);
+  VectorXd start = VectorXd::Zero(3 * static_cast<Index>(problem.contact_count()));
+  if (!impulse.empty()) {
+    start = Eigen::Map<const VectorXd>(impulse.data(), static_cast<Index>(impulse.size()));
+  }
+  NewtonPolish polish(problem, options, delassus);
+  polish.run(start);
+  const Iterate& best = polish.best();
+  impulse.assign(best.impulse.begin(), best.impulse.end());
+  const VectorXd v = delassus.body_velocity(best.impulse);
+  body_velocity.assign(v.begin(), v.end());
+  return {polish.iterations(), best.eta, best.fclib, polish.is_done(best)};
+}
+
+}  // namespace tetwarp

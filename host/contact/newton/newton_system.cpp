@@ -1,0 +1,94 @@
+/// @file newton_system.cpp
+#include "host/contact/newton/newton_system.hpp"
+
+#include <cstddef>
+
+#include "host/contact/problem/matrix.hpp"
+
+namespace tetwarp {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::VectorXd;
+using Matrix = Eigen::SparseMatrix<double>;
+
+namespace {
+
+/// Below this many unknowns a dense factorization is faster than a sparse one.
+constexpr Index dense_limit = 300;
+
+/// Zeros inside the blocks are stored, so that the pattern stays from step to step.
+template <class BlockOf>
+Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
+  const auto size = 3 * static_cast<Index>(count);
+  Matrix matrix(size, size);
+  matrix.reserve(Eigen::VectorXi::Constant(size, 3));
+  for (std::size_t c = 0; c < count; ++c) {
+    const Matrix3d block = block_of(c);
+    const Index first = 3 * static_cast<Index>(c);
+    for (Index column = 0; column < 3; ++column) {
+      for (Index row = 0; row < 3; ++row) {
+        matrix.insert(first + row, first + column) = block(row, column);
+      }
+    }
+  }
+  matrix.makeCompressed();
+  return matrix;
+}
+
+}  // namespace
+
+NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)
+    : delassus_(delassus),
+      is_local_(problem.is_local()),
+      matrix_(make_eigen(is_local_ ? problem.delassus : problem.system)),
+      is_dense_(matrix_.rows() < dense_limit) {
+  if (!is_local_) jacobian_ = make_eigen(problem.jacobian);
+}
+
+bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
+  const std::size_t contacts = derivatives.size();
+  by_impulse_ =
+      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_impulse; });
+  by_velocity_ =
+      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_velocity; });
+  Matrix matrix;
+  if (is_local_) {
+    matrix = by_impulse_ + by_velocity_ * matrix_;
+  } else {
+    impulse_inverse_ = make_block_diagonal(
+        contacts, [&](std::size_t c) { return Matrix3d(derivatives[c].by_impulse.inverse()); });
+    const Matrix response = impulse_inverse_ * by_velocity_;
+    const Matrix pushed = response * jacobian_;
+    matrix = matrix_ + Matrix(jacobian_.transpose()) * pushed;
+  }
+  if (is_dense_) {
+    dense_factor_.compute(matrix);
+    return dense_factor_.matrixLU().diagonal().array().isFinite().all() &&
+           (dense_factor_.matrixLU().diagonal().array() != 0).all();
+  }
+  if (!has_order_) sparse_factor_.analyzePattern(matrix);
+  has_order_ = true;
+  sparse_factor_.factorize(matrix);
+  return sparse_factor_.info() == Eigen::Success;
+}
+
+VectorXd NewtonSystem::solve(const VectorXd& right_side) {
+  VectorXd x = solve_once(right_side);
+  x += solve_once(right_side - by_impulse_ * x - by_velocity_ * delassus_.velocity_change(x));
+  return x;
+}
+
+VectorXd NewtonSystem::solve_once(const VectorXd& right_side) {
+  if (is_local_) return solve_factorized(right_side);
+  const VectorXd pushed = impulse_inverse_ * right_side;
+  const VectorXd y = solve_factorized(jacobian_.transpose() * pushed);
+  return impulse_inverse_ * (right_side - by_velocity_ * (jacobian_ * y));
+}
+
+VectorXd NewtonSystem::solve_factorized(const VectorXd& right_side) {
+  if (is_dense_) return dense_factor_.solve(right_side);
+  return sparse_factor_.solve(right_side);
+}
+
+}  // namespace tetwarp

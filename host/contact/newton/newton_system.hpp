@@ -1,0 +1,55 @@
+/// @file newton_system.hpp
+/// The linear equations of one Newton step on the impulses.
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+#include "host/contact/newton/natural_map.hpp"
+#include "host/contact/problem/delassus.hpp"
+
+namespace tetwarp {
+
+/// Solves (E + F B) x = c, with E and F block diagonal and B the Delassus matrix.
+///
+/// Local form: as it stands. Global form: through the velocities y = A^-1 J^T x,
+///
+///     (A + J^T E^-1 F J) y = J^T E^-1 c,   x = E^-1 (c - F J y)
+///
+/// which has no more entries than A and the contacts between its blocks, and about half as many
+/// unknowns where contacts are dense.
+class NewtonSystem {
+ public:
+  /// @param delassus  of the same problem, outlived by this
+  NewtonSystem(const ContactProblem& problem, const Delassus& delassus);
+
+  /// @param derivatives  E and F, [contacts]; global form: E invertible
+  /// @return false  when the equations are singular to rounding
+  bool factorize(const std::vector<MapDerivative>& derivatives);
+
+  /// x, after one step of iterative refinement.
+  /// @pre factorize() has returned true
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side);
+
+ private:
+  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side);
+  Eigen::VectorXd solve_factorized(const Eigen::VectorXd& right_side);
+
+  const Delassus& delassus_;
+  bool is_local_;
+  Eigen::SparseMatrix<double> matrix_;           ///< W, or A
+  Eigen::SparseMatrix<double> jacobian_;         ///< J
+  Eigen::SparseMatrix<double> by_impulse_;       ///< E
+  Eigen::SparseMatrix<double> by_velocity_;      ///< F
+  Eigen::SparseMatrix<double> impulse_inverse_;  ///< E^-1, global form
+  bool is_dense_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> dense_factor_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_factor_;
+  bool has_order_ = false;  ///< the fill-reducing order is kept: the pattern stays
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,125 @@
+/// @file residual.cpp
+/// Residuals of a given solution, from the problem's own data.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/contact.hpp>
+#include <vector>
+
+#include "host/contact/problem/delassus.hpp"
+#include "host/contact/problem/measure.hpp"
+
+namespace tetwarp {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+struct Eta {
+  double total = 0;
+  double largest = 0;
+  std::int64_t largest_contact = -1;
+};
+
+/// eta = sqrt(energy(r, u)) / (sqrt(energy(0, u - B r)) + sqrt(r . B r)), the residual relative to
+/// that of no impulses at all.
+Eta eta_of(const std::vector<MeasuredContact>& contacts,
+           const VectorXd& impulse,
+           const VectorXd& velocity,
+           const VectorXd& velocity_change,
+           const ContactOptions& options) {
+  double energy = 0;
+  double free_energy = 0;
+  double most = 0;
+  Eta eta;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const auto row = 3 * static_cast<Index>(c);
+    const Vector3d u = velocity.segment<3>(row);
+    const double share =
+        natural_energy(contacts[c], impulse.segment<3>(row), u, options.law, options.rule);
+    energy += share;
+    free_energy += natural_energy(contacts[c], Vector3d::Zero(),
+                                  u - velocity_change.segment<3>(row), options.law, options.rule);
+    if (share <= most) continue;
+    most = share;
+    eta.largest_contact = static_cast<std::int64_t>(c);
+  }
+  const double scale =
+      std::max(std::sqrt(free_energy) + std::sqrt(std::max(impulse.dot(velocity_change), 0.0)),
+               std::numeric_limits<double>::min());
+  eta.total = std::sqrt(energy) / scale;
+  eta.largest = std::sqrt(most) / scale;
+  return eta;
+}
+
+double fclib_of(const std::vector<MeasuredContact>& contacts,
+                const VectorXd& impulse,
+                const VectorXd& velocity,
+                double scale,
+                const ContactOptions& options) {
+  double sum = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const auto row = 3 * static_cast<Index>(c);
+    sum += fclib_square(contacts[c], impulse.segment<3>(row), velocity.segment<3>(row), options.law,
+                        options.rule);
+  }
+  return std::sqrt(sum) / std::max(scale, std::numeric_limits<double>::min());
+}
+
+VectorXd make_vector(std::span<const double> values, Index expected, const char* name) {
+  const auto size = static_cast<Index>(values.size());
+  if (size != expected) {
+    throw std::invalid_argument(std::string(name) + ": " + std::to_string(size) +
+                                " entries, expected " + std::to_string(expected));
+  }
+  return Eigen::Map<const VectorXd>(values.data(), size);
+}
+
+}  // namespace
+
+ContactResidual residual_of(const ContactProblem& problem,
+                            std::span<const double> impulse,
+                            std::span<const double> body_velocity,
+                            const ContactOptions& options) {
+  check_problem(problem);
+  const Delassus delassus(problem, options.recovery_speed);
+  std::vector<MeasuredContact> contacts = measured_contacts(problem);
+  const std::vector<Eigen::Matrix3d> blocks = delassus.diagonal_blocks();
+  for (std::size_t c = 0; c < contacts.size(); ++c) contacts[c].diagonal_block = blocks[c];
+
+  const VectorXd r =
+      make_vector(impulse, 3 * static_cast<Index>(problem.contact_count()), "impulse");
+  const VectorXd change = delassus.velocity_change(r);
+  const VectorXd implied = change + delassus.free_velocity();
+  VectorXd u = implied;
+  ContactResidual residual;
+  if (!problem.is_local()) {
+    const VectorXd v =
+        body_velocity.empty()
+            ? delassus.body_velocity(r)
+            : make_vector(body_velocity, static_cast<Index>(problem.dof_count()), "body_velocity");
+    if (!body_velocity.empty()) u = delassus.contact_velocity(v);
+    residual.balance = delassus.imbalance(r, v);
+  }
+  Eta eta = eta_of(contacts, r, u, change, options);
+  if (!body_velocity.empty()) {
+    // Velocities that the impulses do not cause must not hide a wrong impulse.
+    const Eta caused = eta_of(contacts, r, implied, change, options);
+    if (caused.total > eta.total) eta = caused;
+  }
+  residual.eta = eta.total;
+  residual.largest = eta.largest;
+  residual.largest_contact = eta.largest_contact;
+  residual.fclib = fclib_of(contacts, r, u, delassus.free_velocity().norm(), options);
+  for (Index row = 0; row < u.size(); row += 3) {
+    residual.penetration = std::max(residual.penetration, -u(row));
+  }
+  return residual;
+}
+
+}  // namespace tetwarp

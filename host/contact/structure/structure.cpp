@@ -1,0 +1,123 @@
+/// @file structure.cpp
+#include "host/contact/structure/structure.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "host/contact/structure/structure_parts.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+std::vector<std::int64_t> zeros_of(const SparseMatrix& matrix) {
+  std::vector<std::int64_t> zeros;
+  for (std::size_t e = 0; e < matrix.value.size(); ++e) {
+    if (matrix.value[e] == 0) zeros.push_back(static_cast<std::int64_t>(e));
+  }
+  return zeros;
+}
+
+/// Whether no place of a matrix is stored twice.
+bool is_unique(const SparseMatrix& matrix) {
+  std::vector<std::int32_t> row;
+  for (std::size_t r = 0; r + 1 < matrix.row_start.size(); ++r) {
+    const auto first = matrix.column.begin() + matrix.row_start[r];
+    const auto last = matrix.column.begin() + matrix.row_start[r + 1];
+    const auto is_late = [](std::int32_t a, std::int32_t b) { return a >= b; };
+    if (std::adjacent_find(first, last, is_late) == last) continue;  // rising, as in most files
+    row.assign(first, last);
+    std::sort(row.begin(), row.end());
+    if (std::adjacent_find(row.begin(), row.end()) != row.end()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+ContactIndices ContactStructure::indices() const {
+  ContactIndices indices;
+  indices.is_local = is_local;
+  indices.contact_of_slot = view_of(contact_of_slot);
+  indices.color_start = view_of(color_start);
+  indices.delassus_row = view_of(delassus_row);
+  indices.delassus_column = view_of(delassus_column);
+  indices.delassus_target = view_of(delassus_target);
+  indices.delassus_diagonal = view_of(delassus_diagonal);
+  indices.pairs = {view_of(pair_start), view_of(pair_block), view_of(pair_value),
+                   view_of(dof_start)};
+  indices.block_contacts = {view_of(block_start), view_of(block_contact), view_of(block_value)};
+  indices.dof_of_place = view_of(dof_of_place);
+  indices.block_is_coupled = view_of(block_is_coupled);
+  indices.inverse_start = view_of(inverse_start);
+  indices.diagonal_value = view_of(diagonal_value);
+  indices.jacobian_target = view_of(jacobian_target);
+  indices.system_row = view_of(system_row);
+  indices.system_column = view_of(system_column);
+  indices.system_value = view_of(system_value);
+  indices.system_target = view_of(system_target);
+  indices.jacobian_size = jacobian_size;
+  indices.system_size = system_size;
+  indices.inverse_size = is_local ? 0 : inverse_start.back();
+  indices.has_only_nodes = has_only_nodes;
+  indices.matrix_is_unique = matrix_is_unique;
+  indices.jacobian_is_unique = jacobian_is_unique;
+  return indices;
+}
+
+void take_order(ContactStructure& structure, ContactOrder order) {
+  structure.contact_islands = static_cast<std::int64_t>(order.island_start.size()) - 1;
+  for (std::size_t i = 0; i + 1 < order.island_start.size(); ++i) {
+    ContactIsland island;
+    island.slot_begin = order.island_start[i];
+    island.slot_end = order.island_start[i + 1];
+    island.color_begin = order.island_colors[i];
+    island.color_end = order.island_colors[i + 1];
+    structure.islands.push_back(island);
+  }
+  structure.contact_of_slot = std::move(order.contact_of_slot);
+  structure.color_start = std::move(order.color_start);
+}
+
+ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip) {
+  HostStages stages;
+  return make_structure(problem, skip, stages);
+}
+
+ContactStructure make_structure(const ContactProblem& problem,
+                                const ContactSkipOptions& skip,
+                                StructureStages& stages) {
+  static std::atomic<std::int64_t> made = 0;
+  ContactStructure structure;
+  structure.serial = ++made;
+  structure.is_local = problem.is_local();
+  if (structure.is_local) {
+    fill_local_structure(problem, skip, stages, structure);
+    structure.matrix_is_unique = is_unique(problem.delassus);
+  } else {
+    fill_global_structure(problem, skip, stages, structure);
+    structure.matrix_is_unique = is_unique(problem.system);
+    structure.jacobian_is_unique = is_unique(problem.jacobian);
+  }
+  return structure;
+}
+
+ContactPattern pattern_of(const ContactProblem& problem) {
+  return {problem.delassus.row_start, problem.delassus.column,  problem.system.row_start,
+          problem.system.column,      zeros_of(problem.system), problem.jacobian.row_start,
+          problem.jacobian.column,    problem.block_start};
+}
+
+bool has_pattern(const ContactProblem& problem, const ContactPattern& pattern) {
+  return problem.delassus.row_start == pattern.delassus_row &&
+         problem.delassus.column == pattern.delassus_column &&
+         problem.system.row_start == pattern.system_row &&
+         problem.system.column == pattern.system_column &&
+         zeros_of(problem.system) == pattern.system_zeros &&
+         problem.jacobian.row_start == pattern.jacobian_row &&
+         problem.jacobian.column == pattern.jacobian_column &&
+         problem.block_start == pattern.block_start;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,67 @@
+/// @file structure_local.cpp
+/// Structure of a problem given by its Delassus matrix.
+#include <algorithm>
+#include <utility>
+
+#include "host/contact/structure/structure_parts.hpp"
+
+namespace tetwarp {
+
+void fill_local_structure(const ContactProblem& problem,
+                          const ContactSkipOptions& skip,
+                          StructureStages& stages,
+                          ContactStructure& structure) {
+  ContactStructure& s = structure;
+  const SparseMatrix& w = problem.delassus;
+  const std::int64_t contacts = problem.contact_count();
+  const auto contact_of = [](std::int32_t column) { return column / 3; };
+  const Lists rows = block_columns(w, contact_rows(contacts), contacts, contact_of, true);
+
+  // A coupling, in either direction, is a group of two.
+  std::vector<std::pair<std::int32_t, std::int32_t>> couplings;
+  for (std::int64_t c = 0; c < contacts; ++c) {
+    for (const std::int32_t other : rows.of(c)) {
+      const auto own = static_cast<std::int32_t>(c);
+      if (other != own) couplings.emplace_back(std::min(own, other), std::max(own, other));
+    }
+  }
+  std::sort(couplings.begin(), couplings.end());
+  couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
+  Lists groups;
+  for (const auto& [a, b] : couplings) {
+    groups.item.insert(groups.item.end(), {a, b});
+    groups.close_list();
+  }
+  const std::vector<std::int32_t> islands = skip.converged_islands
+                                                ? components_of(groups, contacts, stages)
+                                                : std::vector<std::int32_t>(index_of(contacts), 0);
+  take_order(s, make_contact_order(make_transposed(groups, contacts), islands, stages));
+
+  const std::vector<std::int32_t> slot_of = places_of(s.contact_of_slot);
+  s.delassus_row = {0};
+  s.delassus_target.resize(w.value.size());
+  std::vector<std::int32_t> columns;
+  for (std::size_t slot = 0; slot < s.contact_of_slot.size(); ++slot) {
+    const std::int64_t c = s.contact_of_slot[slot];
+    columns.clear();
+    for (const std::int32_t other : rows.of(c)) columns.push_back(slot_of[index_of(other)]);
+    std::sort(columns.begin(), columns.end());
+    const std::int64_t first = s.delassus_row.back();
+    const auto place_of = [&](std::int32_t block) {
+      return first + (std::lower_bound(columns.begin(), columns.end(), block) - columns.begin());
+    };
+    s.delassus_diagonal.push_back(place_of(static_cast<std::int32_t>(slot)));
+    for (std::int64_t a = 0; a < 3; ++a) {
+      const std::int64_t last = w.row_start[index_of(3 * c + a + 1)];
+      for (std::int64_t e = w.row_start[index_of(3 * c + a)]; e < last; ++e) {
+        const std::int32_t column = w.column[index_of(e)];
+        s.delassus_target[index_of(e)] =
+            9 * place_of(slot_of[index_of(column / 3)]) + 3 * a + column % 3;
+      }
+    }
+    s.delassus_column.insert(s.delassus_column.end(), columns.begin(), columns.end());
+    s.delassus_row.push_back(static_cast<std::int64_t>(s.delassus_column.size()));
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,74 @@
+/// @file structure_parts.hpp
+/// What the structures of both forms are made from.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host/contact/structure/structure.hpp"
+
+namespace tetwarp {
+
+inline std::size_t index_of(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Where each item stands in an order.
+inline std::vector<std::int32_t> places_of(const std::vector<std::int32_t>& order) {
+  std::vector<std::int32_t> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    place[index_of(order[i])] = static_cast<std::int32_t>(i);
+  }
+  return place;
+}
+
+/// First scalar row of each contact, and the end.
+inline std::vector<std::int64_t> contact_rows(std::int64_t contacts) {
+  std::vector<std::int64_t> starts(index_of(contacts) + 1);
+  for (std::size_t c = 0; c < starts.size(); ++c) starts[c] = 3 * static_cast<std::int64_t>(c);
+  return starts;
+}
+
+/// The block columns that each range of scalar rows touches, rising.
+/// @param row_start    first scalar row of each range, and the end
+/// @param blocks       how many block columns there are
+/// @param block_of     block of a scalar column
+/// @param keeps_zeros  whether stored zeros count
+template <class BlockOf>
+Lists block_columns(const SparseMatrix& matrix,
+                    const std::vector<std::int64_t>& row_start,
+                    std::int64_t blocks,
+                    const BlockOf& block_of,
+                    bool keeps_zeros) {
+  Lists rows;
+  std::vector<std::int32_t> touched;
+  std::vector<std::size_t> last_range(index_of(blocks), row_start.size());  // that touched a block
+  for (std::size_t b = 0; b + 1 < row_start.size(); ++b) {
+    touched.clear();
+    const std::int64_t last = matrix.row_start[index_of(row_start[b + 1])];
+    for (std::int64_t e = matrix.row_start[index_of(row_start[b])]; e < last; ++e) {
+      if (!keeps_zeros && matrix.value[index_of(e)] == 0) continue;
+      const std::int32_t block = block_of(matrix.column[index_of(e)]);
+      if (std::exchange(last_range[index_of(block)], b) != b) touched.push_back(block);
+    }
+    std::sort(touched.begin(), touched.end());
+    rows.item.insert(rows.item.end(), touched.begin(), touched.end());
+    rows.close_list();
+  }
+  return rows;
+}
+
+/// Takes the slots of `order` and makes its islands.
+void take_order(ContactStructure& structure, ContactOrder order);
+
+void fill_local_structure(const ContactProblem& problem,
+                          const ContactSkipOptions& skip,
+                          StructureStages& stages,
+                          ContactStructure& structure);
+void fill_global_structure(const ContactProblem& problem,
+                           const ContactSkipOptions& skip,
+                           StructureStages& stages,
+                           ContactStructure& structure);
+
+}  // namespace tetwarp

@@ -1,0 +1,175 @@
+/// @file run.hpp
+/// All islands whose blocks A does not couple, in one scalar type, on the host.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact/sweeps/memory.hpp"
+#include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_methods.hpp"
+
+namespace tetwarp {
+
+/// How an island ended.
+struct IslandOutcome {
+  StopReason reason = StopReason::converged;
+  std::int64_t sweeps = 0;
+  std::int64_t outer_iterations = 0;
+  std::int64_t newton_iterations = 0;
+  std::int64_t contact_updates = 0;
+  std::vector<const char*> methods;  ///< in order
+  std::vector<ContactEvent> events;
+  ContactSums sums;        ///< of what is returned
+  ContactSums free;        ///< of no impulses at all
+  double free_square = 0;  ///< |q|^2
+
+  /// Takes the end of an island's solve by solve_island().
+  void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
+};
+
+inline ContactSwitches switches_of(const ContactOptions& options) {
+  return {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
+}
+
+inline MethodPlan plan_of(const ContactOptions& options) {
+  return {options.method, options.tolerance / 100, options.max_sweeps};
+}
+
+/// Whether contacts that have come to rest may be left out of sweeps.
+inline bool freezes_contacts(const ContactOptions& options) {
+  return options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts;
+}
+
+/// What each island may leave over: half by its share in the error without impulses, half by its
+/// number of contacts, so that none has to be solved to nothing.
+/// @param outcomes  with `free` and `free_square` of islands that are not coupled
+std::vector<StopRule> stop_rules(const ContactOptions& options,
+                                 const ContactStructure& structure,
+                                 const std::vector<IslandOutcome>& outcomes);
+
+template <class T>
+class ContactRun {
+ public:
+  ContactRun(const ContactOptions& options,
+             int threads,
+             const ContactStructure& structure,
+             const ContactSystem<T>& system,
+             std::vector<IslandOutcome>& outcomes)
+      : options_(options),
+        threads_(threads),
+        structure_(structure),
+        system_(system),
+        numbers_(system.numbers(structure.indices())),
+        state_(system),
+        work_(system.constants.size()),
+        outcomes_(outcomes) {
+    if (freezes_contacts(options)) {
+      state_.calm.assign(system.constants.size(), 0);
+      state_.left_out.assign(system.constants.size(), 0);
+    }
+    for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
+      if (!island(i).is_coupled) measure_free(i);
+    }
+    rules_ = stop_rules(options, structure, outcomes);
+  }
+
+  HostContactState<T>& state() { return state_; }
+  const ContactSystem<T>& system() const { return system_; }
+  std::int64_t updates_skipped() const {
+    std::int64_t sum = 0;
+    for (const std::int32_t visits : state_.left_out) sum += visits;
+    return sum;
+  }
+
+  /// @param impulse  [3 slots], or empty: none
+  void start_from(const std::vector<T>& impulse) {
+    if (!impulse.empty()) state_.impulse = impulse;
+  }
+
+  /// Islands side by side; only the contacts of large ones are shared among threads.
+  void solve() {
+    std::vector<std::int64_t> small;
+    for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+      if (island(i).is_coupled) continue;
+      if (threads_ > 1 && island(i).contact_count() >= shared_from) {
+        go_on(i, threads_, options_.method);
+      } else {
+        small.push_back(i);
+      }
+    }
+    const bool is_worth_it = threads_ > 1 && small.size() > 1 && system_.constants.size() > 128;
+#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (is_worth_it)
+    for (std::size_t k = 0; k < small.size(); ++k) go_on(small[k], 1, options_.method);
+  }
+
+  /// More sweeps on one island, to the end of the budget.
+  void insist(std::int64_t i) {
+    go_on(i, threads_, ContactMethod::nonlinear_cg);
+  }
+
+  /// Sums of an island, of the impulses at hand.
+  ContactSums measure(std::int64_t i) {
+    CpuContactExec exec(1);
+    return measure_island(pipeline_of(i, exec)).sums;
+  }
+  /// The error of an island over what it may leave.
+  double excess(std::int64_t i, const ContactSums& sums) const {
+    return rules_[static_cast<std::size_t>(i)].excess_of(sums);
+  }
+  bool is_done(std::int64_t i, const ContactSums& sums) const {
+    return excess(i, sums) <= 1;
+  }
+  const std::vector<StopRule>& rules() const {
+    return rules_;
+  }
+
+ private:
+  /// Contacts of an island worth all threads. Waking them in the middle of a sweep costs as much as
+  /// some thousand contacts do, and colors hold only a part of all.
+  static constexpr std::int64_t shared_from = 16384;
+
+  const ContactIsland& island(std::int64_t i) const {
+    return structure_.islands[static_cast<std::size_t>(i)];
+  }
+  ContactPipeline<CpuContactExec, T> pipeline_of(std::int64_t i, CpuContactExec& exec) {
+    return {
+        exec,         numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
+        state_.view()};
+  }
+
+  void measure_free(std::int64_t i) {
+    CpuContactExec exec(1);
+    IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
+    const IslandSums sums = measure_island(pipeline_of(i, exec));
+    outcome.free = sums.sums;
+    outcome.free_square = sums.free_square;
+  }
+
+  void go_on(std::int64_t i, int threads, ContactMethod method) {
+    CpuContactExec exec(threads);
+    ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
+    IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
+    HostEventLog log;
+    MethodPlan plan = plan_of(options_);
+    plan.method = method;
+    const IslandEnd end = solve_island(pipeline, rules_[static_cast<std::size_t>(i)], plan,
+                                       outcome.sweeps, work_.view(), log);
+    outcome.take(end, method, island(i).contact_count());
+    outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
+  }
+
+  const ContactOptions& options_;
+  int threads_;
+  const ContactStructure& structure_;
+  const ContactSystem<T>& system_;
+  ContactNumbers<T> numbers_;
+  HostContactState<T> state_;
+  HostMethodWork<T> work_;
+  std::vector<StopRule> rules_;
+  std::vector<IslandOutcome>& outcomes_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,150 @@
+/// @file contact_exec_cpu.hpp
+/// CpuContactExec: what the contact pipeline asks of an executor, on host threads. Sums have one
+/// fixed tree, so nothing depends on how many threads there are.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+class CpuContactExec {
+ public:
+  explicit CpuContactExec(int threads) : threads_(threads) {}
+
+  template <class T>
+  using Vector = std::vector<T>;
+
+  int threads() const { return threads_; }
+
+  /// All become zeros.
+  template <class T>
+  void resize(std::vector<T>& values, std::int64_t size) const {
+    values.assign(static_cast<std::size_t>(size), T{});
+  }
+  template <class T>
+  void put(const T* host, std::int64_t size, std::vector<T>& values) const {
+    values.assign(host, host + size);
+  }
+  template <class T>
+  void get(View<const T> values, T* host) const {
+    std::copy_n(values.data, values.size, host);
+  }
+
+  /// body(i) for i in [0, count), any order.
+  template <class Body>
+  void for_each(const char*, std::int64_t count, const Body& body) const {
+    if (threads_ == 1 || count < serial_below) {
+      for (std::int64_t i = 0; i < count; ++i) body(i);
+      return;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t i = 0; i < count; ++i) body(i);
+  }
+
+  template <class T>
+  void copy(const char*, View<const T> from, View<T> to) const {
+    std::copy_n(from.data, from.size, to.data);
+  }
+
+  /// body.run(begin, end) over runs of [0, count), any order.
+  template <class Body>
+  void for_runs(const char*, std::int64_t count, const Body& body) const {
+    const std::int64_t runs = (count + run_length - 1) / run_length;
+    const auto run = [&](std::int64_t i) {
+      body.template run<run_length>(i * run_length, std::min((i + 1) * run_length, count));
+    };
+    if (threads_ == 1 || count < serial_below) {
+      for (std::int64_t i = 0; i < runs; ++i) run(i);
+      return;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t i = 0; i < runs; ++i) run(i);
+  }
+  template <class Body>
+  void once(const char*, const Body& body) const {
+    body(0);
+  }
+
+  /// Memory for one thing at a time, made anew.
+  template <class State>
+  State* state() {
+    static_assert(sizeof(State) <= sizeof(state_) && alignof(State) <= 16);
+    return new (state_) State{};
+  }
+  /// What those who decide may read, and when. Here all, always.
+  template <class T>
+  T load(const T* value) const {
+    return *value;
+  }
+  template <class T>
+  T load_if_free(const T* value, T) const {
+    return *value;
+  }
+  bool is_look(std::int64_t) const {
+    return true;
+  }
+  static constexpr bool reads_are_free = true;
+
+  template <class Sum, class Body>
+  void sum_to(
+      const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
+    *out = sum<Sum>(stage, first, last, body);
+  }
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
+    *out = sum_runs<Sum>(stage, first, last, body);
+  }
+
+  /// Sum of body(i) for i in [first, last): runs of 64 in sequence, then their sums in sequence.
+  template <class Sum, class Body>
+  Sum sum(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    return add_runs<Sum>(first, last, [&](std::int64_t begin, std::int64_t end) {
+      Sum sum{};
+      for (std::int64_t i = begin; i < end; ++i) sum += body(i);
+      return sum;
+    });
+  }
+
+  /// Sum of body.run(begin, end) over runs of at most 64 indices of [first, last), in sequence.
+  template <class Sum, class Body>
+  Sum sum_runs(const char*, std::int64_t first, std::int64_t last, const Body& body) const {
+    return add_runs<Sum>(first, last, [&](std::int64_t begin, std::int64_t end) {
+      return body.template run<run_length>(begin, end);
+    });
+  }
+
+ private:
+  static constexpr int run_length = 64;
+  static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
+
+  template <class Sum, class Run>
+  Sum add_runs(std::int64_t first, std::int64_t last, const Run& body) const {
+    const std::int64_t runs = (last - first + run_length - 1) / run_length;
+    const auto run_sum = [&](std::int64_t run) {
+      const std::int64_t begin = first + run * run_length;
+      return body(begin, std::min(begin + run_length, last));
+    };
+    Sum total{};
+    if (threads_ == 1 || last - first < serial_below) {
+      for (std::int64_t run = 0; run < runs; ++run) total += run_sum(run);
+      return total;
+    }
+    std::vector<Sum> sums(static_cast<std::size_t>(runs));
+#pragma omp parallel for schedule(static) num_threads(threads_)
+    for (std::int64_t run = 0; run < runs; ++run)
+      sums[static_cast<std::size_t>(run)] = run_sum(run);
+    for (const Sum& sum : sums) total += sum;
+    return total;
+  }
+
+  int threads_;
+  alignas(16) std::byte state_[1024];
+};
+
+}  // namespace tetwarp

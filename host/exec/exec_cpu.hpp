@@ -1,0 +1,273 @@
+/// @file exec_cpu.hpp
+/// CpuExec: the operations a pipeline is made of, on host threads. Results do not depend on how
+/// many threads there are: every index writes its own output, scans and sorts are stable.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/base/warp_backend.hpp"
+#include "kernels/base/cell_pair.hpp"
+#include "kernels/base/stage_times.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// Owns host memory that only grows; contents are undefined after growth.
+template <class T>
+class HostBuffer {
+ public:
+  void reserve(std::int64_t size) {
+    if (size <= capacity_) return;
+    data_ = std::make_unique_for_overwrite<T[]>(static_cast<std::size_t>(size));
+    capacity_ = size;
+  }
+  std::int64_t capacity() const { return capacity_; }
+  View<T> view(std::int64_t size) const { return {data_.get(), size}; }
+  View<const T> const_view(std::int64_t size) const { return {data_.get(), size}; }
+
+ private:
+  std::unique_ptr<T[]> data_;
+  std::int64_t capacity_ = 0;
+};
+
+class CpuExec {
+ public:
+  template <class T>
+  using Buffer = HostBuffer<T>;
+  template <class T>
+  using HomeBuffer = HostBuffer<T>;
+  template <class T>
+  struct Staged {};  ///< nothing: what upload() is given is read in place
+
+  /// Sizes can be read between stages for nothing, so buffers are always made to measure.
+  static constexpr bool reads_are_free = true;
+
+  explicit CpuExec(int threads) : threads_(threads) {}
+
+  int threads() const { return threads_; }
+  std::string device() const { return processor_name(); }
+  StageTimes& times() { return times_[flight_]; }
+
+  /// What follows belongs to one of two steps in flight, 0 or 1. All of it is done at once, so that
+  /// nothing has to wait for anything.
+  void select(int flight) { flight_ = flight; }
+  void begin_compute(void*) {}
+  void end_compute() {}
+  void wait_computed() {}
+  void drain() noexcept {}
+
+  /// Host memory for a stage to read: no copy.
+  template <class T>
+  View<const T> resident(const char*, const T* host, std::int64_t size, Buffer<T>&) {
+    return {host, size};
+  }
+  template <class T>
+  View<const T> upload(const char*, const T* host, std::int64_t size, Staged<T>&) {
+    return {host, size};
+  }
+  /// Host memory for a stage to write: no copy.
+  template <class T>
+  T* writable(T* host, std::int64_t, Buffer<T>&) {
+    return host;
+  }
+  /// Brings what was written to writable() memory home: it is there.
+  template <class T>
+  void deliver(const char*, View<const T>, T*) {}
+  bool delivers_beside(const void*) const { return true; }
+
+  /// The value of a few entries, once all stages before have run.
+  template <class T>
+  void read(View<const T> from, T* to) {
+    std::copy_n(from.data, from.size, to);
+  }
+  template <class T>
+  void fetch(View<const T> from, HomeBuffer<T>& to) {
+    read(from, to.view(from.size).data);
+  }
+  template <class T>
+  void zero(const char* label, View<T> view) {
+    const Clock clock(*this, label);
+    std::memset(static_cast<void*>(view.data), 0, static_cast<std::size_t>(view.size) * sizeof(T));
+  }
+
+  /// body(i) for i in [0, count).
+  template <class Body>
+  void for_each(const char* label, std::int64_t count, const Body& body) {
+    const Clock clock(*this, label);
+#pragma omp parallel for schedule(static) num_threads(threads_) if (count > serial_below)
+    for (std::int64_t i = 0; i < count; ++i) body(i);
+  }
+
+  /// body(segment, local, item) for every item of every segment: offsets[s] + local = item.
+  /// Items from `capacity` on are left out.
+  template <class Body>
+  void for_each_item(const char* label,
+                     View<const std::int64_t> offsets,
+                     std::int64_t capacity,
+                     const Body& body) {
+    for_each_span(
+        label, offsets, capacity,
+        [&](std::int64_t segment, std::int64_t first, std::int64_t past, std::int64_t item) {
+          for (; first < past; ++first, ++item) body(segment, first, item);
+        });
+  }
+
+  /// body(segment, first, past, item) for stretches of items that follow each other in a segment:
+  /// offsets[s] + first = item.
+  template <class Body>
+  void for_each_span(const char* label,
+                     View<const std::int64_t> offsets,
+                     std::int64_t capacity,
+                     const Body& body) {
+    const Clock clock(*this, label);
+    const std::int64_t segments = offsets.size - 1;
+    const std::int64_t items = std::min(offsets[segments], capacity);
+    const std::int64_t chunks = (items + chunk_ - 1) / chunk_;
+#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (items > serial_below)
+    for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
+      const std::int64_t end = std::min(items, (chunk + 1) * chunk_);
+      std::int64_t item = chunk * chunk_;
+      std::int64_t segment =
+          std::upper_bound(offsets.data, offsets.data + offsets.size, item) - offsets.data - 1;
+      for (; item < end; ++segment) {
+        const std::int64_t begin = offsets[segment], past = std::min(offsets[segment + 1], end);
+        if (item < past) body(segment, item - begin, past - begin, item);
+        item = past;
+      }
+    }
+  }
+
+  /// values[i] becomes the sum of the values before it; the last entry, whatever it held, the
+  /// total.
+  void exclusive_scan(const char* label, View<std::int64_t> values) {
+    const Clock clock(*this, label);
+    std::int64_t sum = 0;
+    for (std::int64_t i = 0; i < values.size; ++i) {
+      const std::int64_t value = values[i];
+      values[i] = sum;
+      sum += value;
+    }
+  }
+
+  /// Makes room for scans of so many values: here they need none.
+  void reserve_scan(std::int64_t) {}
+
+  /// Marks pairs that no later stage may read by accident; here stages stop at the count.
+  void reject_all(const char*, View<CellPair>) {}
+
+  /// Copies the pairs that are not rejected, in their order, and counts them.
+  void select_valid(const char* label,
+                    View<const CellPair> candidates,
+                    View<const std::int64_t> candidate_count,
+                    View<CellPair> pairs,
+                    View<std::int64_t> pair_count) {
+    const Clock clock(*this, label);
+    const std::int64_t count = std::min(candidate_count[0], candidates.size);
+    std::vector<std::int64_t> kept(static_cast<std::size_t>(threads_ + 1));
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t sum = 0;
+      for (std::int64_t i = begin; i < end; ++i) sum += candidates[i] != rejected_pair;
+      kept[static_cast<std::size_t>(part + 1)] = sum;
+    });
+    for (std::size_t p = 1; p < kept.size(); ++p) kept[p] += kept[p - 1];
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t to = kept[static_cast<std::size_t>(part)];
+      const std::int64_t past = kept[static_cast<std::size_t>(part + 1)];
+      for (std::int64_t i = begin; i < end && to < past; ++i) {
+        pairs[to] = candidates[i];
+        to += candidates[i] != rejected_pair;
+      }
+    });
+    pair_count[0] = kept.back();
+  }
+
+  /// Stable radix sort by cell of the first pair_count[0] pairs.
+  void sort_pairs(const char* label,
+                  View<CellPair> pairs,
+                  View<const std::int64_t> pair_count,
+                  int cell_bits) {
+    const Clock clock(*this, label);
+    const std::int64_t count = pair_count[0];
+    scratch_.reserve(count);
+    CellPair* from = pairs.data;
+    CellPair* to = scratch_.view(count).data;
+    // Digits as even as the bits allow: fewer passes over the pairs count most.
+    const int passes = (cell_bits + radix_bits - 1) / radix_bits;
+    for (int pass = 0; pass < passes; ++pass) {
+      const int shift = 32 + cell_bits * pass / passes;
+      const int bits = 32 + cell_bits * (pass + 1) / passes - shift;
+      sort_digit(from, to, count, shift, bits);
+      std::swap(from, to);
+    }
+    if (from != pairs.data) std::copy_n(from, count, pairs.data);
+  }
+
+  /// Adds its life time to a label.
+  class Clock {
+   public:
+    Clock(CpuExec& exec, const char* label)
+        : exec_(exec), label_(label), start_(std::chrono::steady_clock::now()) {}
+    ~Clock() {
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+      exec_.times().add(label_, passed.count());
+    }
+    Clock(const Clock&) = delete;
+    Clock& operator=(const Clock&) = delete;
+
+   private:
+    CpuExec& exec_;
+    const char* label_;
+    std::chrono::steady_clock::time_point start_;
+  };
+
+ private:
+  /// work(part, begin, end) for every thread's part of [0, count); parts ascend.
+  template <class Work>
+  void for_each_part(std::int64_t count, const Work& work) {
+#pragma omp parallel for schedule(static, 1) num_threads(threads_) if (count > serial_below)
+    for (int part = 0; part < threads_; ++part) {
+      work(part, count * part / threads_, count * (part + 1) / threads_);
+    }
+  }
+
+  /// One pass of the sort: stable by `bits` bits from `shift` on.
+  void sort_digit(const CellPair* from, CellPair* to, std::int64_t count, int shift, int bits) {
+    const std::int64_t digits = std::int64_t{1} << bits;
+    const CellPair mask = static_cast<CellPair>(digits - 1);
+    places_.assign(static_cast<std::size_t>(digits * threads_), 0);
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t* place = places_.data() + digits * part;
+      for (std::int64_t i = begin; i < end; ++i) ++place[from[i] >> shift & mask];
+    });
+    std::int64_t sum = 0;
+    for (std::int64_t digit = 0; digit < digits; ++digit) {
+      for (int part = 0; part < threads_; ++part) {
+        std::int64_t& place = places_[static_cast<std::size_t>(digits * part + digit)];
+        const std::int64_t size = place;
+        place = sum;
+        sum += size;
+      }
+    }
+    for_each_part(count, [&](int part, std::int64_t begin, std::int64_t end) {
+      std::int64_t* place = places_.data() + digits * part;
+      for (std::int64_t i = begin; i < end; ++i) to[place[from[i] >> shift & mask]++] = from[i];
+    });
+  }
+
+  static constexpr std::int64_t serial_below = 2048;  ///< starting threads costs more than that
+  static constexpr std::int64_t chunk_ = 4096;
+  static constexpr int radix_bits = 11;
+
+  int threads_;
+  StageTimes times_[2];  ///< of each step in flight
+  int flight_ = 0;
+  HostBuffer<CellPair> scratch_;
+  std::vector<std::int64_t> places_;  ///< of the sort, [thread][digit]
+};
+
+}  // namespace tetwarp

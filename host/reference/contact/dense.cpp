@@ -1,0 +1,160 @@
+/// @file dense.cpp
+#include "host/reference/contact/dense.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tetwarp::reference {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+MatrixXd dense_of(const SparseMatrix& matrix) {
+  MatrixXd result =
+      MatrixXd::Zero(static_cast<Index>(matrix.rows), static_cast<Index>(matrix.columns));
+  for (Index row = 0; row < result.rows(); ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    for (std::int64_t e = matrix.row_start[r]; e < matrix.row_start[r + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      result(row, matrix.column[entry]) += matrix.value[entry];
+    }
+  }
+  return result;
+}
+
+VectorXd dense_of(const std::vector<double>& values) {
+  return VectorXd::Map(values.data(), static_cast<Index>(values.size()));
+}
+
+/// A vector per contact, where an empty one stands for zeros.
+VectorXd per_contact(const std::vector<double>& values, Index contacts) {
+  return values.empty() ? VectorXd::Zero(contacts) : dense_of(values);
+}
+
+void add_adhesion(const AdhesionState& adhesion, DenseContacts& contacts) {
+  const Index count = contacts.contact_count();
+  contacts.stiffness = VectorXd::Zero(3 * count);
+  contacts.offset = VectorXd::Zero(3 * count);
+  const VectorXd area = per_contact(adhesion.area, count);
+  const VectorXd normal = per_contact(adhesion.stiffness, count);
+  const VectorXd beta = per_contact(adhesion.intensity, count);
+  const VectorXd tangent = adhesion.tangential_stiffness.empty()
+                               ? normal
+                               : per_contact(adhesion.tangential_stiffness, count);
+  const double dt = adhesion.time_step;
+  for (Index c = 0; c < count; ++c) {
+    if (beta(c) == 0) continue;
+    const double common = dt * dt * area(c) * beta(c) * beta(c);
+    contacts.stiffness.segment<3>(3 * c) << common * normal(c), common * tangent(c),
+        common * tangent(c);
+    for (Index a = 1; a < 3 && !adhesion.gap.empty(); ++a) {
+      contacts.offset(3 * c + a) = adhesion.gap[static_cast<std::size_t>(3 * c + a)] / dt;
+    }
+  }
+}
+
+/// What friction may carry against sliding, max(mu nu_n - chi |spring|, 0): per tangent of the
+/// pyramid, for both tangents together, said twice, of the cone.
+Vector2d friction_bounds(double friction,
+                         const Vector3d& nu,
+                         const Vector3d& spring,
+                         const ContactOptions& options) {
+  Vector2d carried = Vector2d::Zero();
+  if (options.rule == AdhesionRule::restrictive) {
+    carried = spring.tail<2>().cwiseAbs();
+    if (options.law == FrictionLaw::cone) carried.setConstant(carried.norm());
+  }
+  const double coulomb = friction * std::max(nu(0), 0.0);
+  return (Vector2d::Constant(coulomb) - carried).cwiseMax(0.0);
+}
+
+/// |e_n|^2 / rho_n + |e_t|^2 / rho_t of one contact.
+double residual_energy(const DenseContacts& contacts,
+                       Index c,
+                       const VectorXd& impulse,
+                       const VectorXd& velocity,
+                       const ContactOptions& options) {
+  const Eigen::Matrix2d slip = contacts.delassus.block<2, 2>(3 * c + 1, 3 * c + 1);
+  const Eigen::Matrix2d symmetric = 0.5 * (slip + slip.transpose());
+  const double softest =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(symmetric).eigenvalues().maxCoeff();
+  const double rho_n = 1 / contacts.delassus(3 * c, 3 * c) + contacts.stiffness(3 * c);
+  const double rho_t = (softest > 0 ? 1 / softest : 1) + contacts.stiffness(3 * c + 1);
+
+  const Vector3d u = velocity.segment<3>(3 * c);
+  const Vector3d spring =
+      contacts.stiffness.segment<3>(3 * c).cwiseProduct(u + contacts.offset.segment<3>(3 * c));
+  const Vector3d nu = impulse.segment<3>(3 * c) + spring;
+  const Vector2d bounds = friction_bounds(contacts.friction(c), nu, spring, options);
+  const Vector2d target = nu.tail<2>() - rho_t * u.tail<2>();
+  Vector2d allowed = target.cwiseMax(-bounds).cwiseMin(bounds);
+  if (options.law == FrictionLaw::cone) {
+    allowed = target.norm() > bounds(0) ? Vector2d(bounds(0) * target.normalized()) : target;
+  }
+  const double normal_error = std::min(nu(0), rho_n * u(0));
+  return normal_error * normal_error / rho_n + (nu.tail<2>() - allowed).squaredNorm() / rho_t;
+}
+
+double residual_norm(const DenseContacts& contacts,
+                     const VectorXd& impulse,
+                     const VectorXd& velocity,
+                     const ContactOptions& options) {
+  double energy = 0;
+  for (Index c = 0; c < contacts.contact_count(); ++c) {
+    energy += residual_energy(contacts, c, impulse, velocity, options);
+  }
+  return std::sqrt(energy);
+}
+
+}  // namespace
+
+DenseContacts make_dense(const ContactProblem& problem, double recovery_speed) {
+  DenseContacts contacts;
+  contacts.friction = dense_of(problem.friction);
+  add_adhesion(problem.adhesion, contacts);
+  if (problem.is_local()) {
+    contacts.delassus = dense_of(problem.delassus);
+    contacts.free_velocity = dense_of(problem.free_velocity);
+    return contacts;
+  }
+  const Eigen::LLT<MatrixXd> system(dense_of(problem.system));
+  if (system.info() != Eigen::Success) {
+    throw ContactProblemError("system",
+                              ": not positive definite; give every body mass and inertia");
+  }
+  contacts.free_body_velocity = system.solve(dense_of(problem.load));
+  if (contacts.contact_count() == 0) {
+    contacts.body_change.resize(system.rows(), 0);
+    return contacts;
+  }
+  const MatrixXd jacobian = dense_of(problem.jacobian);
+  contacts.body_change = system.solve(jacobian.transpose());
+  contacts.delassus = jacobian * contacts.body_change;
+  VectorXd offset = dense_of(problem.velocity_offset);
+  for (Index c = 0; c < contacts.contact_count(); ++c) {
+    offset(3 * c) = std::max(offset(3 * c), -recovery_speed);
+  }
+  contacts.free_velocity = jacobian * contacts.free_body_velocity + offset;
+  return contacts;
+}
+
+double eta_of(const DenseContacts& contacts,
+              const VectorXd& impulse,
+              const ContactOptions& options) {
+  const VectorXd none = VectorXd::Zero(impulse.size());
+  const double work = impulse.dot(contacts.delassus * impulse);
+  const double scale = residual_norm(contacts, none, contacts.free_velocity, options) +
+                       std::sqrt(std::max(work, 0.0));
+  const double error = residual_norm(contacts, impulse, contacts.velocity(impulse), options);
+  return error == 0 ? 0 : error / scale;
+}
+
+}  // namespace tetwarp::reference

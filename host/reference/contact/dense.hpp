@@ -1,0 +1,54 @@
+/// @file dense.hpp
+/// A contact problem as dense matrices, and its residual straight from the laws. Part of back end
+/// `reference`, which shares no line with the kernels it is the judge of.
+#pragma once
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+namespace tetwarp::reference {
+
+/// u = B r + q and v = v_free + V r; rows go contact by contact: normal, tangent 1, tangent 2.
+struct DenseContacts {
+  Eigen::MatrixXd delassus;            ///< B, [3 contacts][3 contacts], 1/kg
+  Eigen::VectorXd free_velocity;       ///< q, m/s, offset included
+  Eigen::VectorXd stiffness;           ///< diagonal of K, kg
+  Eigen::VectorXd offset;              ///< o: 0 and the stored tangential gaps over dt, m/s
+  Eigen::VectorXd friction;            ///< mu, [contacts]
+  Eigen::MatrixXd body_change;         ///< V = A^-1 J^T, [dofs][3 contacts]; no rows in local form
+  Eigen::VectorXd free_body_velocity;  ///< A^-1 b, [dofs]
+
+  Eigen::Index contact_count() const { return friction.size(); }
+  Eigen::VectorXd velocity(const Eigen::VectorXd& impulse) const {
+    return delassus * impulse + free_velocity;
+  }
+};
+
+/// @param recovery_speed  limit of -w_n in global form [m/s]
+/// @pre check_problem(problem) has passed
+/// @throws ContactProblemError  when A as a whole is not positive definite
+DenseContacts make_dense(const ContactProblem& problem,
+                         double recovery_speed = std::numeric_limits<double>::infinity());
+
+/// The energy-weighted natural residual, relative to that of no impulses; 0 exactly at a solution.
+double eta_of(const DenseContacts& contacts,
+              const Eigen::VectorXd& impulse,
+              const ContactOptions& options);
+
+/// Impulses of every solution of a pyramid or frictionless problem whose velocities differ, by
+/// trying all combinations of open, sticking and sliding contacts: each makes the laws a linear
+/// system; its answer counts when it satisfies all of them.
+/// @pre mode_count(contacts, options) is a number of systems one is willing to solve
+std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
+                                                const ContactOptions& options);
+
+/// Linear systems that enumerate_impulses() solves; infinity where the laws are not piecewise
+/// linear.
+double mode_count(const DenseContacts& contacts, const ContactOptions& options);
+
+/// Whether any impulses at all make every u_n >= 0.
+bool is_feasible(const DenseContacts& contacts);
+
+}  // namespace tetwarp::reference

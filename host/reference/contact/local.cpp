@@ -1,0 +1,124 @@
+/// @file local.cpp
+#include "host/reference/contact/local.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace tetwarp::reference {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+namespace {
+
+/// How far friction exceeds its bound, for nu and u.
+double excess(const LocalContact& contact,
+              const Vector3d& nu,
+              const Vector3d& u,
+              const ContactOptions& options) {
+  const double chi = options.rule == AdhesionRule::restrictive ? 1 : 0;
+  const double spring = contact.stiffness(1) * (u + contact.offset).tail<2>().norm();
+  const double bound = contact.friction * std::max(nu(0), 0.0) - chi * spring;
+  return nu.tail<2>().norm() - std::max(bound, 0.0);
+}
+
+/// Impulse along one tangent. With p = B_aa, u0 = u - p r, the spring alone moves to
+/// h = (u0 - p kappa o) / (1 + kappa p); friction f acts against p' = p / (1 + kappa p).
+double tangent_impulse(const LocalContact& contact,
+                       Eigen::Index a,
+                       double coulomb,
+                       double impulse,
+                       double velocity,
+                       const ContactOptions& options) {
+  const double chi = options.rule == AdhesionRule::restrictive ? 1 : 0;
+  const double kappa = contact.stiffness(a);
+  const double offset = contact.offset(a);
+  const double p = contact.delassus(a, a);
+  if (!(p > 0)) return impulse;
+  const double u0 = velocity - p * impulse;
+  const double h = (u0 - p * kappa * offset) / (1 + kappa * p);
+  const double softened = p / (1 + kappa * p);
+  const double sign = h < 0 ? -1 : 1;
+
+  double friction = -h / softened;
+  if (std::abs(h) > softened * std::max(coulomb - chi * kappa * std::abs(offset), 0.0)) {
+    friction = -sign * coulomb;
+    if (chi > 0) {
+      friction = 0;
+      // The spring pulls towards q; only one q agrees with the velocity it leads to.
+      for (const double q : {1.0, -1.0}) {
+        const double u = (h - sign * softened * (coulomb - q * kappa * offset)) /
+                         (1 - sign * q * softened * kappa);
+        const double left = coulomb - q * kappa * (u + offset);
+        if (q * (u + offset) >= 0 && sign * u >= 0 && left >= 0) friction = -sign * left;
+      }
+    }
+  }
+  return (friction - kappa * (u0 + offset)) / (1 + kappa * p);
+}
+
+}  // namespace
+
+Vector3d solve_cone(const LocalContact& contact,
+                    const Vector3d& free,
+                    const ContactOptions& options) {
+  const Matrix3d stiffness = contact.stiffness.asDiagonal();
+  const Eigen::PartialPivLU<Matrix3d> with_springs(Matrix3d::Identity() +
+                                                   contact.delassus * stiffness);
+  // u = compliance nu + start, the springs inside.
+  const Matrix3d compliance = with_springs.solve(contact.delassus);
+  const Vector3d start = with_springs.solve(free - contact.delassus * (stiffness * contact.offset));
+  // r = nu - K (u + o) without its cancellation: (I + K B) r = nu - K (u0 + o).
+  const auto impulse_of = [&](const Vector3d& nu) -> Vector3d {
+    return (Matrix3d::Identity() + stiffness * contact.delassus)
+        .partialPivLu()
+        .solve(nu - stiffness * (free + contact.offset));
+  };
+  if (start(0) >= 0) return impulse_of(Vector3d::Zero());
+
+  const Vector3d stick = compliance.completeOrthogonalDecomposition().solve(-start);
+  if (excess(contact, stick, compliance * stick + start, options) <= 0) return impulse_of(stick);
+
+  // Sliding, nu_t = -a u_t with a = mix scale / (1 - mix): no friction at mix = 0, stick at 1.
+  const double scale = 1 / compliance.bottomRightCorner<2, 2>().norm();
+  const auto sliding = [&](double mix) -> Vector3d {
+    Matrix3d matrix = compliance;
+    Vector3d right = -start;
+    matrix.bottomRows<2>() *= mix * scale;
+    right.tail<2>() *= mix * scale;
+    matrix(1, 1) += 1 - mix;
+    matrix(2, 2) += 1 - mix;
+    return matrix.partialPivLu().solve(right);
+  };
+  double low = 0;
+  double high = 1;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (low + high);
+    const Vector3d nu = sliding(middle);
+    (excess(contact, nu, compliance * nu + start, options) <= 0 ? low : high) = middle;
+  }
+  return impulse_of(sliding(low));
+}
+
+Vector3d update_pyramid(const LocalContact& contact,
+                        Vector3d impulse,
+                        Vector3d velocity,
+                        const ContactOptions& options) {
+  const auto change = [&](Eigen::Index row, double value) {
+    velocity += contact.delassus.col(row) * (value - impulse(row));
+    impulse(row) = value;
+  };
+  const double own = contact.delassus(0, 0);
+  const double gap = velocity(0) - own * impulse(0);
+  const double kappa = contact.stiffness(0);
+  change(0, gap <= 0 ? -gap / own : -kappa * gap / (1 + kappa * own));
+  const double coulomb = contact.friction * std::max(impulse(0), 0.0);
+  for (Eigen::Index a = 1; a < 3; ++a) {
+    change(a, tangent_impulse(contact, a, coulomb, impulse(a), velocity(a), options));
+  }
+  return impulse;
+}
+
+}  // namespace tetwarp::reference

@@ -1,0 +1,132 @@
+/// @file overlap.cpp
+#include "host/reference/warp/overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tetwarp::reference {
+
+namespace {
+
+using Simplex = std::array<Eigen::Vector3d, 4>;
+
+/// A tetrahedron with positions in voxels.
+Simplex simplex_of(const Corners& tet) {
+  Simplex simplex;
+  for (std::size_t node = 0; node < 4; ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      simplex[node](static_cast<Eigen::Index>(axis)) =
+          static_cast<double>(tet[node][axis]) / one_voxel;
+    }
+  }
+  return simplex;
+}
+
+/// What of simplices lies where normal . x >= offset, as simplices again.
+std::vector<Simplex> cut(const std::vector<Simplex>& simplices,
+                         const Eigen::Vector3d& normal,
+                         double offset) {
+  std::vector<Simplex> kept;
+  for (const Simplex& simplex : simplices) {
+    std::vector<Eigen::Vector3d> in, out;
+    for (const Eigen::Vector3d& x : simplex) (normal.dot(x) >= offset ? in : out).push_back(x);
+    const auto between = [&](std::size_t i, std::size_t o) {
+      const double above = normal.dot(in[i]) - offset, below = offset - normal.dot(out[o]);
+      return Eigen::Vector3d(in[i] + above / (above + below) * (out[o] - in[i]));
+    };
+    std::vector<Eigen::Vector3d> prism;  // two triangles, corner beside corner
+    if (out.empty()) {
+      kept.push_back(simplex);
+    } else if (in.size() == 1) {
+      kept.push_back({in[0], between(0, 0), between(0, 1), between(0, 2)});
+    } else if (in.size() == 2) {
+      prism = {in[0], between(0, 0), between(0, 1), in[1], between(1, 0), between(1, 1)};
+    } else if (in.size() == 3) {
+      prism = {in[0], in[1], in[2], between(0, 0), between(1, 0), between(2, 0)};
+    }
+    for (std::size_t first = 0; first < 3 && !prism.empty(); ++first) {
+      kept.push_back({prism[first], prism[first + 1], prism[first + 2], prism[first + 3]});
+    }
+  }
+  return kept;
+}
+
+/// What lies in the box of the voxel at `centre`.
+std::vector<Simplex> in_box(std::vector<Simplex> simplices, const Eigen::Vector3d& centre) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d normal = Eigen::Vector3d::Unit(axis);
+    simplices = cut(simplices, normal, centre(axis) - 0.5);
+    simplices = cut(simplices, -normal, -centre(axis) - 0.5);
+  }
+  return simplices;
+}
+
+double volume_of(const std::vector<Simplex>& simplices) {
+  double volume = 0;
+  for (const Simplex& s : simplices) {
+    volume += std::abs((s[1] - s[0]).cross(s[2] - s[0]).dot(s[3] - s[0])) / 6;
+  }
+  return volume;
+}
+
+/// Calls work(voxel, pieces) for the voxels whose boxes hold some of the simplices.
+template <class Work>
+void for_boxes(const std::vector<Simplex>& simplices, const Dims& dims, const Work& work) {
+  std::int64_t first[3], last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Simplex& simplex : simplices) {
+      for (const Eigen::Vector3d& x : simplex) {
+        low = std::min(low, x(axis));
+        high = std::max(high, x(axis));
+      }
+    }
+    const auto end = static_cast<double>(dims[static_cast<std::size_t>(axis)]);
+    first[axis] = static_cast<std::int64_t>(std::clamp(std::floor(low + 0.5), 0.0, end));
+    last[axis] = static_cast<std::int64_t>(std::clamp(std::floor(high + 0.5), -1.0, end - 1));
+  }
+  for (std::int64_t k = first[2]; k <= last[2]; ++k) {
+    for (std::int64_t j = first[1]; j <= last[1]; ++j) {
+      for (std::int64_t i = first[0]; i <= last[0]; ++i) {
+        const Eigen::Vector3d centre(static_cast<double>(i), static_cast<double>(j),
+                                     static_cast<double>(k));
+        const std::vector<Simplex> pieces = in_box(simplices, centre);
+        if (!pieces.empty()) work((k * dims[1] + j) * dims[0] + i, pieces);
+      }
+    }
+  }
+}
+
+Eigen::Matrix3d edges_of(const Simplex& s) {
+  Eigen::Matrix3d edges;
+  edges << s[1] - s[0], s[2] - s[0], s[3] - s[0];
+  return edges;
+}
+
+}  // namespace
+
+void for_held(const Corners& rest, const Dims& source, const VisitHeld& visit) {
+  for_boxes({simplex_of(rest)}, source, [&](std::int64_t from, const std::vector<Simplex>& parts) {
+    visit(from, volume_of(parts));
+  });
+}
+
+void for_overlaps(const Corners& rest,
+                  const Corners& now,
+                  const Dims& source,
+                  const Dims& output,
+                  const Visit& visit) {
+  const Simplex from = simplex_of(rest), to = simplex_of(now);
+  const Eigen::Matrix3d map = edges_of(from) * edges_of(to).inverse();
+  for_boxes({to}, output, [&](std::int64_t voxel, std::vector<Simplex> pieces) {
+    for (Simplex& piece : pieces) {
+      for (Eigen::Vector3d& x : piece) x = from[0] + map * (x - to[0]);
+    }
+    for_boxes(pieces, source, [&](std::int64_t origin, const std::vector<Simplex>& parts) {
+      visit(voxel, origin, volume_of(parts));
+    });
+  });
+}
+
+}  // namespace tetwarp::reference

@@ -1,0 +1,83 @@
+/// @file overlap.hpp
+/// Back end reference: what keeps totals, by cutting simplices.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include <tetwarp/warp.hpp>
+
+#include "host/reference/warp/exact_geometry.hpp"
+#include "host/reference/warp/sample.hpp"
+
+namespace tetwarp::reference {
+
+/// Boxes of voxels, from voxel (0, 0, 0) on.
+using Dims = std::array<std::int64_t, 3>;
+
+/// Told of a voxel of the output, one of the source, and how much of the latter's box gets from
+/// there to the former's [source voxel].
+using Visit = std::function<void(std::int64_t, std::int64_t, double)>;
+
+/// Tells what a tetrahedron that is not flat brings.
+void for_overlaps(const Corners& rest,
+                  const Corners& now,
+                  const Dims& source,
+                  const Dims& output,
+                  const Visit& visit);
+
+/// Told of a voxel of the source and how much of its box a tetrahedron holds [source voxel].
+using VisitHeld = std::function<void(std::int64_t, double)>;
+
+/// Tells what a tetrahedron holds at rest.
+void for_held(const Corners& rest, const Dims& source, const VisitHeld& visit);
+
+struct MovedTet {
+  Corners rest, now;
+};
+
+/// Every voxel of a region gets what tetrahedra bring into its box.
+/// @param ratio  volume of a source voxel over that of an output voxel
+/// @param out    [voxel of the region][component]
+template <class T>
+void carry(const VolumeView& source,
+           const std::vector<MovedTet>& tets,
+           const Region& region,
+           double ratio,
+           T* out) {
+  const T* samples = static_cast<const T*>(source.data);
+  const std::int64_t components = source.components;
+  Dims dims;
+  for (std::size_t axis = 0; axis < 3; ++axis) dims[axis] = region.end[axis] - region.begin[axis];
+  std::vector<double> sums(static_cast<std::size_t>(dims[0] * dims[1] * dims[2] * components), 0.0);
+  for (auto [rest, now] : tets) {
+    if (signed_volume(now) == 0) continue;
+    for (Quanta& node : now) {
+      for (std::size_t axis = 0; axis < 3; ++axis) node[axis] -= region.begin[axis] * one_voxel_int;
+    }
+    for_overlaps(rest, now, source.grid.dims, dims,
+                 [&](std::int64_t voxel, std::int64_t from, double volume) {
+                   for (std::int64_t c = 0; c < components; ++c) {
+                     sums[static_cast<std::size_t>(voxel * components + c)] +=
+                         volume * ratio * static_cast<double>(samples[from * components + c]);
+                   }
+                 });
+  }
+  for (std::size_t v = 0; v < sums.size(); ++v) out[v] = stored<T>(sums[v]);
+}
+
+/// What tetrahedra hold of a source at rest, component by component [source voxel].
+template <class T>
+std::vector<double> total_held(const VolumeView& source, const std::vector<MovedTet>& tets) {
+  std::vector<double> totals(static_cast<std::size_t>(source.components), 0.0);
+  for (const MovedTet& tet : tets) {
+    for_held(tet.rest, source.grid.dims, [&](std::int64_t from, double volume) {
+      const T* sample = static_cast<const T*>(source.data) + from * source.components;
+      for (double& sum : totals) sum += volume * static_cast<double>(*sample++);
+    });
+  }
+  return totals;
+}
+
+}  // namespace tetwarp::reference

@@ -1,0 +1,201 @@
+/// @file sample.hpp
+/// Back end reference: the source at a position by every filter, in float64, from the definitions.
+#pragma once
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <type_traits>
+#include <vector>
+
+#include <tetwarp/warp.hpp>
+
+#include "host/reference/warp/exact_geometry.hpp"
+
+namespace tetwarp::reference {
+
+/// How much a sample counts at a distance [voxel] along one axis; unscaled.
+double weight_of(Filter filter, double distance);
+
+/// Half the width of what weight_of() is not zero on [voxel].
+int radius_of(Filter filter);
+
+/// Index of the sample that stands at i of n: the nearest, or for splines the mirrored one.
+std::int64_t stand_in(Filter filter, std::int64_t i, std::int64_t n);
+
+/// Coefficients of the cubic B-spline through samples [k][j][i][component], mirrored at the rim; in
+/// place of a sample that is not finite stands the one before it in its row, or else the next.
+std::vector<double> spline_coefficients(std::vector<double> samples,
+                                        const std::array<std::int64_t, 3>& dims,
+                                        int components);
+
+template <class T>
+T stored(double value) {
+  if constexpr (std::is_integral_v<T>) {
+    const double whole = std::nearbyint(value);
+    if (whole <= static_cast<double>(std::numeric_limits<T>::min())) {
+      return std::numeric_limits<T>::min();
+    }
+    if (whole >= static_cast<double>(std::numeric_limits<T>::max())) {
+      return std::numeric_limits<T>::max();
+    }
+    return static_cast<T>(whole);
+  }
+  return static_cast<T>(value);
+}
+
+/// One source as a filter sees it.
+template <class T>
+class Sampler {
+ public:
+  Sampler(const VolumeView& source, const WarpOptions& options)
+      : data_(static_cast<const T*>(source.data)),
+        n_(source.grid.dims),
+        held_(source.held()),
+        components_(source.components),
+        filter_(options.filter),
+        background_(stored<T>(options.background)),
+        low_(static_cast<std::size_t>(components_), -INFINITY),
+        high_(static_cast<std::size_t>(components_), INFINITY) {
+    const auto count = static_cast<std::size_t>(source.grid.voxel_count() * components_);
+    if (filter_ == Filter::bspline) {
+      coefficients_ = spline_coefficients({data_, data_ + count}, n_, components_);
+      for (std::size_t s = 0; s < count; ++s) {
+        if (!std::isfinite(static_cast<double>(data_[s]))) coefficients_[s] = double(data_[s]);
+      }
+    }
+    const bool blends = filter_ != Filter::nearest && filter_ != Filter::labels;
+    if (!blends || options.overshoot == Overshoot::keep) return;
+    for (std::size_t c = 0; c < source.range.size() / 2; ++c) {
+      low_[c] = source.range[2 * c];
+      high_[c] = source.range[2 * c + 1];
+    }
+    if (!source.range.empty()) return;
+    std::ranges::fill(low_, INFINITY);
+    std::ranges::fill(high_, -INFINITY);
+    for (std::size_t s = 0; s < count; ++s) {
+      const double sample = static_cast<double>(data_[s]);
+      const std::size_t c = s % low_.size();
+      if (sample < low_[c]) low_[c] = sample;
+      if (sample > high_[c]) high_[c] = sample;
+    }
+  }
+
+  T background() const { return background_; }
+  int components() const { return components_; }
+
+  /// Writes the samples at an index position, or the background outside of the source.
+  void store(const Eigen::Vector3d& x, T* out) const {
+    bool is_centre = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = static_cast<double>(n_[static_cast<std::size_t>(axis)]);
+      if (!(x(axis) >= -0.5 - rim && x(axis) <= n - 0.5 + rim)) {
+        std::fill_n(out, components_, background_);
+        return;
+      }
+      is_centre = is_centre && x(axis) == std::floor(x(axis));
+    }
+    for (int c = 0; c < components_; ++c) {
+      if (is_centre || filter_ == Filter::nearest) {
+        out[c] = data_[offset_of({std::floor(x(0) + 0.5), std::floor(x(1) + 0.5),
+                                  std::floor(x(2) + 0.5)}) +
+                       c];
+      } else if (filter_ == Filter::labels) {
+        out[c] = label_at(x);
+      } else {
+        const double value = value_at(x, c);
+        const auto of = static_cast<std::size_t>(c);
+        out[c] = stored<T>(value < low_[of] ? low_[of] : value > high_[of] ? high_[of] : value);
+      }
+    }
+  }
+
+  /// Adds the values at an index position, not rounded. @returns false outside of the source
+  bool add(const Eigen::Vector3d& x, Eigen::VectorXd& sums) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = static_cast<double>(n_[static_cast<std::size_t>(axis)]);
+      if (!(x(axis) >= -0.5 - rim && x(axis) <= n - 0.5 + rim)) return false;
+    }
+    const Eigen::Vector3d nearest = (x.array() + 0.5).floor();
+    const bool is_sample = x == nearest || filter_ == Filter::nearest;
+    for (int c = 0; c < components_; ++c) {
+      sums(c) += is_sample ? static_cast<double>(data_[offset_of(nearest) + c]) : value_at(x, c);
+    }
+    return true;
+  }
+
+  /// Clamps values to the range of the samples where that is wanted.
+  void clamp(Eigen::VectorXd& values) const {
+    for (int c = 0; c < components_; ++c) {
+      const auto of = static_cast<std::size_t>(c);
+      if (values(c) < low_[of]) values(c) = low_[of];
+      if (values(c) > high_[of]) values(c) = high_[of];
+    }
+  }
+
+ private:
+  /// Position in memory of component 0 of the voxel that stands at (i, j, k).
+  std::int64_t offset_of(const Eigen::Vector3d& ijk) const {
+    std::int64_t offset = 0;
+    for (std::size_t axis = 3; axis-- > 0;) {
+      const auto i = static_cast<std::int64_t>(ijk(static_cast<Eigen::Index>(axis)));
+      offset = offset * (held_.end[axis] - held_.begin[axis]) +
+               (stand_in(filter_, i, n_[axis]) - held_.begin[axis]);
+    }
+    return offset * components_;
+  }
+
+  /// visit(offset, weight) for all that weigh anything at x.
+  template <class Visit>
+  void for_neighbors(const Eigen::Vector3d& x, const Visit& visit) const {
+    const int radius = radius_of(filter_);
+    const Eigen::Vector3d first = x.array().floor() - (radius - 1);
+    for (int k = 0; k < 2 * radius; ++k) {
+      for (int j = 0; j < 2 * radius; ++j) {
+        for (int i = 0; i < 2 * radius; ++i) {
+          const Eigen::Vector3d at = first + Eigen::Vector3d(i, j, k);
+          const double weight = weight_of(filter_, x(0) - at(0)) *
+                                weight_of(filter_, x(1) - at(1)) * weight_of(filter_, x(2) - at(2));
+          if (weight != 0) visit(offset_of(at), weight);
+        }
+      }
+    }
+  }
+
+  double value_at(const Eigen::Vector3d& x, int component) const {
+    double sum = 0, weights = 0;
+    for_neighbors(x, [&](std::int64_t offset, double weight) {
+      const std::int64_t s = offset + component;
+      const double sample = coefficients_.empty() ? static_cast<double>(data_[s])
+                                                  : coefficients_[static_cast<std::size_t>(s)];
+      sum += weight * sample;
+      weights += weight;
+    });
+    return sum / weights;
+  }
+
+  /// Positions are rounded to 2^-20 voxel, or a tie would hang on the last bit of one.
+  T label_at(const Eigen::Vector3d& x) const {
+    std::map<T, double> shares;
+    const Eigen::Vector3d rounded = (x * one_voxel).array().rint() / one_voxel;
+    for_neighbors(rounded,
+                  [&](std::int64_t offset, double weight) { shares[data_[offset]] += weight; });
+    const auto smaller = [](const auto& a, const auto& b) { return a.second < b.second; };
+    return std::ranges::max_element(shares, smaller)->first;
+  }
+
+  const T* data_;
+  std::array<std::int64_t, 3> n_;
+  Region held_;  ///< what `data_` is of the source
+  int components_;
+  Filter filter_;
+  T background_;
+  std::vector<double> coefficients_;  ///< for splines, in place of the samples
+  std::vector<double> low_, high_;    ///< bounds of a value, per component
+};
+
+}  // namespace tetwarp::reference

@@ -1,0 +1,253 @@
+/// @file warp.cpp
+/// Back end reference: the warp straight from its definition. Every tetrahedron over its bounding
+/// box, ownership by determinants in exact integers, values in float64; serial, no culling, no
+/// filter. It shares no line with the kernels it is the judge of.
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/error.hpp>
+#include <vector>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/base/warp_backend.hpp"
+#include "host/reference/warp/fields.hpp"
+#include "host/reference/warp/overlap.hpp"
+#include "host/reference/warp/ownership.hpp"
+#include "host/reference/warp/rule.hpp"
+#include "host/reference/warp/sample.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+using namespace reference;
+
+class ReferenceBackend : public WarpBackend {
+ public:
+  explicit ReferenceBackend(const WarpPlan& plan) : plan_(plan), owners_(plan_) {}
+
+  std::string device() const override { return processor_name(); }
+  int threads() const override { return 1; }
+
+  void upload(int flight, const PositionsView& deformed) override {
+    positions_[flight].assign(deformed.xyz, deformed.xyz + 3 * deformed.node_count);
+  }
+
+  void compute(int flight, const WarpTarget& target, const Progress& progress) override {
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t voxels = static_cast<std::size_t>(plan_.target_grid.voxel_count());
+    StepReport& report = reports_[flight];
+    report = {};
+    const double* const rest = plan_.mesh.rest_positions.front().data();
+    const double* const deformed = positions_[flight].data();
+    owners_.claim_all(rest, deformed, report.counts, progress);
+    make_rules(rest, deformed, report.counts);
+    for (std::size_t s = 0; s < plan_.sources.size(); ++s) {
+      with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+        T* const out = static_cast<T*>(target.volumes[s]);
+        fill<T>(s, out);
+        if (plan_.options.intensity != Intensity::value) {
+          conserve(s, rest, deformed, out, report);
+        }
+      });
+    }
+    for (std::size_t v = 0; v < voxels; ++v) {
+      report.counts.covered += owners_.owner[v] >= 0;
+      if (target.mask != nullptr) target.mask[v] = owners_.owner[v] >= 0;
+      if (target.owner != nullptr) target.owner[v] = owners_.cell_of(owners_.owner[v]);
+    }
+    for (const std::uint8_t count : owners_.strictly_inside) report.counts.folded += count > 1;
+    report.counts.voxels = static_cast<std::int64_t>(voxels);
+    report.counts.outside = report.counts.voxels - report.counts.covered;
+    report.counts.tetrahedra = static_cast<std::int64_t>(plan_.mesh.tets.size());
+    write_fields(rest, deformed, target.fields);
+    if (target.fields.forward != nullptr) {
+      Counts exchanged;
+      owners_.claim_all(deformed, rest, exchanged, {});
+      write_displacement(target.fields.forward);
+    }
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    report.timings.raster = passed.count();
+    if (progress && !progress(1.0)) throw Cancelled();
+  }
+
+  StepReport finish(int flight) override { return reports_[flight]; }
+
+ private:
+  void make_rules(const double* rest, const double* deformed, Counts& counts) {
+    rules_.assign(plan_.mesh.tets.size(), Rule());
+    for (std::size_t t = 0; t < rules_.size(); ++t) {
+      const auto number = static_cast<std::int32_t>(t);
+      const Corners now = owners_.corners_of(number, deformed, owners_.output);
+      if (signed_volume(now) == 0) continue;
+      rules_[t] = rule_of(owners_.corners_of(number, rest, owners_.source), now, owners_.source,
+                          owners_.output, plan_.options);
+      counts.tets_averaged += rules_[t].averages();
+    }
+  }
+
+  /// What is kept of a source, and what voxels hold of it.
+  template <class T>
+  void conserve(
+      std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
+    std::vector<MovedTet> tets;
+    for (std::int32_t t = 0; t < std::ssize(plan_.mesh.tets); ++t) {
+      tets.push_back({owners_.corners_of(t, rest, owners_.source),
+                      owners_.corners_of(t, deformed, owners_.output)});
+    }
+    const double source_voxel = std::abs(owners_.source.to_world.determinant());
+    const double output_voxel = std::abs(owners_.output.to_world.determinant());
+    if (plan_.options.intensity == Intensity::conservative) {
+      carry(plan_.sources[s], tets, plan_.region, source_voxel / output_voxel, out);
+    }
+    const std::vector<double> before = total_held<T>(plan_.sources[s], tets);
+    const auto components = static_cast<std::size_t>(plan_.sources[s].components);
+    std::vector<double> after(components, 0.0);
+    for (std::size_t n = 0; n < owners_.owner.size() * components; ++n) {
+      after[n % components] += static_cast<double>(out[n]);
+    }
+    Totals& totals = report.totals;
+    for (std::size_t c = 0; c < components && totals.count < Totals::most; ++c, ++totals.count) {
+      totals.before[totals.count] = before[c] * source_voxel;
+      totals.after[totals.count] = after[c] * output_voxel;
+    }
+  }
+
+  template <class T>
+  void fill(std::size_t s, T* out) const {
+    const Sampler<T> sampler(plan_.sources[s], plan_.options);
+    std::size_t v = 0;
+    for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
+      for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {
+        for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
+          T* voxel = out + v * static_cast<std::size_t>(sampler.components());
+          if (owners_.owner[v] >= 0) {
+            const Rule& rule = rules_[static_cast<std::size_t>(owners_.owner[v])];
+            store_voxel(s, sampler, owners_.source_position[v], rule, voxel);
+          } else if (plan_.options.outside == Outside::identity) {
+            store_voxel(s, sampler, same_place(i, j, k), outside_rule(), voxel);
+          } else {
+            std::fill_n(voxel, sampler.components(), sampler.background());
+          }
+        }
+      }
+    }
+  }
+
+  /// Of voxels that show the source at their own place.
+  Rule outside_rule() const {
+    Rule rule;
+    rule.step = owners_.source.from_world * owners_.output.to_world;
+    if (plan_.options.antialias) rule.parts = parts_of(rule.step);
+    return rule;
+  }
+
+  /// One voxel: a sample, or a mean of samples at the midpoints of its parts, by its rule.
+  template <class T>
+  void store_voxel(std::size_t s,
+                   const Sampler<T>& sampler,
+                   const Eigen::Vector3d& x,
+                   const Rule& rule,
+                   T* voxel) const {
+    const WarpOptions& options = plan_.options;
+    const Quantity quantity =
+        options.quantities.empty() ? Quantity::components : options.quantities[s];
+    const bool turns = quantity != Quantity::components && !rule.is_still && !rule.is_singular;
+    if (!turns && !rule.averages() && rule.scale == 1) return sampler.store(x, voxel);
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(sampler.components());
+    int count = 0;
+    for (int c = 0; c < rule.parts(2); ++c) {
+      for (int b = 0; b < rule.parts(1); ++b) {
+        for (int a = 0; a < rule.parts(0); ++a) {
+          const Eigen::Array3d part = Eigen::Vector3i(a, b, c).cast<double>();
+          const Eigen::Array3d within = (part + 0.5) / rule.parts.cast<double>().array() - 0.5;
+          count += sampler.add(x + rule.step * within.matrix(), mean);
+        }
+      }
+    }
+    if (count == 0) {
+      std::fill_n(voxel, sampler.components(), sampler.background());
+      return;
+    }
+    sampler.clamp(mean /= count);
+    if (turns) mean = reoriented(mean, quantity, rule.forward);
+    for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * rule.scale);
+  }
+
+  /// Calls body(v, index) for every voxel of the region.
+  template <class Body>
+  void for_each_voxel(const Body& body) const {
+    std::size_t v = 0;
+    for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
+      for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {
+        for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
+          body(v, Eigen::Vector3d(static_cast<double>(i), static_cast<double>(j),
+                                  static_cast<double>(k)));
+        }
+      }
+    }
+  }
+
+  /// Where the material of each voxel comes from, less the voxel's own place.
+  void write_displacement(float* displacement) const {
+    for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
+      Eigen::Vector3d apart = Eigen::Vector3d::Zero();
+      if (owners_.owner[v] >= 0) {
+        apart = owners_.source.origin - owners_.output.origin +
+                owners_.source.to_world * owners_.source_position[v] -
+                owners_.output.to_world * index;
+      }
+      store({apart(0), apart(1), apart(2)}, v, displacement);
+    });
+  }
+
+  void write_fields(const double* rest, const double* deformed, const FieldTarget& fields) const {
+    if (fields.displacement != nullptr) write_displacement(fields.displacement);
+    if (fields.jacobian == nullptr && fields.gradient == nullptr && fields.strain == nullptr)
+      return;
+    for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
+      Eigen::Matrix3d f = Eigen::Matrix3d::Zero(), e = f;
+      if (owners_.owner[v] >= 0) {
+        f = owners_.gradient(owners_.owner[v], index, rest, deformed);
+        e = green_lagrange(f);
+      }
+      store({f.determinant()}, v, fields.jacobian);
+      store({f(0, 0), f(0, 1), f(0, 2), f(1, 0), f(1, 1), f(1, 2), f(2, 0), f(2, 1), f(2, 2)}, v,
+            fields.gradient);
+      store({e(0, 0), e(1, 1), e(2, 2), e(0, 1), e(1, 2), e(0, 2)}, v, fields.strain);
+    });
+  }
+
+  /// Source index of an output voxel's own world position; whole voxels within 2^-40 are whole.
+  Eigen::Vector3d same_place(std::int64_t i, std::int64_t j, std::int64_t k) const {
+    const Eigen::Vector3d index(static_cast<double>(i), static_cast<double>(j),
+                                static_cast<double>(k));
+    const Eigen::Vector3d world_offset =
+        owners_.output.to_world * index + (owners_.output.origin - owners_.source.origin);
+    Eigen::Vector3d x = owners_.source.from_world * world_offset;
+    for (double& entry : x) {
+      if (std::abs(entry - std::nearbyint(entry)) < 0x1p-40) entry = std::nearbyint(entry);
+    }
+    return x;
+  }
+
+  WarpPlan plan_;
+  std::vector<double> positions_[2];
+  StepReport reports_[2];
+  Ownership owners_;
+  std::vector<Rule> rules_;  ///< of every tetrahedron
+};
+
+}  // namespace
+
+std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan) {
+  return std::make_unique<ReferenceBackend>(plan);
+}
+
+}  // namespace tetwarp

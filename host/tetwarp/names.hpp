@@ -1,0 +1,39 @@
+/// @file names.hpp
+/// The words of every public enum: what options take, reports say and parse() reads.
+#pragma once
+#include <span>
+#include <string_view>
+#include <type_traits>
+
+namespace tetwarp {
+
+/// One enumerator and its word.
+template <class Enum>
+struct EnumName {
+  Enum value;
+  const char* name;
+};
+
+/// All words of an enum, in the order in which help lists them. Defined for Backend, PixelType,
+/// Filter, Overshoot, Quantity, Intensity, Outside, Deformation, FrictionLaw, AdhesionRule,
+/// ContactMethod, ContactCoupling, ContactMeasure, ContactPrecision, ContactStatus and
+/// AdhesionIntegrator; a use for another enum does not link.
+template <class Enum>
+std::span<const EnumName<Enum>> names_of();
+
+/// The word of an enumerator, e.g. "int16", "auto" or "not converged".
+template <class Enum>
+requires std::is_enum_v<Enum>
+const char* name_of(Enum value) {
+  for (const EnumName<Enum>& entry : names_of<Enum>()) {
+    if (entry.value == value) return entry.name;
+  }
+  return "";
+}
+
+/// The enumerator of a word: parse<Filter>("linear").
+/// @throws std::invalid_argument that lists the words
+template <class Enum>
+Enum parse(std::string_view word);
+
+}  // namespace tetwarp

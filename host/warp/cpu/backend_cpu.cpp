@@ -1,0 +1,30 @@
+/// @file backend_cpu.cpp
+/// Back end cpu: the pipeline on host threads.
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "host/exec/exec_cpu.hpp"
+#include "host/warp/cpu/cell_cull_cpu.hpp"
+#include "host/warp/cpu/cell_raster_cpu.hpp"
+#include "host/warp/warp_pipeline.hpp"
+
+namespace tetwarp {
+
+std::string processor_name() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown processor";
+}
+
+std::unique_ptr<WarpBackend> make_cpu_backend(const WarpPlan& plan) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = plan.options.threads > 0 ? plan.options.threads : std::max(cores, 1);
+  return std::make_unique<WarpPipeline<CpuExec>>(plan, CpuExec(threads));
+}
+
+}  // namespace tetwarp

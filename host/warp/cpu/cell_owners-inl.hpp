@@ -1,0 +1,141 @@
+/// @file cell_owners-inl.hpp
+/// Who owns the voxels of a cell. Included once per vector instruction set (the
+/// name and the toggled guard are Highway's convention).
+#if defined(TETWARP_CELL_OWNERS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_CELL_OWNERS_INL
+#undef TETWARP_CELL_OWNERS_INL
+#else
+#define TETWARP_CELL_OWNERS_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+#include "host/warp/cpu/cell_sides-inl.hpp"
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The part of a cell that is in the output, and where the cell is.
+struct CellBox {
+  int corner[3];  ///< frame voxel
+  int begin[3];   ///< voxels of the cell, 0 to 8
+  int end[3];
+};
+
+inline CellBox make_cell_box(const OutputFrame& frame, int ci, int cj, int ck) {
+  const int cell[3] = {ci, cj, ck};
+  CellBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.corner[axis] = cell[axis] * cell_edge;
+    box.begin[axis] = std::max(frame.begin[axis] - box.corner[axis], 0);
+    box.end[axis] = std::min(frame.end[axis] - box.corner[axis], cell_edge);
+  }
+  return box;
+}
+
+/// Bits of rows [begin, end) with the bits `row` in each.
+inline SliceBits rows_between(int begin, int end, unsigned row) {
+  if (begin >= end) return 0;
+  const SliceBits all = ~SliceBits{0} >> (64 - 8 * (end - begin)) << (8 * begin);
+  return all & (0x0101010101010101u * SliceBits{row});
+}
+
+/// Adds to `mine` those of the voxels `unsure` that lie inside tetrahedron t.
+template <class T>
+inline void ask_each(const RasterJob<T>& job,
+                     const CellBox& box,
+                     int t,
+                     const CellPlanes& planes,
+                     const CellBits& unsure,
+                     CellBits& mine,
+                     RasterCounts& counts) {
+  for (int k = 0; k < cell_edge; ++k) {
+    for (SliceBits bits = unsure.slice[k]; bits != 0; bits &= bits - 1) {
+      const int bit = std::countr_zero(bits);
+      int side = certain_side(planes, bit % 8, bit / 8, k);
+      if (side == 0) {
+        ++counts.exact_tests;
+        const TetNodes nodes = tet_nodes(job.nodes, job.tets.data + std::int64_t{4} * t);
+        side = is_inside_exact(nodes, box.corner[0] + bit % 8, box.corner[1] + bit / 8,
+                               box.corner[2] + k);
+      }
+      if (side > 0) mine.slice[k] |= SliceBits{1} << bit;
+    }
+  }
+}
+
+/// Tells the memory that the tetrahedron of pair `p` will be read: meshes are larger than caches.
+template <class T>
+inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
+  if (p >= static_cast<std::uint64_t>(job.pairs.size)) return;
+  const TetSetup* setup = &job.setups[tet_of(job.pairs[p])];
+  for (std::size_t byte = 0; byte < sizeof(TetSetup); byte += 64) {
+    hwy::Prefetch(reinterpret_cast<const char*>(setup) + byte);
+  }
+}
+
+/// Gives every voxel of a cell to its lowest tetrahedron.
+/// @param job     planes, nodes and pairs
+/// @param box     the cell
+/// @param range   its pairs
+/// @param open    in and out: voxels without an owner
+/// @param counts  tests are added
+/// @param own     own(pair, bits) is told of every pair that owns voxels, pairs ascending
+template <class T, class Own>
+inline void find_owners(const RasterJob<T>& job,
+                        const CellBox& box,
+                        const CellRange& range,
+                        CellBits& open,
+                        RasterCounts& counts,
+                        Own&& own) {
+  for (std::uint32_t p = range.begin; p < range.end; ++p) {
+    fetch_ahead(job, p + 3);
+    if (is_accepted(job.pairs[p])) {
+      own(p, open);
+      open = {};
+      return;
+    }
+    const int t = tet_of(job.pairs[p]);
+    const TetSetup& tet = job.setups[t];
+    int begin[3], end[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      begin[axis] = std::max(tet.begin[axis] - box.corner[axis], box.begin[axis]);
+      end[axis] = std::min(tet.end[axis] - box.corner[axis], box.end[axis]);
+    }
+    const SliceBits rows = rows_between(begin[1], end[1], 0xff);
+    CellBits tested;
+    for (int k = 0; k < cell_edge; ++k) {
+      tested.slice[k] = k >= begin[2] && k < end[2] ? open.slice[k] & rows : 0;
+    }
+    if (!any_of(tested)) continue;
+    counts.inside_tests += count_of(tested);
+    CellPlanes planes;
+    set_cell_planes(tet, box.corner, planes);
+    CellBits inside = {}, possible = {};
+    cell_sides(planes, {begin[1], end[1], begin[2], end[2]}, inside, possible);
+    CellBits mine, unsure;
+    for (int k = 0; k < cell_edge; ++k) {
+      mine.slice[k] = inside.slice[k] & tested.slice[k];
+      unsure.slice[k] = possible.slice[k] & ~inside.slice[k] & tested.slice[k];
+    }
+    if (any_of(unsure)) ask_each(job, box, t, planes, unsure, mine, counts);
+    if (!any_of(mine)) continue;
+    own(p, mine);
+    for (int k = 0; k < cell_edge; ++k) open.slice[k] &= ~mine.slice[k];
+    if (!any_of(open)) return;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

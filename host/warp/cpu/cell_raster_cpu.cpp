@@ -1,0 +1,89 @@
+/// @file cell_raster_cpu.cpp
+/// Rasters cells row by row; compiled once per vector instruction set.
+#include "host/warp/cpu/cell_raster_cpu.hpp"
+
+#include <atomic>
+#include <cstdint>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/warp/cpu/cell_raster_cpu.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/warp/cpu/cell_line-inl.hpp"
+#include "host/warp/cpu/line_grid.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+
+/// Rasters pieces of lines of cells, taken from `next` until `end`.
+void raster_pieces(PixelType type,
+                   const void* job,
+                   std::atomic<std::int64_t>& next,
+                   std::int64_t end,
+                   RasterCounts& counts) {
+  with_pixel_type(type, [&]<class T>(T) {
+    const RasterJob<T>& typed = *static_cast<const RasterJob<T>*>(job);
+    const LineGrid lines(typed.frame);
+    CellLine<T> line(typed, lines.longest(), counts);
+    for (std::int64_t piece = next++; piece < end; piece = next++) {
+      const auto [first, past] = lines.piece(piece);
+      for (std::int64_t l = first; l < past; ++l) {
+        const LineGrid::Line at = lines.line(l);
+        line.raster(at.ci_begin, at.ci_end, at.cj, at.ck);
+      }
+    }
+  });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tetwarp {
+
+HWY_EXPORT(raster_pieces);
+
+template <class T>
+void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
+  const CpuExec::Clock clock(exec, "warp/raster");
+  const std::int64_t pieces = LineGrid(job.frame).piece_count();
+  const std::int64_t batches = progress.is_wanted() ? 32 : 1;
+  RasterCounts sum = {0, 0, 0, 0};
+  for (std::int64_t batch = 0; batch < batches; ++batch) {
+    const std::int64_t end = pieces * (batch + 1) / batches;
+    std::atomic<std::int64_t> next = pieces * batch / batches;
+    std::int64_t covered = 0, inside_tests = 0, exact_tests = 0, copied = 0;
+#pragma omp parallel num_threads(exec.threads()) \
+    reduction(+ : covered, inside_tests, exact_tests, copied)
+    {
+      RasterCounts counts = {0, 0, 0, 0};
+      HWY_DYNAMIC_DISPATCH(raster_pieces)(pixel_type_of<T>(), &job, next, end, counts);
+      covered += counts.covered;
+      inside_tests += counts.inside_tests;
+      exact_tests += counts.exact_tests;
+      copied += counts.copied;
+    }
+    sum = {sum.covered + covered, sum.inside_tests + inside_tests, sum.exact_tests + exact_tests,
+           sum.copied + copied};
+    progress.report(static_cast<double>(batch + 1) / static_cast<double>(batches));
+  }
+  if (job.counts != nullptr) *job.counts = sum;
+}
+
+template void cell_raster(CpuExec&, const RasterJob<std::uint8_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::int8_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::uint16_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::int16_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::uint32_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::int32_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::uint64_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<std::int64_t>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<float>&, const ProgressPart&);
+template void cell_raster(CpuExec&, const RasterJob<double>&, const ProgressPart&);
+
+}  // namespace tetwarp
+#endif  // HWY_ONCE

@@ -1,0 +1,220 @@
+/// @file cell_sides-inl.hpp
+/// Which voxels of a cell lie inside a tetrahedron, by exact intervals of its rows. Included once
+/// per vector instruction set (the name and the toggled guard are Highway's convention).
+#if defined(TETWARP_CELL_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_CELL_SIDES_INL
+#undef TETWARP_CELL_SIDES_INL
+#else
+#define TETWARP_CELL_SIDES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Bit 8 j + i of a slice is voxel (i, j).
+using SliceBits = std::uint64_t;
+
+/// A bit per voxel of a cell.
+struct CellBits {
+  alignas(64) SliceBits slice[cell_edge];
+};
+
+inline bool any_of(const CellBits& bits) {
+  SliceBits all = 0;
+  for (const SliceBits slice : bits.slice) all |= slice;
+  return all != 0;
+}
+
+inline int count_of(const CellBits& bits) {
+  int count = 0;
+  for (const SliceBits slice : bits.slice) count += std::popcount(slice);
+  return count;
+}
+
+/// Bit 8 k + j: some voxel of row (j, k).
+inline std::uint64_t rows_of(const CellBits& bits) {
+  const hn::CappedTag<std::uint8_t, sizeof(CellBits)> d;
+  const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
+  std::uint64_t mask = 0;
+  for (std::size_t row = 0; row < sizeof(CellBits); row += hn::Lanes(d)) {
+    const auto some = hn::Ne(hn::Load(d, rows + row), hn::Zero(d));
+    std::uint8_t part[8] = {};
+    hn::StoreMaskBits(d, some, part);
+    std::uint64_t word;
+    std::memcpy(&word, part, sizeof(word));
+    mask |= word << row;
+  }
+  return mask;
+}
+
+/// set_cell_plane() of the four faces at once: equal bits.
+inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& planes) {
+  const hn::CappedTag<double, 4> d;  // one lane per face
+  const hn::Rebind<float, decltype(d)> df;
+  hn::Vec<decltype(d)> from[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    from[axis] = hn::Set(d, static_cast<double>(corner[axis] - tet.anchor[axis]));
+  }
+  for (std::size_t face = 0; face < 4; face += hn::Lanes(d)) {
+    const auto normal = [&](int axis) { return hn::LoadU(d, tet.plane[axis] + face); };
+    auto value = hn::Mul(normal(0), from[0]);
+    value = hn::Add(value, hn::Mul(normal(1), from[1]));
+    value = hn::Add(value, hn::Mul(normal(2), from[2]));
+    value = hn::Add(value, hn::LoadU(d, tet.plane[3] + face));
+    const auto unit = hn::Mul(hn::Add(hn::Abs(value), hn::Set(d, 24.0)), hn::Set(d, 0x1p-21));
+    const auto scale = hn::Div(hn::Set(d, 1.0), unit);
+    hn::StoreU(hn::DemoteTo(df, hn::Mul(value, scale)), df, planes.value + face);
+    for (int axis = 0; axis < 3; ++axis) {
+      hn::StoreU(hn::DemoteTo(df, hn::Mul(normal(axis), scale)), df, planes.step[axis] + face);
+    }
+  }
+}
+
+/// Where rows cross the planes of a tetrahedron, ready for vectors of rows.
+///
+/// With the unit of CellPlanes, certain_side() is open only where a plane is within 1.7 of zero,
+/// and rounding moves a crossing by less than 1.8 / |step|. Crossings are taken `width`, which is
+/// `margin` / |step| at least, to either side; beyond, both agree.
+struct RowCrossings {
+  static constexpr float margin = 4.0f;
+  static constexpr float flattest = 0x1p-3f;  ///< steps below change a row by less than 1
+
+  explicit RowCrossings(const CellPlanes& planes) {
+    const hn::FixedTag<float, 4> d;  // one lane per face
+    const auto zero = hn::Zero(d), never = hn::Set(d, std::numeric_limits<float>::infinity());
+    const auto step = hn::LoadU(d, planes.step[0]);
+    const auto is_flat = hn::Lt(hn::Abs(step), hn::Set(d, flattest));
+    const auto voxels = hn::IfThenZeroElse(is_flat, hn::Div(hn::Set(d, -1.0f), step));
+    hn::Store(hn::Mul(hn::LoadU(d, planes.value), voxels), d, at);
+    hn::Store(hn::Mul(hn::LoadU(d, planes.step[1]), voxels), d, per_row);
+    hn::Store(hn::Mul(hn::LoadU(d, planes.step[2]), voxels), d, per_slice);
+    hn::Store(hn::IfThenZeroElse(hn::Lt(voxels, zero), hn::Neg(never)), d, if_entering);
+    hn::Store(hn::IfThenZeroElse(hn::Gt(voxels, zero), never), d, if_leaving);
+    width = margin * hn::GetLane(hn::MaxOfLanes(d, hn::Abs(voxels)));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, is_flat, bits);
+    flat = bits[0];
+  }
+
+  alignas(16) float at[4];  ///< crossing of row 0 of slice 0 [voxel]
+  alignas(16) float per_row[4];
+  alignas(16) float per_slice[4];
+  alignas(16) float if_entering[4];  ///< 0 where rows enter through the face, else -infinity
+  alignas(16) float if_leaving[4];   ///< 0 where rows leave through the face, else +infinity
+  float width;
+  unsigned flat;  ///< bits of the faces that rows run along
+};
+
+/// Rows of a cell that a tetrahedron's box meets.
+struct RowBox {
+  int j_begin, j_end, k_begin, k_end;
+};
+
+/// cell_sides() with `Rows` rows of a slice, from `j_first` on, side by side in a vector; where it
+/// is wider, the next slice follows.
+template <int Rows>
+inline void packed_sides(const CellPlanes& planes,
+                         const RowBox& box,
+                         int j_first,
+                         CellBits& inside,
+                         CellBits& possible) {
+  const hn::CappedTag<float, cell_edge> d;  // one lane per row
+  const hn::RebindToSigned<decltype(d)> di;
+  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
+  constexpr int slices = std::max(lanes / Rows, 1);
+  const RowCrossings rows(planes);
+  const auto edge = hn::Set(d, float{cell_edge}), zero = hn::Zero(d);
+  const auto width = hn::Set(d, rows.width);
+  const auto never = hn::Set(d, std::numeric_limits<float>::infinity());
+  // The first voxel of a row at or beyond a position.
+  const auto voxel_from = [&](auto x) { return hn::Ceil(hn::Min(hn::Max(x, zero), edge)); };
+  // Bits [begin, past) of a row.
+  const auto row_bits = [&](auto begin, auto past) {
+    const auto all = hn::Set(di, -1);
+    const auto bits =
+        hn::AndNot(hn::Shl(all, hn::ConvertTo(di, past)), hn::Shl(all, hn::ConvertTo(di, begin)));
+    return hn::TruncateTo(d8, hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), bits));
+  };
+  const auto store_rows = [&](auto rows8, CellBits& bits, int k, int j) {
+    std::uint8_t part[lanes];
+    hn::StoreU(rows8, d8, part);
+    for (int slice = 0; slice < slices; ++slice) {
+      auto* row = reinterpret_cast<std::uint8_t*>(&bits.slice[k + slice]) + j;
+      std::memcpy(row, part + Rows * slice, std::min(lanes, Rows));
+    }
+  };
+  const auto lane = hn::Iota(di, 0);
+  const auto lane_k = hn::ConvertTo(d, hn::ShiftRight < Rows == 8 ? 3 : 2 > (lane));
+  const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, Rows - 1)));
+  for (int j_part = 0; j_part < Rows; j_part += lanes) {
+    const auto j = hn::Add(lane_j, hn::Set(d, static_cast<float>(j_first + j_part)));
+    const int k_first = box.k_begin - box.k_begin % slices;
+    hn::Vec<decltype(d)> at[4];
+    for (int face = 0; face < 4; ++face) {
+      const float slice = rows.at[face] + rows.per_slice[face] * static_cast<float>(k_first);
+      at[face] = hn::Add(hn::Set(d, slice), hn::Mul(j, hn::Set(d, rows.per_row[face])));
+      at[face] = hn::Add(at[face], hn::Mul(lane_k, hn::Set(d, rows.per_slice[face])));
+    }
+    for (int k = k_first; k < box.k_end; k += slices) {
+      auto enter = hn::Neg(never), leave = never;
+      for (int face = 0; face < 4; ++face) {
+        enter = hn::Max(enter, hn::Add(at[face], hn::Set(d, rows.if_entering[face])));
+        leave = hn::Min(leave, hn::Add(at[face], hn::Set(d, rows.if_leaving[face])));
+        at[face] = hn::Add(at[face], hn::Set(d, slices * rows.per_slice[face]));
+      }
+      const auto begin = voxel_from(hn::Add(enter, width));
+      const auto begin_early = voxel_from(hn::Sub(enter, width));
+      auto past = voxel_from(hn::Sub(leave, width));
+      auto past_late = voxel_from(hn::Add(leave, width));
+      for (unsigned flat = rows.flat; flat != 0; flat &= flat - 1) {
+        const int face = std::countr_zero(flat);
+        const auto slice = hn::Add(lane_k, hn::Set(d, static_cast<float>(k)));
+        const auto value = hn::Add(
+            hn::Add(hn::Set(d, planes.value[face]), hn::Mul(j, hn::Set(d, planes.step[1][face]))),
+            hn::Mul(slice, hn::Set(d, planes.step[2][face])));
+        const auto margin = hn::Set(d, RowCrossings::margin);
+        past = hn::IfThenElseZero(hn::Gt(value, margin), past);
+        past_late = hn::IfThenElseZero(hn::Gt(value, hn::Neg(margin)), past_late);
+      }
+      const auto sure = row_bits(begin, past);
+      store_rows(sure, inside, k, j_first + j_part);
+      const auto is_sure = hn::And(hn::Eq(begin, begin_early), hn::Eq(past, past_late));
+      const bool all_sure = hn::AllTrue(d, is_sure);
+      store_rows(all_sure ? sure : row_bits(begin_early, past_late), possible, k, j_first + j_part);
+    }
+  }
+}
+
+/// Sides of the voxels of some rows of a cell: those that lie inside for certain, and those that
+/// may; about the difference certain_side() must be asked. Other rows hold anything.
+inline void cell_sides(const CellPlanes& planes,
+                       const RowBox& box,
+                       CellBits& inside,
+                       CellBits& possible) {
+  const int j_first = std::min(box.j_begin, cell_edge / 2);
+  if (box.j_end <= j_first + cell_edge / 2) {
+    packed_sides<cell_edge / 2>(planes, box, j_first, inside, possible);
+  } else {
+    packed_sides<cell_edge>(planes, box, 0, inside, possible);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,222 @@
+/// @file row_filtered.cpp
+/// Voxel by voxel, in vectors of four: one lane per axis for positions and weights, then one per
+/// tap along x. Such vectors every processor has.
+#include "host/warp/cpu/row_filtered.hpp"
+
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstddef>
+#include <type_traits>
+
+namespace tetwarp {
+
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using LaneTag = hn::FixedTag<float, 4>;
+using LaneIntTag = hn::RebindToSigned<LaneTag>;
+
+/// Four float32 numbers that volume_filter.hpp takes for one.
+struct Lanes {
+  hn::Vec<LaneTag> v;
+
+  Lanes() = default;
+  explicit Lanes(double all) : v(hn::Set(LaneTag(), static_cast<float>(all))) {}
+  explicit Lanes(hn::Vec<LaneTag> lanes) : v(lanes) {}
+
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.v, b.v)); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.v, b.v)); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.v, b.v)); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.v, b.v)); }
+};
+
+/// Four samples that follow each other.
+template <class T>
+Lanes read_four(const T* samples) {
+  const LaneTag d;
+  if constexpr (std::is_same_v<T, float>) {
+    return Lanes(hn::LoadU(d, samples));
+  } else {
+    const auto narrow = hn::LoadU(hn::Rebind<T, LaneTag>(), samples);
+    return Lanes(hn::ConvertTo(d, hn::PromoteTo(LaneIntTag(), narrow)));
+  }
+}
+
+/// Positions of a row, one lane per axis; the fourth has no meaning.
+class RowWalk {
+ public:
+  /// @param around  samples that the filter reads on either side of a position
+  template <class T>
+  RowWalk(const SourceView<T>& source, const RowMap& map, int around, int j, int k) {
+    const LaneTag d;
+    const auto row = hn::Mul(hn::Load(d, map.axis[1]), hn::Set(d, static_cast<float>(j)));
+    const auto slice = hn::Mul(hn::Load(d, map.axis[2]), hn::Set(d, static_cast<float>(k)));
+    start_ = hn::Add(hn::Add(hn::Load(d, map.base), row), slice);
+    step_ = hn::Load(d, map.axis[0]);
+    whole_ = hn::Load(LaneIntTag(), map.whole);
+    first_ = hn::Set(LaneIntTag(), around - 1);
+    const std::int32_t last[4] = {source.dims[0] - 1 - around, source.dims[1] - 1 - around,
+                                  source.dims[2] - 1 - around, 0};
+    last_ = hn::LoadU(LaneIntTag(), last);
+  }
+
+  /// Goes to voxel i. True where all samples around it exist and all of them have weight.
+  bool move_to(int i) {
+    const LaneTag d;
+    const LaneIntTag di;
+    constexpr float least = 0x1p-20f;
+    const auto x = hn::Add(start_, hn::Mul(step_, hn::Set(d, static_cast<float>(i))));
+    const auto lower = hn::Floor(x);
+    const auto t = hn::Sub(x, lower);
+    const auto at = hn::Add(whole_, hn::ConvertTo(di, lower));
+    fraction = Lanes(t);
+    hn::Store(t, d, fractions);
+    hn::Store(at, di, voxel);
+    const auto within = hn::And(hn::Ge(t, hn::Set(d, least)), hn::Le(t, hn::Set(d, 1 - least)));
+    const auto beyond = hn::Or(hn::Lt(at, first_), hn::Gt(at, last_));
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::AndNot(hn::RebindMask(d, beyond), within), bits);
+    return (bits[0] & 7) == 7;
+  }
+
+  Lanes fraction;
+  alignas(16) float fractions[4];
+  alignas(16) std::int32_t voxel[4];  ///< lower neighbour
+
+ private:
+  hn::Vec<LaneTag> start_, step_;
+  hn::Vec<LaneIntTag> whole_, first_, last_;
+};
+
+/// blended() of volume_filter.hpp for taps that all exist: equal bits.
+/// @param samples  the lower neighbour
+template <Filter filter, class Sample>
+float blended_lanes(const Sample* samples,
+                    std::ptrdiff_t up,
+                    std::ptrdiff_t far,
+                    const RowWalk& at) {
+  constexpr int taps = filter == Filter::lanczos ? 6 : 4;
+  const LaneTag d;
+  Lanes weights[taps];
+  filter_weights(filter, at.fraction, weights);
+  alignas(16) float weight[taps][4];
+  for (int i = 0; i < taps; ++i) hn::Store(weights[i].v, d, weight[i]);
+  const auto step_to_near = [&](int axis) { return at.fractions[axis] < 0.5f ? 0 : 1; };
+  const float near =
+      static_cast<float>(samples[step_to_near(0) + step_to_near(1) * up + step_to_near(2) * far]);
+  const Lanes nears(static_cast<double>(near));
+  const Sample* first = samples - (taps / 2 - 1) * (1 + up + far);
+  Lanes along_y[taps];
+  for (int i = 0; i < taps; ++i) along_y[i] = Lanes(static_cast<double>(weight[i][1]));
+  // Of six taps the last four follow in a vector of their own, of which two count.
+  Lanes column(0.0), column_end(0.0);
+  for (int z = 0; z < taps; ++z, first += far) {
+    Lanes part(0.0), part_end(0.0);
+    const Sample* line = first;
+    for (int y = 0; y < taps; ++y, line += up) {
+      part = part + along_y[y] * (read_four(line) - nears);
+      if constexpr (taps == 6) part_end = part_end + along_y[y] * (read_four(line + 2) - nears);
+    }
+    const Lanes w(static_cast<double>(weight[z][2]));
+    column = column + w * part;
+    if constexpr (taps == 6) column_end = column_end + w * part_end;
+  }
+  alignas(16) float columns[8];
+  hn::StoreU(column_end.v, d, columns + 2);
+  hn::StoreU(column.v, d, columns);
+  float sum = 0;
+  for (int x = 0; x < taps; ++x) sum += weight[x][0] * columns[x];
+  return near + sum;
+}
+
+/// One voxel whose neighbours all exist, one component.
+template <class T>
+T sample_lanes(const SourceView<T>& source, Filter filter, const RowWalk& at) {
+  const std::ptrdiff_t up = source.dims[0], far = up * source.dims[1];
+  const std::ptrdiff_t offset = at.voxel[0] + at.voxel[1] * up + at.voxel[2] * far;
+  const T* const samples = source.data + offset;
+  if constexpr (!std::is_floating_point_v<T>) {
+    if (filter == Filter::labels) {
+      T label[8];
+      bool is_same = true;
+      for (int corner = 0; corner < 8; ++corner) {
+        label[corner] = samples[(corner & 1) + (corner >> 1 & 1) * up + (corner >> 2) * far];
+        is_same = is_same && label[corner] == label[0];
+      }
+      return is_same ? label[0] : heaviest_label(label, at.fractions);
+    }
+  }
+  float value = 0;
+  if (filter == Filter::lanczos) {
+    value = blended_lanes<Filter::lanczos>(samples, up, far, at);
+  } else if (filter == Filter::cubic) {
+    value = blended_lanes<Filter::cubic>(samples, up, far, at);
+  } else {
+    value = blended_lanes<Filter::bspline>(source.coefficients + offset, up, far, at);
+  }
+  return finished(source, value, 0);
+}
+
+/// Any voxel (i, j, k) of the row.
+template <class Real, class T>
+void sample_one(
+    const RasterJob<T>& job, const SourceMap<Real>& map, int i, int j, int k, std::int64_t row) {
+  Real x[3];
+  local_position(map, i, j, k, x);
+  store_wide_sample(job, job.filter, map.whole, x, job.volume + (row + i) * job.source.components);
+}
+
+}  // namespace
+
+template <class T>
+void sample_row_filtered(
+    const RasterJob<T>& job, const RowMap& row_map, unsigned bits, int j, int k, std::int64_t row) {
+  double start[3], linear[3][3];
+  const auto set_start = [&] {
+    const int* corner = row_map.corner;
+    map_start(row_map.tet, corner[0], corner[1], corner[2], start, linear);
+  };
+  if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+    if (row_map.tet.kind == MapKind::affine) {
+      RowWalk walk(job.source, row_map, reach_of(job.filter), j, k);
+      for (; bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        if (job.source.components == 1 && walk.move_to(i)) {
+          job.volume[row + i] = sample_lanes(job.source, job.filter, walk);
+        } else {
+          set_start();
+          sample_one(job, make_source_map<float>(job.source, start, linear), i, j, k, row);
+        }
+      }
+      return;
+    }
+  }
+  set_start();
+  const auto map = make_source_map<double>(job.source, start, linear);
+  for (; bits != 0; bits &= bits - 1) sample_one(job, map, std::countr_zero(bits), j, k, row);
+}
+
+template void sample_row_filtered(
+    const RasterJob<std::uint8_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::int8_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::uint16_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::int16_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::uint32_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::int32_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::uint64_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<std::int64_t>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<float>&, const RowMap&, unsigned, int, int, std::int64_t);
+template void sample_row_filtered(
+    const RasterJob<double>&, const RowMap&, unsigned, int, int, std::int64_t);
+
+}  // namespace tetwarp

@@ -1,0 +1,177 @@
+/// @file row_sample-inl.hpp
+/// What the covered voxels of a row get. Included once per vector instruction set (the name and the
+/// toggled guard are Highway's convention).
+#if defined(TETWARP_ROW_SAMPLE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_SAMPLE_INL
+#undef TETWARP_ROW_SAMPLE_INL
+#else
+#define TETWARP_ROW_SAMPLE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <utility>
+
+#include "host/warp/cpu/row_components-inl.hpp"
+#include "host/warp/cpu/row_filtered.hpp"
+#include "host/warp/cpu/row_ruled.hpp"
+#include "host/warp/cpu/row_store-inl.hpp"
+#include "host/warp/cpu/row_vector-inl.hpp"
+#include "host/warp/cpu/row_wide-inl.hpp"
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+
+/// Writes rows of a line of cells. Keeps its buffers of taps from row to row. The job's volume is
+/// the row to be written, from voxel 0 of the line's cell 0 on.
+template <class T>
+class RowSampler {
+ public:
+  explicit RowSampler(const RasterJob<T>& job)
+      : job_(job), nearest_(job.filter == Filter::nearest) {}
+
+  /// Writes the covered voxels of row (j, k). Runs of a cell stand side by side; their order within
+  /// it is lost.
+  void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    if (job_.rules.size > 0) count = write_ruled(sources, runs, count, j, k);
+    if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
+    for (int r = 0; r < count;) {
+      int past = r;
+      RowKind kind = RowKind::inner;
+      for (; past < count && runs[past].cell == runs[r].cell; ++past) {
+        kind = std::max(kind, sources[runs[past].source].kind());
+      }
+      if (kind >= RowKind::alone) {
+        write_mixed(sources, runs + r, past - r, j, k);
+      } else {
+        add(kind, sources, runs + r, past - r, j, k);
+      }
+      r = past;
+    }
+    flush(inner_);
+    flush(rim_);
+    copier_.flush();
+  }
+
+ private:
+  /// Writes the runs that have a rule. @returns how many others there are; they move to the front
+  int write_ruled(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    int plain_count = 0;
+    for (int r = 0; r < count; ++r) {
+      const RowSource& source = sources[runs[r].source];
+      if (has_rule(job_, source.tet())) {
+        write_row_ruled(job_, source.tet(), source.corner(), runs[r].bits, j, k,
+                        cell_edge * runs[r].cell);
+      } else {
+        runs[plain_count++] = runs[r];
+      }
+    }
+    return plain_count;
+  }
+
+  /// A cell's row of which some runs go voxel by voxel.
+  void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    int vectored_count = 0;  // those move to the front
+    RowKind kind = RowKind::inner;
+    for (int r = 0; r < count; ++r) {
+      const RowSource& source = sources[runs[r].source];
+      const int cell_row = cell_edge * runs[r].cell;
+      if (source.kind() == RowKind::alone) {
+        sample_alone(job_, source, runs[r].bits, j, k, cell_row);
+      } else if (source.kind() == RowKind::copied) {
+        unsigned bits = runs[r].bits;  // and of neighbours that move alike
+        for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
+          bits |= runs[r + 1].bits;
+        }
+        copy_run(job_, source, bits, j, k, job_.volume + cell_row * job_.source.components,
+                 copier_);
+      } else {
+        kind = std::max(kind, source.kind());
+        std::swap(runs[vectored_count++], runs[r]);
+      }
+    }
+    if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
+  }
+
+  void write_filtered(const RowSource* sources, const RowRun* runs, int count, int j, int k) {
+    for (const RowRun& run : std::span(runs, static_cast<std::size_t>(count))) {
+      const RowSource& source = sources[run.source];
+      const int cell_row = cell_edge * run.cell;
+      if (source.kind() == RowKind::copied) {
+        copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
+                 copier_);
+      } else if (source.setup().kind == MapKind::trilinear) {
+        sample_row_hex(job_, source.tet(), source.corner(), run.bits, j, k, cell_row);
+      } else {
+        const RowMap map = {source.setup(), source.corner(), source.base, source.axis,
+                            source.whole};
+        sample_row_filtered(job_, map, run.bits, j, k, cell_row);
+      }
+    }
+    copier_.flush();
+  }
+
+  static bool moves_alike(const RowSource& a, const RowSource& b) {
+    return b.kind() == RowKind::copied && std::equal(a.whole, a.whole + 3, b.whole);
+  }
+
+  void add(RowKind kind, const RowSource* sources, const RowRun* runs, int count, int j, int k) {
+    if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+      if (kind == RowKind::inner) {
+        add_unit(job_.source, nearest_, sources, runs, count, j, k, inner_);
+        if (inner_.count == inner_.row_units) flush(inner_);
+      } else {
+        add_unit(job_.source, nearest_, sources, runs, count, j, k, rim_);
+        if (rim_.count == rim_.row_units) flush(rim_);
+      }
+    }
+  }
+
+  template <bool Rim>
+  void flush(RowTaps<Rim>& taps) {
+    if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+      if (taps.count == 0) return;
+      const int components = job_.source.components;
+      if (components == 1) {
+        sample_units(job_.source, nearest_, taps, values_);
+      } else {
+        sample_components(job_.source, nearest_, taps, values_);
+      }
+      for (int u = 0; u < taps.count; ++u) {
+        const RowUnit& unit = taps.unit[u];
+        const float* values = values_ + cell_edge * components * u;
+        T* out = job_.volume + cell_edge * unit.cell * components;
+        if (components == 1) {
+          store_values(values, unit.inside, out);
+        } else {
+          store_components(values, unit.inside, components, out);
+        }
+        if constexpr (Rim) {
+          for (unsigned bits = unit.bits & ~unsigned{unit.inside}; bits != 0; bits &= bits - 1) {
+            std::fill_n(out + std::countr_zero(bits) * components, components, job_.background);
+          }
+        }
+      }
+      taps.count = 0;
+    }
+  }
+
+  const RasterJob<T>& job_;
+  bool nearest_;
+  RunCopier<T> copier_;
+  RowTaps<false> inner_;
+  RowTaps<true> rim_;
+  alignas(64) float values_[cell_edge * RowTaps<false>::row_units * max_components + 4];
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

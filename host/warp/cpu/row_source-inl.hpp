@@ -1,0 +1,165 @@
+/// @file row_source-inl.hpp
+/// The map of one tetrahedron over one cell, and the runs of a row that share an owner. Included
+/// once per vector instruction set (the name and the toggled guard are Highway's convention).
+#if defined(TETWARP_ROW_SOURCE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_SOURCE_INL
+#undef TETWARP_ROW_SOURCE_INL
+#else
+#define TETWARP_ROW_SOURCE_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// How the voxels that a tetrahedron owns in a cell are sampled.
+enum class RowKind {
+  inner,  ///< a vector of float32 positions, none near the source's rim
+  rim,    ///< the same, but positions may lie outside and neighbours are clamped
+  alone,  ///< voxel by voxel: steep maps, hexahedra, float64, huge sources
+  copied  ///< moved by whole voxels
+};
+
+/// Where a job's source may be read by vectors; three axes, and a fourth that never objects.
+struct SourceBounds {
+  template <class T>
+  explicit SourceBounds(const RasterJob<T>& job) {
+    const SourceView<T>& source = job.source;
+    const double voxels = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
+    is_vectored =
+        sizeof(ArithmeticOf<T>) == 4 && voxels <= std::numeric_limits<std::int32_t>::max();
+    // Eight bytes are read where two neighbours along x are wanted, or both of these and, by fours,
+    // components behind them: up to `spare` voxels more.
+    const int spare = source.components == 1 ? 8 / static_cast<int>(sizeof(T)) - 1 : 2;
+    // Narrow sources have them only in several rows or slices.
+    constexpr double slack = 0.51;  // nearest rounds up
+    double voxels_per_step = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = source.origin[axis];
+      inner_low[axis] = origin[axis] + 0.01;
+      inner_high[axis] = origin[axis] + source.dims[axis] - 1 - slack;
+      end[axis] = inner_high[axis] - std::ceil(spare / voxels_per_step);
+      voxels_per_step *= source.dims[axis];
+    }
+  }
+
+  bool is_vectored;
+  double origin[4] = {0, 0, 0, 0};      ///< of what the view holds
+  double inner_low[4] = {0, 0, 0, -1};  ///< above and below these no neighbour is clamped
+  double inner_high[4] = {0, 0, 0, 1};
+  double end[4] = {0, 0, 0, -1};  ///< beyond these on all axes a read may pass the source's end
+};
+
+/// The map of one tetrahedron seen from one cell, as make_source_map() has it: equal bits.
+class RowSource {
+ public:
+  template <class T>
+  RowSource(const RasterJob<T>& job,
+            const SourceBounds& bounds,
+            const TetSetup& tet,
+            const int* corner,
+            int number)
+      : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
+    set_map(bounds);
+    if (!bounds.is_vectored || tet.kind == MapKind::steep || tet.kind == MapKind::trilinear) {
+      kind_ = RowKind::alone;
+    }
+    if (is_copied(job, tet)) kind_ = RowKind::copied;
+    const std::int64_t line = job.source.dims[0], slice = line * job.source.dims[1];
+    origin_ = whole[2] * slice + whole[1] * line + whole[0];
+    look_ahead(line, slice, job.source.components);
+  }
+
+  RowKind kind() const { return kind_; }
+  int tet() const { return number_; }
+  const TetSetup& setup() const { return *setup_; }
+  const int* corner() const { return corner_; }
+
+  /// The voxel at the map's whole part; it may lie outside the source.
+  std::int64_t origin() const { return origin_; }
+  /// From a voxel's samples to two that rows to come will need, about.
+  std::int64_t ahead() const { return ahead_; }
+  std::int64_t ahead_too() const { return ahead_too_; }
+
+  // The parts of SourceMap<float>.
+  alignas(16) float base[4];
+  alignas(16) float axis[3][4];
+  alignas(16) std::int32_t whole[4];
+
+ private:
+  void set_map(const SourceBounds& bounds) {
+    const hn::CappedTag<double, 4> d;  // one lane per axis of the source
+    const hn::Rebind<float, decltype(d)> df;
+    const hn::Rebind<std::int32_t, decltype(d)> di;
+    const auto zero = hn::Zero(d);
+    bool is_inner = true, meets_end = true;
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+      auto start = zero, below = zero, above = zero;
+      for (int a = 0; a < 3; ++a) {
+        const auto step = hn::LoadU(d, setup_->map[a] + lane);
+        const auto from = hn::Set(d, static_cast<double>(corner_[a] - setup_->anchor[a]));
+        start = a == 0 ? hn::Mul(step, from) : hn::Add(start, hn::Mul(step, from));
+        const auto reach = hn::Mul(step, hn::Set(d, double{cell_edge - 1}));
+        below = hn::Add(below, hn::Min(reach, zero));
+        above = hn::Add(above, hn::Max(reach, zero));
+        hn::Store(hn::DemoteTo(df, step), df, axis[a] + lane);
+      }
+      start = hn::Add(start, hn::LoadU(d, setup_->map[3] + lane));
+      const auto farthest = hn::Set(d, max_whole);
+      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
+      const auto local = hn::Sub(floor, hn::LoadU(d, bounds.origin + lane));
+      hn::Store(hn::DemoteTo(di, local), di, whole + lane);
+      const auto low = hn::Add(start, below), high = hn::Add(start, above);
+      is_inner = is_inner && hn::AllTrue(d, hn::Gt(low, hn::LoadU(d, bounds.inner_low + lane))) &&
+                 hn::AllTrue(d, hn::Lt(high, hn::LoadU(d, bounds.inner_high + lane)));
+      meets_end = meets_end && hn::AllTrue(d, hn::Gt(high, hn::LoadU(d, bounds.end + lane)));
+    }
+    if (!meets_end) kind_ = is_inner ? RowKind::inner : RowKind::rim;
+  }
+
+  /// Rows along lines of the source lack the lines above theirs, in the next slice. Rows across
+  /// lines sweep the source from one line of cells to the next: they look as far, and a row more.
+  void look_ahead(std::int64_t line, std::int64_t slice, int components) {
+    const hn::FixedTag<float, 4> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const bool is_across = std::abs(axis[0][1]) + std::abs(axis[0][2]) > 0.5f;
+    const auto step = is_across ? hn::Mul(hn::Load(d, axis[1]), hn::Set(d, float{cell_edge + 1}))
+                                : hn::Load(d, axis[2]);
+    alignas(16) std::int32_t voxels[4];
+    hn::Store(hn::ConvertTo(di, hn::Round(step)), di, voxels);
+    const std::int64_t ahead = voxels[2] * slice + voxels[1] * line + voxels[0];
+    ahead_ = (ahead + (is_across ? 0 : slice)) * components;
+    ahead_too_ = ahead_ + (is_across ? slice : line) * components;
+  }
+
+  const TetSetup* setup_;
+  int number_;
+  RowKind kind_ = RowKind::alone;
+  int corner_[3];
+  std::int64_t origin_ = 0;
+  std::int64_t ahead_ = 0;
+  std::int64_t ahead_too_ = 0;
+};
+
+/// Voxels of one row of a cell that one source serves.
+struct RowRun {
+  std::int32_t source;  ///< position in the line's sources
+  std::uint16_t cell;   ///< of the line
+  std::uint16_t bits;   ///< voxels, 8 at most
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,183 @@
+/// @file row_taps-inl.hpp
+/// Where the voxels of a row are sampled: offsets and weights, eight voxels a unit. Included once
+/// per vector instruction set (the name and the toggled guard are Highway's convention).
+///
+/// A row is done in two passes, so that neither waits for the other's results: this one fills a
+/// buffer of taps, row_vector-inl.hpp reads the source and blends.
+#if defined(TETWARP_ROW_TAPS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_TAPS_INL
+#undef TETWARP_ROW_TAPS_INL
+#else
+#define TETWARP_ROW_TAPS_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "host/warp/cpu/row_source-inl.hpp"
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using RowTag = hn::CappedTag<float, cell_edge>;  ///< voxels of a row, eight at most
+using RowIntTag = hn::RebindToSigned<RowTag>;
+
+/// Eight voxels of a row: one row of one cell.
+struct RowUnit {
+  std::uint16_t cell;   ///< of the line
+  std::uint8_t bits;    ///< voxels to write
+  std::uint8_t inside;  ///< of these, inside the source
+};
+
+/// Taps of up to `row_units` units. Without Rim all lines of a voxel are at the same distances.
+template <bool Rim>
+struct RowTaps {
+  static constexpr int row_units = 16;
+
+  int count = 0;
+  RowUnit unit[row_units];
+  /// Of the lower neighbour along x [voxel], on lines (y, z) or with Rim (y, z), (y+1, z),
+  /// (y, z+1), (y+1, z+1).
+  alignas(64) std::int32_t offset[Rim ? 4 : 1][cell_edge * row_units];
+  alignas(64) float fraction[3][cell_edge * row_units];
+};
+
+/// Mask of the vector that starts at voxel `lane` of a unit.
+inline hn::Mask<RowTag> lanes_of(unsigned bits, std::size_t lane) {
+  const std::uint8_t part[8] = {static_cast<std::uint8_t>(bits >> lane)};
+  return hn::LoadMaskBits(RowTag(), part);
+}
+
+inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
+  std::uint8_t part[8] = {};
+  hn::StoreMaskBits(RowTag(), mask, part);
+  return unsigned{part[0]} << lane;
+}
+
+/// Positions of some voxels of a row, in two parts as in SourceMap.
+template <bool Rim>
+struct RowPositions {
+  hn::Vec<RowTag> local[3];
+  hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis, or without Rim RowSource::origin()
+};
+
+/// Local positions at the start of row (j, k), the first sums of local_position().
+struct RowStart {
+  RowStart(const RowSource& source, int j, int k) {
+    const hn::FixedTag<float, 4> d;
+    const auto row = hn::Mul(hn::Load(d, source.axis[1]), hn::Set(d, static_cast<float>(j)));
+    const auto slice = hn::Mul(hn::Load(d, source.axis[2]), hn::Set(d, static_cast<float>(k)));
+    hn::Store(hn::Add(hn::Add(hn::Load(d, source.base), row), slice), d, at);
+  }
+  alignas(16) float at[4];
+};
+
+/// local_position() of the voxels of a row from `lane` on.
+template <bool Rim>
+inline RowPositions<Rim> row_positions(const RowSource& source,
+                                       const RowStart& start,
+                                       std::size_t lane) {
+  const RowTag d;
+  const auto i = hn::Iota(d, static_cast<float>(lane));
+  RowPositions<Rim> positions;
+  for (int axis = 0; axis < 3; ++axis) {
+    positions.local[axis] =
+        hn::Add(hn::Set(d, start.at[axis]), hn::Mul(hn::Set(d, source.axis[0][axis]), i));
+    if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
+  }
+  if constexpr (!Rim) {
+    positions.whole[0] = hn::Set(RowIntTag(), static_cast<std::int32_t>(source.origin()));
+  }
+  return positions;
+}
+
+/// Adds one unit: row (j, k) of one cell, served by `runs`, of which none is RowKind::alone.
+template <bool Rim, class T>
+inline void add_unit(const SourceView<T>& view,
+                     bool nearest,
+                     const RowSource* sources,
+                     const RowRun* runs,
+                     int run_count,
+                     int j,
+                     int k,
+                     RowTaps<Rim>& taps) {
+  const RowTag d;
+  const RowIntTag di;
+  const int stride[3] = {1, view.dims[0], view.dims[0] * view.dims[1]};
+  const int at = cell_edge * taps.count;
+  unsigned bits = 0, inside = 0xff;
+  for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
+  if constexpr (Rim) inside = 0;
+  const RowSource& first = sources[runs[0].source];
+  const RowStart first_start(first, j, k);
+  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
+    // Voxels that no run describes follow the first one: readable, their values are not used.
+    RowPositions<Rim> x = row_positions<Rim>(first, first_start, lane);
+    for (int r = 1; r < run_count; ++r) {
+      const RowSource& source = sources[runs[r].source];
+      const RowPositions<Rim> more = row_positions<Rim>(source, RowStart(source, j, k), lane);
+      const auto mine = lanes_of(runs[r].bits, lane);
+      const auto mine_int = hn::RebindMask(di, mine);
+      for (int axis = 0; axis < 3; ++axis) {
+        x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
+      }
+      for (int part = 0; part < (Rim ? 3 : 1); ++part) {
+        x.whole[part] = hn::IfThenElse(mine_int, more.whole[part], x.whole[part]);
+      }
+    }
+    hn::Vec<RowIntTag> voxel[3], step[3];
+    auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
+      const auto floor = hn::Floor(near);
+      auto fraction = hn::Sub(near, floor);
+      voxel[axis] = hn::ConvertTo(di, floor);
+      if constexpr (Rim) {
+        voxel[axis] = hn::Add(voxel[axis], x.whole[axis]);
+        const int last = view.dims[axis] - 1;
+        const auto whole = hn::ConvertTo(d, x.whole[axis]);
+        const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
+        const auto beyond = hn::ConvertTo(d, hn::Sub(hn::Set(di, last), x.whole[axis]));
+        const auto high = hn::Add(hn::Add(beyond, hn::Set(d, 0.5f)), hn::Set(d, rim_slack));
+        in_source =
+            hn::And(in_source, hn::And(hn::Ge(x.local[axis], low), hn::Le(x.local[axis], high)));
+        const auto blends =
+            hn::And(hn::Gt(voxel[axis], hn::Set(di, -1)), hn::Lt(voxel[axis], hn::Set(di, last)));
+        fraction = hn::IfThenElseZero(hn::RebindMask(d, blends), fraction);
+        voxel[axis] = hn::Min(hn::Max(voxel[axis], hn::Zero(di)), hn::Set(di, last));
+        step[axis] = hn::IfThenElseZero(blends, hn::Set(di, stride[axis]));
+      }
+      hn::Store(fraction, d, taps.fraction[axis] + at + lane);
+    }
+    const auto row = hn::Add(hn::Mul(voxel[2], hn::Set(di, view.dims[1])), voxel[1]);
+    auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), voxel[0]);
+    if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
+    hn::Store(offset, di, taps.offset[0] + at + lane);
+    if constexpr (Rim) {
+      const auto above = hn::Add(offset, step[2]);
+      hn::Store(hn::Add(offset, step[1]), di, taps.offset[1] + at + lane);
+      hn::Store(above, di, taps.offset[2] + at + lane);
+      hn::Store(hn::Add(above, step[1]), di, taps.offset[3] + at + lane);
+      inside |= bits_of(in_source, lane);
+    }
+  }
+  // Rows to come: they jump too much for the hardware to guess.
+  for (const int voxel : {0, cell_edge / 2}) {
+    const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
+    hwy::Prefetch(from + first.ahead());
+    hwy::Prefetch(from + first.ahead_too());
+  }
+  taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
+                             static_cast<std::uint8_t>(bits & inside)};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,195 @@
+/// @file row_wide-inl.hpp
+/// Samples of a row in float64 arithmetic, voxel by voxel, one lane per axis of the source: wide
+/// pixel types, steep maps. Included once per vector instruction set (the name and the toggled
+/// guard are Highway's convention).
+#if defined(TETWARP_ROW_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETWARP_ROW_WIDE_INL
+#undef TETWARP_ROW_WIDE_INL
+#else
+#define TETWARP_ROW_WIDE_INL
+#endif
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "host/warp/cpu/row_hex.hpp"
+#include "host/warp/cpu/row_source-inl.hpp"
+#include "host/warp/cpu/row_vector-inl.hpp"
+#include "kernels/warp/cell_raster.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Positions of row (j, k) of a cell and their neighbours, as SourceMap<double>, local_position()
+/// and tap_of() have them: equal bits. The fourth lane never objects.
+class WideRow {
+ public:
+  template <class T>
+  WideRow(const SourceView<T>& view, const RowSource& source, bool nearest, int j, int k)
+      : nearest_(nearest) {
+    const TetSetup& tet = source.setup();
+    const int* corner = source.corner();
+    double origin[4] = {0, 0, 0, 0};
+    for (int axis = 0; axis < 3; ++axis) {
+      last_[axis] = view.dims[axis] - 1;
+      origin[axis] = view.origin[axis];
+    }
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+      auto start = hn::Zero(d);
+      for (int a = 0; a < 3; ++a) {
+        const auto from = hn::Set(d, static_cast<double>(corner[a] - tet.anchor[a]));
+        const auto part = hn::Mul(hn::LoadU(d, tet.map[a] + lane), from);
+        start = a == 0 ? part : hn::Add(start, part);
+      }
+      start = hn::Add(start, hn::LoadU(d, tet.map[3] + lane));
+      const auto farthest = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
+      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      const auto of_row = hn::Mul(hn::LoadU(d, tet.map[1] + lane), hn::Set(d, double(j)));
+      const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
+      const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
+      const auto half = hn::Set(d, 0.5);
+      const auto local = hn::Sub(whole, hn::LoadU(d, origin + lane));
+      const auto low = hn::Sub(hn::Sub(hn::Neg(half), local), slack);
+      const auto high = hn::Add(hn::Add(hn::Sub(hn::Load(d, last_ + lane), local), half), slack);
+      hn::Store(line, d, line_ + lane);
+      hn::Store(hn::LoadU(d, tet.map[0] + lane), d, step_ + lane);
+      hn::Store(local, d, whole_ + lane);
+      hn::Store(low, d, low_ + lane);
+      hn::Store(high, d, high_ + lane);
+    }
+  }
+
+  /// Finds the neighbours of voxel i. False where it lies outside the source.
+  bool move_to(int i) {
+    bool inside = true;
+    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
+      const auto along = hn::Mul(hn::Load(d, step_ + lane), hn::Set(d, double(i)));
+      const auto x = hn::Add(hn::Load(d, line_ + lane), along);
+      const auto is_in =
+          hn::And(hn::Ge(x, hn::Load(d, low_ + lane)), hn::Le(x, hn::Load(d, high_ + lane)));
+      inside = inside && hn::AllTrue(d, is_in);
+      const auto near = nearest_ ? hn::Add(x, hn::Set(d, 0.5)) : x;
+      const auto lower = hn::Floor(near), zero = hn::Zero(d), last = hn::Load(d, last_ + lane);
+      const auto at = hn::Add(hn::Load(d, whole_ + lane), lower);
+      const auto blends = hn::And(hn::Ge(at, zero), hn::Lt(at, last));
+      hn::Store(hn::IfThenElseZero(blends, hn::Sub(near, lower)), d, fraction + lane);
+      hn::Store(hn::DemoteTo(di, hn::Min(hn::Max(at, zero), last)), di, voxel + lane);
+      hn::Store(hn::DemoteTo(di, hn::IfThenElseZero(blends, hn::Set(d, 1.0))), di, upper + lane);
+    }
+    return inside;
+  }
+
+  alignas(32) double fraction[4];
+  alignas(16) std::int32_t voxel[4];  ///< lower neighbour
+  alignas(16) std::int32_t upper[4];  ///< 1 where the upper neighbour is another, else 0
+
+ private:
+  using Tag = hn::CappedTag<double, 4>;
+  static constexpr Tag d{};
+  static constexpr hn::Rebind<std::int32_t, Tag> di{};
+
+  bool nearest_;
+  alignas(32) double line_[4];
+  alignas(32) double step_[4];
+  alignas(32) double whole_[4];
+  alignas(32) double low_[4];
+  alignas(32) double high_[4];
+  alignas(32) double last_[4] = {0, 0, 0, 0};
+};
+
+/// The voxels `bits` of row (j, k) one by one, float64 positions.
+template <class T>
+inline void sample_wide(const RasterJob<T>& job,
+                        const RowSource& source,
+                        unsigned bits,
+                        int j,
+                        int k,
+                        std::int64_t row) {
+  const hn::FixedTag<double, 2> d;  // both neighbours along x
+  const SourceView<T>& view = job.source;
+  const std::ptrdiff_t components = view.components;
+  const std::ptrdiff_t up = components * view.dims[0], far = up * view.dims[1];
+  const bool nearest = job.filter == Filter::nearest;
+  WideRow taps(view, source, nearest, j, k);
+  for (int n = 0; bits != 0; bits &= bits - 1, ++n) {
+    const int i = std::countr_zero(bits);
+    T* out = job.volume + (row + i) * components;
+    if (!taps.move_to(i)) {
+      std::fill_n(out, components, job.background);
+      continue;
+    }
+    const T* samples =
+        view.data + taps.voxel[0] * components + taps.voxel[1] * up + taps.voxel[2] * far;
+    if (n % (cell_edge / 2) == 0) {  // as add_unit() does
+      hwy::Prefetch(samples + source.ahead());
+      hwy::Prefetch(samples + source.ahead_too());
+    }
+    if (nearest) {
+      std::copy_n(samples, components, out);
+      continue;
+    }
+    const std::ptrdiff_t x = taps.upper[0] * components, y = taps.upper[1] * up,
+                         z = taps.upper[2] * far;
+    const auto fy = hn::Set(d, taps.fraction[1]), fz = hn::Set(d, taps.fraction[2]);
+    for (std::ptrdiff_t c = 0; c < components; ++c, ++samples) {
+      const auto pair = [&](std::ptrdiff_t line) {
+        const double both[2] = {static_cast<double>(samples[line]),
+                                static_cast<double>(samples[line + x])};
+        return hn::LoadU(d, both);
+      };
+      const auto near = lerp_lanes(fy, pair(0), pair(y)),
+                 next = lerp_lanes(fy, pair(z), pair(z + y));
+      double column[2];
+      hn::StoreU(lerp_lanes(fz, near, next), d, column);
+      out[c] = rounded_to<T>(lerp_of(taps.fraction[0], column[0], column[1]));
+    }
+  }
+}
+
+/// The same in float32, as it serves sources whose end or size keeps vectors away.
+template <class T>
+inline void sample_narrow(const RasterJob<T>& job,
+                          const RowSource& source,
+                          unsigned bits,
+                          int j,
+                          int k,
+                          std::int64_t row) {
+  double start[3], linear[3][3];
+  const int* corner = source.corner();
+  map_start(source.setup(), corner[0], corner[1], corner[2], start, linear);
+  const auto map = make_source_map<float>(job.source, start, linear);
+  for (; bits != 0; bits &= bits - 1) {
+    const int i = std::countr_zero(bits);
+    store_sample<false>(job, job.filter, map, i, j, k, row + i);
+  }
+}
+
+/// Either, as pixel type and map demand.
+template <class T>
+inline void sample_alone(const RasterJob<T>& job,
+                         const RowSource& source,
+                         unsigned bits,
+                         int j,
+                         int k,
+                         std::int64_t row) {
+  if (source.setup().kind == MapKind::trilinear) {
+    sample_row_hex(job, source.tet(), source.corner(), bits, j, k, row);
+  } else if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
+    sample_narrow(job, source, bits, j, k, row);
+  } else {
+    sample_wide(job, source, bits, j, k, row);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();
+
+#endif  // guard

@@ -1,0 +1,53 @@
+/// @file geometry.hpp
+/// What a plan means in index space: the frame, the quantized rest mesh, the map of uncovered
+/// voxels.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "host/base/warp_backend.hpp"
+#include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/tet_gradient.hpp"
+
+namespace tetwarp {
+
+/// Geometry that no step changes, in the terms of the kernels.
+struct WarpGeometry {
+  OutputFrame frame;
+  IndexFromWorld output_index;
+  std::vector<Node> rest;                     ///< in the source's index space [quantum]
+  std::vector<std::int8_t> rest_orientation;  ///< sign of the rest volume in the output's sense
+  OutsideMap outside;
+  GridAxes axes;
+};
+
+/// Throws std::invalid_argument when a rest position is too far from the source grid, or a
+/// tetrahedron spans too many of its voxels.
+WarpGeometry make_geometry(const WarpPlan& plan);
+
+/// A share of a step's progress.
+struct ProgressPart {
+  const Progress& progress;
+  double begin;
+  double share;
+
+  /// Reports `fraction` of this part; throws Cancelled when told to stop.
+  void report(double fraction) const;
+  bool is_wanted() const { return static_cast<bool>(progress); }
+};
+
+/// Samples of a volume as a kernel sees them.
+template <class T>
+SourceView<T> source_view(const VolumeView& volume, const void* data) {
+  SourceView<T> view;
+  view.data = static_cast<const T*>(data);
+  view.components = volume.components;
+  const Region held = volume.held();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    view.origin[axis] = static_cast<int>(held.begin[axis]);
+    view.dims[axis] = static_cast<int>(held.end[axis] - held.begin[axis]);
+  }
+  return view;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,192 @@
+/// @file outputs.hpp
+/// The memory that a step writes: the target's own, or an executor's that is brought home to it.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "host/base/warp_backend.hpp"
+#include "host/warp/target.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// Cells along j and k, half-open.
+struct CellWindow {
+  int begin[2];
+  int end[2];
+};
+
+template <class Exec>
+class WarpOutputs {
+ public:
+  /// The arguments must outlive it.
+  WarpOutputs(Exec& exec, const WarpPlan& plan, const OutputFrame& frame)
+      : exec_(exec),
+        frame_(frame),
+        volume_count_(plan.sources.size()),
+        voxel_bytes_(voxel_bytes_of(plan.sources)) {
+    for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
+  }
+
+  /// Chooses the memory for a step. What the target holds is unknown from now on.
+  /// @returns how many steps ago it got what, by its word, it still holds: 1 or 2; else 0
+  int take(const WarpTarget& target) {
+    ++step_;
+    const auto wrote = [&](const Slot& slot) { return slot.held && slot.held->is(target); };
+    const Slot* const found = std::ranges::find_if(slots_, wrote);
+    std::int64_t age = 0;
+    if (found != std::end(slots_)) {
+      now_ = static_cast<int>(found - slots_);
+      if (target.holds_previous) age = step_ - found->held->step;
+    } else if (target.holds_previous || slots_[now_].is_leaving) {
+      now_ = 1 - now_;  // two targets in turns keep their own memory; others share where they can
+    }
+    slots_[now_].held.reset();
+    slots_[now_].is_leaving = true;
+    return age <= 2 ? static_cast<int>(age) : 0;
+  }
+  /// The memory of the step that take() was called for last.
+  int slot() const { return now_; }
+  /// That memory has been brought home, or never will be.
+  void release(int slot) { slots_[slot].is_leaving = false; }
+
+  /// Where an executor writes volume s, the mask and the fields; null where nobody asked.
+  void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
+  std::uint8_t* mask(const WarpTarget& target) {
+    return static_cast<std::uint8_t*>(writable(place_of(Extra::mask), target));
+  }
+  FieldTarget fields(const WarpTarget& target) {
+    const auto field = [&](Extra extra) {
+      return static_cast<float*>(writable(place_of(extra), target));
+    };
+    return {.displacement = field(Extra::displacement),
+            .jacobian = field(Extra::jacobian),
+            .gradient = field(Extra::gradient),
+            .strain = field(Extra::strain),
+            .forward = field(Extra::forward)};
+  }
+  /// The same for the owners, which fields are made of: null where nobody asked for either.
+  std::int32_t* tet(const WarpTarget& target) {
+    const std::size_t place = place_of(Extra::tet);
+    if (target.owner != nullptr || !needs_owners(target.fields)) {
+      return static_cast<std::int32_t*>(writable(place, target));
+    }
+    Buffer<std::byte>& own = slots_[now_].arrays[place];
+    const std::int64_t bytes = voxel_bytes_[place] * frame_.voxel_count();
+    own.reserve(bytes);
+    return reinterpret_cast<std::int32_t*>(own.view(bytes).data);
+  }
+
+  /// What was written: the least window with all marked cells; size 0: all.
+  CellWindow window_of(View<const std::uint8_t> marks) {
+    if (marks.size == 0) return {{0, 0}, {frame_.cells[1], frame_.cells[2]}};
+    std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
+    exec_.read(marks, marked.data());
+    CellWindow window{{frame_.cells[1], frame_.cells[2]}, {0, 0}};
+    std::size_t line = 0;
+    for (int ck = 0; ck < frame_.cells[2]; ++ck) {
+      for (int cj = 0; cj < frame_.cells[1];
+           ++cj, line += static_cast<std::size_t>(frame_.cells[0])) {
+        const auto first = marked.begin() + static_cast<std::ptrdiff_t>(line);
+        if (std::find(first, first + frame_.cells[0], 1) == first + frame_.cells[0]) continue;
+        window.begin[0] = std::min(window.begin[0], cj);
+        window.begin[1] = std::min(window.begin[1], ck);
+        window.end[0] = std::max(window.end[0], cj + 1);
+        window.end[1] = std::max(window.end[1], ck + 1);
+      }
+    }
+    return window;
+  }
+
+  /// True when deliver() to this target does not keep the host waiting.
+  bool delivers_beside(const WarpTarget& target) const {
+    return std::ranges::all_of(arrays_of(target), [&](const void* to) {
+      return to == nullptr || exec_.delivers_beside(to);
+    });
+  }
+
+  /// Brings home a window of what a step wrote to the memory of a slot. The forward field is not
+  /// on the cells of the output and comes whole.
+  void deliver(int from, const WarpTarget& target, const CellWindow& window) {
+    const std::vector<void*> arrays = arrays_of(target);
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+      if (arrays[a] == nullptr) continue;
+      deliver(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
+              a == place_of(Extra::forward) ? window_of({}) : window);
+    }
+  }
+
+  /// The step is complete: the target holds its result.
+  void finish(const WarpTarget& target) {
+    slots_[now_].held = Held{arrays_of(target), target.memory, step_};
+  }
+
+ private:
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  /// A target, by its pointers, and the step whose result it got.
+  struct Held {
+    std::vector<void*> arrays;
+    Memory memory;
+    std::int64_t step;
+
+    bool is(const WarpTarget& target) const {
+      return memory == target.memory && arrays == arrays_of(target);
+    }
+  };
+
+  /// Memory of one target.
+  struct Slot {
+    std::vector<Buffer<std::byte>> arrays;
+    std::optional<Held> held;
+    bool is_leaving = false;  ///< a step in flight writes it or has it brought home
+  };
+
+  std::size_t place_of(Extra extra) const {
+    return volume_count_ + static_cast<std::size_t>(extra);
+  }
+
+  void* writable(std::size_t place, const WarpTarget& target) {
+    void* const wanted = arrays_of(target)[place];
+    if (wanted == nullptr || target.memory == Memory::device) return wanted;
+    return exec_.writable(static_cast<std::byte*>(wanted),
+                          voxel_bytes_[place] * frame_.voxel_count(), slots_[now_].arrays[place]);
+  }
+
+  /// Slices as long as they are whole, else slice by slice.
+  void deliver(const Buffer<std::byte>& from,
+               std::int64_t per_voxel,
+               std::byte* to,
+               const CellWindow& window) {
+    int begin[2], end[2];
+    for (int axis = 0; axis < 2; ++axis) {
+      begin[axis] = std::max(window.begin[axis] * cell_edge, frame_.begin[axis + 1]);
+      end[axis] = std::min(window.end[axis] * cell_edge, frame_.end[axis + 1]);
+    }
+    const bool is_whole = begin[0] == frame_.begin[1] && end[0] == frame_.end[1];
+    const int slices = is_whole ? end[1] - begin[1] : 1;
+    for (int k = begin[1]; k < end[1]; k += slices) {
+      const std::int64_t first = frame_.offset_of(frame_.begin[0], begin[0], k) * per_voxel;
+      const std::int64_t past =
+          frame_.offset_of(frame_.end[0], end[0] - 1, k + slices - 1) * per_voxel;
+      const View<const std::byte> all = from.const_view(frame_.voxel_count() * per_voxel);
+      exec_.deliver("warp/download", View<const std::byte>{all.data + first, past - first},
+                    to + first);
+    }
+  }
+
+  Exec& exec_;
+  const OutputFrame& frame_;
+  std::size_t volume_count_;
+  std::vector<std::int64_t> voxel_bytes_;  ///< per array of a target
+  Slot slots_[2];
+  int now_ = 0;  ///< the slot of this step
+  std::int64_t step_ = 0;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,84 @@
+/// @file rule_checks.cpp
+#include "host/warp/rule_checks.hpp"
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+namespace tetwarp {
+
+namespace {
+
+/// Components that a quantity has; 0: any number.
+int components_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::components:
+      return 0;
+    case Quantity::vector:
+    case Quantity::covariant_vector:
+    case Quantity::contravariant_vector:
+      return 3;
+    case Quantity::tensor:
+    case Quantity::principal_tensor:
+      return 6;
+  }
+  return 0;
+}
+
+void check_quantity(const VolumeView& source, Quantity quantity) {
+  if (quantity == Quantity::components) return;
+  const int expected = components_of(quantity);
+  if (source.components != expected) {
+    throw std::invalid_argument(
+        "quantities: a " + std::string(expected == 3 ? "vector" : "tensor") + " has " +
+        std::to_string(expected) + " components, the source " + std::to_string(source.components));
+  }
+}
+
+/// What would add to a total, or change it, is not asked for.
+void check_conservative(const WarpOptions& options) {
+  const char* wrong = nullptr;
+  if (options.antialias) wrong = "means are exact without antialias";
+  if (options.background != 0) wrong = "the background must be 0";
+  if (options.outside == Outside::identity) wrong = "outside must be background";
+  for (const Quantity quantity : options.quantities) {
+    if (quantity != Quantity::components) wrong = "vectors and tensors take density";
+  }
+  if (wrong != nullptr) {
+    throw std::invalid_argument(std::string("intensity: to keep the total, ") + wrong);
+  }
+}
+
+}  // namespace
+
+void check_rules(std::span<const VolumeView> sources, const WarpOptions& options) {
+  const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
+  if (options.antialias && !blends) {
+    throw std::invalid_argument(
+        "antialias: averages samples, which nearest and labels must not; use another filter");
+  }
+  if (!options.quantities.empty() && options.quantities.size() != sources.size()) {
+    throw std::invalid_argument("quantities: expected none or one per source, " +
+                                std::to_string(sources.size()) + ", got " +
+                                std::to_string(options.quantities.size()));
+  }
+  if (options.intensity == Intensity::conservative) check_conservative(options);
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const Quantity quantity =
+        options.quantities.empty() ? Quantity::components : options.quantities[s];
+    check_quantity(sources[s], quantity);
+    if (options.intensity == Intensity::conservative && sources[s].window) {
+      throw std::invalid_argument(
+          "source: totals are kept of all of it, a window has a part; use density");
+    }
+    const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
+    const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
+    if (computes && (is_wide || options.filter == Filter::labels)) {
+      throw std::invalid_argument(
+          std::string("source: ") + (is_wide ? name_of(sources[s].type) : "labels") +
+          " cannot be scaled or turned; leave out intensity and quantities, or use another type");
+    }
+  }
+}
+
+}  // namespace tetwarp

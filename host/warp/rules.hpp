@@ -1,0 +1,74 @@
+/// @file rules.hpp
+/// The rules of a step's tetrahedra, for the sources that ask for more than plain samples.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+
+#include "host/base/warp_backend.hpp"
+#include "host/warp/geometry.hpp"
+#include "host/warp/pairs.hpp"
+#include "kernels/warp/tet_rule.hpp"
+
+namespace tetwarp {
+
+template <class Exec>
+class WarpRules {
+ public:
+  /// The arguments must outlive it.
+  WarpRules(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
+      : exec_(exec), options_(plan.options), axes_(geometry.axes), outside_(plain_rule()) {
+    for (std::size_t s = 0; s < plan.sources.size(); ++s) {
+      const bool is_plain = !options_.antialias && options_.intensity == Intensity::value &&
+                            reorientation(s) == Quantity::components;
+      if (!is_plain) buffers_[reorientation(s)].reserve(std::ssize(plan.mesh.tets));
+    }
+    for (int axis = 0; axis < 3 && options_.antialias; ++axis) {
+      const auto& linear = geometry.outside.linear;
+      const double step[3] = {linear[0][axis], linear[1][axis], linear[2][axis]};
+      outside_.parts[axis] = parts_of(step);
+    }
+    outside_.is_plain = !is_averaging(outside_);
+  }
+
+  /// Makes the rules of a step whose pairs are there; of an update those that have changed.
+  void run(const WarpPairs<Exec>& pairs) {
+    bool is_first = true;  // tetrahedra that average are counted once
+    for (auto& [reorientation, buffer] : buffers_) {
+      tet_rule(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
+               choice(reorientation), buffer.view(pairs.tet_count()),
+               {&pairs.counters().data->mesh.averaged, is_first ? 1 : 0});
+      is_first = false;
+    }
+  }
+
+  /// Of source s; size 0: all are plain.
+  View<const TetRule> rules(std::size_t s, std::int64_t tet_count) const {
+    const auto found = buffers_.find(reorientation(s));
+    return found == buffers_.end() ? View<const TetRule>{} : found->second.const_view(tet_count);
+  }
+  Quantity reorientation(std::size_t s) const {
+    return options_.quantities.empty() ? Quantity::components : options_.quantities[s];
+  }
+  /// Of voxels that no tetrahedron covers.
+  const TetRule& outside() const { return outside_; }
+
+ private:
+  RuleChoice choice(Quantity reorientation) const {
+    const double ratio = std::abs(determinant(axes_.source) * determinant(axes_.output_index));
+    return {.averages = options_.antialias,
+            .divides = options_.intensity != Intensity::value,
+            .reorientation = reorientation,
+            .axes = axes_,
+            .voxel_ratio = axes_.are_same ? 1.0 : ratio};
+  }
+
+  Exec& exec_;
+  const WarpOptions& options_;
+  const GridAxes& axes_;
+  TetRule outside_;
+  std::map<Quantity, typename Exec::template Buffer<TetRule>> buffers_;
+};
+
+}  // namespace tetwarp

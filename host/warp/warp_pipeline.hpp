@@ -1,0 +1,294 @@
+/// @file warp_pipeline.hpp
+/// The warp as a list of stages, for any executor. Read this file first; run() is the method.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/base/warp_backend.hpp"
+#include "host/warp/fields.hpp"
+#include "host/warp/geometry.hpp"
+#include "host/warp/outputs.hpp"
+#include "host/warp/pairs.hpp"
+#include "host/warp/rules.hpp"
+#include "host/warp/sources.hpp"
+#include "host/warp/step_counters.hpp"
+#include "host/warp/totals.hpp"
+#include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/cell_work.hpp"
+#include "kernels/warp/voxel_cells.hpp"
+#include "kernels/warp/voxel_count.hpp"
+#include "kernels/warp/voxel_overlap.hpp"
+
+namespace tetwarp {
+
+template <class Exec>
+class WarpPipeline : public WarpBackend {
+ public:
+  WarpPipeline(const WarpPlan& plan, Exec exec)
+      : plan_(plan),
+        geometry_(make_geometry(plan)),
+        exec_(std::move(exec)),
+        pairs_(exec_, plan_, geometry_),
+        outputs_(exec_, plan_, geometry_.frame),
+        rules_(exec_, plan_, geometry_),
+        fields_(exec_, plan_, geometry_),
+        sources_(exec_, plan_),
+        totals_(exec_, plan_, geometry_) {
+    cell_covered_.reserve(geometry_.frame.cell_count());
+    cell_work_.reserve(geometry_.frame.cell_count());
+  }
+
+  ~WarpPipeline() override { exec_.drain(); }
+
+  void upload(int number, const PositionsView& deformed) override {
+    exec_.select(number);
+    if (std::exchange(flights_[number].is_open, true)) exec_.times().clear();
+    const std::int64_t size = 3 * deformed.node_count;
+    flights_[number].positions =
+        deformed.memory == Memory::device
+            ? View<const double>{deformed.xyz, size}
+            : exec_.upload("warp/upload", deformed.xyz, size, flights_[number].position_buffer);
+  }
+
+  void compute(int number, const WarpTarget& target, const Progress& progress) override {
+    exec_.select(number);
+    Flight& flight = flights_[number];
+    flight.target = target;
+    flight.age = outputs_.take(target);
+    flight.slot = outputs_.slot();
+    flight.is_delivered = false;
+    compute(flight, progress);
+    // Parts of an output are known when the step is settled; a whole one may be on its way by then.
+    if (stale_.size == 0 && target.memory == Memory::host && outputs_.delivers_beside(target)) {
+      flight.window = outputs_.window_of({});
+      deliver(number);
+    }
+  }
+
+  void settle(int number) override {
+    Flight& flight = flights_[number];
+    exec_.select(number);
+    for (;;) {
+      exec_.wait_computed();
+      if (pairs_.had_room(*flight.counters.view(1).data)) break;
+      flight.is_delivered = false;
+      compute(flight, {});
+    }
+    flight.report = complete(flight.target, *flight.counters.view(1).data);
+    report_totals(flight);
+    if (flight.target.memory == Memory::host) flight.window = outputs_.window_of(stale_);
+  }
+
+  void deliver(int number) override {
+    Flight& flight = flights_[number];
+    if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
+    exec_.select(number);
+    outputs_.deliver(flight.slot, flight.target, flight.window);
+  }
+
+  StepReport finish(int number) override {
+    exec_.select(number);
+    StageTimes& times = exec_.times();  // waits for the download, too
+    outputs_.release(flights_[number].slot);
+    StepReport report = flights_[number].report;
+    add_stages(times, report.timings);
+    times.clear();
+    flights_[number].is_open = false;
+    return report;
+  }
+
+  void drain() noexcept override { exec_.drain(); }
+
+  std::string device() const override { return exec_.device(); }
+  int threads() const override { return exec_.threads(); }
+
+ private:
+  template <class T>
+  using Buffer = typename Exec::template Buffer<T>;
+
+  /// A step between its parts.
+  struct Flight {
+    typename Exec::template Staged<double> position_buffer;
+    View<const double> positions;
+    typename Exec::template HomeBuffer<StepCounters> counters;
+    typename Exec::template HomeBuffer<double> totals;
+    WarpTarget target;
+    int age = 0;   ///< steps since the target got what it holds; 0: nothing is known
+    int slot = 0;  ///< of outputs_
+    CellWindow window{};
+    bool is_delivered = false;
+    bool is_open = false;  ///< not finished: where another is begun, it failed
+    StepReport report;
+  };
+
+  void compute(Flight& flight, const Progress& progress) {
+    exec_.begin_compute(flight.target.stream);
+    run(flight.positions, flight.target, flight.age, progress);
+    flight.counters.reserve(1);
+    exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
+    if (totals_.are_wanted()) {
+      flight.totals.reserve(totals_.sums().size);
+      exec_.fetch(totals_.sums(), flight.totals);
+    }
+    exec_.end_compute();
+  }
+
+  /// The method: tetrahedron, corner, cell, voxel.
+  /// @param age  steps since the target got what it holds; 0: nothing is known
+  void run(View<const double> positions,
+           const WarpTarget& target,
+           int age,
+           const Progress& progress) {
+    pairs_.run(positions);
+    rules_.run(pairs_);
+    stale_ = {};
+    if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
+    if (plan_.options.count_folded) count_folded();
+    for (std::size_t s = 0; s < sources_.size(); ++s) raster(s, target, progress);
+    std::int32_t* const tet = outputs_.tet(target);
+    const View<std::int32_t> owners{tet, tet != nullptr ? geometry_.frame.voxel_count() : 0};
+    fields_.run(pairs_, owners, stale_, outputs_.fields(target));
+    voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
+    if (stale_.size == 0) return;
+    const std::int64_t cells = geometry_.frame.cell_count();
+    exec_.for_each("warp/raster", (cells + CoveredSumBody::cells - 1) / CoveredSumBody::cells,
+                   CoveredSumBody{cell_covered_.const_view(cells), {&work_counters().covered, 1}});
+  }
+
+  /// Of an update only touched cells are counted again: what they held before is taken back.
+  void count_folded() {
+    const View<const std::uint8_t> touched =
+        pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
+    const auto count = [&](View<const Node> nodes, const PairList& list, std::int64_t weight) {
+      exec_.for_each("warp/fold", geometry_.frame.voxel_count(),
+                     VoxelFoldBody{pairs_.tets(),
+                                   nodes,
+                                   list,
+                                   touched,
+                                   geometry_.frame,
+                                   {&pairs_.counters().data->mesh.folded, 1},
+                                   weight});
+    };
+    if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
+    count(pairs_.nodes(), pairs_.list(), 1);
+  }
+
+  void raster(std::size_t s, const WarpTarget& target, const Progress& progress) {
+    with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
+      const OutputFrame& frame = geometry_.frame;
+      RasterJob<T> job;
+      job.setups = pairs_.setups();
+      job.tets = pairs_.tets();
+      job.hexes = pairs_.hexes();
+      job.rest = pairs_.rest();
+      job.nodes = pairs_.nodes();
+      job.pairs = pairs_.list().pairs;
+      job.ranges = {pairs_.list().ranges.data, frame.cell_count()};
+      job.frame = frame;
+      job.source = sources_.template view<T>(s);
+      job.filter = plan_.options.filter;
+      job.outside = geometry_.outside;
+      job.background = rounded_to<T>(plan_.options.background);
+      job.copy_whole_shifts = plan_.options.skip.copied_voxels;
+      job.volume = static_cast<T*>(outputs_.volume(s, target));
+      // The extra outputs and the counts come once, with the first source.
+      job.mask = s == 0 ? outputs_.mask(target) : nullptr;
+      job.tet = s == 0 ? outputs_.tet(target) : nullptr;
+      job.counts = s == 0 ? &work_counters().raster : nullptr;
+      if (s == 0) job.cell_covered = cell_covered_.view(frame.cell_count());
+      job.rules = rules_.rules(s, pairs_.tet_count());
+      job.outside_rule = rules_.outside();
+      job.reorientation = rules_.reorientation(s);
+      choose_work(s, job);
+      const double share = 1.0 / static_cast<double>(sources_.size());
+      const ProgressPart part{progress, static_cast<double>(s) * share, share};
+      if (plan_.options.intensity == Intensity::conservative) {
+        overlap(s, job, part);
+      } else {
+        cell_raster(exec_, job, part);
+      }
+      if (totals_.are_wanted()) {
+        totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);
+      }
+    });
+  }
+
+  /// Owners, as ever, with the first source; then what lies in the voxels' boxes.
+  template <class T>
+  void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
+    VoxelOverlapBody body = {job.setups,
+                             job.rules,
+                             pairs_.list(),
+                             job.cell_work,
+                             job.frame,
+                             number_view(job.source.data),
+                             {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
+                             job.source.components,
+                             number_view(job.volume)};
+    job.filter = Filter::nearest;
+    job.rules = {};
+    if (s == 0) cell_raster(exec_, job, progress);
+    voxel_overlap(exec_, body);
+    progress.report(1.0);
+  }
+
+  void report_totals(Flight& flight) {
+    if (!totals_.are_wanted()) return;
+    const View<const double> sums = flight.totals.const_view(totals_.sums().size);
+    Totals& totals = flight.report.totals;
+    for (; totals.count < std::min(Totals::most, totals_.before().size()); ++totals.count) {
+      totals.before[totals.count] = totals_.before()[totals.count];
+      totals.after[totals.count] =
+          sums[static_cast<std::int64_t>(totals.count)] * totals_.output_voxel();
+    }
+  }
+
+  /// Cells to keep and cells to fill. Where there cannot be either, all are sampled.
+  template <class T>
+  void choose_work(std::size_t s, RasterJob<T>& job) {
+    const UniformMap uniform =
+        plan_.options.skip.constant_cells && job.rules.size == 0
+            ? sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest())
+            : UniformMap{};
+    if (stale_.size == 0 && uniform.reach.size == 0) return;
+    const std::int64_t cells = geometry_.frame.cell_count();
+    cell_work(exec_, job, uniform, stale_, cell_work_.view(cells),
+              {&work_counters().constant_cells, s == 0 ? 1 : 0});
+    job.cell_work = cell_work_.const_view(cells);
+  }
+
+  WorkCounters& work_counters() const { return pairs_.counters().data->work; }
+
+  /// The step is computed: its report without times, and what the next one may build on.
+  StepReport complete(const WarpTarget& target, StepCounters counters) {
+    if (stale_.size == 0) counters.work.covered = counters.work.raster.covered;
+    pairs_.finish(counters);
+    outputs_.finish(target);
+    const std::int64_t cells_unchanged =
+        stale_.size > 0 ? geometry_.frame.cell_count() - counters.work.touched_cells : 0;
+    return make_step_report(counters, geometry_.frame,
+                            {.tets = pairs_.tet_count(),
+                             .tets_unchanged = pairs_.unchanged_count(),
+                             .cells_unchanged = cells_unchanged,
+                             .candidate_pairs = pairs_.candidate_count()});
+  }
+
+  WarpPlan plan_;
+  WarpGeometry geometry_;
+  Exec exec_;
+  WarpPairs<Exec> pairs_;
+  WarpOutputs<Exec> outputs_;
+  WarpRules<Exec> rules_;
+  WarpFields<Exec> fields_;
+  WarpSources<Exec> sources_;
+  WarpTotals<Exec> totals_;
+
+  Flight flights_[2];
+  Buffer<std::int64_t> cell_work_;
+  Buffer<std::uint16_t> cell_covered_;  ///< kept from step to step where cells are
+  View<const std::uint8_t> stale_;      ///< 0 for cells that the target holds; size 0: it has none
+};
+
+}  // namespace tetwarp

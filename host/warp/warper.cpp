@@ -1,0 +1,286 @@
+/// @file warper.cpp
+/// The public calls: check every argument once, run, fill the report.
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/version.hpp>
+#include <tetwarp/warp.hpp>
+#include <tuple>
+#include <utility>
+
+#include "host/base/warp_backend.hpp"
+#include "host/warp/hex_split.hpp"
+#include "host/warp/rule_checks.hpp"
+#include "host/warp/step_queue.hpp"
+#include "kernels/warp/node_quantize.hpp"
+
+namespace tetwarp {
+
+namespace {
+
+void check_filter(const VolumeView& source, Filter filter) {
+  const std::string type = std::string("source: ") + name_of(source.type);
+  if (filter == Filter::labels) {
+    if (!is_integer(source.type)) {
+      throw std::invalid_argument(type + " holds no labels; use another filter or integers");
+    }
+    if (source.components != 1) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, labels have one; use the nearest filter");
+    }
+    return;
+  }
+  const bool wide = is_integer(source.type) && size_of(source.type) == 8;
+  if (wide && filter != Filter::nearest) {
+    throw std::invalid_argument(type +
+                                " cannot be interpolated without loss; use the nearest filter");
+  }
+}
+
+/// Some things are only known of a whole volume.
+void check_window(const VolumeView& source, const WarpOptions& options) {
+  if (!source.range.empty() &&
+      source.range.size() != 2 * static_cast<std::size_t>(source.components)) {
+    throw std::invalid_argument("source: range has " + std::to_string(source.range.size()) +
+                                " entries, expected two per component");
+  }
+  if (!source.window) return;
+  const auto& [begin, end] = *source.window;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (begin[axis] < 0 || begin[axis] >= end[axis] || end[axis] > source.grid.dims[axis]) {
+      throw std::invalid_argument("source: window is empty or not within the grid on axis " +
+                                  std::to_string(axis));
+    }
+  }
+  if (options.filter == Filter::bspline) {
+    throw std::invalid_argument(
+        "source: a spline passes through all samples, a window has some; use another filter");
+  }
+  if (options.overshoot == Overshoot::clamp && source.range.empty()) {
+    throw std::invalid_argument(
+        "source: clamping needs the range of all samples, a window has some; give the range");
+  }
+}
+
+void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
+  if (sources.empty()) throw std::invalid_argument("sources: no volume");
+  for (const VolumeView& source : sources) {
+    check_grid(source.grid, "source");
+    if (source.grid != sources.front().grid) {
+      throw std::invalid_argument("sources: volumes on different grids; warp them one by one");
+    }
+    if (source.components < 1 || source.components > 9) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, expected 1 to 9");
+    }
+    if (source.data == nullptr) throw std::invalid_argument("source: no samples");
+    check_window(source, options);
+    check_filter(source, options.filter);
+    if (is_integer(source.type) && !std::isfinite(options.background)) {
+      throw std::invalid_argument(std::string("background: not a finite number, which ") +
+                                  name_of(source.type) + " cannot hold");
+    }
+  }
+}
+
+Region checked_region(const Grid& grid, const WarpOptions& options) {
+  if (!options.region) return {{0, 0, 0}, grid.dims};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::int64_t begin = options.region->begin[axis], end = options.region->end[axis];
+    if (begin < 0 || begin >= end || end > grid.dims[axis]) {
+      throw std::invalid_argument(
+          "region: " + std::to_string(begin) + " to " + std::to_string(end) + " on axis " +
+          std::to_string(axis) + " is empty or not within 0 to " + std::to_string(grid.dims[axis]));
+    }
+  }
+  return *options.region;
+}
+
+Grid grid_of_region(const Grid& grid, const Region& region) {
+  Grid part = grid;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    part.dims[axis] = region.end[axis] - region.begin[axis];
+  }
+  if (region.begin != std::array<std::int64_t, 3>{0, 0, 0}) {
+    part.origin =
+        grid.world_of({static_cast<double>(region.begin[0]), static_cast<double>(region.begin[1]),
+                       static_cast<double>(region.begin[2])});
+  }
+  return part;
+}
+
+WarpPlan make_plan(std::span<const VolumeView> sources,
+                   const Mesh& mesh,
+                   const WarpOptions& options) {
+  WarpPlan plan;
+  plan.sources.assign(sources.begin(), sources.end());
+  plan.options = options;
+  check_sources(plan.sources, options);
+  check_rules(plan.sources, options);
+  check_mesh(mesh);
+  plan.mesh = with_split_hexes(mesh);
+  if (options.threads < 0) throw std::invalid_argument("threads: negative");
+  plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);
+  check_grid(plan.output_grid, "output grid");
+  plan.region = checked_region(plan.output_grid, options);
+  plan.target_grid = grid_of_region(plan.output_grid, plan.region);
+  return plan;
+}
+
+void check_memory_space(const WarpPlan& plan, Backend backend) {
+  for (const VolumeView& source : plan.sources) {
+    if (source.memory == Memory::device && backend != Backend::cuda) {
+      throw std::invalid_argument("source: device memory needs back end cuda");
+    }
+  }
+}
+
+void check_step(const WarpPlan& plan,
+                Backend backend,
+                const PositionsView& deformed,
+                const WarpTarget& target) {
+  const std::size_t nodes = plan.mesh.rest_positions.size();
+  if (deformed.node_count != static_cast<std::int64_t>(nodes) || deformed.xyz == nullptr) {
+    throw std::invalid_argument("deformed positions: expected " + std::to_string(nodes) +
+                                " nodes as at rest, got " + std::to_string(deformed.node_count));
+  }
+  if (deformed.memory == Memory::host) {
+    for (std::int64_t n = 0; n < deformed.node_count; ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!std::isfinite(deformed.xyz[3 * n + axis])) {
+          throw std::invalid_argument("deformed positions: node " + std::to_string(n) +
+                                      " is not finite");
+        }
+      }
+    }
+  }
+  if (target.volumes.size() != plan.sources.size()) {
+    throw std::invalid_argument("target: expected one output per source, " +
+                                std::to_string(plan.sources.size()) + ", got " +
+                                std::to_string(target.volumes.size()));
+  }
+  for (const void* volume : target.volumes) {
+    if (volume == nullptr) throw std::invalid_argument("target: an output is null");
+  }
+  if (target.fields.forward != nullptr && plan.output_grid != plan.sources.front().grid) {
+    throw std::invalid_argument(
+        "target: the forward field is on the source grid, which the output grid is not; leave out "
+        "output_grid or the field");
+  }
+  const bool on_device = deformed.memory == Memory::device || target.memory == Memory::device ||
+                         target.stream != nullptr;
+  if (on_device && backend != Backend::cuda) {
+    throw std::invalid_argument("device memory and streams need back end cuda");
+  }
+}
+
+std::unique_ptr<WarpBackend> make_backend(Backend backend, const WarpPlan& plan) {
+  switch (backend) {
+    case Backend::cuda:
+      return make_cuda_backend(plan);
+    case Backend::reference:
+      return make_reference_backend(plan);
+    default:
+      return make_cpu_backend(plan);
+  }
+}
+
+}  // namespace
+
+struct Warper::State {
+  WarpPlan plan;
+  Report report;
+  std::optional<StepQueue> queue;
+};
+
+Warper::Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options)
+    : state_(std::make_unique<State>()) {
+  state_->plan = make_plan(sources, mesh, options);
+  Report& report = state_->report;
+  std::tie(report.backend, report.backend_reason) = choose_backend(options.backend, options.device);
+  check_memory_space(state_->plan, report.backend);
+  state_->queue.emplace(make_backend(report.backend, state_->plan));
+  report.version = TETWARP_VERSION;
+  report.device = state_->queue->backend().device();
+  report.threads = state_->queue->backend().threads();
+  report.position_quantum = 1.0 / static_cast<double>(quanta_per_voxel);
+}
+
+Warper::Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options)
+    : Warper(std::array{VolumeView(source)}, mesh, options) {}
+
+Warper::Warper(Warper&&) noexcept = default;
+Warper& Warper::operator=(Warper&&) noexcept = default;
+Warper::~Warper() = default;
+
+const Grid& Warper::output_grid() const {
+  return state_->plan.target_grid;
+}
+
+const Report& Warper::report() const {
+  return state_->report;
+}
+
+void Warper::begin_step(const PositionsView& deformed,
+                        const WarpTarget& target,
+                        const Progress& progress) {
+  check_step(state_->plan, state_->report.backend, deformed, target);
+  StepQueue& queue = *state_->queue;
+  if (queue.size() == max_steps_in_flight) {
+    throw std::logic_error("begin_step: two steps are in flight; finish one first");
+  }
+  if (queue.writes_to(target)) {
+    throw std::invalid_argument("target: a step in flight writes to it");
+  }
+  queue.begin(deformed, target, progress);
+}
+
+StepReport Warper::finish_step() {
+  if (state_->queue->size() == 0) throw std::logic_error("finish_step: no step is in flight");
+  StepReport step = state_->queue->finish();
+  Report& report = state_->report;
+  step.step = static_cast<std::int64_t>(report.steps.size());
+  report.timings += step.timings;
+  report.counts += step.counts;
+  report.steps.push_back(step);
+  return step;
+}
+
+std::size_t Warper::steps_in_flight() const {
+  return state_->queue->size();
+}
+
+StepReport Warper::step(const PositionsView& deformed,
+                        const WarpTarget& target,
+                        const Progress& progress) {
+  if (steps_in_flight() > 0) {
+    throw std::logic_error("step: others are in flight; finish them first");
+  }
+  begin_step(deformed, target, progress);
+  return finish_step();
+}
+
+Volume Warper::step(const PositionsView& deformed) {
+  if (state_->plan.sources.size() != 1) {
+    throw std::invalid_argument("step into a new volume: the Warper has several sources");
+  }
+  const VolumeView& source = state_->plan.sources.front();
+  Volume volume = make_volume(output_grid(), source.type, source.components);
+  void* const data = volume.data.data();
+  step(deformed, {.volumes = std::span(&data, 1)});
+  return volume;
+}
+
+WarpResult warp(const Volume& source,
+                const Mesh& mesh,
+                const std::vector<Point3>& deformed,
+                const WarpOptions& options) {
+  Warper warper(source, mesh, options);
+  Volume volume = warper.step(deformed);
+  volume.name = source.name;
+  return {std::move(volume), warper.report()};
+}
+
+}  // namespace tetwarp

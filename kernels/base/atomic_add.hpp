@@ -1,0 +1,18 @@
+/// @file atomic_add.hpp
+/// Integer counters that any number of threads may add to: the sum does not depend on their order.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/hd.hpp"
+
+namespace tetwarp {
+
+TETWARP_HD void atomic_add(std::int64_t* counter, std::int64_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(reinterpret_cast<unsigned long long*>(counter), static_cast<unsigned long long>(value));
+#else
+  __atomic_fetch_add(counter, value, __ATOMIC_RELAXED);
+#endif
+}
+
+}  // namespace tetwarp

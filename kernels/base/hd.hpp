@@ -1,0 +1,54 @@
+/// @file hd.hpp
+/// Functions that run on host and device, and the few operations whose rounding must not depend on
+/// where they run.
+#pragma once
+#include <math.h>  // not <cmath>: floor() and others for float, in the global namespace too
+
+// TETWARP_HD marks a function for both; TETWARP_HD_RARE keeps one out of line, whose registers a
+// hot loop should not pay for. TETWARP_ANY_EXEC marks what runs where its executor does.
+#if defined(__CUDACC__)
+#define TETWARP_HD __host__ __device__ __forceinline__
+#define TETWARP_HD_RARE __host__ __device__ __noinline__ inline
+#define TETWARP_ANY_EXEC __host__ __device__
+#else
+#define TETWARP_HD inline __attribute__((always_inline))
+#define TETWARP_HD_RARE inline __attribute__((noinline))
+#define TETWARP_ANY_EXEC
+#endif
+
+namespace tetwarp {
+
+/// a * b, rounded once: never fused into a neighbouring addition.
+TETWARP_HD double mul_rn(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
+  return a * b;  // the build turns contraction off on the host
+#endif
+}
+
+/// a + b, rounded once: never fused with a neighbouring product.
+TETWARP_HD double add_rn(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dadd_rn(a, b);
+#else
+  return a + b;
+#endif
+}
+
+template <class T>
+TETWARP_HD T min_of(T a, T b) {
+  return b < a ? b : a;
+}
+
+template <class T>
+TETWARP_HD T max_of(T a, T b) {
+  return a < b ? b : a;
+}
+
+template <class T>
+TETWARP_HD T square_of(T x) {
+  return x * x;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,42 @@
+/// @file pixel.hpp
+/// Arithmetic on samples: which precision serves a pixel type, and the rounding back to it.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "kernels/base/hd.hpp"
+
+namespace tetwarp {
+
+/// The arithmetic that serves a pixel type: float32 for 8- and 16-bit integers and float32, else
+/// float64.
+template <class T>
+using ArithmeticOf =
+    std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
+
+/// Whether values of a pixel type may be computed: float64 does not hold 64-bit integers.
+template <class T>
+constexpr bool can_blend = std::is_floating_point_v<T> || sizeof(T) <= 4;
+
+/// Limits of an integer type as constants that device code may use.
+template <class T>
+struct IntegerRange {
+  static constexpr T low = std::numeric_limits<T>::min();
+  static constexpr T high = std::numeric_limits<T>::max();
+};
+
+/// Rounds half to even and saturates; floats are converted.
+template <class T, class Real>
+TETWARP_HD T rounded_to(Real value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return static_cast<T>(value);
+  } else {
+    const Real whole = rint(value);
+    if (whole <= static_cast<Real>(IntegerRange<T>::low)) return IntegerRange<T>::low;
+    if (whole >= static_cast<Real>(IntegerRange<T>::high)) return IntegerRange<T>::high;
+    return static_cast<T>(whole);
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,51 @@
+/// @file view.hpp
+/// What a body may hold: pointers with sizes, and the integer geometry of the output grid.
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/base/hd.hpp"
+
+namespace tetwarp {
+
+/// A pointer and a size; owns nothing.
+template <class T>
+struct View {
+  T* data = nullptr;
+  std::int64_t size = 0;
+
+  TETWARP_HD T& operator[](std::int64_t i) const { return data[i]; }
+  template <class Const>
+  requires std::is_same_v<Const, const T> TETWARP_HD operator View<Const>() const {
+    return {data, size};
+  }
+};
+
+constexpr int cell_edge = 8;  ///< voxels along the edge of a cell
+constexpr int cell_shift = 3;
+
+/// The output in frame coordinates. The frame is the output grid's index space moved by whole
+/// cells, so that a region computes the very cells, and the very bits, of the full grid.
+struct OutputFrame {
+  std::int64_t origin[3];  ///< grid index of frame voxel (0, 0, 0): a multiple of 8
+  int begin[3];            ///< first voxel to compute, in 0..7 [frame]
+  int end[3];              ///< one past the last [frame]
+  int cells[3];            ///< cells along each axis
+
+  TETWARP_HD std::int64_t cell_count() const {
+    return std::int64_t{cells[0]} * cells[1] * cells[2];
+  }
+  TETWARP_HD std::int64_t voxel_count() const {
+    return std::int64_t{end[0] - begin[0]} * (end[1] - begin[1]) * (end[2] - begin[2]);
+  }
+  /// Position of a frame voxel in the output array.
+  TETWARP_HD std::int64_t offset_of(int i, int j, int k) const {
+    const std::int64_t slice = std::int64_t{k - begin[2]} * (end[1] - begin[1]) + (j - begin[1]);
+    return slice * (end[0] - begin[0]) + (i - begin[0]);
+  }
+  TETWARP_HD std::int64_t cell_index(int ci, int cj, int ck) const {
+    return (std::int64_t{ck} * cells[1] + cj) * cells[0] + ci;
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,216 @@
+/// @file anderson.hpp
+/// Anderson acceleration of a fixed-point iteration; see contact_accelerators.hpp.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/small_cholesky.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+constexpr int anderson_window = 8;
+
+/// What is known of the last steps, and what the next one does.
+struct AndersonState {
+  static constexpr int window = anderson_window;
+  enum class Action { keep, reject, combine };
+
+  /// Products with the new change, then with the defect; the square of the defect.
+  PlainSums<2 * window + 1> sums;
+  double gram[window][window] = {};
+  double factor[window] = {};  ///< of the changes of images
+  double last_square = 0;      ///< of the defect
+  int now = 0;                 ///< which of the two iterates is written next
+  int depth = 0;
+  int newest = -1;  ///< column of the next look; -1: there is no last iterate yet
+  bool has_last = false;
+  Action action = Action::keep;
+
+  TETWARP_HD double square() const { return sums.value[2 * window]; }
+
+  /// After a look: what becomes of the image.
+  TETWARP_HD_RARE void decide() {
+    if (has_last && square() > 4 * last_square) {
+      action = Action::reject;  // the good one stays where it is, the next look overwrites the bad
+      restart();
+      return;
+    }
+    if (has_last) add_to_gram();
+    now = 1 - now;
+    has_last = true;
+    last_square = square();
+    action = depth > 0 && find_factors() ? Action::combine : Action::keep;
+    if (has_last) newest = (newest + 1) % window;
+  }
+
+ private:
+  TETWARP_HD void restart() {
+    depth = 0;
+    has_last = false;
+    newest = -1;
+  }
+  TETWARP_HD void add_to_gram() {
+    depth = min_of(depth + 1, window);
+    for (int k = 0; k < depth; ++k) gram[k][newest] = gram[newest][k] = sums.value[k];
+  }
+  /// Least squares. False, and a restart: no numbers came out.
+  TETWARP_HD bool find_factors() {
+    // Old and new changes differ in size by many orders: scale first, then regularize.
+    double scaled[window][window], solution[window], scale[window];
+    for (int i = 0; i < depth; ++i) {
+      scale[i] = 1 / sqrt(max_of(gram[i][i], 1e-300));
+      for (int j = 0; j < i; ++j) scaled[i][j] = scale[i] * gram[i][j] * scale[j];
+      scaled[i][i] = scale[i] * gram[i][i] * scale[i] + 1e-12;
+      solution[i] = scale[i] * sums.value[window + i];
+    }
+    bool is_finite = solve_small_spd(scaled, depth, solution);
+    for (int k = 0; k < window; ++k) {
+      factor[k] = k < depth ? scale[k] * solution[k] : 0;
+      is_finite = is_finite && fabs(factor[k]) < 1e30;  // in float32, too
+    }
+    if (!is_finite) restart();
+    return is_finite;
+  }
+};
+
+/// Anderson acceleration, type II, window 8 (Walker and Ni 2011), the least squares in a diagonal
+/// metric. An image whose defect g(x) - x has grown to more than twice the last one is rejected:
+/// the iteration restarts from the last good image.
+template <class Exec, class T>
+class AndersonMixer {
+ public:
+  static constexpr int window = anderson_window;
+  static constexpr int columns = 4 + 2 * window;
+  using GramSums = PlainSums<2 * window + 1>;
+
+  /// Where the columns are: defect and image, twice; changes of defects; changes of images.
+  struct Columns {
+    T* first;
+    std::int64_t size;
+
+    TETWARP_HD T* defect(int which) const { return first + 2 * which * size; }
+    TETWARP_HD T* image(int which) const { return first + (2 * which + 1) * size; }
+    TETWARP_HD T* defect_changes() const { return first + 4 * size; }
+    TETWARP_HD T* image_changes() const { return first + (4 + window) * size; }
+  };
+
+  /// All columns of changes take part, those not yet written with a factor of zero.
+  struct ZeroBody {
+    T* values;
+    TETWARP_HD void operator()(std::int64_t i) const { values[i] = 0; }
+  };
+
+  /// One run of entries: stores the iterate and its changes in column `newest`, multiplies them
+  /// with all columns.
+  struct ObserveBody {
+    const AndersonState* state;
+    const double* weights;
+    View<const T> x, image;
+    Columns columns;
+
+    /// @tparam most  entries of a run: scratch numbers
+    template <int most>
+    TETWARP_HD GramSums run(std::int64_t first, std::int64_t last) const {
+      const int newest = state->newest, now = state->now;
+      const auto count = static_cast<int>(last - first);
+      const std::int64_t place = first + (newest < 0 ? 0 : newest * x.size);
+      T* const newest_defect = columns.defect_changes() + place;
+      T* const newest_image = columns.image_changes() + place;
+      T* const now_defect = columns.defect(now) + first;
+      T* const now_image = columns.image(now) + first;
+      const T* const last_defect = columns.defect(1 - now) + first;
+      const T* const last_image = columns.image(1 - now) + first;
+      double change[most] = {}, weighted[most];
+      GramSums sums;
+      for (int i = 0; i < count; ++i) {
+        const T defect = image[first + i] - x[first + i];
+        weighted[i] = weights[first + i] * defect;
+        sums.value[2 * window] += weighted[i] * defect;
+        if (newest >= 0) {
+          newest_defect[i] = defect - last_defect[i];
+          newest_image[i] = image[first + i] - last_image[i];
+          change[i] = weights[first + i] * newest_defect[i];
+        }
+        now_defect[i] = defect;
+        now_image[i] = image[first + i];
+      }
+      for (int k = 0; k < window; ++k) {
+        const T* const changes = columns.defect_changes() + k * x.size + first;
+        sums.value[k] = product(change, changes, count);
+        sums.value[window + k] = product(weighted, changes, count);
+      }
+      return sums;
+    }
+
+    /// In four lanes, which compilers turn into vectors.
+    TETWARP_HD static double product(const double* a, const T* b, int count) {
+      double lanes[4] = {};
+      for (int i = 0; i + 4 <= count; i += 4) {
+        for (int lane = 0; lane < 4; ++lane) lanes[lane] += a[i + lane] * b[i + lane];
+      }
+      for (int i = count - count % 4; i < count; ++i) lanes[0] += a[i] * b[i];
+      return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    }
+  };
+
+  struct DecideBody {
+    AndersonState* state;
+    TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
+  };
+
+  struct AdvanceBody {
+    const AndersonState* state;
+    Columns columns;
+    View<T> image;
+
+    template <int most>
+    TETWARP_HD void run(std::int64_t first, std::int64_t last) const {
+      if (state->action == AndersonState::Action::keep) return;
+      if (state->action == AndersonState::Action::reject) {
+        const T* const good = columns.image(1 - state->now);
+        for (std::int64_t i = first; i < last; ++i) image[i] = good[i];
+        return;
+      }
+      T factor[window];
+      for (int k = 0; k < window; ++k) factor[k] = static_cast<T>(state->factor[k]);
+      for (std::int64_t i = first; i < last; ++i) {
+        T sum = 0;
+        for (int k = 0; k < window; ++k) {
+          sum += factor[k] * columns.image_changes()[k * image.size + i];
+        }
+        image[i] -= sum;
+      }
+    }
+  };
+
+  /// @param weights  diagonal of the metric, [size]
+  /// @param work     [columns][size]
+  TETWARP_ANY_EXEC AndersonMixer(Exec& exec, View<const double> weights, View<T> work)
+      : exec_(exec),
+        weights_(weights),
+        columns_{work.data, weights.size},
+        state_(exec.template state<AndersonState>()) {
+    exec_.for_each("contact/mix", 2 * window * weights.size, ZeroBody{columns_.defect_changes()});
+  }
+
+  TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
+    exec_.sum_runs_to("contact/mix", 0, x.size,
+                      ObserveBody{state_, weights_.data, x, image, columns_}, &state_->sums);
+  }
+  TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->sums.value[2 * window])); }
+  TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
+    exec_.once("contact/mix", DecideBody{state_});
+    exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
+    return exec_.load_if_free(&state_->action, AndersonState::Action::combine) !=
+           AndersonState::Action::keep;
+  }
+
+ private:
+  Exec& exec_;
+  View<const double> weights_;
+  Columns columns_;
+  AndersonState* state_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,122 @@
+/// @file contact_accelerators.hpp
+/// Accelerators of a fixed-point iteration x -> g(x), for any executor. They see vectors and a
+/// diagonal metric and know nothing of contacts. All have
+///
+///     columns            vectors of the size of x that they need to work with
+///     observe(x, image)  looks at image = g(x)
+///     defect()           size of image - x of the last look, told to whoever decides: on a device
+///                        that takes waiting
+///     advance(x, image)  may replace image by the next x; whether it may have
+///
+/// What they decide by themselves is decided where the vectors are.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// One index = one entry of the squared difference of two vectors in a diagonal metric.
+template <class T>
+struct DefectBody {
+  View<const double> weights;
+  View<const T> x, image;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
+    const double defect = double{image[i]} - double{x[i]};
+    return {{weights[i] * defect * defect}};
+  }
+};
+
+/// The iteration as it is.
+template <class Exec, class T>
+class PlainSteps {
+ public:
+  static constexpr int columns = 0;
+
+  TETWARP_ANY_EXEC PlainSteps(Exec& exec, View<const double> weights, View<T>)
+      : exec_(exec), weights_(weights), sums_(exec.template state<PlainSums<1>>()) {}
+
+  TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
+    exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, sums_);
+  }
+  TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&sums_->value[0])); }
+  TETWARP_ANY_EXEC bool advance(View<const T>, View<T>) { return false; }
+
+ private:
+  Exec& exec_;
+  View<const double> weights_;
+  PlainSums<1>* sums_;
+};
+
+/// Nonsmooth nonlinear conjugate gradients over sweeps (Silcowitz-Hansen, Niebe, Erleben 2010):
+/// Fletcher-Reeves on the defect, restarted when it grows.
+template <class Exec, class T>
+class ConjugateDirection {
+ public:
+  static constexpr int columns = 1;
+
+  struct State {
+    PlainSums<1> square;  ///< of the defect
+    double last = 0;      ///< square before
+    double ratio = 0;
+    bool is_restart = true;
+  };
+
+  /// One index: what the next step does.
+  struct DecideBody {
+    State* state;
+    TETWARP_HD void operator()(std::int64_t) const {
+      const double square = state->square.value[0];
+      state->is_restart = !(state->last > 0 && square <= state->last);
+      state->ratio = state->is_restart ? 0 : square / state->last;
+      state->last = square;
+    }
+  };
+
+  struct AdvanceBody {
+    const State* state;
+    View<const T> x;
+    View<T> image;
+    T* direction;
+
+    template <int most>
+    TETWARP_HD void run(std::int64_t first, std::int64_t last) const {
+      const bool is_restart = state->is_restart;
+      const T ratio = static_cast<T>(state->ratio);
+      for (std::int64_t i = first; i < last; ++i) {
+        const T defect = image[i] - x[i];
+        const T before = is_restart ? T(0) : ratio * direction[i];
+        image[i] += before;
+        direction[i] = is_restart ? T(0) : before + defect;
+      }
+    }
+  };
+
+  /// @param weights  diagonal of the metric, [size]
+  /// @param work     [size]
+  TETWARP_ANY_EXEC ConjugateDirection(Exec& exec, View<const double> weights, View<T> work)
+      : exec_(exec),
+        weights_(weights),
+        direction_(work.data),
+        state_(exec.template state<State>()) {}
+
+  TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
+    exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, &state_->square);
+  }
+  TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->square.value[0])); }
+  TETWARP_ANY_EXEC bool advance(View<const T> x, View<T> image) {
+    exec_.once("contact/mix", DecideBody{state_});
+    exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, x, image, direction_});
+    return true;
+  }
+
+ private:
+  Exec& exec_;
+  View<const double> weights_;
+  T* direction_;
+  State* state_;
+};
+
+}  // namespace tetwarp

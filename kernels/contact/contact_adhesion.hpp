@@ -1,0 +1,170 @@
+/// @file contact_adhesion.hpp
+/// Stage "adhesion" of the contact solver: one step of the adhesion intensity beta, after the solve
+/// in which it was frozen.
+///
+/// With p the pressure of compression [Pa] and C g^2 the strain of the springs [J/m^2],
+///
+///     beta' = r max(p - beta p0, 0) + min(W - C g^2 beta, 0) / eta
+///
+/// g holds all three gaps in traction and the tangential ones in compression; friction debonds
+/// nothing.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/hd.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// beta' = max(bonding - bonding_decay beta, 0) + min(cohesion - strain beta, 0), all [1/s], >= 0.
+struct IntensityLaw {
+  double bonding = 0;        ///< r p
+  double bonding_decay = 0;  ///< r p0
+  double cohesion = 0;       ///< W / eta
+  double strain = 0;         ///< C g^2 / eta
+};
+
+TETWARP_HD double bonding_rate_of(const IntensityLaw& law, double beta) {
+  return max_of(law.bonding - law.bonding_decay * beta, 0.0);
+}
+
+TETWARP_HD double debonding_rate_of(const IntensityLaw& law, double beta) {
+  return min_of(law.cohesion - law.strain * beta, 0.0);
+}
+
+/// beta after `time` under beta' = rate - decay (beta - start), from `start`.
+TETWARP_HD double relaxed_intensity(double start, double rate, double decay, double time) {
+  const double x = decay * time;
+  return start + (x > 0 ? rate * (-expm1(-x) / decay) : rate * time);
+}
+
+/// Rounding may leave the range by a last place.
+TETWARP_HD double cut_intensity(double beta) {
+  return min_of(max_of(beta, 0.0), 1.0);
+}
+
+/// Exact solution after `time` [s], cut at 1. The law is linear on pieces and never grows with
+/// beta: from a piece where bonding or debonding acts alone beta may reach, once, the piece where
+/// both do.
+TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double time) {
+  const double bonding = bonding_rate_of(law, beta);
+  const double debonding = debonding_rate_of(law, beta);
+  const double rate = bonding + debonding;
+  if (rate == 0) return beta;
+  const double decay = (bonding > 0 ? law.bonding_decay : 0) + (debonding < 0 ? law.strain : 0);
+  const double end = relaxed_intensity(beta, rate, decay, time);
+  double corner;
+  if (debonding == 0 && law.strain * end > law.cohesion) {
+    corner = law.cohesion / law.strain;
+  } else if (bonding == 0 && law.bonding_decay * end < law.bonding) {
+    corner = law.bonding_decay > 0 ? law.bonding / law.bonding_decay : beta;
+  } else {
+    return cut_intensity(end);
+  }
+  const double share = (corner - beta) / rate;  // time to the corner if the rate stayed
+  const double passed = decay > 0 ? -log1p(-decay * share) / decay : share;
+  const double both =
+      (law.bonding - law.bonding_decay * corner) + (law.cohesion - law.strain * corner);
+  const double left = time - passed > 0 ? time - passed : 0;  // also where rounding makes it NaN
+  return cut_intensity(relaxed_intensity(corner, both, law.bonding_decay + law.strain, left));
+}
+
+/// One explicit Euler step, clamped to [0, 1]. For comparison: where a rate times `time` exceeds 1
+/// it ends below the rest point, and debonding does not mend that.
+TETWARP_HD double euler_intensity(const IntensityLaw& law, double beta, double time) {
+  const double rate = bonding_rate_of(law, beta) + debonding_rate_of(law, beta);
+  return cut_intensity(beta + time * rate);
+}
+
+/// Entry of a vector that may be left out.
+TETWARP_HD double value_or(View<const double> values, std::int64_t i, double otherwise) {
+  return values.size > 0 ? values[i] : otherwise;
+}
+
+/// What the stage reads, as in AdhesionState; views of size 0 stand for vectors left out.
+struct AdhesionViews {
+  double time_step;  ///< [s], > 0
+  View<const double> area;
+  View<const double> stiffness;
+  View<const double> tangential_stiffness;
+  View<const double> intensity;
+  View<const double> gap;
+  View<const double> energy;
+  View<const double> viscosity;
+  View<const double> bonding_rate;
+  View<const double> saturation_pressure;
+  View<const double> impulse;   ///< r of the solve, shape [3 contacts], N s
+  View<const double> velocity;  ///< u of the solve, shape [3 contacts], m/s
+};
+
+/// One index = one contact; any order.
+struct ContactAdhesionBody {
+  AdhesionViews in;
+  bool euler;
+  double debond_gap_factor;
+  double debond_intensity;
+  View<double> next_intensity;
+  View<double> next_gap;
+  View<std::uint8_t> debonded;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    const double dt = in.time_step;
+    const double area = value_or(in.area, c, 0);
+    const double stiffness = value_or(in.stiffness, c, 0);
+    const double beta = in.intensity[c];
+    const double normal_gap = dt * in.velocity[3 * c];
+    const double gap_1 = value_or(in.gap, 3 * c + 1, 0) + dt * in.velocity[3 * c + 1];
+    const double gap_2 = value_or(in.gap, 3 * c + 2, 0) + dt * in.velocity[3 * c + 2];
+    const double push = in.impulse[3 * c];
+
+    // Stored energy per area at beta = 1, doubled: W at onset.
+    double strain =
+        value_or(in.tangential_stiffness, c, stiffness) * (gap_1 * gap_1 + gap_2 * gap_2);
+    if (!(push > 0)) strain += stiffness * normal_gap * normal_gap;
+    const double energy = value_or(in.energy, c, 0);
+    const double viscosity = in.energy.size > 0 ? value_or(in.viscosity, c, 0) : 0;
+    IntensityLaw law;
+    if (push > 0 && area > 0) {
+      law.bonding = value_or(in.bonding_rate, c, 0) * (push / (dt * area));
+      law.bonding_decay = value_or(in.bonding_rate, c, 0) * value_or(in.saturation_pressure, c, 0);
+    }
+    if (viscosity > 0) {
+      law.cohesion = energy / viscosity;
+      law.strain = strain / viscosity;
+    }
+
+    double next = euler ? euler_intensity(law, beta, dt) : exact_intensity(law, beta, dt);
+    const bool torn = strain > debond_gap_factor * debond_gap_factor * energy;
+    const bool lets_go =
+        beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
+    if (lets_go) next = 0;
+    // Bonds that form on a stretched contact form unstretched: the force is continuous, and the
+    // stored energy falls by the factor that the gap shrinks by.
+    double keep = next > 0 ? 1 : 0;
+    if (next > beta) keep = (beta / next) * (beta / next);
+    next_intensity[c] = next;
+    next_gap[3 * c] = normal_gap;
+    next_gap[3 * c + 1] = keep * gap_1;
+    next_gap[3 * c + 2] = keep * gap_2;
+    debonded[c] = lets_go;
+  }
+};
+
+/// Steps the intensity of every contact and moves its tangential anchors.
+///
+/// A contact lets go, to beta = 0, where debonding is on (an energy and a viscosity > 0) and its
+/// strain passes `debond_gap_factor`^2 W, or its intensity falls below `debond_intensity` in
+/// traction; the law alone only tends to W / (C g^2) > 0.
+/// @param exec  where to run
+/// @param body  inputs and outputs, shapes as in AdhesionState and AdhesionStep
+///
+/// Determinism: same bits whatever the thread count; back ends differ by the last places of expm1
+/// and log1p. Cost: one or two exponentials per contact.
+/// Source: Gascon 2010, section 4.3.3, with the gap in place of the traction and compression as the
+/// sign that bonds; the closed form and the moved anchors are ours.
+template <class Exec>
+void contact_adhesion(const Exec& exec, const ContactAdhesionBody& body) {
+  exec.for_each("contact/adhesion", body.next_intensity.size, body);
+}
+
+}  // namespace tetwarp

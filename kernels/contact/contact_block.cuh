@@ -1,0 +1,286 @@
+/// @file contact_block.cuh
+/// The contact solver of an island by one block of a device, from its first sweep to its last,
+/// measuring and acceleration included, in a single launch.
+///
+/// 128 threads share what a stage does, a barrier parts the stages. Impulses and velocities of
+/// bodies live in shared memory where they fit, else in place. The order of updates is that of the
+/// host; sums have another tree.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "kernels/contact/contact_methods.hpp"
+#include "kernels/exec/block_sum.cuh"
+#include "kernels/exec/launch.hpp"
+
+namespace tetwarp {
+
+constexpr int island_threads = sum_threads;
+constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
+constexpr std::int64_t block_contacts = 2048;  ///< larger islands are worth a whole device
+
+/// What the contact pipeline asks of an executor, by the threads of one block. All of them have to
+/// ask, and all get the same answers.
+class BlockContactExec {
+ public:
+  using LargestSum = PlainSums<2 * anderson_window + 1>;
+  static constexpr std::size_t state_bytes = 1024;
+  static constexpr std::size_t shared_bytes = state_bytes + sum_warps * sizeof(LargestSum);
+
+  /// @param shared  [shared_bytes]
+  __device__ explicit BlockContactExec(void* shared) : shared_(shared) {}
+
+  template <class Body>
+  __device__ __forceinline__ void for_each(const char*,
+                                           std::int64_t count,
+                                           const Body& body) const {
+    for (std::int64_t i = first(); i < count; i += island_threads) body(i);
+    __syncthreads();
+  }
+  template <class Body>
+  __device__ __forceinline__ void for_runs(const char*,
+                                           std::int64_t count,
+                                           const Body& body) const {
+    for (std::int64_t i = first(); i < count; i += island_threads) body.template run<1>(i, i + 1);
+    __syncthreads();
+  }
+  template <class Body>
+  __device__ __forceinline__ void once(const char*, const Body& body) const {
+    if (threadIdx.x == 0) body(0);
+    __syncthreads();
+  }
+
+  /// Shared memory for one thing at a time, made anew.
+  template <class State>
+  __device__ __forceinline__ State* state() const {
+    static_assert(sizeof(State) <= state_bytes && alignof(State) <= 16);
+    State* const state = static_cast<State*>(shared_);
+    if (threadIdx.x == 0) *state = State{};
+    __syncthreads();
+    return state;
+  }
+  template <class T>
+  __device__ __forceinline__ T load(const T* value) const {
+    return *value;
+  }
+  template <class T>
+  __device__ __forceinline__ T load_if_free(const T* value, T) const {
+    return *value;
+  }
+  __device__ __forceinline__ bool is_look(std::int64_t) const { return true; }
+
+  template <class T>
+  __device__ __forceinline__ void copy(const char*, View<const T> from, View<T> to) const {
+    for (std::int64_t i = first(); i < from.size; i += island_threads) to[i] = from[i];
+    __syncthreads();
+  }
+  template <class Sum, class Body>
+  __device__ __forceinline__ Sum
+  sum(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
+    static_assert(sizeof(Sum) <= sizeof(LargestSum));
+    Sum mine{};
+    for (std::int64_t i = begin + first(); i < end; i += island_threads) mine += body(i);
+    return block_sum(mine, sums<Sum>());
+  }
+  template <class Sum, class Body>
+  __device__ __forceinline__ Sum
+  sum_runs(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
+    static_assert(sizeof(Sum) <= sizeof(LargestSum));
+    Sum mine{};
+    for (std::int64_t i = begin + first(); i < end; i += island_threads) {
+      mine += body.template run<1>(i, i + 1);
+    }
+    return block_sum(mine, sums<Sum>());
+  }
+
+  template <class Sum, class Body>
+  __device__ __forceinline__ void sum_to(
+      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
+    const Sum total = sum<Sum>(stage, begin, end, body);
+    if (threadIdx.x == 0) *out = total;
+    __syncthreads();
+  }
+  template <class Sum, class Body>
+  __device__ __forceinline__ void sum_runs_to(
+      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
+    const Sum total = sum_runs<Sum>(stage, begin, end, body);
+    if (threadIdx.x == 0) *out = total;
+    __syncthreads();
+  }
+
+ private:
+  template <class Sum>
+  __device__ Sum* sums() const {
+    return reinterpret_cast<Sum*>(static_cast<unsigned char*>(shared_) + state_bytes);
+  }
+  __device__ static std::int64_t first() { return static_cast<std::int64_t>(threadIdx.x); }
+
+  void* shared_;
+};
+
+/// Measured residuals: the last one and, evenly thinned out, those before. One thread writes.
+class ThinnedEventLog {
+ public:
+  /// @param events  two or more
+  __device__ ThinnedEventLog(View<ContactEvent> events, bool writes)
+      : events_(events), writes_(writes) {}
+
+  __device__ void note(const ContactEvent& event) {
+    last_ = event;
+    is_last_kept_ = seen_++ % stride_ == 0;
+    if (!is_last_kept_) return;
+    if (count_ == events_.size) {
+      for (std::int64_t k = 1; 2 * k < count_ && writes_; ++k) events_[k] = events_[2 * k];
+      count_ = (count_ + 1) / 2;
+      stride_ *= 2;
+      is_last_kept_ = (seen_ - 1) % stride_ == 0;
+      if (!is_last_kept_) return;
+    }
+    if (writes_) events_[count_] = event;
+    ++count_;
+  }
+  /// @return how many are kept
+  __device__ std::int64_t end() {
+    if (seen_ > 0 && !is_last_kept_) {
+      count_ = min_of(count_ + 1, events_.size);
+      if (writes_) events_[count_ - 1] = last_;
+    }
+    return count_;
+  }
+
+ private:
+  View<ContactEvent> events_;
+  bool writes_;
+  std::int64_t count_ = 0, stride_ = 1, seen_ = 0;
+  ContactEvent last_ = {};
+  bool is_last_kept_ = true;
+};
+
+/// An island to solve.
+struct IslandTask {
+  ContactIsland island;
+  StopRule rule;
+};
+
+/// What became of it.
+struct IslandResult {
+  IslandEnd end;
+  std::int64_t events = 0;
+};
+
+/// All islands that are solved by one block each.
+template <class T>
+struct IslandJob {
+  ContactNumbers<T> numbers;
+  ContactState<T> state;  ///< impulses: in: to start from; out: the best
+  MethodWork<T> work;
+  View<const std::int64_t> color_start;
+  ContactSwitches switches;
+  MethodPlan plan;
+  View<const IslandTask> tasks;
+  std::int64_t shared_values;  ///< islands of more numbers are solved in place
+  View<IslandResult> results;  ///< out, [tasks]
+  View<ContactEvent> events;   ///< out, [tasks][events_per_island]
+  std::int64_t events_per_island;
+};
+
+/// Has `view` find numbers [first, last) at `place` under their old indices.
+template <class T>
+__device__ __forceinline__ void move_view(View<T>& view, std::int64_t first, T* place) {
+  view.data = place - first;
+}
+
+/// Blocks: one per island. Threads: island_threads. Shared: BlockContactExec::shared_bytes and
+/// job.shared_values numbers, dynamic. Registers: up to 255.
+template <class T>
+__global__ void __launch_bounds__(island_threads, island_blocks)
+    contact_island_kernel(IslandJob<T> job) {
+  unsigned char* const shared = dynamic_shared<unsigned char>();
+  const auto which = static_cast<std::int64_t>(blockIdx.x);
+  const ContactIsland& island = job.tasks[which].island;
+  BlockContactExec exec(shared);
+  ContactState<T> state = job.state;
+  const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
+  const View<T> home = {state.impulse.data + first, size};
+  const bool is_shared = island.value_count() <= job.shared_values;
+  if (is_shared) {
+    T* const place = reinterpret_cast<T*>(shared + BlockContactExec::shared_bytes);
+    exec.copy("contact/sweep", View<const T>(home), View<T>{place, size});
+    move_view(state.impulse, first, place);
+    if (!job.numbers.is_local) move_view(state.body_velocity, island.dof_begin, place + size);
+  }
+  ContactPipeline<BlockContactExec, T> pipeline(exec, job.numbers, job.color_start, island,
+                                                job.switches, state);
+  ThinnedEventLog log({job.events.data + which * job.events_per_island, job.events_per_island},
+                      threadIdx.x == 0);
+  IslandResult result;
+  result.end = solve_island(pipeline, job.tasks[which].rule, job.plan, 0, job.work, log);
+  result.events = log.end();
+  if (is_shared) {
+    exec.copy("contact/sweep", View<const T>(pipeline.impulse()), home);
+    exec.copy("contact/sweep", View<const T>(pipeline.body_velocity()),
+              View<T>{job.state.body_velocity.data + island.dof_begin,
+                      island.dof_end - island.dof_begin});
+  }
+  if (threadIdx.x == 0) job.results[which] = result;
+}
+
+/// Most numbers of an island that the 48 KiB of a block hold.
+template <class T>
+constexpr std::int64_t shared_capacity = static_cast<std::int64_t>(
+    (std::size_t{48} * 1024 - BlockContactExec::shared_bytes) / sizeof(T));
+
+/// The room that islands need in shared memory, those left out that do not fit.
+/// @param tasks  on the host
+template <class T>
+std::int64_t shared_values_for(View<const IslandTask> tasks) {
+  std::int64_t most = 0;
+  for (std::int64_t i = 0; i < tasks.size; ++i) {
+    const std::int64_t count = tasks[i].island.value_count();
+    if (count <= shared_capacity<T>) most = std::max(most, count);
+  }
+  return most;
+}
+
+/// Solves every island of the job, at least one.
+/// Determinism: islands do not meet, contacts of a color do not meet, sums are fixed trees.
+/// Cost: per stage one barrier, besides what the stages cost.
+template <class T>
+void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
+  launch(stream, contact_island_kernel<T>, dim3(static_cast<unsigned>(job.tasks.size)),
+         dim3(island_threads),
+         BlockContactExec::shared_bytes + static_cast<std::size_t>(job.shared_values) * sizeof(T),
+         job);
+}
+
+/// Islands to look at.
+template <class T>
+struct MeasureJob {
+  ContactNumbers<T> numbers;
+  ContactState<T> state;  ///< velocities follow the impulses
+  View<const std::int64_t> color_start;
+  ContactSwitches switches;
+  View<const ContactIsland> islands;
+  View<IslandSums> sums;  ///< out, [islands]
+};
+
+/// Blocks: one per island. Threads: island_threads. Shared: BlockContactExec::shared_bytes,
+/// dynamic. Registers: up to 128.
+template <class T>
+__global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(MeasureJob<T> job) {
+  const auto which = static_cast<std::int64_t>(blockIdx.x);
+  BlockContactExec exec(dynamic_shared<unsigned char>());
+  const IslandSums sums = measure_island(ContactPipeline<BlockContactExec, T>(
+      exec, job.numbers, job.color_start, job.islands[which], job.switches, job.state));
+  if (threadIdx.x == 0) job.sums[which] = sums;
+}
+
+/// Sums of every island of the job, at least one.
+/// Determinism: fixed trees.
+template <class T>
+void contact_measure_islands(cudaStream_t stream, const MeasureJob<T>& job) {
+  launch(stream, contact_measure_kernel<T>, dim3(static_cast<unsigned>(job.islands.size)),
+         dim3(island_threads), BlockContactExec::shared_bytes, job);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,215 @@
+/// @file contact_grid.cuh
+/// What the contact pipeline asks of an executor, by a whole device: for islands too large for a
+/// block and for those that A couples. Decisions are made on the host, which reads one sum for
+/// each.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kernels/contact/contact_block.cuh"
+#include "kernels/contact/sweep_graph.cuh"
+#include "kernels/exec/block_sum.cuh"
+#include "kernels/exec/exec_cuda.cuh"
+
+namespace tetwarp {
+
+constexpr int sum_run = 1024;  ///< terms per block of sums_kernel
+
+/// sums[b] = sum of term over the b-th `run` of [first, last).
+/// Blocks: one per run. Threads: sum_threads. Shared: one sum per warp. Registers: up to 128.
+template <class Sum, class Term>
+__global__ void __launch_bounds__(sum_threads, 4) sums_kernel(
+    std::int64_t first, std::int64_t last, std::int64_t run, Term term, View<Sum> sums) {
+  Sum* const of_warp = dynamic_shared<Sum>();
+  const std::int64_t begin = first + run * static_cast<std::int64_t>(blockIdx.x);
+  const std::int64_t end = min_of(begin + run, last);
+  Sum mine{};
+  for (std::int64_t i = begin + static_cast<std::int64_t>(threadIdx.x); i < end; i += sum_threads) {
+    mine += term(i);
+  }
+  const Sum total = block_sum(mine, of_warp);
+  if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
+}
+
+/// One index = one sum made before.
+template <class Sum>
+struct ReadySums {
+  View<const Sum> sums;
+
+  TETWARP_HD Sum operator()(std::int64_t i) const { return sums[i]; }
+};
+
+/// One index = a run of one entry.
+template <class Body>
+struct SingleRuns {
+  Body body;
+
+  TETWARP_HD auto operator()(std::int64_t i) const { return body.template run<1>(i, i + 1); }
+};
+
+/// Numbers on a device.
+template <class T>
+class DeviceVector {
+ public:
+  void resize(std::int64_t size) {
+    buffer_.reserve(size);
+    size_ = size;
+  }
+  View<T> view() { return buffer_.view(size_); }
+  View<const T> view() const { return buffer_.const_view(size_); }
+
+ private:
+  DeviceBuffer<T> buffer_;
+  std::int64_t size_ = 0;
+};
+
+template <class T>
+View<T> view_of(DeviceVector<T>& values) {
+  return values.view();
+}
+template <class T>
+View<const T> view_of(const DeviceVector<T>& values) {
+  return values.view();
+}
+
+class GridContactExec {
+ public:
+  template <class T>
+  using Vector = DeviceVector<T>;
+
+  /// @param exec  kept by the caller
+  explicit GridContactExec(CudaExec& exec) : exec_(&exec) {}
+
+  /// All become zeros.
+  template <class T>
+  void resize(Vector<T>& values, std::int64_t size) const {
+    values.resize(size);
+    if (size == 0) return;
+    check_cuda(cudaMemsetAsync(values.view().data, 0, static_cast<std::size_t>(size) * sizeof(T),
+                               exec_->stream()),
+               "cudaMemsetAsync");
+  }
+  /// Numbers of the host.
+  template <class T>
+  void put(const T* host, std::int64_t size, Vector<T>& values) const {
+    values.resize(size);
+    if (size == 0) return;
+    check_cuda(cudaMemcpyAsync(values.view().data, host, static_cast<std::size_t>(size) * sizeof(T),
+                               cudaMemcpyHostToDevice, exec_->stream()),
+               "cudaMemcpyAsync to device");
+  }
+  template <class T>
+  void get(View<const T> values, T* host) const {
+    if (values.size > 0) exec_->read(values, host);
+  }
+  template <class T>
+  void copy(const char*, View<const T> from, View<T> to) const {
+    if (from.size == 0) return;
+    check_cuda(cudaMemcpyAsync(to.data, from.data, static_cast<std::size_t>(from.size) * sizeof(T),
+                               cudaMemcpyDeviceToDevice, exec_->stream()),
+               "cudaMemcpyAsync on device");
+  }
+  /// Without a clock: events would cost as much as the launches.
+  template <class Body>
+  void for_each(const char*, std::int64_t count, const Body& body) const {
+    if (count == 0) return;
+    launch(exec_->stream(), each_kernel<Body>,
+           dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads)),
+           dim3(each_threads), 0, count, body);
+  }
+
+  template <class Body>
+  void for_runs(const char* label, std::int64_t count, const Body& body) const {
+    for_each(label, count, SingleRuns<Body>{body});
+  }
+  template <class Body>
+  void once(const char* label, const Body& body) const {
+    for_each(label, 1, body);
+  }
+
+  /// Memory of the device for one thing at a time, made anew.
+  template <class State>
+  State* state() {
+    static_assert(sizeof(State) <= state_bytes);
+    state_.resize(state_bytes);
+    const State fresh{};
+    check_cuda(cudaMemcpyAsync(state_.view().data, &fresh, sizeof(State), cudaMemcpyHostToDevice,
+                               exec_->stream()),
+               "cudaMemcpyAsync to device");
+    return reinterpret_cast<State*>(state_.view().data);
+  }
+  /// Waits for the device.
+  template <class T>
+  T load(const T* value) {
+    home_.reserve(sizeof(T));
+    T* const home = reinterpret_cast<T*>(home_.view(0).data);
+    exec_->read(View<const T>{value, 1}, home);
+    return *home;
+  }
+  template <class T>
+  T load_if_free(const T*, T otherwise) const {
+    return otherwise;
+  }
+  /// The device would stand still at every look.
+  bool is_look(std::int64_t step) const { return step % 8 == 0; }
+  static constexpr bool reads_are_free = false;
+
+  template <class Sum, class Body>
+  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
+    if (first == last) return {};
+    total_.resize(sizeof(Sum));
+    Sum* const total = reinterpret_cast<Sum*>(total_.view().data);
+    sum_to(label, first, last, body, total);
+    return load(total);
+  }
+  /// @param out  on the device
+  template <class Sum, class Body>
+  void sum_to(const char*, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    const std::int64_t runs = (last - first + sum_run - 1) / sum_run;
+    sums_.resize(runs * static_cast<std::int64_t>(sizeof(Sum)));
+    const View<Sum> sums = {reinterpret_cast<Sum*>(sums_.view().data), runs};
+    if (runs > 0) launch_sums(first, last, sum_run, body, sums);
+    launch_sums(0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
+  }
+  template <class Sum, class Body>
+  void sum_runs_to(
+      const char* label, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
+    sum_to(label, first, last, SingleRuns<Body>{body}, out);
+  }
+
+  /// A pass over colors, recorded once and launched again and again.
+  template <class Body>
+  void sweep(View<const std::int64_t> color_start, const Body& body) {
+    graphs_.launch(exec_->stream(), color_start, body);
+  }
+
+  /// What was recorded reads memory that may be gone.
+  void forget_sweeps() { graphs_.clear(); }
+
+ private:
+  template <class Sum, class Term>
+  void launch_sums(std::int64_t first,
+                   std::int64_t last,
+                   std::int64_t run,
+                   const Term& term,
+                   View<Sum> sums) const {
+    launch(exec_->stream(), sums_kernel<Sum, Term>, dim3(static_cast<unsigned>(sums.size)),
+           dim3(sum_threads), sum_warps * sizeof(Sum), first, last, run, term, sums);
+  }
+
+  static constexpr std::int64_t state_bytes = 1024;
+
+  CudaExec* exec_;
+  DeviceVector<std::byte> state_, sums_, total_;
+  PinnedBuffer<std::byte> home_;
+  SweepGraphs graphs_;
+};
+
+/// As for any executor, but recorded.
+template <class Body>
+void contact_sweep(GridContactExec& exec, View<const std::int64_t> color_start, const Body& body) {
+  exec.sweep(color_start, body);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,75 @@
+/// @file contact_judge.hpp
+/// What judging the impulses on bodies that A couples takes, index by index.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/contact/body_relax.hpp"
+#include "kernels/contact/contact_residual.hpp"
+
+namespace tetwarp {
+
+/// One index = one contact: its constants with at most the blocks of J A^-1 J^T. Those of the
+/// problem are of omega J D^-1 J^T. Diagonal blocks of A^-1 are at least those of D^-1; as a whole
+/// A^-1 is at least D^-1 over the largest eigenvalue of D^-1 A, which is below 2 / omega where the
+/// outer iteration converges.
+struct LowerBlocksBody {
+  View<const std::int64_t> pair_start;
+  View<const ContactConstants<double>> constants;
+  double relaxation;
+  View<ContactConstants<double>> lower;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    const bool is_one_block = pair_start[c + 1] - pair_start[c] == 1;
+    const double factor = is_one_block ? 1 / relaxation : 0.5;
+    lower[c] = constants[c];
+    for (double& entry : lower[c].block) entry *= factor;
+    lower[c].tangent_metric *= factor;
+  }
+};
+
+/// One index = one contact: a unit impulse along its normal.
+struct UnitPushBody {
+  View<double> impulse;
+  TETWARP_HD void operator()(std::int64_t c) const { impulse[3 * c] = 1; }
+};
+
+/// One index = one block: squares of rest, load and J^T r.
+struct BalanceBody {
+  BlockContacts contacts;
+  View<const std::int64_t> dof_start;
+  View<const double> jacobian, load, impulse, rest;
+
+  TETWARP_HD PlainSums<3> operator()(std::int64_t b) const {
+    PlainSums<3> sums;
+    const std::int64_t size = dof_start[b + 1] - dof_start[b];
+    for (std::int64_t k = 0; k < size; ++k) {
+      double push = 0;
+      for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+        const double* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+        const double* j = jacobian.data + contacts.value[p] + k;
+        push += j[0] * r[0] + j[size] * r[1] + j[2 * size] * r[2];
+      }
+      sums.value[0] += square_of(rest[dof_start[b] + k]);
+      sums.value[1] += square_of(load[dof_start[b] + k]);
+      sums.value[2] += square_of(push);
+    }
+    return sums;
+  }
+};
+
+/// One index = one contact: squared difference of two velocities, weighed as eta does.
+struct DistanceBody {
+  View<const ContactConstants<double>> constants;
+  const double *a, *b;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
+    const double* x = a + 3 * c;
+    const double* y = b + 3 * c;
+    return {{normal_weight(constants[c]) * square_of(x[0] - y[0]) +
+             tangent_weight(constants[c]) * (square_of(x[1] - y[1]) + square_of(x[2] - y[2]))}};
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,263 @@
+/// @file contact_methods.hpp
+/// Methods for one island whose blocks A does not couple: sweeps, and what makes them faster.
+#pragma once
+#include <cstdint>
+
+#include <tetwarp/choices.hpp>
+
+#include "kernels/contact/anderson.hpp"
+#include "kernels/contact/contact_accelerators.hpp"
+#include "kernels/contact/contact_monitor.hpp"
+#include "kernels/contact/contact_pipeline.hpp"
+
+namespace tetwarp {
+
+/// One index = one contact: the diagonal metric in which impulses are compared, 1 / rho of the
+/// natural residual.
+template <class T>
+struct ImpulseWeightsBody {
+  View<const ContactConstants<T>> constants;
+  View<double> weights;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    const ContactConstants<T>& contact = constants[c];
+    const double normal = contact.block[0], tangent = contact.tangent_metric;
+    weights[3 * c] = normal / (1 + normal * contact.normal_spring);
+    weights[3 * c + 1] = weights[3 * c + 2] = tangent / (1 + tangent * contact.tangent_spring);
+  }
+};
+
+/// Memory that methods work with; contents do not matter between islands.
+template <class T>
+struct MethodWork {
+  static constexpr int columns = AndersonMixer<int, T>::columns;
+
+  View<double> weights;              ///< [3 slots]
+  View<T> before, best;              ///< [3 slots]
+  View<T> mixed;                     ///< [columns][3 slots], island after island
+  View<ContactConstants<T>> metric;  ///< [slots]
+
+  /// The part of an island; `metric` stays whole.
+  TETWARP_HD MethodWork of(const ContactIsland& island) const {
+    const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
+    return {{weights.data + first, size},
+            {before.data + first, size},
+            {best.data + first, size},
+            {mixed.data + columns * first, columns * size},
+            metric};
+  }
+};
+
+/// The methods of an island. Each goes on from the impulses at hand and returns why it stopped;
+/// restore_best() takes the best iterate back.
+template <class Exec, class T, class Log>
+class ContactMethods {
+ public:
+  /// One index = one entry: the slope along the last step.
+  struct UphillBody {
+    View<const double> weights;
+    View<const T> before, x, last;
+    TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
+      const T step = x[i] - last[i];
+      return {{weights[i] * (double{before[i]} - double{x[i]}) * step}};
+    }
+  };
+  struct MomentumBody {
+    T factor;
+    View<T> last, x;
+    TETWARP_HD void operator()(std::int64_t i) const {
+      const T now = x[i];
+      x[i] += factor * (now - last[i]);
+      last[i] = now;
+    }
+  };
+
+  /// @param work  of the whole problem
+  TETWARP_ANY_EXEC ContactMethods(ContactPipeline<Exec, T>& pipeline,
+                                  ContactMonitor<Log>& monitor,
+                                  const MethodWork<T>& work)
+      : pipeline_(pipeline), monitor_(monitor), work_(work.of(pipeline.island())) {
+    exec().for_each("contact/sweep", pipeline_.constants().size,
+                    ImpulseWeightsBody<T>{pipeline_.constants(), work_.weights});
+    exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
+  }
+
+  /// Measures the impulses at hand. True: done.
+  TETWARP_ANY_EXEC bool is_done_at_start() {
+    pipeline_.follow_impulses();
+    return measure(0);
+  }
+
+  TETWARP_ANY_EXEC StopReason gauss_seidel(std::int64_t patience, const CalmContacts<T>& calm) {
+    return iterate<PlainSteps<Exec, T>>(patience, calm);
+  }
+  TETWARP_ANY_EXEC StopReason anderson(std::int64_t patience) {
+    return iterate<AndersonMixer<Exec, T>>(patience, {});
+  }
+  TETWARP_ANY_EXEC StopReason conjugate_directions(std::int64_t patience) {
+    return iterate<ConjugateDirection<Exec, T>>(patience, {});
+  }
+
+  /// Nesterov's acceleration, restarted when it leads uphill, of contacts solved all at once in the
+  /// metric of split masses.
+  TETWARP_ANY_EXEC StopReason mass_splitting(std::int64_t patience) {
+    monitor_.start_method(patience);
+    pipeline_.split_metric(work_.metric);
+    const View<T> x = pipeline_.impulse();
+    const View<T> last = {work_.mixed.data, x.size};
+    exec().copy("contact/mix", View<const T>(x), last);
+    double momentum = 1;
+    PlainSteps<Exec, T> steps(exec(), work_.weights, {});
+    while (!monitor_.is_exhausted()) {
+      exec().copy("contact/mix", View<const T>(x), work_.before);
+      pipeline_.split(work_.metric);
+      monitor_.count_sweep();
+      if (is_look()) {
+        steps.observe(work_.before, x);
+        const double defect = steps.defect();
+        if (monitor_.is_due(defect)) {
+          pipeline_.follow_impulses();
+          if (measure(defect)) break;
+        }
+      }
+      const double uphill =
+          exec()
+              .template sum<PlainSums<1>>("contact/mix", 0, x.size,
+                                          UphillBody{work_.weights, work_.before, x, last})
+              .value[0];
+      if (uphill > 0) momentum = 1;
+      const double next = (1 + sqrt(1 + 4 * momentum * momentum)) / 2;
+      const T factor = uphill > 0 ? T(0) : static_cast<T>((momentum - 1) / next);
+      momentum = next;
+      exec().for_each("contact/mix", x.size, MomentumBody{factor, last, x});
+      pipeline_.follow_impulses();
+    }
+    return monitor_.reason();
+  }
+
+  /// What an option asks for; several methods in turn where it leaves the choice.
+  /// @param calm  which contacts plain sweeps may leave out
+  /// @return whether accelerated sweeps got stuck and conjugate directions went on from their best
+  TETWARP_ANY_EXEC bool run(ContactMethod method, const CalmContacts<T>& calm) {
+    constexpr std::int64_t patience = 100;  // sweeps without a drop
+    switch (method) {
+      case ContactMethod::gauss_seidel:
+        gauss_seidel(endless, calm);
+        return false;
+      case ContactMethod::nonlinear_cg:
+        conjugate_directions(endless);
+        return false;
+      case ContactMethod::anderson:
+        anderson(endless);
+        return false;
+      case ContactMethod::mass_splitting:
+        mass_splitting(endless);
+        return false;
+      case ContactMethod::automatic:
+      case ContactMethod::newton:
+        break;
+    }
+    if (anderson(patience) != StopReason::stalled) return false;
+    restore_best();
+    conjugate_directions(2 * patience);
+    return true;
+  }
+
+  /// Takes the best impulses back.
+  TETWARP_ANY_EXEC void restore_best() {
+    exec().copy("contact/sweep", View<const T>(work_.best), pipeline_.impulse());
+    pipeline_.follow_impulses();
+  }
+
+ private:
+  TETWARP_HD Exec& exec() const { return pipeline_.exec(); }
+
+  template <class Accelerator>
+  TETWARP_ANY_EXEC StopReason iterate(std::int64_t patience, CalmContacts<T> calm) {
+    Accelerator accelerator(exec(), work_.weights, work_.mixed);
+    monitor_.start_method(patience);
+    const View<T> x = pipeline_.impulse();
+    const View<const T> before = work_.before;
+    while (!monitor_.is_exhausted()) {
+      exec().copy("contact/mix", View<const T>(x), work_.before);
+      calm.all_awake = calm.visits.size == 0 || monitor_.sweeps() % CalmContacts<T>::pause == 0;
+      pipeline_.sweep(calm);
+      monitor_.count_sweep();
+      accelerator.observe(before, x);
+      if (is_look()) {
+        const double defect = accelerator.defect();
+        if (monitor_.is_due(defect) && measure(defect)) break;
+      }
+      if (accelerator.advance(before, x)) pipeline_.follow_impulses();
+    }
+    return monitor_.reason();
+  }
+
+  /// Whether the executor lets those who decide look now.
+  TETWARP_ANY_EXEC bool is_look() const {
+    return exec().is_look(monitor_.sweeps()) || monitor_.is_exhausted();
+  }
+
+  TETWARP_ANY_EXEC bool measure(double defect) {
+    bool is_best = false;
+    const bool is_done = monitor_.take(pipeline_.measure(), defect, is_best);
+    if (is_best) exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
+    return is_done;
+  }
+
+  ContactPipeline<Exec, T>& pipeline_;
+  ContactMonitor<Log>& monitor_;
+  MethodWork<T> work_;
+};
+
+/// How the solve of an island ended.
+struct IslandEnd {
+  StopReason reason = StopReason::exhausted;
+  std::int64_t sweeps = 0;  ///< in all
+  bool has_turned = false;  ///< from accelerated sweeps to conjugate directions
+};
+
+/// What every island is solved by.
+struct MethodPlan {
+  ContactMethod method = ContactMethod::automatic;
+  double calm_share = 0;  ///< see CalmContacts; where the state has room for calm contacts
+  std::int64_t sweep_budget = 0;
+};
+
+/// Solves one island from the impulses at hand; the best are left.
+template <class Exec, class T, class Log>
+TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
+                                        const StopRule& rule,
+                                        const MethodPlan& plan,
+                                        std::int64_t sweeps_done,
+                                        const MethodWork<T>& work,
+                                        Log& log) {
+  ContactMonitor<Log> monitor(rule, sweeps_done, plan.sweep_budget, log);
+  ContactMethods<Exec, T, Log> methods(pipeline, monitor, work);
+  bool has_turned = false;
+  if (!methods.is_done_at_start()) {
+    const ContactState<T>& state = pipeline.state();
+    has_turned = methods.run(plan.method,
+                             {state.calm, state.left_out, true, static_cast<T>(plan.calm_share)});
+    methods.restore_best();
+  }
+  return {monitor.reason(), monitor.sweeps(), has_turned};
+}
+
+/// Where an island stands.
+struct IslandSums {
+  ContactSums sums;
+  double free_square = 0;  ///< |q|^2
+};
+
+/// Of the impulses at hand, which bodies follow.
+template <class Exec, class T>
+TETWARP_ANY_EXEC IslandSums measure_island(ContactPipeline<Exec, T> pipeline) {
+  pipeline.follow_impulses();
+  IslandSums result;
+  result.sums = pipeline.measure();
+  result.free_square = pipeline.free_square();
+  return result;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,60 @@
+/// @file contact_numbers.hpp
+/// A contact problem as the stages of the solver read and change it: views, wherever the memory is.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/contact/body_relax.hpp"
+#include "kernels/contact/contact_sweep.hpp"
+
+namespace tetwarp {
+
+/// Contacts that influence each other, with the blocks of dofs they move.
+struct ContactIsland {
+  std::int64_t slot_begin = 0, slot_end = 0;    ///< its contacts
+  std::int64_t color_begin = 0, color_end = 0;  ///< its entries of color_start
+  std::int64_t block_begin = 0, block_end = 0;
+  std::int64_t dof_begin = 0, dof_end = 0;
+  bool is_coupled = false;  ///< A couples its blocks
+
+  TETWARP_HD std::int64_t contact_count() const { return slot_end - slot_begin; }
+  TETWARP_HD std::int64_t block_count() const { return block_end - block_begin; }
+  /// Numbers that its sweeps change: impulses, velocities of bodies.
+  TETWARP_HD std::int64_t value_count() const { return 3 * contact_count() + dof_end - dof_begin; }
+};
+
+/// What a solve reads.
+template <class T>
+struct ContactNumbers {
+  bool is_local = false;
+  View<const ContactConstants<T>> constants;  ///< [slots]
+  View<const T> free_velocity;                ///< q, [3 slots]
+
+  // Local form.
+  DelassusView<T> delassus;
+
+  // Global form.
+  BodiesView<T> bodies;
+  BlockContacts block_contacts;
+  View<const T> body_free;  ///< A^-1 b, [dofs]; of coupled islands not set
+
+  // Of islands whose blocks A couples.
+  SystemView<T> system;
+  View<const T> load;                       ///< b, [dofs]
+  View<const std::int64_t> diagonal_value;  ///< [blocks], diagonal blocks among those of A
+  View<const std::int64_t> inverse_start;   ///< [blocks + 1]
+  View<const T> inverse;                    ///< D^-1
+};
+
+/// What a solve changes, for all islands together.
+template <class T>
+struct ContactState {
+  View<T> impulse;              ///< r, [3 slots]
+  View<T> velocity;             ///< u, [3 slots]
+  View<T> body_velocity;        ///< v, [dofs]
+  View<T> defect;               ///< b + J^T r - A v, [dofs], of coupled islands
+  View<std::uint8_t> calm;      ///< [slots], or empty where no contact may be frozen
+  View<std::int32_t> left_out;  ///< [slots]
+};
+
+}  // namespace tetwarp

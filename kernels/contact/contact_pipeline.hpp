@@ -1,0 +1,149 @@
+/// @file contact_pipeline.hpp
+/// The contact solver of one island as a list of stages, for any executor: threads of the host, a
+/// whole device, or one block of it. Read this file first: sweep() is the method, measure() what it
+/// is judged by.
+#pragma once
+#include <cstdint>
+
+#include "kernels/contact/body_relax.hpp"
+#include "kernels/contact/contact_numbers.hpp"
+#include "kernels/contact/contact_residual.hpp"
+#include "kernels/contact/contact_split.hpp"
+#include "kernels/contact/contact_sweep.hpp"
+#include "kernels/contact/vector_bodies.hpp"
+
+namespace tetwarp {
+
+template <class Exec, class T>
+class ContactPipeline {
+ public:
+  /// @param color_start  of all islands, where the one that calls can read it
+  TETWARP_ANY_EXEC ContactPipeline(Exec& exec,
+                                   const ContactNumbers<T>& numbers,
+                                   View<const std::int64_t> color_start,
+                                   const ContactIsland& island,
+                                   ContactSwitches switches,
+                                   const ContactState<T>& state)
+      : exec_(exec),
+        numbers_(numbers),
+        color_start_(color_start),
+        island_(island),
+        switches_(switches),
+        state_(state) {}
+
+  TETWARP_HD Exec& exec() const { return exec_; }
+  TETWARP_HD const ContactIsland& island() const { return island_; }
+  TETWARP_HD const ContactState<T>& state() const { return state_; }
+
+  /// r of the island's contacts.
+  TETWARP_HD View<T> impulse() const {
+    return {state_.impulse.data + 3 * island_.slot_begin, 3 * island_.contact_count()};
+  }
+  /// v of the island's dofs; empty in local form.
+  TETWARP_HD View<T> body_velocity() const {
+    return {state_.body_velocity.data + island_.dof_begin, island_.dof_end - island_.dof_begin};
+  }
+  TETWARP_HD View<const ContactConstants<T>> constants() const {
+    return {numbers_.constants.data + island_.slot_begin, island_.contact_count()};
+  }
+
+  /// One pass over all contacts.
+  TETWARP_ANY_EXEC void sweep(const CalmContacts<T>& calm) {
+    const View<const std::int64_t> colors = {color_start_.data + island_.color_begin,
+                                             island_.color_end - island_.color_begin};
+    if (numbers_.is_local) {
+      contact_sweep(exec_, colors,
+                    DelassusSweepBody<T>{numbers_.delassus, numbers_.constants, switches_, calm,
+                                         state_.impulse});
+    } else {
+      contact_sweep(exec_, colors,
+                    BodySweepBody<T>{numbers_.bodies, numbers_.constants, switches_, calm,
+                                     state_.impulse, state_.body_velocity});
+    }
+  }
+
+  /// The contacts' constants with the metric of split masses for their own blocks.
+  /// @param metric  out, [slots]; only the island's part
+  TETWARP_ANY_EXEC void split_metric(View<ContactConstants<T>> metric) {
+    exec_.copy("contact/sweep", constants(),
+               View<ContactConstants<T>>{metric.data + island_.slot_begin, constants().size});
+    if (numbers_.is_local) {
+      run_contacts(DelassusSplitMetricBody<T>{numbers_.delassus, metric});
+    } else {
+      run_contacts(BodySplitMetricBody<T>{numbers_.bodies, numbers_.block_contacts.start, metric});
+    }
+    run_contacts(ContactMetricBody<T>{metric});
+  }
+
+  /// Every contact's answer to the same velocities, in the metric from above.
+  TETWARP_ANY_EXEC void split(View<const ContactConstants<T>> metric) {
+    find_velocities();
+    run_contacts(ContactSplitBody<T>{metric, switches_, state_.velocity, state_.impulse});
+  }
+
+  /// v from r, after r was changed by other means than a sweep.
+  /// @pre A does not couple the island's blocks
+  TETWARP_ANY_EXEC void follow_impulses() {
+    if (numbers_.is_local) return;
+    body_relax(exec_, island_.block_begin, island_.block_end,
+               BodyVelocityBody<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
+                                   numbers_.bodies.response, state_.impulse, numbers_.body_free,
+                                   state_.body_velocity});
+  }
+
+  /// Goes on with velocities kept elsewhere, [dofs] of the whole problem.
+  TETWARP_HD void use_body_velocity(View<T> body_velocity) { state_.body_velocity = body_velocity; }
+
+  /// A step of block-Jacobi with the impulses at hand: v = x + omega D^-1 (b + J^T r - A x).
+  /// @param x  [dofs] of the whole problem, other than v
+  TETWARP_ANY_EXEC void step_bodies(View<const T> x, T relaxation) {
+    body_relax(exec_, island_.block_begin, island_.block_end,
+               BodyStepBody<T>{{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
+                                numbers_.load, state_.impulse, x, state_.defect},
+                               numbers_.inverse_start,
+                               numbers_.inverse,
+                               relaxation,
+                               state_.body_velocity});
+  }
+
+  /// How far r and v are from the law.
+  TETWARP_ANY_EXEC ContactSums measure() {
+    find_velocities();
+    return contact_residual(exec_, island_.slot_begin, island_.slot_end,
+                            ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
+                                                   state_.velocity, numbers_.free_velocity});
+  }
+
+  /// |q|^2 of the island.
+  TETWARP_ANY_EXEC double free_square() {
+    return exec_
+        .template sum<PlainSums<1>>("contact/residual", 3 * island_.slot_begin,
+                                    3 * island_.slot_end, SquareBody<T>{numbers_.free_velocity})
+        .value[0];
+  }
+
+ private:
+  template <class Body>
+  TETWARP_ANY_EXEC void run_contacts(const Body& body) {
+    exec_.for_each("contact/sweep", island_.contact_count(),
+                   FromContact<Body>{body, island_.slot_begin});
+  }
+  TETWARP_ANY_EXEC void find_velocities() {
+    if (numbers_.is_local) {
+      run_contacts(ContactVelocityBody<DelassusView<T>, T>{numbers_.delassus, state_.impulse.data,
+                                                           state_.velocity});
+    } else {
+      run_contacts(ContactVelocityBody<BodiesView<T>, T>{numbers_.bodies, state_.body_velocity.data,
+                                                         state_.velocity});
+    }
+  }
+
+  Exec& exec_;
+  ContactNumbers<T> numbers_;
+  View<const std::int64_t> color_start_;
+  ContactIsland island_;
+  ContactSwitches switches_;
+  ContactState<T> state_;
+};
+
+}  // namespace tetwarp

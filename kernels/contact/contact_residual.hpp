@@ -1,0 +1,152 @@
+/// @file contact_residual.hpp
+/// Stage "residual" of the contact solver: how far each contact is from its law.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/contact/contact_law.hpp"
+
+namespace tetwarp {
+
+/// Sums over contacts, in float64 whatever the solver runs in.
+struct ContactSums {
+  double eta = 0;      ///< e_n^2 / rho_n + |e_t|^2 / rho_t: an energy [J]
+  double fclib = 0;    ///< |r - P(r - u~)|^2, P onto the cone of friction, u~ = u + mu |u_t| n
+  double work = 0;     ///< r . (u - q)
+  double largest = 0;  ///< largest term of `eta`
+  double deepest = 0;  ///< largest -u_n [m/s]
+  std::int64_t largest_contact = -1;
+
+  TETWARP_HD ContactSums& operator+=(const ContactSums& other) {
+    eta += other.eta;
+    fclib += other.fclib;
+    work += other.work;
+    deepest = max_of(deepest, other.deepest);
+    if (other.largest > largest) {
+      largest = other.largest;
+      largest_contact = other.largest_contact;
+    }
+    return *this;
+  }
+};
+
+/// |e_n|^2 / rho_n + |e_t|^2 / rho_t of the natural map of the law; zero exactly where it holds.
+template <class T>
+TETWARP_HD double natural_square(const ContactConstants<T>& c,
+                                 ContactSwitches switches,
+                                 double rho_n,
+                                 double rho_t,
+                                 const T* impulse,
+                                 const T* velocity) {
+  const double kappa_t = c.tangent_spring;
+  const double nu_n = impulse[0] + double{c.normal_spring} * velocity[0];
+  const double sum = square_of(min_of(nu_n, rho_n * velocity[0])) / rho_n;
+  if (c.kind == ContactKind::frictionless) return sum;
+  const double limit = c.friction * max_of(nu_n, 0.0);
+  double spring[2], nu[2], aim[2];
+  for (int a = 0; a < 2; ++a) {
+    spring[a] = kappa_t * (velocity[1 + a] + double{c.tangent_offset[a]});
+    nu[a] = impulse[1 + a] + spring[a];
+    aim[a] = nu[a] - rho_t * velocity[1 + a];
+  }
+  if (switches.pyramid) {
+    for (int a = 0; a < 2; ++a) {
+      const double radius = max_of(limit - (switches.restrictive ? fabs(spring[a]) : 0.0), 0.0);
+      aim[a] = min_of(max_of(aim[a], -radius), radius);
+    }
+  } else {
+    const double pull = sqrt(square_of(spring[0]) + square_of(spring[1]));
+    const double radius = max_of(limit - (switches.restrictive ? pull : 0.0), 0.0);
+    const double length = sqrt(square_of(aim[0]) + square_of(aim[1]));
+    const double scale = length > radius ? radius / length : 1;
+    aim[0] *= scale;
+    aim[1] *= scale;
+  }
+  return sum + (square_of(nu[0] - aim[0]) + square_of(nu[1] - aim[1])) / rho_t;
+}
+
+/// Metrics of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
+template <class T>
+TETWARP_HD double normal_weight(const ContactConstants<T>& c) {
+  return 1 / double{c.block[0]} + double{c.normal_spring};
+}
+template <class T>
+TETWARP_HD double tangent_weight(const ContactConstants<T>& c) {
+  return c.tangent_metric > 0 ? 1 / double{c.tangent_metric} + double{c.tangent_spring} : 1;
+}
+
+/// Share in eta.
+template <class T>
+TETWARP_HD double eta_square(const ContactConstants<T>& c,
+                             ContactSwitches switches,
+                             const T* impulse,
+                             const T* velocity) {
+  return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
+}
+
+/// Share in FCLIB's error: squared distance of nu from the projection of nu - u~ onto the cone of
+/// friction, u~ = u + mu |u_t| n; laws without a cone: the natural map with metrics 1.
+template <class T>
+TETWARP_HD double fclib_square(const ContactConstants<T>& c,
+                               ContactSwitches switches,
+                               const T* impulse,
+                               const T* velocity) {
+  if (switches.pyramid || (switches.restrictive && c.tangent_spring > 0)) {
+    return natural_square(c, switches, 1, 1, impulse, velocity);
+  }
+  const double friction = c.friction;
+  const double u[3] = {double{velocity[0]}, double{velocity[1]}, double{velocity[2]}};
+  double nu[3] = {impulse[0] + double{c.normal_spring} * u[0], 0, 0};
+  for (int a = 0; a < 2; ++a) {
+    nu[1 + a] =
+        impulse[1 + a] + double{c.tangent_spring} * (u[1 + a] + double{c.tangent_offset[a]});
+  }
+  const double slip = sqrt(u[1] * u[1] + u[2] * u[2]);
+  double aim[3] = {nu[0] - u[0] - friction * slip, nu[1] - u[1], nu[2] - u[2]};
+  const double tangent = sqrt(aim[1] * aim[1] + aim[2] * aim[2]);
+  if (aim[0] <= -friction * tangent) {
+    aim[0] = aim[1] = aim[2] = 0;
+  } else if (tangent > friction * aim[0]) {
+    aim[0] = (friction * tangent + aim[0]) / (1 + friction * friction);
+    aim[1] *= friction * aim[0] / tangent;
+    aim[2] *= friction * aim[0] / tangent;
+  }
+  double sum = 0;
+  for (int a = 0; a < 3; ++a) sum += square_of(nu[a] - aim[a]);
+  return sum;
+}
+
+/// One index = one contact, from its impulse and velocity.
+template <class T>
+struct ContactResidualBody {
+  View<const ContactConstants<T>> constants;
+  ContactSwitches switches;
+  View<const T> impulse;
+  View<const T> velocity;
+  View<const T> free_velocity;
+
+  TETWARP_HD ContactSums operator()(std::int64_t c) const {
+    const T* r = impulse.data + 3 * c;
+    const T* u = velocity.data + 3 * c;
+    ContactSums sums;
+    sums.eta = sums.largest = eta_square(constants[c], switches, r, u);
+    sums.largest_contact = c;
+    sums.fclib = fclib_square(constants[c], switches, r, u);
+    sums.deepest = max_of(-double{u[0]}, 0.0);
+    for (int a = 0; a < 3; ++a) sums.work += r[a] * (double{u[a]} - free_velocity[3 * c + a]);
+    return sums;
+  }
+};
+
+/// Residual of contacts [first, last).
+/// Determinism: a fixed tree, same bits for any number of threads; each executor has its own.
+/// Cost: 9 numbers per contact.
+template <class Exec, class T>
+TETWARP_ANY_EXEC ContactSums contact_residual(Exec& exec,
+                                              std::int64_t first,
+                                              std::int64_t last,
+                                              const ContactResidualBody<T>& body) {
+  return exec.template sum<ContactSums>("contact/residual", first, last, body);
+}
+
+}  // namespace tetwarp

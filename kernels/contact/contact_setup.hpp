@@ -1,0 +1,120 @@
+/// @file contact_setup.hpp
+/// Stage "setup" of the contact solver: inverse blocks of A, responses of bodies to contacts, the
+/// contacts' own 3x3 Delassus blocks.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/contact/contact_law.hpp"
+
+namespace tetwarp {
+
+/// Which dofs a contact moves: pairs of a contact and a block of A. The Jacobian part of a pair is
+/// 3 x size, row by row; its response part size x 3, row by row; both start at the same place.
+struct PairView {
+  View<const std::int64_t> pair_start;   ///< [contacts + 1], first pair of each contact
+  View<const std::int32_t> block;        ///< [pairs]
+  View<const std::int64_t> value_start;  ///< [pairs], in the Jacobian and in the responses
+  View<const std::int64_t> dof_start;    ///< [blocks + 1], first dof of each block
+};
+
+/// Inverts a symmetric positive definite matrix in place (Gauss-Jordan; such matrices need no
+/// pivoting).
+template <class T>
+TETWARP_HD void invert_spd(T* a, int size) {
+  for (int k = 0; k < size; ++k) {
+    const T pivot = 1 / a[k * size + k];
+    for (int i = 0; i < size; ++i) {
+      if (i == k) continue;
+      const T factor = a[i * size + k] * pivot;
+      for (int j = 0; j < size; ++j) {
+        if (j != k) a[i * size + j] -= factor * a[k * size + j];
+      }
+      a[i * size + k] = -factor;
+    }
+    for (int j = 0; j < size; ++j) a[k * size + j] *= pivot;
+    a[k * size + k] = pivot;
+  }
+}
+
+/// One index = one block: its inverse, in place.
+template <class T>
+struct BlockInvertBody {
+  View<const std::int64_t> dof_start;
+  View<const std::int64_t> value_start;  ///< [blocks + 1], first entry of each block
+  View<T> values;
+
+  TETWARP_HD void operator()(std::int64_t b) const {
+    invert_spd(values.data + value_start[b], static_cast<int>(dof_start[b + 1] - dof_start[b]));
+  }
+};
+
+/// One index = one contact: what its blocks answer to unit impulses, scaled by `relaxation`, and
+/// its own block of the Delassus matrix.
+template <class T>
+struct ContactResponseBody {
+  PairView pairs;
+  View<const T> jacobian;
+  View<const std::int64_t> inverse_start;
+  View<const T> inverse;
+  T relaxation;
+  View<T> response;
+  View<ContactConstants<T>> constants;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    T* own = constants[c].block;
+    for (int e = 0; e < 9; ++e) own[e] = 0;
+    for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
+      const std::int32_t b = pairs.block[p];
+      const int size = static_cast<int>(pairs.dof_start[b + 1] - pairs.dof_start[b]);
+      const T* j = jacobian.data + pairs.value_start[p];
+      const T* inverse_block = inverse.data + inverse_start[b];
+      T* answer = response.data + pairs.value_start[p];
+      for (int row = 0; row < size; ++row) {
+        for (int a = 0; a < 3; ++a) {
+          T sum = 0;
+          for (int k = 0; k < size; ++k) sum += inverse_block[row * size + k] * j[a * size + k];
+          answer[3 * row + a] = relaxation * sum;
+        }
+      }
+      for (int a = 0; a < 3; ++a) {
+        for (int e = 0; e < 3; ++e) {
+          for (int k = 0; k < size; ++k) own[3 * a + e] += j[a * size + k] * answer[3 * k + e];
+        }
+      }
+    }
+  }
+};
+
+/// One index = one contact: the scalar metric of its tangents, once its block is known.
+template <class T>
+struct ContactMetricBody {
+  View<ContactConstants<T>> constants;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    const T* b = constants[c].block;
+    constants[c].tangent_metric = larger_eigenvalue(b[4], (b[5] + b[7]) / 2, b[8]);
+  }
+};
+
+/// Inverse blocks of A, kept for the life of a system.
+/// @param values  in: dense blocks row by row; out: their inverses
+/// @pre blocks are positive definite
+/// Determinism: same bits on every back end with contraction off. Cost: size^3 per block.
+template <class Exec, class T>
+void block_invert(Exec& exec,
+                  View<const std::int64_t> dof_start,
+                  View<const std::int64_t> value_start,
+                  View<T> values) {
+  exec.for_each("contact/setup", dof_start.size - 1,
+                BlockInvertBody<T>{dof_start, value_start, values});
+}
+
+/// Responses and own blocks of all contacts; the rest of `constants` stays as it is.
+template <class Exec, class T>
+void contact_response(Exec& exec, const ContactResponseBody<T>& body) {
+  exec.for_each("contact/setup", body.constants.size, body);
+  exec.for_each("contact/setup", body.constants.size, ContactMetricBody<T>{body.constants});
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,74 @@
+/// @file contact_split.hpp
+/// Stage "split" of the contact solver: every contact by itself, all from the same velocities, as
+/// if each body's mass were divided among its contacts. Needs no colors.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/contact/body_relax.hpp"
+#include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/contact_sweep.hpp"
+
+namespace tetwarp {
+
+/// One index = one contact between bodies: P = sum over its blocks of n_b J A^-1 J^T, n_b contacts
+/// on block b. No Delassus matrix exceeds P (Cauchy-Schwarz).
+template <class T>
+struct BodySplitMetricBody {
+  BodiesView<T> bodies;
+  View<const std::int64_t> block_start;  ///< [blocks + 1], pairs by block
+  View<ContactConstants<T>> constants;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    T own[9] = {};
+    for (std::int64_t p = bodies.pairs.pair_start[c]; p < bodies.pairs.pair_start[c + 1]; ++p) {
+      const std::int32_t b = bodies.pairs.block[p];
+      const int size = static_cast<int>(bodies.pairs.dof_start[b + 1] - bodies.pairs.dof_start[b]);
+      const T share = static_cast<T>(block_start[b + 1] - block_start[b]);
+      const T* j = bodies.jacobian.data + bodies.pairs.value_start[p];
+      const T* answer = bodies.response.data + bodies.pairs.value_start[p];
+      for (int a = 0; a < 3; ++a) {
+        for (int e = 0; e < 3; ++e) {
+          for (int k = 0; k < size; ++k)
+            own[3 * a + e] += share * j[a * size + k] * answer[3 * k + e];
+        }
+      }
+    }
+    for (int e = 0; e < 9; ++e) constants[c].block[e] = own[e];
+  }
+};
+
+/// One index = one contact of a Delassus matrix: its diagonal block, raised by the sizes of the
+/// others in its row (block diagonal dominance does the same as the shares above).
+template <class T>
+struct DelassusSplitMetricBody {
+  DelassusView<T> delassus;
+  View<ContactConstants<T>> constants;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    T others = 0;
+    for (std::int64_t k = delassus.row_start[c]; k < delassus.row_start[c + 1]; ++k) {
+      if (delassus.column[k] == c) continue;
+      T square = 0;
+      for (int e = 0; e < 9; ++e) square += square_of(delassus.blocks[9 * k + e]);
+      others += sqrt(square);
+    }
+    for (int e = 0; e < 9; e += 4) constants[c].block[e] += others;
+  }
+};
+
+/// One index = one contact: its answer to the velocity given, in the metric P of its constants.
+template <class T>
+struct ContactSplitBody {
+  View<const ContactConstants<T>> constants;
+  ContactSwitches switches;
+  View<const T> velocity;
+  View<T> impulse;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    T u[3] = {velocity[3 * c], velocity[3 * c + 1], velocity[3 * c + 2]};
+    solve_contact(constants[c], switches, u, impulse.data + 3 * c);
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,112 @@
+/// @file sweep_graph.cuh
+/// Sweeps over colors as recorded graphs: what a sweep launches is the same every time.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kernels/contact/contact_sweep.hpp"
+#include "kernels/exec/exec_cuda.cuh"
+
+namespace tetwarp {
+
+/// Records what is launched on a stream; the recording ends whatever is thrown meanwhile.
+class StreamCapture {
+ public:
+  explicit StreamCapture(cudaStream_t stream) : stream_(stream) {
+    check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal),
+               "cudaStreamBeginCapture");
+  }
+  StreamCapture(const StreamCapture&) = delete;
+  StreamCapture& operator=(const StreamCapture&) = delete;
+  ~StreamCapture() {
+    if (is_recording_) cudaStreamEndCapture(stream_, &graph_);
+    if (graph_ != nullptr) cudaGraphDestroy(graph_);
+  }
+
+  /// What was recorded; stays this object's.
+  cudaGraph_t end() {
+    is_recording_ = false;
+    check_cuda(cudaStreamEndCapture(stream_, &graph_), "cudaStreamEndCapture");
+    return graph_;
+  }
+
+ private:
+  cudaStream_t stream_;
+  cudaGraph_t graph_ = nullptr;
+  bool is_recording_ = true;
+};
+
+/// One sweep over colors: a launch per color.
+class SweepGraph {
+ public:
+  template <class Body>
+  SweepGraph(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
+    StreamCapture capture(stream);
+    for (std::int64_t k = 0; k + 1 < color_start.size; ++k) {
+      const std::int64_t count = color_start[k + 1] - color_start[k];
+      launch(stream, each_kernel<FromContact<Body>>,
+             dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads)),
+             dim3(each_threads), 0, count, FromContact<Body>{body, color_start[k]});
+    }
+    check_cuda(cudaGraphInstantiate(&graph_, capture.end(), 0), "cudaGraphInstantiate");
+  }
+  SweepGraph(const SweepGraph&) = delete;
+  SweepGraph& operator=(const SweepGraph&) = delete;
+  ~SweepGraph() { cudaGraphExecDestroy(graph_); }
+
+  void launch_on(cudaStream_t stream) const {
+    check_cuda(cudaGraphLaunch(graph_, stream), "cudaGraphLaunch");
+  }
+
+ private:
+  cudaGraphExec_t graph_ = nullptr;
+};
+
+/// What tells the sweeps of one solve apart: the island, what they change, what they leave out.
+struct SweepKey {
+  const std::int64_t* colors;
+  const void* impulse;
+  const void* body_velocity;
+  bool all_awake;
+
+  bool operator==(const SweepKey&) const = default;
+};
+
+template <class T>
+SweepKey key_of(View<const std::int64_t> color_start, const DelassusSweepBody<T>& body) {
+  return {color_start.data, body.impulse.data, nullptr, body.calm.all_awake};
+}
+template <class T>
+SweepKey key_of(View<const std::int64_t> color_start, const BodySweepBody<T>& body) {
+  return {color_start.data, body.impulse.data, body.body_velocity.data, body.calm.all_awake};
+}
+
+/// The graphs of one solve.
+class SweepGraphs {
+ public:
+  /// @param color_start  on the host
+  template <class Body>
+  void launch(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
+    const SweepKey key = key_of(color_start, body);
+    auto entry = std::find_if(entries_.begin(), entries_.end(),
+                              [&](const Entry& known) { return known.key == key; });
+    if (entry == entries_.end()) {
+      entries_.push_back({key, std::make_unique<SweepGraph>(stream, color_start, body)});
+      entry = entries_.end() - 1;
+    }
+    entry->graph->launch_on(stream);
+  }
+  void clear() { entries_.clear(); }
+
+ private:
+  struct Entry {
+    SweepKey key;
+    std::unique_ptr<SweepGraph> graph;
+  };
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,72 @@
+/// @file vector_bodies.hpp
+/// What is done to whole vectors.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/contact/contact_law.hpp"
+
+namespace tetwarp {
+
+template <class T>
+struct FillBody {
+  T value;
+  View<T> out;
+
+  TETWARP_HD void operator()(std::int64_t i) const { out[i] = value; }
+};
+
+/// Numbers in another precision.
+template <class To, class From>
+struct ConvertBody {
+  View<const From> in;
+  View<To> out;
+
+  TETWARP_HD void operator()(std::int64_t i) const { out[i] = static_cast<To>(in[i]); }
+};
+
+/// One index = the square of one entry.
+template <class T>
+struct SquareBody {
+  View<const T> in;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{square_of(double{in[i]})}}; }
+};
+
+/// One index = 1 for an entry that is not zero.
+template <class T>
+struct NonzeroBody {
+  View<const T> in;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{in[i] != 0 ? 1.0 : 0.0}}; }
+};
+
+/// One index = one entry of the square of a vector in a diagonal metric.
+template <class T>
+struct SizeBody {
+  View<const double> weights;
+  View<const T> x;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
+    return {{weights[i] * square_of(double{x[i]})}};
+  }
+};
+
+template <class Exec, class T>
+void fill(Exec& exec, View<T> out, T value) {
+  exec.for_each("contact/mix", out.size, FillBody<T>{value, out});
+}
+
+template <class Exec, class To, class From>
+void convert(Exec& exec, View<const From> in, View<To> out) {
+  exec.for_each("contact/mix", in.size, ConvertBody<To, From>{in, out});
+}
+
+/// Entries [first, last) of a vector.
+template <class T>
+View<T> part_of(View<T> values, std::int64_t first, std::int64_t last) {
+  return {values.data + first, last - first};
+}
+
+}  // namespace tetwarp

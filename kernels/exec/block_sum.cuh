@@ -1,0 +1,40 @@
+/// @file block_sum.cuh
+/// Sums over the threads of a block by a fixed tree.
+#pragma once
+#include <cstring>
+
+#include "kernels/exec/launch.hpp"
+
+namespace tetwarp {
+
+constexpr int sum_threads = 128;
+constexpr int sum_warps = sum_threads / 32;
+
+/// The value of the lane `step` above, word by word.
+template <class Sum>
+__device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
+  constexpr int words = sizeof(Sum) / sizeof(double);
+  static_assert(sizeof(Sum) == words * sizeof(double));
+  double word[words];
+  memcpy(word, &mine, sizeof(Sum));
+  for (int k = 0; k < words; ++k) word[k] = __shfl_down_sync(~0u, word[k], step);
+  Sum other;
+  memcpy(&other, word, sizeof(Sum));
+  return other;
+}
+
+/// The sum over the threads of a block, told to all of them. A fixed tree.
+/// @param of_warp  shared, [sum_warps]
+template <class Sum>
+__device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
+  const int thread = static_cast<int>(threadIdx.x);
+  for (unsigned step = 16; step > 0; step /= 2) mine += shuffled_down(mine, step);
+  __syncthreads();  // the sums before have been read
+  if (thread % 32 == 0) of_warp[thread / 32] = mine;
+  __syncthreads();
+  Sum total = of_warp[0];
+  for (int warp = 1; warp < sum_warps; ++warp) total += of_warp[warp];
+  return total;
+}
+
+}  // namespace tetwarp

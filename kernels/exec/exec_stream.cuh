@@ -1,0 +1,106 @@
+/// @file exec_stream.cuh
+/// Streams and events of a device: what waits for what, and how long it took.
+#pragma once
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "kernels/base/stage_times.hpp"
+#include "kernels/exec/exec_buffer.cuh"
+
+namespace tetwarp {
+
+/// A stream of the current device, independent of the default one.
+class DeviceStream {
+ public:
+  DeviceStream() {
+    check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking),
+               "cudaStreamCreateWithFlags");
+  }
+  DeviceStream(const DeviceStream&) = delete;
+  DeviceStream& operator=(const DeviceStream&) = delete;
+  ~DeviceStream() { cudaStreamDestroy(stream_); }
+
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// A place in a stream that other streams and the host can wait for.
+class DeviceEvent {
+ public:
+  enum class Clock { off, on };
+
+  explicit DeviceEvent(Clock clock = Clock::off) {
+    check_cuda(cudaEventCreateWithFlags(&event_, clock == Clock::on ? 0 : cudaEventDisableTiming),
+               "cudaEventCreateWithFlags");
+  }
+  DeviceEvent(DeviceEvent&& other) noexcept : event_(std::exchange(other.event_, nullptr)) {}
+  DeviceEvent& operator=(DeviceEvent&&) = delete;
+  ~DeviceEvent() {
+    if (event_ != nullptr) cudaEventDestroy(event_);
+  }
+
+  void record(cudaStream_t stream) const {
+    check_cuda(cudaEventRecord(event_, stream), "cudaEventRecord");
+  }
+  /// What is put on the stream from now on waits. Of an event never recorded: for nothing.
+  void hold_back(cudaStream_t stream) const {
+    check_cuda(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
+  }
+  void wait() const { check_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+
+  /// Between two events that have been passed.
+  double seconds_since(const DeviceEvent& begin) const {
+    float milliseconds = 0;
+    check_cuda(cudaEventElapsedTime(&milliseconds, begin.event_, event_), "cudaEventElapsedTime");
+    return milliseconds * 1e-3;
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+/// Where the parts of one step are on their streams, and how long they took.
+class DeviceFlight {
+ public:
+  DeviceEvent uploaded;
+  DeviceEvent computed;
+
+  /// Runs work that puts something on a stream, between two events that are charged to a label.
+  template <class Work>
+  void timed(const char* label, cudaStream_t stream, Work&& work) {
+    if (used_ == spans_.size()) spans_.emplace_back();
+    Span& span = spans_[used_];
+    span.label = label;
+    span.begin.record(stream);
+    work();
+    span.end.record(stream);
+    ++used_;  // not if work throws: there is no end then
+  }
+
+  /// Seconds per label since the last clear(); waits for all that was charged.
+  StageTimes& times() {
+    for (std::size_t i = 0; i < used_; ++i) {
+      const Span& span = spans_[i];
+      span.end.wait();
+      times_.add(span.label, span.end.seconds_since(span.begin));
+    }
+    used_ = 0;
+    return times_;
+  }
+
+ private:
+  struct Span {
+    const char* label = nullptr;
+    DeviceEvent begin{DeviceEvent::Clock::on};
+    DeviceEvent end{DeviceEvent::Clock::on};
+  };
+
+  std::vector<Span> spans_;
+  std::size_t used_ = 0;
+  StageTimes times_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,74 @@
+/// @file primitives_cuda.cu
+/// Scan, selection and sort by CUB: the one file that includes it (it costs 12 s per architecture).
+#include <cub/device/device_radix_sort.cuh>
+#include <cub/device/device_scan.cuh>
+#include <cub/device/device_select.cuh>
+
+#include "kernels/exec/exec_cuda.cuh"
+
+namespace tetwarp {
+
+namespace {
+
+/// CUB's two calls: how much scratch, then the work.
+template <class Call>
+void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& call) {
+  std::size_t bytes = 0;
+  check_cuda(call(nullptr, bytes), name);
+  scratch.reserve(static_cast<std::int64_t>(bytes));
+  check_cuda(call(scratch.view(0).data, bytes), name);
+}
+
+struct IsValid {
+  __device__ bool operator()(CellPair pair) const { return pair != rejected_pair; }
+};
+
+}  // namespace
+
+void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
+  std::size_t bytes = 0;
+  std::int64_t* const none = nullptr;
+  check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, count),
+             "cub::DeviceScan::ExclusiveSum");
+  scratch.reserve(static_cast<std::int64_t>(bytes));
+}
+
+void cuda_exclusive_scan(cudaStream_t stream,
+                         DeviceBuffer<std::byte>& scratch,
+                         View<std::int64_t> values) {
+  with_scratch(scratch, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceScan::ExclusiveSum(memory, bytes, values.data, values.data, values.size,
+                                         stream);
+  });
+}
+
+void cuda_select_valid(cudaStream_t stream,
+                       DeviceBuffer<std::byte>& scratch,
+                       View<const CellPair> candidates,
+                       View<CellPair> pairs,
+                       std::int64_t* pair_count) {
+  with_scratch(scratch, "cub::DeviceSelect::If", [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceSelect::If(memory, bytes, candidates.data, pairs.data, pair_count,
+                                 candidates.size, IsValid{}, stream);
+  });
+}
+
+void cuda_sort_pairs(cudaStream_t stream,
+                     DeviceBuffer<std::byte>& scratch,
+                     View<CellPair> pairs,
+                     View<CellPair> other,
+                     int cell_bits) {
+  cub::DoubleBuffer<CellPair> keys(pairs.data, other.data);
+  with_scratch(scratch, "cub::DeviceRadixSort::SortKeys", [&](void* memory, std::size_t& bytes) {
+    return cub::DeviceRadixSort::SortKeys(memory, bytes, keys, pairs.size, 32, 32 + cell_bits,
+                                          stream);
+  });
+  if (keys.Current() != pairs.data) {
+    check_cuda(cudaMemcpyAsync(pairs.data, keys.Current(),
+                               static_cast<std::size_t>(pairs.size) * sizeof(CellPair),
+                               cudaMemcpyDeviceToDevice, stream),
+               "cudaMemcpyAsync on device");
+  }
+}
+
+}  // namespace tetwarp

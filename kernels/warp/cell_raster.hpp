@@ -1,0 +1,295 @@
+/// @file cell_raster.hpp
+/// Stage "raster" of the warp, the body: who owns a voxel of a cell, and what it gets.
+///
+/// Two mappings call these functions: cell_raster.cuh (one block owns a cell) and
+/// host/warp/cpu/cell_raster_cpu.cpp (one thread owns a line of cells, row after row).
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+#include "kernels/base/view.hpp"
+#include "kernels/warp/cell_pairs.hpp"
+#include "kernels/warp/face_sign.hpp"
+#include "kernels/warp/hex_map.hpp"
+#include "kernels/warp/tet_rule.hpp"
+#include "kernels/warp/tet_setup.hpp"
+#include "kernels/warp/volume_filter.hpp"
+#include "kernels/warp/volume_label.hpp"
+#include "kernels/warp/volume_sample.hpp"
+
+namespace tetwarp {
+
+/// What the raster stage counts.
+struct RasterCounts {
+  std::int64_t covered;
+  std::int64_t inside_tests;  ///< (voxel, tetrahedron) tests against four planes
+  std::int64_t exact_tests;   ///< of these, left open by float32
+  std::int64_t copied;        ///< voxels that were moved, not interpolated
+};
+
+/// Source index of frame voxel (i, j, k) where nothing covers it: linear * (origin + (i, j, k)) +
+/// offset.
+struct OutsideMap {
+  bool use_source;  ///< false: the background
+  bool is_copy;     ///< the grids differ by whole voxels
+  double linear[3][3];
+  double offset[3];
+  double origin[3] = {0, 0, 0};  ///< of the frame: regions have the bits of the whole
+};
+
+constexpr std::int64_t keep_cell = -2;    ///< the output holds this cell already
+constexpr std::int64_t sample_cell = -1;  ///< every covered voxel is sampled
+
+/// Everything the raster stage reads and writes, for one source.
+template <class T>
+struct RasterJob {
+  View<const TetSetup> setups;
+  View<const std::int32_t> tets;
+  View<const Node> nodes;
+  HexView hexes;
+  View<const Node> rest;  ///< in the source's index space; for hexahedra only
+  View<const CellPair> pairs;
+  View<const CellRange> ranges;
+  OutputFrame frame;
+  SourceView<T> source;
+  Filter filter;
+  OutsideMap outside;
+  T background;
+  bool copy_whole_shifts;
+  T* volume;           ///< [k][j][i][component]
+  std::uint8_t* mask;  ///< may be null
+  std::int32_t* tet;   ///< may be null
+  RasterCounts* counts;
+
+  /// Per cell: keep_cell, sample_cell, or the source voxel whose samples every covered voxel gets.
+  /// Size 0: sample_cell.
+  View<const std::int64_t> cell_work;
+  /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
+  View<std::uint16_t> cell_covered;
+
+  /// Per tetrahedron: what its voxels get, see voxel_rule.hpp. Size 0: all are plain.
+  View<const TetRule> rules;
+  TetRule outside_rule;    ///< of voxels that no tetrahedron covers
+  Quantity reorientation;  ///< that the matrices of rules are made for
+};
+
+/// Whether voxels of tetrahedron t get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_rule(const RasterJob<T>& job, std::int64_t t) {
+  return job.rules.size > 0 && !job.rules[t].is_plain;
+}
+
+/// Whether voxels that no tetrahedron covers get more than a plain sample.
+template <class T>
+TETWARP_HD bool has_outside_rule(const RasterJob<T>& job) {
+  return job.rules.size > 0 && job.outside.use_source && !job.outside_rule.is_plain;
+}
+
+template <class T>
+TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {
+  return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
+}
+
+/// The four planes of a tetrahedron seen from one cell, scaled so that a value above 1 is inside
+/// for certain and one below -1 outside for certain.
+struct CellPlanes {
+  float value[4];    ///< at the cell's corner voxel
+  float step[3][4];  ///< per voxel along i, j, k
+};
+
+/// float32 planes relative to the cell's corner (cx, cy, cz) [frame].
+///
+/// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
+/// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
+/// unit of the scaled planes is u (8 |v| + 192).
+TETWARP_HD void set_cell_plane(
+    const TetSetup& tet, int face, int cx, int cy, int cz, CellPlanes& planes) {
+  const double value = tet.plane[0][face] * static_cast<double>(cx - tet.anchor[0]) +
+                       tet.plane[1][face] * static_cast<double>(cy - tet.anchor[1]) +
+                       tet.plane[2][face] * static_cast<double>(cz - tet.anchor[2]) +
+                       tet.plane[3][face];
+  const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
+  planes.value[face] = static_cast<float>(value * scale);
+  for (int axis = 0; axis < 3; ++axis) {
+    planes.step[axis][face] = static_cast<float>(tet.plane[axis][face] * scale);
+  }
+}
+
+/// +1 inside for certain, -1 outside for certain, 0 too close to a face for float32.
+TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
+  float least = 2.0f;
+  for (int face = 0; face < 4; ++face) {
+    const float line = (planes.value[face] + planes.step[1][face] * static_cast<float>(j)) +
+                       planes.step[2][face] * static_cast<float>(k);
+    least = min_of(least, line + planes.step[0][face] * static_cast<float>(i));
+  }
+  return least > 1.0f ? 1 : least < -1.0f ? -1 : 0;
+}
+
+/// Source position of a cell's corner under a tetrahedron's map, in float64.
+TETWARP_HD void map_start(
+    const TetSetup& tet, int cx, int cy, int cz, double* start, double (*linear)[3]) {
+  const double from[3] = {static_cast<double>(cx - tet.anchor[0]),
+                          static_cast<double>(cy - tet.anchor[1]),
+                          static_cast<double>(cz - tet.anchor[2])};
+  for (int row = 0; row < 3; ++row) {
+    start[row] = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] + tet.map[2][row] * from[2] +
+                 tet.map[3][row];
+    for (int axis = 0; axis < 3; ++axis) linear[row][axis] = tet.map[axis][row];
+  }
+}
+
+/// The same under the map of uncovered voxels.
+TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, double* start) {
+  const double x = map.origin[0] + cx, y = map.origin[1] + cy, z = map.origin[2] + cz;
+  for (int row = 0; row < 3; ++row) {
+    const double* m = map.linear[row];
+    start[row] = m[0] * x + m[1] * y + m[2] * z + map.offset[row];
+  }
+}
+
+/// Samples a source by a filter of volume_filter.hpp or volume_label.hpp. Which of them a pixel
+/// type may have is checked by the public calls.
+template <class T>
+TETWARP_HD_RARE void sample_wide(SourceView<T> source,
+                                 Filter filter,
+                                 SourcePosition<ArithmeticOf<T>> at,
+                                 T* out) {
+  if constexpr (!std::is_floating_point_v<T>) {
+    if (filter == Filter::labels) {
+      out[0] = label_at(source, at);
+      return;
+    }
+  }
+  if constexpr (can_blend<T>) sample_filtered(source, filter, at, out);
+}
+
+/// store_position() for these filters.
+template <class T, class Real>
+TETWARP_HD void store_wide_sample(
+    const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, T* out) {
+  SourcePosition<ArithmeticOf<T>> at;
+  bool is_inside = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    is_inside = is_inside && is_defined(job.source, axis, whole[axis], x[axis]);
+    const Real lower = is_inside ? floor(x[axis]) : Real(0);
+    at.voxel[axis] = whole[axis] + static_cast<int>(lower);
+    at.fraction[axis] = static_cast<ArithmeticOf<T>>(x[axis] - lower);
+  }
+  if (is_inside) {
+    sample_wide(job.source, filter, at, out);
+  } else {
+    for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
+  }
+}
+
+/// Stores one voxel's samples at a position x of the source relative to `whole`, or the background.
+///
+/// @tparam Wide  whether the filter may be a wide one: device code that knows better keeps its
+///               registers
+template <bool Wide, class T, class Real>
+TETWARP_HD void store_position(
+    const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, std::int64_t voxel) {
+  T* out = job.volume + voxel * job.source.components;
+  if constexpr (Wide) {
+    if (is_wide(filter)) return store_wide_sample(job, filter, whole, x, out);
+  }
+  const Tap<Real> tap = tap_of(job.source, filter, whole, x);
+  for (int c = 0; c < job.source.components; ++c) {
+    out[c] = tap.inside ? sample(job.source, filter, tap, c) : job.background;
+  }
+}
+
+/// The same for voxel (i, j, k) of a cell under a map.
+template <bool Wide, class T, class Real>
+TETWARP_HD void store_sample(const RasterJob<T>& job,
+                             Filter filter,
+                             const SourceMap<Real>& map,
+                             int i,
+                             int j,
+                             int k,
+                             std::int64_t voxel) {
+  Real x[3];
+  local_position(map, i, j, k, x);
+  store_position<Wide>(job, filter, map.whole, x, voxel);
+}
+
+/// The map of the hexahedron that tetrahedron t of a job belongs to.
+template <class T>
+TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
+  return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
+}
+
+/// Stores frame voxel x, which `tet` owns and `map` is of.
+template <bool Wide, class T>
+TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
+                                     const TetSetup& tet,
+                                     const HexMap& map,
+                                     const int* x,
+                                     std::int64_t voxel) {
+  int whole[3];
+  double at[3];
+  place_in_hex(tet, map, x, whole, at);
+  for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
+  store_position<Wide>(job, job.filter, whole, at, voxel);
+}
+
+/// A voxel that moved by whole voxels needs one sample, whatever the filter.
+template <class T>
+TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
+  return job.copy_whole_shifts && tet.kind == MapKind::copy;
+}
+
+/// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that tetrahedron t owns; the map is made
+/// anew.
+template <bool Wide, class T, class Real>
+TETWARP_HD void store_owned(const RasterJob<T>& job,
+                            std::int64_t t,
+                            int cx,
+                            int cy,
+                            int cz,
+                            int i,
+                            int j,
+                            int k,
+                            std::int64_t voxel) {
+  const TetSetup& tet = job.setups[t];
+  if constexpr (Wide) {
+    if (tet.kind == MapKind::trilinear) {
+      const int x[3] = {cx + i, cy + j, cz + k};
+      store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
+      return;
+    }
+  }
+  double start[3], linear[3][3];
+  map_start(tet, cx, cy, cz, start, linear);
+  store_sample<Wide>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
+                     make_source_map<Real>(job.source, start, linear), i, j, k, voxel);
+}
+
+/// Stores a voxel that gets the samples of voxel `from` of the source.
+template <class T>
+TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::int64_t voxel) {
+  const int components = job.source.components;
+  for (int c = 0; c < components; ++c) {
+    job.volume[voxel * components + c] = constant_value(job.source, from, c);
+  }
+}
+
+/// Stores a voxel that no tetrahedron covers.
+template <bool Wide, class T>
+TETWARP_HD void store_outside(
+    const RasterJob<T>& job, int cx, int cy, int cz, int i, int j, int k, std::int64_t voxel) {
+  if (job.outside.use_source) {
+    double start[3];
+    outside_start(job.outside, cx, cy, cz, start);
+    const bool copies = job.copy_whole_shifts && job.outside.is_copy;
+    store_sample<Wide>(job, copies ? Filter::nearest : job.filter,
+                       make_source_map<double>(job.source, start, job.outside.linear), i, j, k,
+                       voxel);
+    return;
+  }
+  T* out = job.volume + voxel * job.source.components;
+  for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,171 @@
+/// @file volume_sample.hpp
+/// The source at an index-space position: nearest and linear, clamp and background rules. Wider
+/// filters: volume_filter.hpp; labels: volume_label.hpp.
+///
+/// A position is an integer voxel `whole` plus a local part near it, so that float32 loses nothing
+/// in large volumes. The source is defined on [-0.5, N - 0.5] per axis; neighbours are clamped.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <tetwarp/choices.hpp>
+#include <type_traits>
+
+#include "kernels/base/hd.hpp"
+#include "kernels/base/pixel.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// Filters that tap_of() and sample() do not know.
+TETWARP_HD bool is_wide(Filter filter) {
+  return filter > Filter::linear;
+}
+
+/// How many samples on either side of a position a filter may read; mirrored ones are up to one
+/// further in.
+TETWARP_HD int reach_of(Filter filter) {
+  if (filter == Filter::cubic) return 2;
+  return filter == Filter::bspline || filter == Filter::lanczos ? 3 : 1;
+}
+
+/// How far beyond the source's rim the rounding of nodes and of float32 positions may carry a
+/// position that lies on it [voxel].
+constexpr float rim_slack = 0x1p-19f;
+
+/// Samples [k][j][i][component], and what some filters must know of them.
+///
+/// They may be a window of the source: where it ends, the source ends, or nobody samples beyond.
+/// Positions then count from its first voxel, moved by whole voxels so that no bit of them changes.
+template <class T>
+struct SourceView {
+  const T* data;
+  int dims[3];
+  int components;
+  /// Of the spline through the samples, as many; null: not wanted.
+  const ArithmeticOf<T>* coefficients = nullptr;
+  /// Least and largest sample per component, which values are clamped to; null: they are not.
+  const ArithmeticOf<T>* range = nullptr;
+  int origin[3] = {0, 0, 0};  ///< index in the source of the first voxel of the samples
+};
+
+/// Map from voxels of a cell to source positions: whole + (base + axis[0] i + axis[1] j + axis[2]
+/// k).
+template <class Real>
+struct SourceMap {
+  Real base[3];
+  Real axis[3][3];  ///< axis[a][row]: source step along `row` per output step along `a`
+  int whole[3];
+};
+
+constexpr double max_whole = 0x1p30;  ///< no source reaches there
+
+/// The map that takes (i, j, k) to start + linear (i, j, k), in two parts.
+template <class Real>
+TETWARP_HD SourceMap<Real> make_source_map(const double* start, const double (*linear)[3]) {
+  SourceMap<Real> map;
+  for (int row = 0; row < 3; ++row) {
+    const double whole = floor(min_of(max_of(start[row], -max_whole), max_whole));
+    map.whole[row] = static_cast<int>(whole);
+    map.base[row] = static_cast<Real>(start[row] - whole);
+    for (int a = 0; a < 3; ++a) map.axis[a][row] = static_cast<Real>(linear[row][a]);
+  }
+  return map;
+}
+
+/// The same to positions in what a view holds of the source.
+template <class Real, class T>
+TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
+                                           const double* start,
+                                           const double (*linear)[3]) {
+  SourceMap<Real> map = make_source_map<Real>(start, linear);
+  for (int row = 0; row < 3; ++row) map.whole[row] -= source.origin[row];
+  return map;
+}
+
+/// Local position of voxel (i, j, k); the order of operations is part of the promise of equal bits.
+template <class Real>
+TETWARP_HD void local_position(const SourceMap<Real>& map, int i, int j, int k, Real* x) {
+  for (int row = 0; row < 3; ++row) {
+    const Real line = (map.base[row] + map.axis[1][row] * Real(j)) + map.axis[2][row] * Real(k);
+    x[row] = line + map.axis[0][row] * Real(i);
+  }
+}
+
+/// Neighbours and weights of one position. Not `inside`: the background.
+template <class Real>
+struct Tap {
+  bool inside;
+  std::int64_t offset[3][2];  ///< of the lower and upper neighbour per axis [sample]
+  Real fraction[3];
+};
+
+/// Whether the source is defined along an axis at whole + x.
+template <class T, class Real>
+TETWARP_HD bool is_defined(const SourceView<T>& source, int axis, int whole, Real x) {
+  // Compared in units of the local part: exact, however far the voxel is from index zero.
+  const Real low = Real(-0.5) - Real(whole) - Real(rim_slack);
+  const Real high = Real(source.dims[axis] - 1 - whole) + Real(0.5) + Real(rim_slack);
+  return x >= low && x <= high;
+}
+
+/// For nearest and linear.
+template <class T, class Real>
+TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
+                            Filter filter,
+                            const int* whole,
+                            const Real* x) {
+  Tap<Real> tap;
+  tap.inside = true;
+  std::int64_t stride = source.components;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = source.dims[axis] - 1;
+    tap.inside = tap.inside && is_defined(source, axis, whole[axis], x[axis]);
+    const Real near = filter == Filter::nearest ? x[axis] + Real(0.5) : x[axis];
+    const Real lower = tap.inside ? floor(near) : Real(0);
+    const int voxel = whole[axis] + static_cast<int>(lower);
+    // Beyond the outermost centres there is one neighbour: nothing to blend.
+    const bool blends = filter == Filter::linear && voxel >= 0 && voxel < last;
+    tap.fraction[axis] = blends ? near - lower : Real(0);
+    tap.offset[axis][0] = min_of(max_of(voxel, 0), last) * stride;
+    tap.offset[axis][1] = min_of(max_of(voxel + 1, 0), last) * stride;
+    stride *= source.dims[axis];
+  }
+  return tap;
+}
+
+/// a + f (b - a); a alone when f is zero, so that a NaN reaches only voxels that interpolate it.
+template <class Real>
+TETWARP_HD Real lerp_of(Real f, Real a, Real b) {
+  return f > Real(0) ? a + f * (b - a) : a;
+}
+
+/// A component between the neighbours of a tap, not rounded.
+/// @param s  of voxel 0
+template <class T, class Real>
+TETWARP_HD Real linear_value(const T* s, const Tap<Real>& tap) {
+  Real column[2];  // blended along y, then z; x comes last, where two columns meet
+  for (int x = 0; x < 2; ++x) {
+    const T* at = s + tap.offset[0][x];
+    Real slice[2];
+    for (int z = 0; z < 2; ++z) {
+      slice[z] =
+          lerp_of(tap.fraction[1], static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][0]]),
+                  static_cast<Real>(at[tap.offset[2][z] + tap.offset[1][1]]));
+    }
+    column[x] = lerp_of(tap.fraction[2], slice[0], slice[1]);
+  }
+  return lerp_of(tap.fraction[0], column[0], column[1]);
+}
+
+/// One component of the source at a tap that is inside.
+template <class T, class Real>
+TETWARP_HD T
+sample(const SourceView<T>& source, Filter filter, const Tap<Real>& tap, int component) {
+  const T* s = source.data + component;
+  if (filter == Filter::nearest) {
+    return s[tap.offset[0][0] + tap.offset[1][0] + tap.offset[2][0]];
+  }
+  return rounded_to<T>(linear_value(s, tap));
+}
+
+}  // namespace tetwarp

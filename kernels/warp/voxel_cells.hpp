@@ -1,0 +1,49 @@
+/// @file voxel_cells.hpp
+/// Stage "fields" of the warp, last: owners by the numbers of the mesh's own cells.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/hex_view.hpp"
+#include "kernels/base/view.hpp"
+
+namespace tetwarp {
+
+/// One index = one voxel; any order.
+struct VoxelCellBody {
+  HexView hexes;
+  OutputFrame frame;
+  View<const std::uint8_t> touched;  ///< cells that the raster wrote; size 0: all
+  View<std::int32_t> owners;         ///< in: tetrahedra, out: cells
+
+  TETWARP_HD void operator()(std::int64_t voxel) const {
+    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
+    const std::int64_t row = voxel / nx;
+    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
+    const int j = frame.begin[1] + static_cast<int>(row % ny);
+    const int k = frame.begin[2] + static_cast<int>(row / ny);
+    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
+    if (touched.size > 0 && touched[cell] == 0) return;
+    owners[voxel] = static_cast<std::int32_t>(hexes.cell_of(owners[voxel]));
+  }
+};
+
+/// Replaces the tetrahedra that hexahedra were split into by these.
+///
+/// @param exec     where to run
+/// @param hexes    of the mesh; without any nothing is done
+/// @param frame    the output
+/// @param touched  cells that this step wrote; empty: all
+/// @param owners   in and out, shape [voxel_count]; empty: not wanted
+///
+/// Determinism: exact. Cost: 8 bytes per voxel.
+template <class Exec>
+void voxel_cells(Exec& exec,
+                 const HexView& hexes,
+                 const OutputFrame& frame,
+                 View<const std::uint8_t> touched,
+                 View<std::int32_t> owners) {
+  if (hexes.nodes.size == 0) return;
+  exec.for_each("warp/fields", owners.size, VoxelCellBody{hexes, frame, touched, owners});
+}
+
+}  // namespace tetwarp

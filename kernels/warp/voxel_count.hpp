@@ -1,0 +1,55 @@
+/// @file voxel_count.hpp
+/// Stage "raster" of the warp, what is counted beside it: folded and covered voxels.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/atomic_add.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/warp/cell_pairs.hpp"
+#include "kernels/warp/face_sign.hpp"
+
+namespace tetwarp {
+
+/// One index = one voxel of the output: is it strictly inside two or more tetrahedra?
+struct VoxelFoldBody {
+  View<const std::int32_t> tets;
+  View<const Node> nodes;
+  PairList list;
+  View<const std::uint8_t> touched;  ///< cells to look at; size 0: all
+  OutputFrame frame;
+  View<std::int64_t> folded;
+  std::int64_t weight;  ///< of a folded voxel: 1 counts it, -1 takes it back
+
+  TETWARP_HD void operator()(std::int64_t voxel) const {
+    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
+    const std::int64_t row = voxel / nx;
+    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
+    const int j = frame.begin[1] + static_cast<int>(row % ny);
+    const int k = frame.begin[2] + static_cast<int>(row / ny);
+    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
+    if (touched.size > 0 && touched[cell] == 0) return;
+    const std::int64_t end = end_of_cell(list, cell);
+    int inside = 0;
+    for (std::int64_t p = list.ranges[cell].begin; p < end && inside < 2; ++p) {
+      const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(list.pairs[p]));
+      inside += is_inside_exact(tet, i, j, k, true);
+    }
+    if (inside == 2) atomic_add(&folded[0], weight);
+  }
+};
+
+/// One index = a thousand cells: their covered voxels, summed.
+struct CoveredSumBody {
+  static constexpr std::int64_t cells = 1024;
+  View<const std::uint16_t> cell_covered;
+  View<std::int64_t> covered;
+
+  TETWARP_HD void operator()(std::int64_t part) const {
+    const std::int64_t end = min_of((part + 1) * cells, cell_covered.size);
+    std::int64_t sum = 0;
+    for (std::int64_t cell = part * cells; cell < end; ++cell) sum += cell_covered[cell];
+    atomic_add(&covered[0], sum);
+  }
+};
+
+}  // namespace tetwarp

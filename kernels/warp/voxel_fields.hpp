@@ -1,0 +1,261 @@
+/// @file voxel_fields.hpp
+/// Stage "fields" of the warp, per voxel, after the raster: what the owner of a voxel says of the
+/// deformation there.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/warp/hex_map.hpp"
+#include "kernels/warp/tet_gradient.hpp"
+#include "kernels/warp/tet_setup.hpp"
+#include "kernels/warp/tet_strain.hpp"
+
+namespace tetwarp {
+
+/// From a voxel and its source position, both in index space, to how far apart they are in the
+/// world: offset + source (x_source - x) + apart x. Exact where nothing moves.
+struct DisplacementMap {
+  Matrix3 source;         ///< axes of the source [world per voxel]
+  Matrix3 apart;          ///< these less those of the output grid
+  double offset[3];       ///< origin of the source less that of the output grid [world]
+  std::int64_t frame[3];  ///< index of frame voxel (0, 0, 0) in the output grid
+};
+
+/// Where the fields of a step go, [voxel][component]; null: not wanted.
+struct VoxelFields {
+  float* displacement = nullptr;  ///< 3
+  float* jacobian = nullptr;      ///< 1
+  float* gradient = nullptr;      ///< 9
+  float* strain = nullptr;        ///< 6
+};
+
+/// Source position of a voxel [frame] that a tetrahedron owns: its map, in float64. Within a
+/// hexahedron place_in_hex() has it.
+TETWARP_HD void source_position(const TetSetup& tet, const int* voxel, double* position) {
+  double from[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    from[axis] = static_cast<double>(voxel[axis] - tet.anchor[axis]);
+  }
+  for (int row = 0; row < 3; ++row) {
+    position[row] = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] +
+                    tet.map[2][row] * from[2] + tet.map[3][row];
+  }
+}
+
+/// Rest less deformed position [world] of what a voxel shows whose source position is known.
+TETWARP_HD void displacement_of(const DisplacementMap& map,
+                                const int* voxel,
+                                const double* position,
+                                double* displacement) {
+  double index[3], step[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    index[axis] = static_cast<double>(voxel[axis] + map.frame[axis]);
+    step[axis] = position[axis] - index[axis];
+  }
+  for (int row = 0; row < 3; ++row) {
+    displacement[row] = map.offset[row];
+    for (int axis = 0; axis < 3; ++axis) {
+      displacement[row] +=
+          map.source.at[row][axis] * step[axis] + map.apart.at[row][axis] * index[axis];
+    }
+  }
+}
+
+/// Strain at a voxel of a hexahedron. Out of line, or registers would not do.
+/// @param strain  in and out: that of the tetrahedron stays where there is no gradient
+TETWARP_HD_RARE void set_hex_strain(const HexMap& hex,
+                                    const TetSetup& tet,
+                                    const GridAxes& axes,
+                                    const int* voxel,
+                                    TetStrain& strain) {
+  double u[3];
+  Matrix3 backward;
+  hex_local(hex, tet, voxel, u);
+  if (hex_gradient(hex, u, backward)) {
+    strain = strain_of(axes.source * backward * axes.output_index);
+  }
+}
+
+/// Displacements along a row of voxels of one tetrahedron: base + (i - first) step. They begin at
+/// its anchor, so that no other voxel of the row has a say in them.
+struct RowDisplacement {
+  double base[3];
+  double step[3];
+  std::int64_t first;
+};
+
+TETWARP_HD RowDisplacement row_displacement(const DisplacementMap& map,
+                                            const TetSetup& tet,
+                                            const int* voxel) {
+  RowDisplacement row;
+  row.first = tet.anchor[0];
+  const int start[3] = {static_cast<int>(row.first), voxel[1], voxel[2]};
+  double position[3];
+  source_position(tet, start, position);
+  displacement_of(map, start, position, row.base);
+  for (int r = 0; r < 3; ++r) {
+    row.step[r] = map.apart.at[r][0];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double self = axis == 0 ? 1 : 0;
+      row.step[r] += map.source.at[r][axis] * (tet.map[0][axis] - self);
+    }
+  }
+  return row;
+}
+
+/// What the bodies below read and write, and how.
+struct VoxelFieldsJob {
+  View<const TetSetup> setups;
+  HexMesh mesh;
+  GridAxes axes;
+  View<const TetStrain> strains;     ///< size 0: the displacement alone is wanted
+  View<const std::int32_t> owners;   ///< -1: none
+  View<const std::uint8_t> touched;  ///< cells to write; size 0: all
+  OutputFrame frame;
+  DisplacementMap map;
+  VoxelFields fields;
+  int stretch;  ///< voxels per index
+
+  TETWARP_HD std::int64_t stretches_per_row() const {
+    return (frame.end[0] - frame.begin[0] + stretch - 1) / stretch;
+  }
+  TETWARP_HD std::int64_t index_count() const {
+    return stretches_per_row() * (frame.end[1] - frame.begin[1]) * (frame.end[2] - frame.begin[2]);
+  }
+
+  /// Writes a stretch: voxels within hexahedra, or all others.
+  template <bool in_hexes>
+  TETWARP_HD void write_stretch(std::int64_t index) const {
+    const std::int64_t row = index / stretches_per_row();
+    const int ny = frame.end[1] - frame.begin[1];
+    const int first = frame.begin[0] + static_cast<int>(index % stretches_per_row()) * stretch;
+    const int past = min_of(first + stretch, frame.end[0]);
+    int voxel[3] = {first, frame.begin[1] + static_cast<int>(row % ny),
+                    frame.begin[2] + static_cast<int>(row / ny)};
+    std::int64_t at = frame.offset_of(voxel[0], voxel[1], voxel[2]);
+    while (voxel[0] < past) {
+      const int count = run_length(voxel[0], past, at);
+      if (is_in_hex(owners[at]) == in_hexes &&
+          (touched.size == 0 || touched[cell_of_voxel(voxel)] != 0)) {
+        if constexpr (in_hexes) {
+          write_in_hex(owners[at], voxel, at, count);
+        } else {
+          write(owners[at], voxel, at, count);
+        }
+      }
+      voxel[0] += count;
+      at += count;
+    }
+  }
+
+  /// Voxels from i on with one owner, where cells matter within one.
+  TETWARP_HD int run_length(int i, int past, std::int64_t at) const {
+    const int limit = touched.size == 0 ? past : min_of(past, (i | (cell_edge - 1)) + 1);
+    int count = 1;
+    while (i + count < limit && owners[at + count] == owners[at]) ++count;
+    return count;
+  }
+
+  TETWARP_HD bool is_in_hex(std::int32_t owner) const {
+    return mesh.hexes.has(owner) && setups[owner].kind == MapKind::trilinear;
+  }
+
+  TETWARP_HD std::int64_t cell_of_voxel(const int* voxel) const {
+    return frame.cell_index(voxel[0] >> cell_shift, voxel[1] >> cell_shift, voxel[2] >> cell_shift);
+  }
+
+  TETWARP_HD void write(std::int32_t owner, const int* voxel, std::int64_t at, int count) const {
+    if (owner < 0) {
+      const float zeros[9] = {};
+      repeat<3>(zeros, fields.displacement, at, count);
+      repeat<1>(zeros, fields.jacobian, at, count);
+      repeat<9>(zeros, fields.gradient, at, count);
+      repeat<6>(zeros, fields.strain, at, count);
+      return;
+    }
+    if (fields.displacement != nullptr) {
+      const RowDisplacement row = row_displacement(map, setups[owner], voxel);
+      float* const out = fields.displacement + 3 * at;
+      for (int v = 0; v < count; ++v) {
+        const double along = static_cast<double>(voxel[0] + v - row.first);
+        for (int r = 0; r < 3; ++r) {
+          out[3 * v + r] = static_cast<float>(row.base[r] + along * row.step[r]);
+        }
+      }
+    }
+    if (strains.size > 0) repeat(strains[owner], at, count);
+  }
+
+  /// Within a hexahedron the gradient changes from voxel to voxel.
+  TETWARP_HD void write_in_hex(std::int32_t owner,
+                               const int* first,
+                               std::int64_t at,
+                               int count) const {
+    const TetSetup& tet = setups[owner];
+    const HexMap hex = make_hex_map(mesh, owner, tet);
+    int voxel[3] = {first[0], first[1], first[2]};
+    for (int v = 0; v < count; ++v, ++voxel[0]) {
+      if (fields.displacement != nullptr) {
+        int whole[3];
+        double position[3], displacement[3];
+        place_in_hex(tet, hex, voxel, whole, position);
+        for (int axis = 0; axis < 3; ++axis) position[axis] += whole[axis];
+        displacement_of(map, voxel, position, displacement);
+        for (int r = 0; r < 3; ++r) {
+          fields.displacement[3 * (at + v) + r] = static_cast<float>(displacement[r]);
+        }
+      }
+      if (strains.size == 0) continue;
+      TetStrain strain = strains[owner];
+      set_hex_strain(hex, tet, axes, voxel, strain);
+      repeat(strain, at + v, 1);
+    }
+  }
+
+  TETWARP_HD void repeat(const TetStrain& strain, std::int64_t at, int count) const {
+    repeat<1>(&strain.jacobian, fields.jacobian, at, count);
+    repeat<9>(strain.gradient, fields.gradient, at, count);
+    repeat<6>(strain.strain, fields.strain, at, count);
+  }
+
+  template <int components>
+  TETWARP_HD static void repeat(const float* from, float* to, std::int64_t at, int count) {
+    if (to == nullptr) return;
+    for (std::int64_t v = at; v < at + count; ++v) {
+      for (int c = 0; c < components; ++c) to[v * components + c] = from[c];
+    }
+  }
+};
+
+/// One index = a stretch of voxels of a row; any order.
+struct VoxelFieldsBody {
+  VoxelFieldsJob job;
+  TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
+};
+
+/// The same for voxels within hexahedra, whose maps take many registers: apart from the others.
+struct HexFieldsBody {
+  VoxelFieldsJob job;
+  TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }
+};
+
+/// Writes the wanted fields of every voxel of the cells to write; zeros where nothing covers.
+///
+/// @param exec  where to run
+/// @param job   what to write; its stretch is chosen here: whole rows for a thread that runs
+///              through memory, single voxels where neighbouring threads share it
+/// @pre   `owners` holds what the raster found, also of cells that are not written
+///
+/// Determinism: a displacement is computed in float64 and rounded once, to within an ulp between
+/// back ends; the rest is copied. Cost: 4 bytes read and those of the fields written per voxel; 80
+/// operations per run of voxels with one owner, and 6 more per voxel, for displacements.
+template <class Exec>
+void voxel_fields(Exec& exec, VoxelFieldsJob job) {
+  job.stretch = Exec::reads_are_free ? job.frame.end[0] - job.frame.begin[0] : 1;
+  exec.for_each("warp/fields", job.index_count(), VoxelFieldsBody{job});
+  if (job.mesh.hexes.nodes.size > 0) {
+    exec.for_each("warp/fields", job.index_count(), HexFieldsBody{job});
+  }
+}
+
+}  // namespace tetwarp

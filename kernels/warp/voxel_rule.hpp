@@ -1,0 +1,246 @@
+/// @file voxel_rule.hpp
+/// Stage "raster" of the warp, the body for voxels that get more than a plain sample: the mean over
+/// a footprint, reoriented and scaled; in float64, rounded once.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/symmetric_eigen.hpp"
+#include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/tet_rule.hpp"
+#include "kernels/warp/volume_filter.hpp"
+#include "kernels/warp/volume_sample.hpp"
+
+namespace tetwarp {
+
+constexpr int max_rule_components = 9;
+
+/// filter_taps() for any pixel type: of the source only its shape counts.
+TETWARP_HD_RARE void set_rule_taps(const SourceView<double>& shape,
+                                   Filter filter,
+                                   const SourcePosition<double>& at,
+                                   FilterTaps<double>& taps) {
+  taps = filter_taps(shape, filter, at);
+}
+
+/// blended() in loops: small.
+template <class Sample>
+TETWARP_HD double rule_blend(const FilterTaps<double>& taps, const Sample* samples) {
+  const double near = static_cast<double>(samples[taps.near]);
+  double sum = 0;
+  for (int z = 0; z < taps.count; ++z) {
+    double slice = 0;
+    for (int y = 0; y < taps.count; ++y) {
+      const Sample* line = samples + (taps.offset[2][z] + taps.offset[1][y]);
+      double row = 0;
+      for (int x = 0; x < taps.count; ++x) {
+        row += taps.weight[0][x] * (static_cast<double>(line[taps.offset[0][x]]) - near);
+      }
+      slice += taps.weight[1][y] * row;
+    }
+    sum += taps.weight[2][z] * slice;
+  }
+  return near + sum;
+}
+
+/// Adds the source at whole + x to `sums`, one per component, not rounded.
+/// @returns false where the source is not defined
+template <class T>
+TETWARP_HD bool add_values(
+    const SourceView<T>& source, Filter filter, const int* whole, const double* x, double* sums) {
+  const bool is_nearest = filter == Filter::nearest;
+  if (!is_wide(filter)) {
+    const Tap<double> tap = tap_of(source, filter, whole, x);
+    for (int c = 0; c < source.components && tap.inside; ++c) {
+      sums[c] += is_nearest ? static_cast<double>(sample(source, filter, tap, c))
+                            : linear_value(source.data + c, tap);
+    }
+    return tap.inside;
+  }
+  SourcePosition<double> at;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!is_defined(source, axis, whole[axis], x[axis])) return false;
+    at.voxel[axis] = whole[axis] + static_cast<int>(floor(x[axis]));
+    at.fraction[axis] = x[axis] - floor(x[axis]);
+  }
+  FilterTaps<double> taps;
+  SourceView<double> shape = {
+      nullptr, {source.dims[0], source.dims[1], source.dims[2]}, source.components};
+  set_rule_taps(shape, filter, at, taps);
+  const bool is_centre = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
+  for (int c = 0; c < source.components; ++c) {
+    sums[c] += is_centre                   ? static_cast<double>(source.data[taps.near + c])
+               : filter == Filter::bspline ? rule_blend(taps, source.coefficients + c)
+                                           : rule_blend(taps, source.data + c);
+  }
+  return true;
+}
+
+/// v becomes m v.
+TETWARP_HD void transform_vector(const Matrix3& m, double* v) {
+  const double x = v[0], y = v[1], z = v[2];
+  for (int row = 0; row < 3; ++row) v[row] = m.at[row][0] * x + m.at[row][1] * y + m.at[row][2] * z;
+}
+
+/// A symmetric tensor of components XX YY ZZ XY YZ XZ as a matrix, and back.
+TETWARP_HD Matrix3 tensor_of(const double* d) {
+  return {{{d[0], d[3], d[5]}, {d[3], d[1], d[4]}, {d[5], d[4], d[2]}}};
+}
+TETWARP_HD void set_tensor(const Matrix3& tensor, double* d) {
+  for (int axis = 0; axis < 3; ++axis) d[axis] = tensor.at[axis][axis];
+  d[3] = tensor.at[0][1];
+  d[4] = tensor.at[1][2];
+  d[5] = tensor.at[0][2];
+}
+
+/// Makes v a unit vector. @returns false where it is zero
+TETWARP_HD bool normalize(double* v) {
+  const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  for (int axis = 0; axis < 3; ++axis) v[axis] /= length;
+  return length > 0;
+}
+
+/// Preservation of the principal direction: the eigenvalues stay, the first eigenvector e1 goes to
+/// F e1, the second into the plane of F e1 and F e2, whose normal is along F^-T e3.
+/// @param backward  the inverse of F
+/// Source: D. C. Alexander et al., "Spatial transformations of diffusion tensor magnetic resonance
+/// images", 2001.
+TETWARP_HD_RARE void preserve_principal(const Matrix3& backward, double* d) {
+  Matrix3 values = tensor_of(d), vectors;
+  symmetric_eigen<3>(values.at, vectors.at);
+  int order[3] = {0, 1, 2};  // eigenvalues descend
+  for (int pass = 0; pass < 3; ++pass) {
+    const int a = pass % 2, b = a + 1;
+    if (values.at[order[a]][order[a]] >= values.at[order[b]][order[b]]) continue;
+    const int first = order[a];
+    order[a] = order[b];
+    order[b] = first;
+  }
+  double frame[3][3];  // unit vectors, of descending eigenvalues
+  for (int row = 0; row < 3; ++row) {
+    frame[0][row] = vectors.at[row][order[0]];
+    frame[2][row] = vectors.at[row][order[2]];
+  }
+  transform_vector(forward_direction(backward), frame[0]);
+  transform_vector(transposed(backward), frame[2]);
+  if (!normalize(frame[0]) || !normalize(frame[2])) return;
+  for (int row = 0; row < 3; ++row) {
+    const int r1 = (row + 1) % 3, r2 = (row + 2) % 3;
+    frame[1][row] = frame[2][r1] * frame[0][r2] - frame[2][r2] * frame[0][r1];
+  }
+  Matrix3 turned = {};
+  for (int e = 0; e < 3; ++e) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        turned.at[row][column] += values.at[order[e]][order[e]] * frame[e][row] * frame[e][column];
+      }
+    }
+  }
+  set_tensor(turned, d);
+}
+
+/// Components as a tetrahedron's rule turns them.
+TETWARP_HD void reorient(Quantity reorientation, const Matrix3& matrix, double* values) {
+  switch (reorientation) {
+    case Quantity::components:
+      return;
+    case Quantity::vector:
+    case Quantity::covariant_vector:
+    case Quantity::contravariant_vector:
+      return transform_vector(matrix, values);
+    case Quantity::tensor:
+      return set_tensor(matrix * tensor_of(values) * transposed(matrix), values);
+    case Quantity::principal_tensor:
+      return preserve_principal(matrix, values);
+  }
+}
+
+/// What the rules of a job need of it.
+template <class T>
+struct RuleSampler {
+  SourceView<T> source;
+  Filter filter;
+  Quantity reorientation;
+  T background;
+
+  explicit TETWARP_HD RuleSampler(const RasterJob<T>& job)
+      : source(job.source),
+        filter(job.filter),
+        reorientation(job.reorientation),
+        background(job.background) {}
+};
+
+/// Stores the samples around a position of the source by a rule. Of the voxel's parts those that
+/// lie beyond the source do not count; where none is left, the background.
+/// @param map  how the position changes from voxel to voxel, and the whole voxel that x counts from
+/// @param out  one per component
+template <class T>
+TETWARP_HD_RARE void store_by_rule(RuleSampler<T> job,
+                                   const TetRule& rule,
+                                   const SourceMap<double>& map,
+                                   const double* x,
+                                   T* out) {
+  if constexpr (can_blend<T>) {
+    const int components = job.source.components;
+    double values[max_rule_components] = {}, offset[3];
+    int part[3], count = 0;
+    for (part[2] = 0; part[2] < rule.parts[2]; ++part[2]) {
+      for (part[1] = 0; part[1] < rule.parts[1]; ++part[1]) {
+        for (part[0] = 0; part[0] < rule.parts[0]; ++part[0]) {
+          for (int a = 0; a < 3; ++a) offset[a] = (part[a] + 0.5) / rule.parts[a] - 0.5;
+          double at[3];
+          for (int row = 0; row < 3; ++row) {
+            at[row] = x[row] + (map.axis[0][row] * offset[0] + map.axis[1][row] * offset[1] +
+                                map.axis[2][row] * offset[2]);
+          }
+          count += add_values(job.source, job.filter, map.whole, at, values);
+        }
+      }
+    }
+    for (int c = 0; c < components; ++c) {
+      values[c] /= max_of(count, 1);
+      if (job.source.range == nullptr) continue;
+      const double low = job.source.range[2 * c], high = job.source.range[2 * c + 1];
+      values[c] = values[c] < low ? low : values[c] > high ? high : values[c];
+    }
+    if (!rule.is_plain) reorient(job.reorientation, rule.matrix, values);
+    for (int c = 0; c < components; ++c) {
+      out[c] = count > 0 ? rounded_to<T>(values[c] * rule.scale) : job.background;
+    }
+  }
+}
+
+/// Stores the voxel (i, j, k) of the cell at `corner` that tetrahedron t owns, by its rule.
+template <class T>
+TETWARP_HD void store_ruled(const RasterJob<T>& job,
+                            std::int64_t t,
+                            const int* corner,
+                            int i,
+                            int j,
+                            int k,
+                            std::int64_t voxel) {
+  double start[3], linear[3][3], x[3];
+  map_start(job.setups[t], corner[0], corner[1], corner[2], start, linear);
+  auto map = make_source_map<double>(job.source, start, linear);
+  local_position(map, i, j, k, x);
+  if (job.setups[t].kind == MapKind::trilinear) {
+    const int frame_voxel[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
+    place_in_hex(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
+    for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
+  }
+  T* const out = job.volume + voxel * job.source.components;
+  store_by_rule(RuleSampler<T>(job), job.rules[t], map, x, out);
+}
+
+/// Stores a voxel that no tetrahedron covers, by the rule of those.
+template <class T>
+TETWARP_HD void store_outside_ruled(
+    const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
+  double start[3], x[3];
+  outside_start(job.outside, corner[0], corner[1], corner[2], start);
+  const auto map = make_source_map<double>(job.source, start, job.outside.linear);
+  local_position(map, i, j, k, x);
+  T* const out = job.volume + voxel * job.source.components;
+  store_by_rule(RuleSampler<T>(job), job.outside_rule, map, x, out);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,157 @@
+/// @file test_cli_batch.cpp
+/// --batch: defaults, relative paths, failing jobs, collisions.
+#include <gtest/gtest.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/scenes/cli_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// A scene whose batch file is in a folder of its own, so that relative paths show.
+class Batch : public testing::Test {
+ protected:
+  Batch() { fs::create_directory(scene / "jobs"); }
+
+  CommandResult run(const std::string& jobs, Names more = {}) {
+    write_text(scene / "jobs/jobs.json", jobs);
+    more.insert(more.begin(), {"warp", "--batch", "jobs/jobs.json"});
+    return run_command(scene, more);
+  }
+
+  bool exists(const std::string& name) const { return fs::exists(scene / name); }
+
+  Scene scene;
+};
+
+/// A job of the scene's files with more members, e.g. ", \"steps\": 0".
+std::string job(const std::string& output, const std::string& more) {
+  return R"({"volume": "../volume.vtkhdf", "mesh": "../mesh.vtkhdf", "output": ")" + output + "\"" +
+         more + "}";
+}
+
+std::string batch_of(const Names& jobs) {
+  std::string text;
+  for (const std::string& one : jobs) text += (text.empty() ? "" : ",\n") + one;
+  return "{\"jobs\": [\n" + text + "\n]}";
+}
+
+TEST_F(Batch, RunsEveryJobWithPathsFromItsFolder) {
+  const CommandResult result = run(
+      batch_of({job("a.vtkhdf", R"(, "steps": 0)"), job("../b.vtkhdf", R"(, "steps": "1:3")")}));
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(exists("jobs/a.vtkhdf"));
+  EXPECT_TRUE(exists("b_0001.vtkhdf"));
+  EXPECT_TRUE(exists("b_0002.vtkhdf"));
+  EXPECT_TRUE(result.out.ends_with("\n2 done, 0 failed, 0 skipped\n")) << result.out;
+}
+
+TEST_F(Batch, TakesNumbersListsAndSwitches) {
+  const CommandResult result = run(batch_of(
+      {job("a.vtkhdf",
+           R"(, "steps": [0], "dims": [6, 5, 4], "spacing": "4,4,4", "outputs": ["mask", "tet"],
+          "array": ["density"], "temporal": true, "resume": false, "background": -5)")}));
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const VolumeHeader header = read_volume_header(scene / "jobs/a.vtkhdf");
+  EXPECT_EQ(header.grid.dims, (std::array<std::int64_t, 3>{6, 5, 4}));
+  EXPECT_EQ(header.arrays.size(), 3u);
+  EXPECT_EQ(header.times.size(), 1u);
+}
+
+TEST_F(Batch, TakesOptionsBesideItAsDefaultsThatJobsOverride) {
+  const CommandResult result =
+      run(batch_of({job("a.vtkhdf", ""), job("b.vtkhdf", R"(, "roi": "0:4,0:4,0:4")")}),
+          {"--steps", "0", "--roi", "0:2,0:2,0:2", "--outputs", "mask"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_volume_header(scene / "jobs/a.vtkhdf").grid.dims[0], 2);
+  EXPECT_EQ(read_volume_header(scene / "jobs/b.vtkhdf").grid.dims[0], 4);
+  EXPECT_EQ(read_volume_header(scene / "jobs/b.vtkhdf").arrays.size(), 2u);
+}
+
+TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
+  const CommandResult result = run(
+      batch_of({job("a.vtkhdf", R"(, "steps": 99)"), job("b.vtkhdf", R"(, "filtre": "nearest")"),
+                job("c.vtkhdf", R"(, "filter": "cubical")"),
+                R"({"volume": "../volume.vtkhdf", "output": "d.vtkhdf"})", "17",
+                job("good.vtkhdf", R"(, "steps": 0)")}),
+      {"--report", "report.json"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(exists("jobs/good.vtkhdf"));
+  EXPECT_NE(result.err.find("tetwarp: job 1: "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("tetwarp: job 2: unknown key 'filtre'\n"), std::string::npos)
+      << result.err;
+  EXPECT_NE(result.err.find("tetwarp: job 3: --filter: 'cubical'"), std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 4: has no 'mesh'\n"), std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 5: is no JSON object\n"), std::string::npos);
+  EXPECT_TRUE(result.out.ends_with("1 done, 5 failed, 0 skipped\n")) << result.out;
+  const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+  ASSERT_EQ(report.size(), 6u);
+  EXPECT_EQ(report[1]["status"], "failed");
+  EXPECT_EQ(report[1]["error"], "unknown key 'filtre'");
+  EXPECT_EQ(report[5]["status"], "done");
+  EXPECT_EQ(report[5]["job"], 6);
+  EXPECT_EQ(report[5]["counts"]["voxels"], 960);
+}
+
+TEST_F(Batch, RefusesTwoJobsThatWriteTheSameFile) {
+  const CommandResult result =
+      run(batch_of({job("a.vtkhdf", ""), job("../jobs/a_0002.vtkhdf", R"(, "steps": 0)")}));
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("job 1 and job 2 both write it"), std::string::npos) << result.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(scene / "jobs"), {}), 1) << "not only jobs.json";
+}
+
+TEST_F(Batch, LetsAJobUseWhatAnEarlierOneWrites) {
+  const CommandResult result =
+      run(batch_of({job("first.vtkhdf", R"(, "steps": 0)"),
+                    R"({"volume": "first.vtkhdf", "mesh": "../mesh.vtkhdf", "steps": 1,
+                        "output": "second.vtkhdf"})"}));
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(exists("jobs/second.vtkhdf"));
+}
+
+TEST_F(Batch, CountsWhatResumeSkips) {
+  const std::string jobs = batch_of({job("a.vtkhdf", ""), job("b.vtkhdf", R"(, "steps": 0)")});
+  EXPECT_EQ(run(jobs).exit_code, 0);
+  fs::remove(scene / "jobs/b.vtkhdf");
+
+  const CommandResult result = run(jobs, {"--resume"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(result.out.ends_with("1 done, 0 failed, 1 skipped\n")) << result.out;
+}
+
+TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {
+  const CommandResult result = run("{\"jobs\": [\n  {\"volume\": }\n]}");
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err,
+            "tetwarp: jobs/jobs.json: line 2, column 14: no valid JSON here; mend it\n");
+}
+
+TEST_F(Batch, RefusesAFileWithoutJobs) {
+  for (const std::string text : {"", "[]", "{}", R"({"jobs": {}})", R"({"jobs": []})",
+                                 R"({"jobs": [{}], "task": 1})", "\xff\xfe"}) {
+    const CommandResult result = run(text);
+
+    EXPECT_EQ(result.exit_code, 1) << text;
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  }
+  EXPECT_EQ(run_command(scene, {"warp", "--batch", "none.json"}).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,143 @@
+/// @file test_cli_ranks.cpp
+/// `mpirun -n 3 tetwarp warp`: outputs and blocks shared out, errors told once.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/scenes/cli_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+using Names = std::vector<std::string>;
+using Json = nlohmann::json;
+
+/// A scene of 4 steps, warped by one process and by three.
+class Ranks : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::string(TETWARP_MPIRUN).empty()) GTEST_SKIP() << "this build knows no MPI";
+  }
+
+  /// Open MPI 4.1's mpirun now and then waits for itself for ever, once all that it has started are
+  /// gone after one has failed (PMIx_server_finalize): it is killed and asked again. Ranks that
+  /// wait for each other do so every time, and fail the test.
+  CommandResult run_three(Names words) const {
+    words.insert(words.begin(), "warp");
+    constexpr int was_killed = 137;
+    CommandResult result;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      result = run_command(
+          scene, words,
+          {.launcher = {"/usr/bin/timeout", "--signal=KILL", "40", "/usr/bin/env",
+                        "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
+                        "OMPI_MCA_rmaps_base_oversubscribe=1", TETWARP_MPIRUN, "-n", "3"}});
+      if (result.exit_code != was_killed) return result;
+    }
+    ADD_FAILURE() << "killed three times after 40 s: " << result.err;
+    return result;
+  }
+
+  /// Expects files and sums of three ranks to be those of one.
+  void expect_same(const Names& endings, Names words) const {
+    words.insert(words.begin(), {"volume.vtkhdf", "mesh.vtkhdf", "--outputs", "mask,tet"});
+    Names one = words;
+    one.insert(one.begin(), "warp");
+    one.insert(one.end(), {"-o", "one.vtkhdf", "--report", "one.json"});
+    words.insert(words.end(), {"-o", "three.vtkhdf", "--report", "three.json"});
+    const CommandResult alone = run_command(scene, one);
+    const CommandResult shared = run_three(words);
+    ASSERT_EQ(alone.exit_code, 0) << alone.err;
+    ASSERT_EQ(shared.exit_code, 0) << shared.err;
+    EXPECT_EQ(std::ranges::count(shared.out, '\n'), 2) << shared.out;
+    for (const std::string& ending : endings) {
+      const VolumeHeader header = read_volume_header(scene / ("one" + ending));
+      EXPECT_EQ(read_volume_header(scene / ("three" + ending)).arrays, header.arrays);
+      for (const ArrayHeader& array : header.arrays) {
+        for (std::int64_t step = 0; step < std::max<std::int64_t>(1, std::ssize(header.times));
+             ++step) {
+          EXPECT_EQ(read_volume(scene / ("one" + ending), array.name, step).data,
+                    read_volume(scene / ("three" + ending), array.name, step).data)
+              << array.name << ending;
+        }
+      }
+    }
+    const Json a = Json::parse(text_of(scene / "one.json"));
+    const Json b = Json::parse(text_of(scene / "three.json"));
+    for (const char* sum : {"voxels", "covered", "outside", "tetrahedra"}) {
+      EXPECT_EQ(a["counts"][sum], b["counts"][sum]) << sum;
+    }
+    ASSERT_EQ(a["steps"].size(), b["steps"].size());
+    for (std::size_t s = 0; s < a["steps"].size(); ++s) {
+      EXPECT_EQ(a["steps"][s]["step"], b["steps"][s]["step"]);
+    }
+  }
+
+  Scene scene;
+};
+
+int lines_of_ours(const std::string& text) {
+  int count = text.starts_with("tetwarp: ");
+  for (std::size_t at = 0; (at = text.find("\ntetwarp: ", at)) != std::string::npos; ++at) ++count;
+  return count;
+}
+
+TEST_F(Ranks, ShareOutputsAndLeaveTheSameFiles) {
+  expect_same({"_0000.vtkhdf", "_0001.vtkhdf", "_0002.vtkhdf", "_0003.vtkhdf"},
+              {"--no-skip", "unchanged-steps"});
+}
+
+TEST_F(Ranks, ShareBlocksOfASingleOutput) {
+  // Large enough for several blocks.
+  Grid grid;
+  grid.dims = {130, 70, 66};
+  Volume volume = make_volume(grid, PixelType::int16, 2, "density");
+  std::int16_t value = 0;
+  for (std::int16_t& sample : volume.samples<std::int16_t>()) sample = value += 7;
+  write_volumes(scene / "volume.vtkhdf", {&volume});
+  Mesh mesh = box_mesh();
+  for (Point3& p : mesh.rest_positions) p = {5 * p[0] - 20, 4 * p[1] + 15, 5 * p[2] - 500};
+  write_mesh(scene / "mesh.vtkhdf", mesh, shifts({0.3, 0.3, 8.25}), {0, 1, 2});
+
+  expect_same({".vtkhdf"}, {"--steps", "2", "--filter", "cubic", "--overshoot", "clamp"});
+  EXPECT_GE(Json::parse(text_of(scene / "three.json"))["counts"]["blocks"], 6);
+  expect_same({".vtkhdf"}, {"--temporal", "--roi", "5:129,0:70,3:66", "--outside", "identity"});
+}
+
+TEST_F(Ranks, EndTogetherWithOneLineWhenOneOfThemFails) {
+  auto steps = shifts({0, 1, 1, 3});
+  steps[2][3][1] = 1e300;
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), steps, {0, 1, 2, 3});
+
+  for (const Names& more : {Names{}, Names{"--temporal"}, Names{"--steps", "2"}}) {
+    Names words{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_three(words);
+
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_GE(lines_of_ours(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("2^40 voxels"), std::string::npos) << result.err;
+    for (const std::string& name : scene.names()) EXPECT_FALSE(name.starts_with(".")) << name;
+    EXPECT_FALSE(fs::exists(scene / "out.vtkhdf"));
+    EXPECT_FALSE(fs::exists(scene / "out_0002.vtkhdf"));
+  }
+}
+
+TEST_F(Ranks, AreToldOnceWhatIsWrongWithAllOfThem) {
+  for (const Names& words :
+       {Names{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--memory", "much"},
+        Names{"volume.vtkhdf", "none.vtkhdf", "-o", "out.vtkhdf"}, Names{"--batch", "jobs.json"}}) {
+    const CommandResult result = run_three(words);
+
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_EQ(lines_of_ours(result.err), 1) << result.err;
+    EXPECT_EQ(scene.names(), scene.inputs);
+  }
+}
+
+}  // namespace
+}  // namespace tetwarp::test

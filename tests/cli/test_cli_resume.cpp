@@ -1,0 +1,215 @@
+/// @file test_cli_resume.cpp
+/// --resume, interruption and full disks: what stands under a final name is complete and right.
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/inotify.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "tests/scenes/cli_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// An old time stamp, so that a rewritten file is told from a kept one without waiting.
+const fs::file_time_type long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+
+/// A scene with out_0000 ... out_0003 written an hour ago.
+class Resume : public testing::Test {
+ protected:
+  Resume() {
+    const CommandResult result = scene.warp({"-o", "out.vtkhdf"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    for (const std::string& output : outputs) fs::last_write_time(scene / output, long_ago);
+  }
+
+  /// Resumes and returns the outputs that were written again.
+  Names rewritten(Names more = {}) {
+    more.insert(more.begin(), {"-o", "out.vtkhdf", "--resume"});
+    const CommandResult result = scene.warp(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    Names written;
+    for (const std::string& output : outputs) {
+      if (fs::last_write_time(scene / output) != long_ago) written.push_back(output);
+    }
+    return written;
+  }
+
+  Scene scene;
+  const Names outputs{"out_0000.vtkhdf", "out_0001.vtkhdf", "out_0002.vtkhdf", "out_0003.vtkhdf"};
+};
+
+TEST_F(Resume, KeepsWhatIsUpToDate) {
+  EXPECT_EQ(rewritten(), Names{});
+
+  const CommandResult again = scene.warp({"-o", "out.vtkhdf", "--resume"});
+  EXPECT_NE(again.out.find("0 written, 4 skipped"), std::string::npos) << again.out;
+}
+
+TEST_F(Resume, IsUnmovedByOptionsThatDoNotChangeTheResult) {
+  EXPECT_EQ(rewritten({"--no-skip", "all", "--threads", "1"}), Names{});
+}
+
+TEST_F(Resume, WritesEverythingAgainWithoutTheOption) {
+  EXPECT_EQ(scene.warp({"-o", "out.vtkhdf"}).exit_code, 0);
+
+  for (const std::string& output : outputs) {
+    EXPECT_NE(fs::last_write_time(scene / output), long_ago);
+  }
+}
+
+TEST_F(Resume, FillsInWhatIsMissing) {
+  fs::remove(scene / "out_0001.vtkhdf");
+  fs::remove(scene / "out_0002.vtkhdf");
+
+  EXPECT_EQ(rewritten(), (Names{"out_0001.vtkhdf", "out_0002.vtkhdf"}));
+  EXPECT_EQ(read_volume(scene / "out_0001.vtkhdf").data,
+            read_volume(scene / "out_0002.vtkhdf").data);
+}
+
+TEST_F(Resume, WritesATruncatedFileAgain) {
+  const std::string output = scene / "out_0002.vtkhdf";
+  fs::resize_file(output, fs::file_size(output) - 100);
+  fs::last_write_time(output, long_ago);
+
+  EXPECT_EQ(rewritten(), Names{"out_0002.vtkhdf"});
+}
+
+TEST_F(Resume, WritesAgainAfterAChangeOfOneSample) {
+  Volume volume = ramp_volume<float>();
+  volume.samples<float>()[17] += 1;
+  write_volumes(scene / "volume.vtkhdf", {&volume});
+
+  EXPECT_EQ(rewritten(), outputs);
+}
+
+TEST_F(Resume, WritesAgainTheOneStepThatMoved) {
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0, 1, 2, 3}), {0, 0.5, 1, 1.5});
+
+  EXPECT_EQ(rewritten(), Names{"out_0002.vtkhdf"});
+}
+
+TEST_F(Resume, WritesAgainAfterAChangeOfAnOption) {
+  EXPECT_EQ(rewritten({"--filter", "nearest"}), outputs);
+  EXPECT_EQ(rewritten({"--filter", "cubic"}), outputs);
+  EXPECT_EQ(rewritten({"--filter", "cubic", "--overshoot", "clamp"}), outputs);
+  EXPECT_EQ(rewritten({"--background", "-7"}), outputs);
+  EXPECT_EQ(rewritten({"--outputs", "mask"}), outputs);
+}
+
+TEST(Temporal, ResumesOnlyWhenEveryStepIsTheSame) {
+  const Scene scene;
+  const Names words{"-o", "out.vtkhdf", "--temporal", "--resume"};
+  EXPECT_EQ(scene.warp(words).exit_code, 0);
+  fs::last_write_time(scene / "out.vtkhdf", long_ago);
+
+  EXPECT_EQ(scene.warp(words).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
+
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0, 1, 1, 4}), {0, 0.5, 1, 1.5});
+  EXPECT_EQ(scene.warp(words).exit_code, 0);
+  EXPECT_NE(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
+}
+
+/// A mesh with so many steps that the command is still at work when the test has seen it begin.
+void write_long_mesh(const Scene& scene) {
+  std::vector<double> voxels(20000);
+  for (std::size_t s = 0; s < voxels.size(); ++s) voxels[s] = 1e-4 * static_cast<double>(s);
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts(voxels), voxels);
+}
+
+/// Sees the first file made in a folder after its construction.
+class FolderWatch {
+ public:
+  explicit FolderWatch(const TemporaryFolder& folder) : notifier_(inotify_init()) {
+    inotify_add_watch(notifier_, folder.path().c_str(), IN_CREATE);
+  }
+  ~FolderWatch() { close(notifier_); }
+  FolderWatch(const FolderWatch&) = delete;
+  FolderWatch& operator=(const FolderWatch&) = delete;
+
+  /// Waits for it; false after half a minute.
+  bool sees_new_file() const {
+    pollfd events{notifier_, POLLIN, 0};
+    return poll(&events, 1, 30'000) == 1;
+  }
+
+ private:
+  int notifier_;
+};
+
+TEST(Interrupt, LeavesNoTemporalFileAndNoTemporary) {
+  const Scene scene;
+  write_long_mesh(scene);
+  const FolderWatch watch(scene);
+  RunningCommand command(
+      scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--temporal"});
+  ASSERT_TRUE(watch.sees_new_file());
+
+  kill(command.process(), SIGINT);
+  const CommandResult result = command.wait();
+
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "tetwarp: interrupted\n");
+  EXPECT_EQ(scene.names(), scene.inputs);
+}
+
+TEST(Interrupt, LeavesOnlyCompleteStepsThatResumeKeeps) {
+  const Scene scene;
+  write_long_mesh(scene);
+  const FolderWatch watch(scene);
+  RunningCommand command(scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"});
+  ASSERT_TRUE(watch.sees_new_file());
+
+  kill(command.process(), SIGTERM);
+  const CommandResult result = command.wait();
+
+  EXPECT_EQ(result.exit_code, 130);
+  for (const std::string& name : scene.names()) {
+    EXPECT_FALSE(name.starts_with(".")) << name;
+    if (name.starts_with("out")) {
+      EXPECT_TRUE(read_fingerprint(scene / name).has_value()) << name;
+    }
+  }
+}
+
+TEST(FullDisk, IsOneLineAndLeavesNothing) {
+  const Scene scene;
+  for (const Names& words :
+       {Names{"-o", "out.vtkhdf", "--steps", "0"}, Names{"-o", "out.vtkhdf", "--temporal"},
+        Names{"-o", "out.vtkhdf", "--steps", "0", "--compress", "1"}}) {
+    const CommandResult result = scene.warp(words, {.file_size_limit = 2000});
+
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_EQ(scene.names(), scene.inputs);
+  }
+}
+
+TEST(FullDisk, KeepsAnOlderOutput) {
+  const Scene scene;
+  EXPECT_EQ(scene.warp({"-o", "out.vtkhdf", "--steps", "0"}).exit_code, 0);
+  const std::string before = text_of(scene / "out.vtkhdf");
+
+  const CommandResult result =
+      scene.warp({"-o", "out.vtkhdf", "--steps", "3"}, {.file_size_limit = 2000});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(text_of(scene / "out.vtkhdf"), before);
+}
+
+TEST(FullDisk, IsNoticedOnStandardOutput) {
+  const Scene scene;
+
+  const CommandResult result = run_command(scene, {"info", "volume.vtkhdf"}, {.out = "/dev/full"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,132 @@
+/// @file test_contact_coupled.cpp
+/// What coupled bodies are said to have converged to has: its bound holds, and bodies that no
+/// contact holds move as they should.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "tests/scenes/contact_methods.hpp"
+#include "tests/scenes/contact_scenes.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// The bound that stops the iteration is one from soft to stiff, free to glued.
+TEST(CoupledJudge, WhatIsCalledConvergedIsWithinTheTolerance) {
+  for (const double young : {1e4, 1e5, 1e6, 1e7}) {
+    for (const double glue : {0.0, 1e6, 4e7}) {
+      const ContactProblem problem = scenes::elastic_slab(
+          {.cubes = {6, 5, 2}, .contacts = 30, .young = young, .glue = {glue, 1}});
+      ContactOptions options = iterated();
+      options.max_sweeps = 100000;
+      for (const double tolerance : {1e-4, 1e-8}) {
+        options.tolerance = tolerance;
+
+        const ContactSolution solution = solve_contacts(problem, options);
+
+        EXPECT_TRUE(solution.converged()) << young << " " << glue << " " << tolerance;
+        const ContactResidual residual =
+            residual_of(problem, solution.impulse, solution.body_velocity);
+        EXPECT_LE(residual.eta, tolerance) << young << " " << glue;
+        EXPECT_LE(residual.balance, tolerance) << young << " " << glue;
+      }
+    }
+  }
+}
+
+/// Nothing but its offsets asks for impulses.
+ContactProblem slab_at_rest(const scenes::ElasticSlab& choice) {
+  ContactProblem problem = scenes::elastic_slab(choice);
+  std::fill(problem.load.begin(), problem.load.end(), 0.0);
+  for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+    problem.velocity_offset[row] -= 0.01;
+    problem.adhesion.gap[row] = problem.adhesion.time_step * problem.velocity_offset[row];
+  }
+  return problem;
+}
+
+/// Bodies at rest show nothing of A.
+TEST(CoupledJudge, BoundsTheErrorOfBodiesAtRest) {
+  const ContactProblem problem = slab_at_rest(
+      {.cubes = {6, 5, 2}, .contacts = 30, .young = 2e5, .friction = 1, .glue = {4e8, 1}});
+
+  const ContactSolution solution = solve_contacts(problem, iterated());
+
+  EXPECT_TRUE(solution.converged());
+  EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).eta, 1e-8);
+}
+
+/// The first of two islands rests, the other moves.
+TEST(CoupledJudge, SeesAnIslandAsIfItWereAlone) {
+  const ContactProblem still =
+      slab_at_rest({.cubes = {9, 7, 4}, .contacts = 45, .young = 3e4, .glue = {1e8, 1}});
+  const ContactProblem moving = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
+
+  ContactOptions options = iterated();
+  options.tolerance = 1e-3;
+
+  const ContactSolution alone = solve_contacts(still, options);
+  const ContactSolution both = solve_contacts(joined(still, moving), options);
+
+  EXPECT_EQ(both.report.islands, 2);
+  for (std::size_t row = 0; row < alone.impulse.size(); ++row) {
+    EXPECT_EQ(both.impulse[row], alone.impulse[row]) << row;
+  }
+  for (std::size_t dof = 0; dof < alone.body_velocity.size(); ++dof) {
+    EXPECT_EQ(both.body_velocity[dof], alone.body_velocity[dof]) << dof;
+  }
+}
+
+/// Contacts far below, or as near as can be without being pushed: there is nothing to iterate.
+TEST(CoupledJudge, LetsBodiesGoThatNoContactHolds) {
+  for (const double offset : {100.0, 0.0}) {
+    ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30, .glue = {}});
+    for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+      problem.velocity_offset[row] = offset;
+    }
+    if (offset == 0) std::fill(problem.load.begin(), problem.load.end(), 0.0);
+    for (const bool is_guessed : {false, true}) {
+      problem.impulse_guess.assign(is_guessed ? problem.velocity_offset.size() : 0, 1e-3);
+      for (const auto measure : {ContactMeasure::eta, ContactMeasure::fclib}) {
+        ContactOptions options = iterated();
+        options.measure = measure;
+
+        const ContactSolution solution = solve_contacts(problem, options);
+
+        EXPECT_TRUE(solution.converged()) << offset;
+        EXPECT_EQ(solution.report.outer_iterations, 0) << offset;
+        EXPECT_EQ(solution.impulse, std::vector<double>(problem.velocity_offset.size(), 0.0));
+        EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).balance, 1e-8);
+      }
+    }
+  }
+}
+
+/// Springs much stiffer than the bodies they hold feel errors that the energy hardly knows.
+TEST(CoupledJudge, IsRightAboutStiffGlueOnSoftBodies) {
+  for (const double young : {3e4, 2e5, 3e6}) {
+    for (const double glue : {1e8, 1e9}) {
+      const ContactProblem problem = scenes::elastic_slab(
+          {.cubes = {9, 7, 4}, .contacts = 45, .young = young, .friction = 1, .glue = {glue, 1}});
+      for (const double tolerance : {1e-3, 1e-6}) {
+        ContactOptions options = iterated();
+        options.tolerance = tolerance;
+        options.max_sweeps = 100000;
+
+        const ContactSolution solution = solve_contacts(problem, options);
+
+        EXPECT_TRUE(solution.converged()) << young << " " << glue;
+        EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).eta, tolerance)
+            << young << " " << glue;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tetwarp::test

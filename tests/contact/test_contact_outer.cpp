@@ -1,0 +1,219 @@
+/// @file test_contact_outer.cpp
+/// The outer block-Jacobi iteration over bodies that A couples: what it solves, what its options
+/// do, what it reports, and when it is chosen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact/block_jacobi/outer.hpp"
+#include "tests/scenes/contact_methods.hpp"
+#include "tests/scenes/contact_scenes.hpp"
+#include "tests/scenes/contact_stages.hpp"
+#include "tests/scenes/elastic_block.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// Elastic nodes and bodies of six dofs that A couples and contacts link.
+ContactProblem mixture() {
+  ContactProblem soft = make_elastic_problem({.cells = 2});
+  const ContactProblem rigid = global_problem(131, 4, 0.4);
+  const std::int64_t rows = soft.jacobian.rows;
+  soft.block_start.clear();
+  for (std::int32_t dof = 0; dof <= soft.dof_count(); dof += 3) soft.block_start.push_back(dof);
+  soft = joined(std::move(soft), rigid);
+  soft.adhesion = {};
+  // A contact between the lowest node and the first body makes them one island.
+  for (std::int32_t a = 0; a < 3; ++a) {
+    const std::size_t row = static_cast<std::size_t>(rows + a);
+    const std::int64_t first = soft.jacobian.row_start[row];
+    soft.jacobian.column.insert(soft.jacobian.column.begin() + first, a);
+    soft.jacobian.value.insert(soft.jacobian.value.begin() + first, 0.5);
+    for (std::size_t r = row + 1; r < soft.jacobian.row_start.size(); ++r) {
+      ++soft.jacobian.row_start[r];
+    }
+  }
+  return soft;
+}
+
+using Model = std::tuple<FrictionLaw, AdhesionRule>;
+class EachModel : public ::testing::TestWithParam<Model> {};
+std::string name_of_model(const ::testing::TestParamInfo<Model>& info) {
+  const auto [law, rule] = info.param;
+  return std::string(law == FrictionLaw::cone ? "cone" : "pyramid") +
+         (rule == AdhesionRule::parallel ? "_parallel" : "_restrictive");
+}
+INSTANTIATE_TEST_SUITE_P(
+    By,
+    EachModel,
+    ::testing::Combine(::testing::Values(FrictionLaw::cone, FrictionLaw::pyramid),
+                       ::testing::Values(AdhesionRule::parallel, AdhesionRule::restrictive)),
+    name_of_model);
+
+/// Nodes, bodies and both, iterated and condensed, plain and accelerated.
+TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
+  const auto [law, rule] = GetParam();
+  const ContactProblem problems[] = {make_elastic_problem({}), global_problem(132, 6, 0.4),
+                                     mixture()};
+  for (std::size_t k = 0; k < std::size(problems); ++k) {
+    ContactOptions options = {.law = law, .rule = rule, .tolerance = 1e-10, .max_sweeps = 100000};
+    options.backend = Backend::reference;
+    const ContactSolution reference = solve_contacts(problems[k], options);
+    ASSERT_TRUE(reference.converged()) << "problem " << k;
+    options.backend = Backend::cpu;
+    for (const ContactMethod method :
+         {ContactMethod::automatic, ContactMethod::gauss_seidel, ContactMethod::nonlinear_cg}) {
+      for (const auto coupling : {ContactCoupling::iterated, ContactCoupling::condensed}) {
+        options.method = method;
+        options.coupling = coupling;
+        const std::string what = "problem " + std::to_string(k) + ", " + name_of(method);
+
+        const ContactSolution solution = solve_contacts(problems[k], options);
+
+        EXPECT_TRUE(solution.converged()) << what << ": " << solution.report.status_reason;
+        EXPECT_LE(relative_distance(solution.body_velocity, reference.body_velocity), 1e-7) << what;
+        const ContactResidual residual =
+            residual_of(problems[k], solution.impulse, solution.body_velocity, options);
+        EXPECT_LE(residual.eta, 1e-10) << what;
+        EXPECT_LE(residual.balance, 1e-10) << what;
+      }
+    }
+  }
+}
+
+/// Where A couples nothing, D is A: the inner problem is all there is.
+TEST(OuterIteration, IsExactInOneStepWhereNothingIsCoupled) {
+  const ContactProblem problem = global_problem(133, 6, 0);
+  const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
+  const ContactStages stages(problem, options);
+  CpuContactExec exec(1);
+  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure.indices());
+  CoupledMemory<CpuContactExec> memory;
+  CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island(), memory.judge);
+  OuterIteration<CpuContactExec> outer(exec, options, numbers,
+                                       view_of(stages.structure.color_start), stages.island(),
+                                       judge, memory.fine);
+  const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
+  const std::vector<double> no_velocity(problem.load.size(), 0.0);
+  IslandOutcome outcome;
+  judge.start(outcome);
+
+  outer.solve(1, view_of(no_impulse), view_of(no_velocity), outcome);
+
+  EXPECT_EQ(outcome.reason, StopReason::converged);
+  EXPECT_EQ(outcome.outer_iterations, 1);
+}
+
+TEST(OuterIteration, AcceleratedNeedsAThirdOfThePlainSteps) {
+  const ContactProblem problem = make_elastic_problem({.young = 1e6});
+  ContactOptions plain = iterated(ContactMethod::gauss_seidel);
+  plain.max_sweeps = 100000;
+
+  const ContactReport slow = solve_contacts(problem, plain).report;
+  const ContactReport fast = solve_contacts(problem, iterated()).report;
+
+  EXPECT_EQ(slow.method, "outer_jacobi");
+  EXPECT_EQ(fast.method, "outer_anderson");
+  EXPECT_LT(3 * fast.outer_iterations, slow.outer_iterations);
+}
+
+/// A shorter step takes in proportion more of them.
+TEST(OuterIteration, HalfTheRelaxationTakesTwiceTheSteps) {
+  const ContactProblem problem = make_elastic_problem({});
+  ContactOptions options = iterated(ContactMethod::gauss_seidel);
+  const auto half = static_cast<double>(solve_contacts(problem, options).report.outer_iterations);
+  options.relaxation = 0.25;
+
+  const auto quarter =
+      static_cast<double>(solve_contacts(problem, options).report.outer_iterations);
+
+  EXPECT_GT(quarter, 1.7 * half);
+  EXPECT_LT(quarter, 2.3 * half);
+}
+
+/// Bodies with several contacts: better inner solutions save outer steps. Nodes with one contact
+/// each are solved by one sweep, whatever is asked for.
+TEST(OuterIteration, InnerSweepsSaveStepsWhereContactsShareBodies) {
+  ContactOptions once = iterated(), often = iterated();
+  once.inner_sweeps = 1;
+  often.inner_sweeps = 20;
+  const ContactProblem bodies = global_problem(134, 12, 0.4);
+  const ContactProblem nodes = make_elastic_problem({});
+
+  const ContactReport rough = solve_contacts(bodies, once).report;
+  const ContactReport fine = solve_contacts(bodies, often).report;
+
+  EXPECT_LT(2 * fine.outer_iterations, rough.outer_iterations);
+  EXPECT_EQ(rough.sweeps, rough.outer_iterations);
+  EXPECT_EQ(fine.sweeps, 20 * fine.outer_iterations);
+  expect_same_bits(solve_contacts(nodes, once), solve_contacts(nodes, often), "nodes");
+}
+
+TEST(OuterIteration, ReportsWhatItDid) {
+  const ContactSolution solution =
+      solve_contacts(scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30}), iterated());
+
+  const ContactReport& report = solution.report;
+  EXPECT_GT(report.outer_iterations, 10);
+  EXPECT_EQ(report.contact_updates, 30 * report.sweeps);
+  ASSERT_GE(report.residual_history.size(), 1U);
+  EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 1e-12 * report.residual.eta);
+}
+
+TEST(OuterIteration, HasTheSameBitsForAnyNumberOfThreads) {
+  const ContactProblem problem =
+      scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});  // 1365 nodes wake the threads
+  ContactOptions options = iterated();
+  options.threads = 1;
+  const ContactSolution one = solve_contacts(problem, options);
+  for (const int threads : {2, 3}) {
+    options.threads = threads;
+
+    expect_same_bits(solve_contacts(problem, options), one, std::to_string(threads) + " threads");
+  }
+}
+
+TEST(OuterIteration, StartsFromImpulsesGiven) {
+  ContactProblem problem = make_elastic_problem({});
+  const ContactSolution cold = solve_contacts(problem, iterated());
+  problem.impulse_guess = cold.impulse;
+
+  const ContactSolution warm = solve_contacts(problem, iterated());
+
+  EXPECT_TRUE(warm.converged());
+  EXPECT_LT(2 * warm.report.outer_iterations, cold.report.outer_iterations);
+}
+
+TEST(OuterIteration, IsChosenForLargeIslandsOnly) {
+  const ContactProblem small = make_elastic_problem({});
+  const ContactProblem large = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
+
+  EXPECT_EQ(solve_contacts(small).report.outer_iterations, 0);
+  EXPECT_EQ(solve_contacts(large).report.method, "outer_anderson");
+  EXPECT_EQ(solve_contacts(large, {.method = ContactMethod::gauss_seidel}).report.outer_iterations,
+            0);
+}
+
+/// Two steps are not enough; the Delassus matrix and Newton's method are.
+TEST(OuterIteration, IsFollowedByCondensingWhereItFails) {
+  const ContactProblem problem = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
+
+  const ContactSolution solution = solve_contacts(problem, {.tolerance = 1e-8, .max_sweeps = 100});
+
+  EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
+  EXPECT_TRUE(solution.report.method.starts_with("outer_anderson, "));
+  EXPECT_EQ(solution.report.outer_iterations, 100);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

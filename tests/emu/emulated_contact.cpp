@@ -1,0 +1,12 @@
+/// @file emulated_contact.cpp
+/// The contact solver's device on the emulated one: the very executors and kernels.
+#include "host/contact/cuda/contact_cuda.cuh"
+
+namespace tetwarp {
+
+std::unique_ptr<ContactDevice> make_contact_device(int device) {
+  if (device != 0) throw CudaError("no device " + std::to_string(device) + ", there are 1");
+  return std::make_unique<CudaContactDevice>(device, "emulation");
+}
+
+}  // namespace tetwarp

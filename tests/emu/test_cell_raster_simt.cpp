@@ -1,0 +1,299 @@
+/// @file test_cell_raster_simt.cpp
+/// The hand-mapped raster kernel, run by emulation in several thread orders, gives the bits of the
+/// row-by-row raster of the host. A program of its own: the emulation defines CUDA's names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/warp/cpu/cell_raster_cpu.hpp"
+#include "kernels/warp/volume_prefilter.hpp"
+#include "tests/scenes/stages.hpp"
+
+#include "kernels/warp/cell_raster.cuh"
+
+namespace tetwarp::test {
+namespace {
+
+/// What a raster job varies in.
+struct RasterCase {
+  std::string scene = "waved";
+  PixelType type = PixelType::float32;
+  int components = 1;
+  Filter filter = Filter::linear;
+  OutsideMap outside = {};
+  bool copy_whole_shifts = true;
+  std::optional<Region> region = {};
+};
+
+/// Everything that a raster writes.
+template <class T>
+struct Rastered {
+  std::vector<T> volume;
+  std::vector<std::uint8_t> mask;
+  std::vector<std::int32_t> owner;
+  std::vector<std::uint16_t> cell_covered;
+  RasterCounts counts = {0, 0, 0, 0};
+};
+
+template <class T>
+bool is_same(const Rastered<T>& a, const Rastered<T>& b) {
+  return std::memcmp(a.volume.data(), b.volume.data(), a.volume.size() * sizeof(T)) == 0 &&
+         a.mask == b.mask && a.owner == b.owner && a.cell_covered == b.cell_covered &&
+         a.counts.covered == b.counts.covered && a.counts.copied == b.counts.copied;
+}
+
+scenes::Scene scene_named(const std::string& name) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(20)) {
+    if (scene.name == name) return scene;
+  }
+  throw std::invalid_argument("no scene " + name);
+}
+
+template <class T>
+class RasterBench {
+ public:
+  explicit RasterBench(const RasterCase& what)
+      : scene_(scene_named(what.scene)),
+        source_(scenes::wavy_volume(scene_.source_grid, what.type, what.components)),
+        input_(input_of(scene_, what.region)),
+        exec_(2),
+        arrays_(exec_),
+        stages_(arrays_, input_) {
+    job_.setups = stages_.setups;
+    job_.tets = stages_.tets;
+    job_.nodes = stages_.nodes;
+    job_.pairs = stages_.pairs;
+    job_.ranges = stages_.ranges;
+    job_.frame = input_.frame;
+    job_.source = source_view<T>(source_, source_.data.data());
+    job_.filter = what.filter;
+    job_.outside = what.outside;
+    if (what.filter == Filter::bspline) prefilter();
+    job_.background = T{77};
+    job_.copy_whole_shifts = what.copy_whole_shifts;
+  }
+
+  std::uint32_t max_pairs_in_a_cell() {
+    std::uint32_t most = 0;
+    for (const CellRange& range : arrays_.download(stages_.ranges)) {
+      most = std::max(most, range.end - range.begin);
+    }
+    return most;
+  }
+
+  /// A third of the cells each: left alone, sampled, filled with the value of a voxel.
+  void mix_work() {
+    const auto samples = static_cast<double>(source_.grid.voxel_count());
+    for (std::int64_t cell = 0; cell < input_.frame.cell_count(); ++cell) {
+      const double u = scenes::uniform(83, static_cast<std::uint64_t>(cell));
+      const auto voxel = static_cast<std::int64_t>((u - 2.0 / 3) * 3 * samples);
+      work_.push_back(u < 1.0 / 3 ? keep_cell : u < 2.0 / 3 ? sample_cell : voxel);
+    }
+    job_.cell_work = {work_.data(), input_.frame.cell_count()};
+  }
+
+  Rastered<T> by_rows() {
+    return filled([&](const RasterJob<T>& job) {
+      const Progress silent;
+      cell_raster(exec_, job, ProgressPart{silent, 0, 1});
+    });
+  }
+
+  Rastered<T> by_blocks() {
+    return filled([](const RasterJob<T>& job) {
+      const dim3 cells(static_cast<unsigned>(job.frame.cell_count()));
+      launch(nullptr, raster_kernel(job), cells, raster_threads, 0, job);
+    });
+  }
+
+ private:
+  void prefilter() {
+    const auto size = source_.grid.voxel_count() * source_.components;
+    const auto coefficients = arrays_.template zeros<ArithmeticOf<T>>(size);
+    volume_prefilter(exec_, job_.source, 0, arrays_.template zeros<double>(size), coefficients);
+    job_.source.coefficients = coefficients.data;
+  }
+
+  template <class Raster>
+  Rastered<T> filled(Raster&& raster) {
+    const auto voxels = static_cast<std::size_t>(input_.frame.voxel_count());
+    Rastered<T> result;
+    result.volume.assign(voxels * static_cast<std::size_t>(source_.components), T{55});
+    result.mask.assign(voxels, 0xee);
+    result.owner.assign(voxels, -99);
+    result.cell_covered.assign(static_cast<std::size_t>(input_.frame.cell_count()), 999);
+    job_.volume = result.volume.data();
+    job_.mask = result.mask.data();
+    job_.tet = result.owner.data();
+    job_.counts = &result.counts;
+    job_.cell_covered = {result.cell_covered.data(), input_.frame.cell_count()};
+    raster(job_);
+    return result;
+  }
+
+  scenes::Scene scene_;
+  Volume source_;
+  StageInput input_;
+  CpuExec exec_;
+  ExecArrays<CpuExec> arrays_;
+  Stages<CpuExec> stages_;
+  RasterJob<T> job_;
+  std::vector<std::int64_t> work_;
+};
+
+void expect_equal_bits(const RasterCase& what) {
+  with_pixel_type(what.type, [&]<class T>(T) {
+    RasterBench<T> bench(what);
+    const Rastered<T> rows = bench.by_rows();
+    EXPECT_GT(rows.counts.covered, 0) << what.scene;
+    simt::for_each_schedule([&](const simt::Schedule&) {
+      EXPECT_TRUE(is_same(bench.by_blocks(), rows)) << what.scene << ' ' << name_of(what.type);
+    });
+  });
+}
+
+/// Half as fast along x, somewhat shifted: uncovered voxels are interpolated.
+OutsideMap stretched() {
+  return {true, false, {{0.5, 0, 0.01}, {0, 1, 0}, {0.02, 0, 0.9}}, {0.3, -0.2, 1.7}};
+}
+
+OutsideMap same_place(double i, double j, double k) {
+  return {true, true, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {i, j, k}};
+}
+
+TEST(CellRasterSimt, EveryPixelTypeHasTheSameBits) {
+  for (const PixelType type :
+       {PixelType::float32, PixelType::int16, PixelType::uint8, PixelType::uint16, PixelType::int8,
+        PixelType::float64, PixelType::int32}) {
+    expect_equal_bits({.type = type});
+  }
+  for (const PixelType type : {PixelType::uint64, PixelType::int16, PixelType::float32}) {
+    expect_equal_bits({.type = type, .filter = Filter::nearest});
+  }
+}
+
+TEST(CellRasterSimt, EveryFilterHasTheSameBits) {
+  for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos}) {
+    for (const char* scene : {"waved", "other_grid"}) {
+      for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::int16}) {
+        expect_equal_bits({.scene = scene, .type = type, .filter = filter, .outside = stretched()});
+      }
+    }
+    expect_equal_bits({.type = PixelType::float32, .components = 3, .filter = filter});
+    expect_equal_bits({.type = PixelType::float64, .filter = filter});
+  }
+  for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint64}) {
+    expect_equal_bits({.type = type, .filter = Filter::labels, .outside = stretched()});
+  }
+}
+
+TEST(CellRasterSimt, EverySceneHasTheSameBits) {
+  for (const char* scene : {"identity", "aligned", "rotated", "outside", "oblique", "slivers",
+                            "thin_aligned", "soup", "overlapping", "folded", "far", "other_grid"}) {
+    expect_equal_bits({.scene = scene, .type = PixelType::int16});
+    expect_equal_bits({.scene = scene, .type = PixelType::float32});
+  }
+}
+
+TEST(CellRasterSimt, SeveralComponentsHaveTheSameBits) {
+  for (const int components : {2, 3, 9}) {
+    expect_equal_bits({.type = PixelType::uint8, .components = components});
+    expect_equal_bits({.type = PixelType::float32, .components = components});
+    expect_equal_bits({.type = PixelType::float64, .components = components});
+  }
+}
+
+TEST(CellRasterSimt, CopyingAndInterpolatingHaveTheSameBits) {
+  expect_equal_bits({.scene = "aligned", .copy_whole_shifts = false});
+  const Rastered<float> copied = RasterBench<float>({.scene = "aligned"}).by_blocks();
+  const Rastered<float> blended =
+      RasterBench<float>({.scene = "aligned", .copy_whole_shifts = false}).by_blocks();
+  EXPECT_EQ(copied.volume, blended.volume);
+  EXPECT_EQ(copied.counts.copied, copied.counts.covered);
+  EXPECT_EQ(blended.counts.copied, 0);
+}
+
+TEST(CellRasterSimt, UncoveredVoxelsHaveTheSameBits) {
+  for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::float64}) {
+    expect_equal_bits({.scene = "rotated", .type = type, .outside = same_place(0, 0, 0)});
+    expect_equal_bits({.scene = "rotated", .type = type, .outside = stretched()});
+  }
+}
+
+TEST(CellRasterSimt, WindowsThatStartInsideACellHaveTheSameBits) {
+  for (const Region& region : {Region{{3, 5, 1}, {20, 16, 19}}, Region{{9, 0, 7}, {10, 17, 8}},
+                               Region{{15, 15, 15}, {20, 17, 22}}}) {
+    for (const char* scene : {"identity", "waved"}) {
+      expect_equal_bits({.scene = scene, .region = region});
+      expect_equal_bits(
+          {.scene = scene, .type = PixelType::int16, .outside = stretched(), .region = region});
+    }
+  }
+}
+
+/// A block takes 16 tetrahedra at a time; "tiny" has hundreds in a cell.
+TEST(CellRasterSimt, CellsOfManyTetrahedraHaveTheSameBits) {
+  EXPECT_GT(RasterBench<float>({.scene = "tiny"}).max_pairs_in_a_cell(), 10u * raster_chunk);
+  EXPECT_GT(RasterBench<float>({.scene = "soup"}).max_pairs_in_a_cell(), raster_chunk + 0u);
+  expect_equal_bits({.scene = "tiny"});
+  expect_equal_bits({.scene = "tiny", .type = PixelType::int16});
+}
+
+/// Kept cells are not written, filled ones hold their voxel's samples where they are covered.
+template <class T>
+void expect_equal_work(const RasterCase& what) {
+  RasterBench<T> bench(what);
+  const Rastered<T> all = bench.by_rows();
+  bench.mix_work();
+  const Rastered<T> rows = bench.by_rows();
+  simt::for_each_schedule([&](const simt::Schedule&) {
+    EXPECT_TRUE(is_same(bench.by_blocks(), rows)) << what.scene << ' ' << name_of(what.type);
+  });
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < rows.owner.size(); ++v) {
+    if (rows.owner[v] == -99) ++kept;
+    EXPECT_EQ(rows.owner[v] == -99, rows.mask[v] == 0xee);
+    EXPECT_TRUE(rows.owner[v] == -99 || rows.owner[v] == all.owner[v]);
+  }
+  EXPECT_GT(kept, rows.owner.size() / 8);
+  EXPECT_LT(kept, rows.owner.size());
+  EXPECT_LT(rows.counts.covered, all.counts.covered);
+  EXPECT_NE(rows.volume, all.volume);
+}
+
+TEST(CellRasterSimt, CellsThatAreKeptOrFilledHaveTheSameBits) {
+  expect_equal_work<float>({});
+  expect_equal_work<float>({.components = 3, .filter = Filter::nearest});
+  expect_equal_work<std::int16_t>({.scene = "soup", .type = PixelType::int16});
+  expect_equal_work<double>({.scene = "rotated",
+                             .type = PixelType::float64,
+                             .outside = stretched(),
+                             .region = Region{{3, 5, 1}, {20, 16, 19}}});
+}
+
+TEST(CellRasterSimt, CoveredVoxelsAreCountedPerCell) {
+  const Rastered<float> blocks = RasterBench<float>({.scene = "waved"}).by_blocks();
+
+  std::int64_t sum = 0;
+  for (const std::uint16_t covered : blocks.cell_covered) sum += covered;
+  EXPECT_EQ(sum, blocks.counts.covered);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(CellRasterSimt, EveryVoxelIsWritten) {
+  const Rastered<float> blocks = RasterBench<float>({.scene = "waved"}).by_blocks();
+
+  EXPECT_EQ(std::ranges::count(blocks.volume, 55.0f), 0);
+  EXPECT_EQ(std::ranges::count(blocks.owner, -99), 0);
+  EXPECT_EQ(std::ranges::count(blocks.mask, 0xee), 0);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

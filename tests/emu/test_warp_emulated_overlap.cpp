@@ -1,0 +1,128 @@
+/// @file test_warp_emulated_overlap.cpp
+/// Steps in flight on the emulated device: any order of events that CUDA allows gives the same
+/// bits, and a wait that is left out is seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/scenes/skip_series.hpp"
+#include "tests/scenes/steps_in_flight.hpp"
+
+#include "kernels/exec/launch.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// The streams of a Warper that is the only one, in the order of their making.
+enum StreamNumber { compute_stream, upload_stream, download_stream };
+
+class EmulatedOverlap : public ::testing::Test {
+ protected:
+  const scenes::Scene scene = scenes::adversarial_scenes(16).front();
+  const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16),
+                                       scenes::wavy_volume(scene.source_grid, PixelType::float32)};
+  const WarpOptions options = {.backend = Backend::cuda};
+  simt::Device& device = simt::Device::only();
+
+  void TearDown() override { device.ahead = device.forgotten_wait = device.nobody; }
+
+  /// All nodes move, so that every step is a whole one.
+  Steps shaken(std::uint64_t count) const {
+    Steps steps;
+    for (std::uint64_t step = 0; step < count; ++step) {
+      steps.push_back(scenes::waved(scene.deformed, 0.3 * scene.output_grid.spacing[0], step));
+    }
+    return steps;
+  }
+};
+
+TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
+  const Steps steps = partial_motions(scene, 72);
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+
+  for (const int ahead : {device.nobody, +compute_stream, +upload_stream, +download_stream}) {
+    for (const Pages pages : {Pages::locked, Pages::pageable}) {
+      for (const bool holds_previous : {true, false}) {
+        device.ahead = ahead;
+        EXPECT_TRUE(steps_in_flight(sources, scene, options, steps, pages, holds_previous) ==
+                    expected)
+            << "stream " << ahead;
+      }
+    }
+  }
+}
+
+/// A step waits once for its positions, then four times, per output, for its kernels: of these the
+/// first counts, as the others come after it on the same stream.
+TEST_F(EmulatedOverlap, AForgottenWaitIsSeen) {
+  constexpr int waits_of_step = 7;
+  const Steps steps = shaken(5);
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+  const auto run = [&](int ahead, int forgotten) {
+    device.ahead = ahead;
+    device.forgotten_wait = forgotten;
+    return steps_in_flight(sources, scene, options, steps, Pages::locked, false);
+  };
+
+  for (int step = 2; step < 5; ++step) {
+    const int first = waits_of_step * step;
+    EXPECT_FALSE(run(compute_stream, first) == expected) << "positions of step " << step;
+    EXPECT_EQ(device.forgotten_wait, device.nobody);
+    EXPECT_FALSE(run(download_stream, first + 1) == expected) << "kernels of step " << step;
+    EXPECT_TRUE(run(download_stream, device.nobody) == expected);
+  }
+}
+
+/// The host waits for the kernels of the step before and for nothing else, and does not allocate.
+TEST_F(EmulatedOverlap, KernelsAreAskedForBeforeTheLastStepIsHome) {
+  const Steps steps = shaken(6);
+  const StepBuffers buffers[] = {{sources, scene.output_grid, Pages::locked},
+                                 {sources, scene.output_grid, Pages::locked}};
+  Warper warper = make_warper(sources, scene, options);
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    if (s > 2) device.take_calls();
+    const Bits before = buffers[(s + 1) % 2].bits();
+
+    warper.begin_step(steps[s], buffers[s % 2].target(false));
+
+    const std::string calls = device.take_calls();
+    if (s > 2) {
+      EXPECT_EQ(calls.find_first_of("AF"), std::string::npos) << calls;
+      EXPECT_EQ(std::ranges::count(calls, 'W'), 1) << calls;
+      EXPECT_EQ(calls.find('U'), 0u) << calls;
+      EXPECT_LT(calls.find('W'), calls.find('L')) << calls;
+      EXPECT_EQ(std::ranges::count(calls, 'D'), 1 + 6) << calls;  // counters and outputs
+    }
+    if (s == 0) continue;
+    EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is home already";
+    warper.finish_step();
+    EXPECT_FALSE(buffers[(s + 1) % 2].bits() == before);
+  }
+}
+
+/// Every span of work takes a millisecond here, so that times count spans.
+TEST_F(EmulatedOverlap, AFailedStepIsNotChargedToTheNext) {
+  const Steps steps = shaken(2);
+  std::vector<Point3> bad = steps[0];
+  bad.front()[0] = 1e300;
+  const StepBuffers buffer(sources, scene.output_grid, Pages::locked);
+  WarpOptions anew = options;
+  anew.skip.unchanged_tets = false;
+  Warper warper = make_warper(sources, scene, anew);
+  warper.step(steps[0], buffer.target(false));
+  const Timings expected = warper.step(steps[1], buffer.target(false)).timings;
+
+  EXPECT_THROW(warper.step(bad, buffer.target(false)), std::invalid_argument);
+  const Timings timings = warper.step(steps[1], buffer.target(false)).timings;
+
+  EXPECT_EQ(timings.upload, expected.upload);
+  EXPECT_EQ(timings.setup, expected.setup);
+  EXPECT_EQ(timings.raster, expected.raster);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

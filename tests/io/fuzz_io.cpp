@@ -1,0 +1,270 @@
+/// @file fuzz_io.cpp
+/// Usage: fuzz_io SECONDS SEED
+///
+/// Damages good files, by bytes and by values, and reads them with every reader. Success or an
+/// IoError is fine; a crash, a hang, another exception or a large allocation is a failure. Files
+/// are read in forked children, so that a crash can be counted, and told apart when it is HDF5's
+/// own.
+#include <dlfcn.h>
+#include <execinfo.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <new>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/io/fuzz_contact.hpp"
+#include "tests/io/fuzz_memory.hpp"
+#include "tests/io/fuzz_values.hpp"
+#include "tests/scenes/io_files.hpp"
+
+namespace {
+
+using namespace tetwarp;
+using Clock = std::chrono::steady_clock;
+
+constexpr unsigned seconds_per_file = 5;
+constexpr std::int64_t files_per_child = 64;
+
+/// How a child ends when it is not by the last file.
+enum ExitCode { crash_in_hdf5 = 40, crash, wrong_exception };
+
+/// Written by the children, read by the parent.
+struct Counts {
+  std::int64_t files = 0;
+  std::int64_t rejected = 0;
+  std::int64_t read = 0;
+};
+
+/// Ends the child: the first frame that is neither the C library's nor a sanitizer's is to blame.
+void on_crash(int) {
+  std::array<void*, 64> frames{};
+  const int count = backtrace(frames.data(), static_cast<int>(frames.size()));
+  for (int frame = 1; frame < count; ++frame) {
+    Dl_info where{};
+    if (dladdr(frames[static_cast<std::size_t>(frame)], &where) == 0) continue;
+    const std::string object = where.dli_fname == nullptr ? "" : where.dli_fname;
+    if (object.find("libhdf5") != std::string::npos) _exit(crash_in_hdf5);
+    const bool is_system = object.find("libc.so") != std::string::npos ||
+                           object.find("libasan") != std::string::npos ||
+                           object.find("libubsan") != std::string::npos;
+    if (!is_system && frame > 1) break;
+  }
+  backtrace_symbols_fd(frames.data(), count, STDERR_FILENO);
+  _exit(crash);
+}
+
+void write_seeds(const test::ScratchFolder& folder) {
+  const Volume a = test::counting_volume(PixelType::int16, 1, "a");
+  const Volume b = test::counting_volume(PixelType::float32, 3, "b");
+  write_volumes(folder / "volume", {&a, &b}, {.compress = 0, .background = 0, .fingerprint = "f"});
+  write_volumes(folder / "packed", {&a, &b}, {.compress = 3, .background = 0, .fingerprint = {}});
+  TemporalVolumeWriter writer(folder / "temporal");
+  writer.append(0, {&a, &b});
+  writer.repeat(1);
+  writer.append(2, {&a, &b});
+  writer.finish();
+  write_mesh(folder / "mesh", test::two_tets());
+  write_mesh(folder / "moving", test::two_tets(), test::slides({0, 1, 2}));
+  write_nifti(folder / "v.nii", b);
+  write_nifti(folder / "v.nii.gz", a);
+  test::write_contact_seeds(folder);
+}
+
+std::vector<std::string> seed_names() {
+  std::vector<std::string> names = {"volume", "packed", "temporal", "mesh",
+                                    "moving", "v.nii",  "v.nii.gz"};
+  names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
+  return names;
+}
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Changes, cuts, repeats or removes a few bytes.
+void damage_bytes(const std::string& path, test::Random& random) {
+  std::string bytes = bytes_of(path);
+  for (std::uint64_t changes = 1 + random.below(8); changes > 0 && !bytes.empty(); --changes) {
+    const std::size_t at = random.below(bytes.size());
+    const std::size_t length = 1 + random.below(std::min<std::size_t>(64, bytes.size() - at));
+    switch (random.below(8)) {
+      case 0:
+        bytes.resize(at);
+        break;
+      case 1:
+        bytes.insert(at, bytes.substr(at, length));
+        break;
+      case 2:
+        bytes.erase(at, length);
+        break;
+      case 3:
+        bytes.replace(at, length, length, random.below(2) == 0 ? '\0' : '\xff');
+        break;
+      default:
+        bytes[at] = static_cast<char>(random.below(256));
+    }
+  }
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// True when `body` ends without IoError.
+template <class Body>
+bool reads(const Body& body) {
+  try {
+    body();
+    return true;
+  } catch (const IoError& error) {
+    if (std::strchr(error.what(), '\n') != nullptr) throw std::runtime_error(error.what());
+    return false;
+  }
+}
+
+/// Every reader on one file; true when the reader of its kind took it.
+bool read_all(const std::string& path) {
+  reads([&] { kind_of(path); });
+  reads([&] { read_fingerprint(path); });
+  const bool is_volume = reads([&] {
+    const VolumeHeader header = read_volume_header(path);
+    const std::size_t steps = std::max<std::size_t>(1, header.times.size());
+    for (const ArrayHeader& array : header.arrays) {
+      for (std::size_t step = 0; step < steps; ++step) {
+        read_volume(path, array.name, static_cast<std::int64_t>(step));
+      }
+    }
+  });
+  reads([&] { read_volume(path); });
+  const bool is_mesh = reads([&] {
+    const MeshReader reader(path, {.rest_step = 0, .rest_file = path});
+    for (std::size_t step = 0; step < reader.header().times.size(); ++step) {
+      reader.read_step(static_cast<std::int64_t>(step));
+    }
+  });
+  const bool is_contact = reads([&] { test::read_contact_file(path, path + "-solved"); });
+  return is_volume || is_mesh || is_contact || reads([&] { read_nifti(path); });
+}
+
+/// The file number `index` of this seed: the same in every run.
+void make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64_t index) {
+  test::Random random(seed, static_cast<std::uint64_t>(index));
+  static const std::vector<std::string> seeds = seed_names();
+  const std::string& name = seeds[random.below(seeds.size())];
+  std::filesystem::copy_file(folder / name, folder / "damaged",
+                             std::filesystem::copy_options::overwrite_existing);
+  const bool is_hdf5 = name.find(".nii") == std::string::npos;
+  if (is_hdf5 && random.below(3) != 0) {
+    test::damage_values(folder / "damaged", random);
+  } else {
+    damage_bytes(folder / "damaged", random);
+  }
+}
+
+/// Runs in a child: files from `first` on.
+[[noreturn]] void read_files(const test::ScratchFolder& folder,
+                             std::uint64_t seed,
+                             std::int64_t first,
+                             Clock::time_point end,
+                             Counts& counts) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) {
+    std::signal(signal, on_crash);
+  }
+  for (std::int64_t index = first; index < first + files_per_child && Clock::now() < end; ++index) {
+    alarm(seconds_per_file);
+    ++counts.files;
+    try {
+      make_file(folder, seed, index);
+      ++(read_all(folder / "damaged") ? counts.read : counts.rejected);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      _exit(wrong_exception);
+    }
+  }
+  _exit(0);
+}
+
+const char* text_of(int status) {
+  if (WIFSIGNALED(status)) return WTERMSIG(status) == SIGALRM ? "hang" : "killed";
+  switch (WEXITSTATUS(status)) {
+    case crash_in_hdf5:
+      return "crash inside HDF5";
+    case crash:
+      return "crash";
+    case wrong_exception:
+      return "exception that is no IoError";
+    case test::large_allocation_exit_code:
+      return "allocation out of all proportion";
+    default:
+      return "sanitizer report";
+  }
+}
+
+/// Reads damaged files until `seconds` have gone. @returns true when none of them was a failure
+bool fuzz(int seconds, std::uint64_t seed) {
+  const auto end = Clock::now() + std::chrono::seconds(seconds);
+  const test::ScratchFolder folder;
+  write_seeds(folder);
+  void* shared =
+      mmap(nullptr, sizeof(Counts), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) throw std::runtime_error("no shared memory");
+  Counts& counts = *new (shared) Counts;
+
+  int failures = 0;
+  int hdf5_crashes = 0;
+  while (Clock::now() < end && failures < 10) {
+    const std::int64_t first = counts.files;
+    const pid_t child = fork();
+    if (child < 0) throw std::runtime_error("no child process");
+    if (child == 0) read_files(folder, seed, first, end, counts);
+    int status = 0;
+    waitpid(child, &status, 0);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;
+    const bool is_hdf5 = WIFEXITED(status) && WEXITSTATUS(status) == crash_in_hdf5;
+    ++(is_hdf5 ? hdf5_crashes : failures);
+    const auto kept = std::filesystem::temp_directory_path() /
+                      ("fuzz_io-" + std::to_string(seed) + "-" + std::to_string(counts.files - 1));
+    std::filesystem::copy_file(folder / "damaged", kept,
+                               std::filesystem::copy_options::overwrite_existing);
+    std::printf("%s: %s\n", text_of(status), kept.c_str());
+  }
+  std::printf("%lld files, %lld rejected, %lld read\n", static_cast<long long>(counts.files),
+              static_cast<long long>(counts.rejected), static_cast<long long>(counts.read));
+  if (hdf5_crashes > 0) std::printf("%d crashes inside HDF5, not counted\n", hdf5_crashes);
+  return failures == 0;
+}
+
+}  // namespace
+
+// Sanitizers end the child so that it is counted; HDF5 copes with allocations that are refused.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizers' names
+extern "C" const char* __asan_default_options() {
+  return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1";
+}
+extern "C" const char* __ubsan_default_options() {
+  return "halt_on_error=1:abort_on_error=1";
+}
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: fuzz_io SECONDS SEED\n");
+    return 2;
+  }
+  try {
+    return fuzz(std::atoi(argv[1]), static_cast<std::uint64_t>(std::atoll(argv[2]))) ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}

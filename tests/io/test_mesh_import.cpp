@@ -1,0 +1,220 @@
+/// @file test_mesh_import.cpp
+/// Meshes of other programs. Where a build lacks the library it says so, and tests skip.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/mesh_import.hpp>
+
+#include "tests/scenes/io_files.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+constexpr const char* points = "0 0 0  1 0 0  0 1 0  0 0 1  1 1 1";
+
+/// The legacy format: two tetrahedra, a triangle between them, a displacement of (1, 2, 3) times
+/// the node's number.
+std::string legacy_file(const std::string& name = "displacement") {
+  return std::string("# vtk DataFile Version 3.0\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n") +
+         "POINTS 5 double\n" + points +
+         "\nCELLS 3 14\n4 0 1 2 3\n3 1 2 3\n4 1 2 3 4\nCELL_TYPES 3\n10\n5\n10\n"
+         "POINT_DATA 5\nSCALARS heat double 1\nLOOKUP_TABLE default\n9 9 9 9 9\nVECTORS " +
+         name + " double\n0 0 0  1 2 3  2 4 6  3 6 9  4 8 12\n";
+}
+
+/// The same in XML, in two steps of which the first has no displacement.
+std::string xml_file() {
+  const auto array = [](const std::string& attributes, const std::string& values) {
+    return "<DataArray " + attributes + " format=\"ascii\">" + values + "</DataArray>";
+  };
+  const std::string vectors = "type=\"Float32\" NumberOfComponents=\"3\" Name=";
+  return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\">"
+         "<UnstructuredGrid TimeValues=\"0.5 2\">"
+         "<Piece NumberOfPoints=\"5\" NumberOfCells=\"3\"><PointData>" +
+         array(vectors + "\"displacement\" TimeStep=\"0\"", "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0") +
+         array(vectors + "\"displacement\" TimeStep=\"1\"", "0 0 0 1 2 3 2 4 6 3 6 9 4 8 12") +
+         "</PointData><Points>" + array(vectors + "\"p\"", points) + "</Points><Cells>" +
+         array("type=\"Int64\" Name=\"connectivity\"", "0 1 2 3 1 2 3 1 2 3 4") +
+         array("type=\"Int64\" Name=\"offsets\"", "4 7 11") +
+         array("type=\"UInt8\" Name=\"types\"", "10 5 10") +
+         "</Cells></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+/// Node data of Gmsh at times 0.5 and 2; nodes bear the numbers 10, 20 to 50.
+std::string node_data() {
+  std::string text;
+  for (const int step : {0, 1}) {
+    text += "$NodeData\n1\n\"displacement\"\n1\n" + std::string(step == 0 ? "0.5" : "2") + "\n3\n" +
+            std::to_string(step) + "\n3\n5\n";
+    for (int n = 0; n < 5; ++n) {
+      const int by = step * n;
+      text += std::to_string(10 * (n + 1)) + " " + std::to_string(by) + " " +
+              std::to_string(2 * by) + " " + std::to_string(3 * by) + "\n";
+    }
+    text += "$EndNodeData\n";
+  }
+  return text;
+}
+
+std::string msh2_file(const std::string& last_element = "8 4 2 0 1 20 30 40 50") {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n"
+         "10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n50 1 1 1\n$EndNodes\n$Elements\n4\n"
+         "5 15 2 0 1 10\n6 2 2 0 1 20 30 40\n7 4 2 0 1 10 20 30 40\n" +
+         last_element + "\n$EndElements\n" + node_data();
+}
+
+std::string msh4_file() {
+  return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 1 1\n1 0 0 0 0\n1 0 0 0 1 1 1 0 "
+         "0\n1 0 0 0 1 1 1 0 0\n$EndEntities\n$Nodes\n1 5 10 50\n3 1 0 5\n10\n20\n30\n40\n50\n"
+         "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n$Elements\n3 4 5 8\n"
+         "0 1 15 1\n5 10\n2 1 2 1\n6 20 30 40\n3 1 4 2\n7 10 20 30 40\n8 20 30 40 50\n"
+         "$EndElements\n" +
+         node_data();
+}
+
+class MeshImport : public ::testing::Test {
+ protected:
+  /// Nothing where this build lacks the library.
+  std::optional<ImportedMesh> imported(const std::string& name,
+                                       const std::string& text,
+                                       const MeshImportOptions& options = {}) {
+    std::ofstream(folder_ / name) << text;
+    ImportedMesh mesh;
+    error = io_error([&] { mesh = import_mesh(folder_ / name, options); });
+    if (error.empty()) return mesh;
+    if (error.find("this build cannot read") == std::string::npos) ADD_FAILURE() << error;
+    return std::nullopt;
+  }
+
+  /// Empty where this build lacks the library.
+  std::string complaint(const std::string& name,
+                        const std::string& text,
+                        const MeshImportOptions& options = {}) {
+    std::ofstream(folder_ / name) << text;
+    error = io_error([&] { import_mesh(folder_ / name, options); });
+    return error.find("this build cannot read") == std::string::npos ? error : std::string();
+  }
+
+  std::string error;
+
+ private:
+  ScratchFolder folder_;
+};
+
+void expect_two_tets(const ImportedMesh& mesh) {
+  EXPECT_EQ(mesh.mesh.rest_positions, two_tets().rest_positions);
+  EXPECT_EQ(mesh.mesh.tets, two_tets().tets);
+  ASSERT_EQ(mesh.displacements.size(), mesh.times.size());
+  ASSERT_FALSE(mesh.displacements.empty());
+  for (std::size_t n = 0; n < 5; ++n) {
+    const auto by = static_cast<double>(n);
+    EXPECT_EQ(mesh.displacements.back()[n], (Point3{by, 2 * by, 3 * by}));
+  }
+}
+
+TEST_F(MeshImport, ReadsVtkFilesWithStepsAndCountsWhatItLeavesOut) {
+  const auto legacy = imported("a.vtk", legacy_file());
+  const auto renamed = imported("b.vtk", legacy_file("u"), {.displacement = "u"});
+  const auto still = imported("c.vtk", legacy_file("u"));
+  const auto steps = imported("d.vtu", xml_file());
+  if (!legacy) GTEST_SKIP() << error;
+
+  for (const auto& mesh : {legacy, renamed, steps}) {
+    ASSERT_TRUE(mesh);
+    expect_two_tets(*mesh);
+    EXPECT_EQ(mesh->skipped, (std::map<std::string, std::int64_t>{{"vtkTriangle", 1}}));
+  }
+  ASSERT_TRUE(still);
+  EXPECT_EQ(still->displacements.size(), 0U);
+  EXPECT_EQ(legacy->times, std::vector<double>{0});
+  EXPECT_EQ(steps->times, (std::vector<double>{0, 1}));
+  EXPECT_EQ(steps->displacements.front(), std::vector<Point3>(5, Point3{0, 0, 0}));
+}
+
+TEST_F(MeshImport, ReadsGmshFilesOfBothVersionsWithSteps) {
+  for (const std::string& text : {msh2_file(), msh4_file()}) {
+    const auto mesh = imported("a.msh", text);
+    if (!mesh) GTEST_SKIP() << error;
+
+    expect_two_tets(*mesh);
+    EXPECT_EQ(mesh->times, (std::vector<double>{0.5, 2}));
+    EXPECT_EQ(mesh->skipped.size(), 2U);
+    for (const auto& [kind, count] : mesh->skipped) EXPECT_EQ(count, 1) << kind;
+  }
+}
+
+/// A unit cube in Gmsh's numbers and in VTK's, which have one order.
+TEST_F(MeshImport, KeepsHexahedra) {
+  const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
+  std::string numbered;
+  for (std::size_t n = 0; n < 8; ++n) {
+    numbered += std::to_string(n + 1) + " " + corners.substr(6 * n, 6);
+  }
+  const auto gmsh =
+      imported("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n" + numbered +
+                            "$EndNodes\n$Elements\n1\n1 5 2 0 1 1 2 3 4 5 6 7 8\n"
+                            "$EndElements\n");
+  const auto vtk = imported("b.vtk",
+                            "# vtk DataFile Version 3.0\ncube\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                            "POINTS 8 float\n" +
+                                corners + "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n");
+  if (!gmsh && !vtk) GTEST_SKIP() << error;
+
+  for (const auto& mesh : {gmsh, vtk}) {
+    if (!mesh) continue;
+    EXPECT_EQ(mesh->mesh.hexes,
+              (std::vector<std::array<std::int32_t, 8>>{{0, 1, 2, 3, 4, 5, 6, 7}}));
+    EXPECT_EQ(mesh->mesh.rest_positions[6], (Point3{1, 1, 1}));
+  }
+}
+
+TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
+  std::string wedge = legacy_file();
+  wedge.replace(wedge.find("4 1 2 3 4\n"), 10, "6 0 1 2 3 0 1\n");
+  wedge.replace(wedge.find("3 14"), 4, "3 16");
+  wedge.replace(wedge.find("5\n10\n"), 5, "5\n13\n");
+  std::string surface = legacy_file();
+  surface.replace(surface.find("CELLS"), surface.find("POINT_DATA") - surface.find("CELLS"),
+                  "CELLS 1 4\n3 1 2 3\nCELL_TYPES 1\n5\n");
+  std::string short_cell = legacy_file();
+  short_cell.replace(short_cell.find("4 0 1 2 3\n"), 10, "3 0 1 2\n");
+  short_cell.replace(short_cell.find("3 14"), 4, "3 13");
+  std::string stray_node = legacy_file();
+  stray_node.replace(stray_node.find("4 1 2 3 4\n"), 10, "4 1 2 3 5\n");
+  const struct {
+    const char* name;
+    std::string text;
+    MeshImportOptions options;
+    const char* told;
+  } cases[] = {
+      {"a.vtk", wedge, {}, "cell 2 is a vtkWedge"},
+      {"b.vtk", surface, {}, "holds no tetrahedron"},
+      {"s.vtk", short_cell, {}, "cell 0 has not the nodes of a vtkTetra, from 0 to 4"},
+      {"t.vtk", stray_node, {}, "cell 2 has not the nodes of a vtkTetra, from 0 to 4"},
+      {"c.vtk", legacy_file(), {.displacement = "u"}, "the file has heat, displacement"},
+      {"d.vtk", legacy_file(), {.displacement = "heat"}, "three components"},
+      {"e.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", {}, "no unstructured"},
+      {"f.vtu", xml_file().substr(0, 700), {}, "no unstructured grid"},
+      {"g.msh", "SystemCall \"true\";\n", {}, "does not begin with $MeshFormat"},
+      {"h.msh", msh2_file("8 7 2 0 1 10 20 30 40 50"), {}, "cell 8 is a Pyramid"},
+      {"i.msh", msh2_file(), {.displacement = "u"}, "the file has displacement"},
+  };
+  for (const auto& bad : cases) {
+    const std::string told = complaint(bad.name, bad.text, bad.options);
+    if (told.empty()) {
+      EXPECT_NE(error.find("install lib"), std::string::npos) << error;
+      continue;
+    }
+    EXPECT_NE(told.find(bad.told), std::string::npos) << bad.name << ": " << told;
+    EXPECT_EQ(told.find('\n'), std::string::npos) << told;
+  }
+  EXPECT_NE(complaint("j.stl", "").find(".msh, .vtu or .vtk"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

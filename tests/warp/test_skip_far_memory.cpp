@@ -1,0 +1,158 @@
+/// @file test_skip_far_memory.cpp
+/// Series on an executor whose memory is not the caller's, as a device's is not: only the slices
+/// and rows that a step touches come home, and buffers are trusted until they prove too small.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/exec/exec_cpu.hpp"
+#include "host/warp/cpu/cell_raster_cpu.hpp"
+#include "host/warp/step_queue.hpp"
+#include "host/warp/warp_pipeline.hpp"
+#include "tests/scenes/skip_series.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// Host threads on memory of their own.
+class FarExec : public CpuExec {
+ public:
+  static constexpr bool reads_are_free = false;
+  using CpuExec::CpuExec;
+
+  template <class T>
+  View<const T> resident(const char*, const T* host, std::int64_t size, Buffer<T>& buffer) {
+    buffer.reserve(size);
+    std::copy_n(host, size, buffer.view(size).data);
+    return buffer.const_view(size);
+  }
+  template <class T>
+  T* writable(T*, std::int64_t size, Buffer<T>& buffer) {
+    buffer.reserve(size);
+    return buffer.view(size).data;
+  }
+  template <class T>
+  void deliver(const char*, View<const T> from, T* to) {
+    std::copy_n(from.data, from.size, to);
+    *delivered_ += from.size * static_cast<std::int64_t>(sizeof(T));
+  }
+
+  /// As to memory that is not page-locked: parts of an output are sent when they are known.
+  bool delivers_beside(const void*) const { return false; }
+
+  /// Adds the bytes that come home to `bytes` from now on.
+  void count_in(std::int64_t& bytes) { delivered_ = &bytes; }
+
+ private:
+  std::int64_t* delivered_ = nullptr;
+};
+
+StepReport step(StepQueue& far, const std::vector<Point3>& positions, const WarpTarget& target) {
+  far.begin(positions, target, {});
+  return far.finish();
+}
+
+scenes::Scene scene_named(const std::string& name) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(40)) {
+    if (scene.name == name) return scene;
+  }
+  throw std::invalid_argument("no scene " + name);
+}
+
+class FarMemory : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Scenes,
+                         FarMemory,
+                         ::testing::Values("waved", "outside", "aligned", "other_grid"),
+                         [](const auto& info) { return std::string(info.param); });
+
+TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
+  const scenes::Scene scene = scene_named(GetParam());
+  const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16, 2),
+                                       scenes::wavy_volume(scene.source_grid, PixelType::float64)};
+  for (const Region& region :
+       {Region{{0, 0, 0}, scene.output_grid.dims}, Region{{3, 5, 1}, {33, 30, 34}}}) {
+    WarpPlan plan;
+    plan.sources = {sources.begin(), sources.end()};
+    plan.mesh = scene.mesh;
+    plan.output_grid = scene.output_grid;
+    plan.region = region;
+    FarExec exec(1);
+    std::int64_t bytes = 0;
+    exec.count_in(bytes);
+    StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+    WarpOptions options;
+    options.backend = Backend::cpu;
+    options.region = region;
+    options.skip.unchanged_tets = false;
+    Series anew(sources, scene, options), out(sources, scene, options);
+    anew.fields = out.fields = FieldBuffers();  // none
+    std::vector<void*> pointers;
+    for (Volume& volume : out.volumes) pointers.push_back(volume.data.data());
+    const WarpTarget target = {.volumes = pointers,
+                               .mask = out.mask.data(),
+                               .owner = out.owner.data(),
+                               .holds_previous = true};
+    const std::int64_t all = static_cast<std::int64_t>(out.mask.size()) * (4 + 8 + 1 + 4);
+    bool saves = false;
+    for (const auto& positions : partial_motions(scene, 61)) {
+      bytes = 0;
+
+      const Counts counts = step(far, positions, target).counts;
+      anew.step(positions);
+
+      EXPECT_TRUE(out.has_bits_of(anew));
+      EXPECT_LE(bytes, all);
+      if (counts.cells_unchanged == 0) {
+        EXPECT_EQ(bytes, all);
+      }
+      if (counts.cells_unchanged == counts.cells) {
+        EXPECT_EQ(bytes, 0);
+      }
+      saves = saves || (bytes > 0 && bytes < all);
+    }
+    EXPECT_TRUE(saves);
+  }
+}
+
+/// A mesh that grows needs more pairs than the buffers of the first step have room for.
+TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
+  const scenes::Scene scene = scene_named("waved");
+  const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::float32)};
+  WarpPlan plan;
+  plan.sources = {sources.begin(), sources.end()};
+  plan.mesh = scene.mesh;
+  plan.output_grid = scene.output_grid;
+  plan.region = {{0, 0, 0}, scene.output_grid.dims};
+  FarExec exec(1);
+  std::int64_t bytes = 0;
+  exec.count_in(bytes);
+  StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+  WarpOptions options;
+  options.backend = Backend::cpu;
+  Series anew(sources, scene, options), out(sources, scene, options);
+  anew.fields = out.fields = FieldBuffers();  // none
+  void* const volume = out.volumes[0].data.data();
+  const WarpTarget target = {.volumes = std::span(&volume, 1),
+                             .mask = out.mask.data(),
+                             .owner = out.owner.data(),
+                             .holds_previous = true};
+  for (const double scale : {0.02, 1.0, 0.3, 1.0}) {
+    auto positions = scene.deformed;
+    for (Point3& p : positions) {
+      for (double& x : p) x = 20 + scale * (x - 20);
+    }
+
+    step(far, positions, target);
+    anew.step(positions);
+
+    EXPECT_TRUE(out.has_bits_of(anew)) << scale;
+  }
+}
+
+}  // namespace
+}  // namespace tetwarp::test

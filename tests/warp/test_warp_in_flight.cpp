@@ -1,0 +1,101 @@
+/// @file test_warp_in_flight.cpp
+/// Steps begun before the last is finished: results, errors and refusals are those of steps taken
+/// one by one.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "tests/scenes/each_backend.hpp"
+#include "tests/scenes/skip_series.hpp"
+#include "tests/scenes/steps_in_flight.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+class InFlight : public EachBackend {
+ protected:
+  const scenes::Scene scene = scenes::adversarial_scenes(16).front();
+  const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16),
+                                       scenes::wavy_volume(scene.source_grid, PixelType::float32)};
+  const WarpOptions options = {.backend = GetParam()};
+
+  /// As shaken as `step` says.
+  std::vector<Point3> shaken(std::uint64_t step) const {
+    return scenes::waved(scene.deformed, 0.3 * scene.output_grid.spacing[0], step);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Backends, InFlight, each_backend, name_of_backend);
+
+TEST_P(InFlight, StepsHaveTheBitsOfStepsOneByOne) {
+  const Steps steps = partial_motions(scene, 71);
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+
+  for (const Pages pages : {Pages::pageable, Pages::locked}) {
+    for (const bool holds_previous : {true, false}) {
+      EXPECT_TRUE(steps_in_flight(sources, scene, options, steps, pages, holds_previous) ==
+                  expected);
+    }
+  }
+}
+
+/// The second of four steps has a node too far away, which only computing finds.
+TEST_P(InFlight, AnErrorIsToldOnceByTheStepThatHasIt) {
+  Steps steps = {shaken(1), shaken(2), shaken(3), shaken(4)};
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+  steps[1].front()[0] = 1e300;
+  const StepBuffers buffers[] = {{sources, scene.output_grid, Pages::locked},
+                                 {sources, scene.output_grid, Pages::locked}};
+  Warper warper = make_warper(sources, scene, options);
+
+  warper.begin_step(steps[0], buffers[0].target(true));
+  EXPECT_NO_THROW(warper.begin_step(steps[1], buffers[1].target(true)));
+  warper.finish_step();
+  EXPECT_TRUE(buffers[0].bits() == expected[0]);
+  EXPECT_NO_THROW(warper.begin_step(steps[2], buffers[0].target(true)));
+  EXPECT_THROW(warper.finish_step(), std::invalid_argument);
+  EXPECT_NO_THROW(warper.begin_step(steps[3], buffers[1].target(true)));
+  warper.finish_step();
+  EXPECT_TRUE(buffers[0].bits() == expected[2]);
+  warper.finish_step();
+  EXPECT_TRUE(buffers[1].bits() == expected[3]);
+  EXPECT_EQ(warper.report().steps.size(), 3u);
+}
+
+TEST_P(InFlight, WhatCannotBeIsRefusedAndChangesNothing) {
+  const StepBuffers a(sources, scene.output_grid, Pages::locked);
+  const StepBuffers b(sources, scene.output_grid, Pages::locked);
+  const StepBuffers c(sources, scene.output_grid, Pages::locked);
+  Warper warper = make_warper(sources, scene, options);
+
+  EXPECT_THROW(warper.finish_step(), std::logic_error);
+  warper.begin_step(shaken(1), a.target(false));
+  EXPECT_THROW(warper.begin_step(shaken(2), a.target(false)), std::invalid_argument);
+  EXPECT_THROW(warper.step(shaken(2), b.target(false)), std::logic_error);
+  warper.begin_step(shaken(2), b.target(false));
+  EXPECT_THROW(warper.begin_step(shaken(3), c.target(false)), std::logic_error);
+  EXPECT_EQ(warper.steps_in_flight(), Warper::max_steps_in_flight);
+  warper.finish_step();
+  warper.finish_step();
+
+  const Steps steps = {shaken(1), shaken(2)};
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+  EXPECT_TRUE(a.bits() == expected[0]);
+  EXPECT_TRUE(b.bits() == expected[1]);
+}
+
+TEST_P(InFlight, AWarperMayEndWithStepsInFlight) {
+  const StepBuffers a(sources, scene.output_grid, Pages::locked);
+  const StepBuffers b(sources, scene.output_grid, Pages::locked);
+  const Steps steps = {shaken(1), shaken(2)};
+  const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
+  {
+    Warper warper = make_warper(sources, scene, options);
+    warper.begin_step(steps[0], a.target(false));
+    warper.begin_step(steps[1], b.target(false));
+  }
+  EXPECT_TRUE(a.bits() == expected[0]);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,175 @@
+/// @file test_warp_intensity.cpp
+/// Densities, and totals that stay.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/scenes/affine_scenes.hpp"
+#include "tests/scenes/skip_series.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+using Matrix = Eigen::Matrix3d;
+
+/// A step with its whole report.
+struct Step {
+  Volume volume;
+  StepReport report;
+};
+
+Step run(const Volume& source,
+         const scenes::Scene& scene,
+         Backend backend,
+         Intensity intensity,
+         WarpOptions options = {}) {
+  options.backend = backend;
+  options.intensity = intensity;
+  options.output_grid = scene.output_grid;
+  Warper warper(source, scene.mesh, options);
+  Step step = {warper.step(scene.deformed), {}};
+  step.report = warper.report().steps.front();
+  return step;
+}
+
+/// Turned, shrunk, stretched and waved meshes, one of them folded over itself, in outputs that hold
+/// all of them: with voxels of another shape, and mirrored.
+std::vector<scenes::Scene> whole_scenes() {
+  const Grid source = scenes::oblique_grid(9, 8, 7);
+  Grid output = scenes::unit_grid(26, 22, 24);
+  output.spacing = {0.9, 1.1, 1.3};
+  output.direction = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  const Point3 centre = centre_of(source);
+  output.origin = {centre[0] + 12, centre[1] - 11, centre[2] - 14};
+  std::vector<scenes::Scene> scenes;
+  for (const Matrix& linear :
+       {Matrix(turn(0.4, {1, 2, -1}) * 0.35), Matrix(turn(1.1, {1, 0, 1}) * 1.2),
+        Matrix(Eigen::Vector3d(1.2, -0.7, 0.9).asDiagonal())}) {
+    scenes.push_back(affine_scene(source, output, linear));
+    scenes.back().deformed = scenes::waved(scenes.back().deformed, 1.0, 91);
+  }
+  for (Point3& p : scenes[1].deformed) p[0] = centre[0] + std::abs(p[0] - centre[0]);
+  return scenes;
+}
+
+/// Totals of float64 sums: every piece costs some roundings of its own size, and they do not add
+/// up. The reference finds the same pieces by other means.
+TEST(WarpIntensity, KeepsTheTotalAndIsTheReference) {
+  for (const scenes::Scene& scene : whole_scenes()) {
+    const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64, 2);
+    const Step expected = run(source, scene, Backend::reference, Intensity::conservative);
+    for (const Backend backend : usable_backends()) {
+      SCOPED_TRACE(name_of(backend));
+      const bool is_judge = backend == Backend::reference;
+      const Step step = is_judge ? expected : run(source, scene, backend, Intensity::conservative);
+      EXPECT_LE(largest_difference(step.volume, expected.volume), 1e-12);
+      ASSERT_EQ(step.report.totals.count, 2u);
+      for (std::size_t c = 0; c < 2; ++c) {
+        const double before = step.report.totals.before[c];
+        EXPECT_NEAR(before / expected.report.totals.before[c], 1, 1e-13);
+        EXPECT_GT(before, 100);
+        EXPECT_LE(std::abs(step.report.totals.after[c] / before - 1), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(WarpIntensity, RoundsWhatIsKeptOnce) {
+  const scenes::Scene scene = whole_scenes()[1];
+  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
+  Volume wide = make_volume(source.grid, PixelType::float64);
+  std::ranges::copy(numbers_of(source), wide.samples<double>().begin());
+  for (const Backend backend : usable_backends()) {
+    SCOPED_TRACE(name_of(backend));
+    auto exact = numbers_of(run(wide, scene, backend, Intensity::conservative).volume);
+    for (double& sample : exact) sample = std::nearbyint(sample);
+    EXPECT_EQ(numbers_of(run(source, scene, backend, Intensity::conservative).volume), exact);
+  }
+}
+
+/// All of a volume that does not move, or moves by whole voxels, is the volume; a part of the
+/// output is that part.
+TEST(WarpIntensity, LeavesAndMovesWholeVoxels) {
+  const Grid grid = scenes::oblique_grid(12, 11, 10);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  const Mesh mesh = covering_mesh(grid);
+  const scenes::Scene still = {"still", mesh, mesh.rest_positions, grid, grid};
+  const scenes::Scene shifted = {"shift", mesh, moved(grid, mesh.rest_positions, {2, -1, 3}), grid,
+                                 grid};
+  const WarpOptions part{.region = Region{{3, 2, 4}, {9, 10, 7}}};
+  for (const Backend backend : usable_backends()) {
+    SCOPED_TRACE(name_of(backend));
+    const auto conserved = [&](const scenes::Scene& scene, const WarpOptions& options) {
+      return run(source, scene, backend, Intensity::conservative, options).volume.data;
+    };
+    EXPECT_EQ(conserved(still, {}), source.data);
+    for (const WarpOptions& options : {WarpOptions{}, part}) {
+      EXPECT_EQ(conserved(shifted, options),
+                run(source, shifted, backend, Intensity::value, options).volume.data);
+    }
+  }
+}
+
+/// Twice as long, three times as wide, turned over: a sixth per volume, by both laws; the output's
+/// voxels have another size.
+TEST(WarpIntensity, DividesByTheVolumeRatio) {
+  const Grid grid = scenes::unit_grid(12, 12, 12);
+  Grid output = scenes::unit_grid(9, 14, 12);
+  output.spacing = {0.5, 1.25, 2};
+  output.origin = {3, 3, 3};
+  Volume source = make_volume(grid, PixelType::float64);
+  std::ranges::fill(source.samples<double>(), 12.0);
+  const scenes::Scene scene = affine_scene(grid, output, Eigen::Vector3d(2, -3, 1).asDiagonal());
+  for (const Backend backend : usable_backends()) {
+    for (const Intensity intensity : {Intensity::density, Intensity::conservative}) {
+      SCOPED_TRACE(name_of(backend));
+      const Step step = run(source, scene, backend, intensity);
+      EXPECT_EQ(step.report.counts.inverted, step.report.counts.tetrahedra);
+      const auto is_sixth = [](double sample) { return std::abs(sample - 2) < 1e-5; };
+      EXPECT_GT(std::ranges::count_if(step.volume.samples<double>(), is_sixth), 300);
+      EXPECT_NEAR(step.report.totals.before[0], 12.0 * 12 * 12 * 12, 1e-7);
+    }
+  }
+}
+
+/// A smooth density on fine voxels: sampling keeps its total to first order.
+TEST(WarpIntensity, DensitiesKeepTheTotalAsFarAsSamplingGoes) {
+  const Grid grid = scenes::unit_grid(24, 24, 24);
+  scenes::Scene scene = affine_scene(grid, grid, 0.7 * Matrix::Identity());
+  scene.deformed = scenes::waved(scene.deformed, 1.5, 13);
+  const Volume source = scenes::wavy_volume(grid, PixelType::float32);
+  for (const Backend backend : usable_backends()) {
+    SCOPED_TRACE(name_of(backend));
+    const StepReport report = run(source, scene, backend, Intensity::density).report;
+    EXPECT_NEAR(report.totals.after[0] / report.totals.before[0], 1, 0.02);
+    EXPECT_EQ(run(source, scene, backend, Intensity::value).report.totals.count, 0u);
+  }
+}
+
+TEST(WarpIntensity, HasTheSameBitsWhateverIsLeftOut) {
+  const Grid grid = scenes::unit_grid(18, 17, 16);
+  const scenes::Scene scene = affine_scene(grid, grid, turn(0.2, {0, 1, 1}) * 0.8);
+  const std::vector<Volume> sources = {scenes::wavy_volume(grid, PixelType::int16),
+                                       scenes::wavy_volume(grid, PixelType::float32, 2)};
+  for (const Backend backend : usable_backends()) {
+    if (backend == Backend::reference) continue;  // leaves nothing out
+    SCOPED_TRACE(name_of(backend));
+    WarpOptions options{.intensity = Intensity::conservative, .backend = backend, .threads = 3};
+    Series updated(sources, scene, options);
+    options.skip = {false, false, false, false, false, false, false};
+    options.threads = 1;
+    Series anew(sources, scene, options);
+    std::int64_t unchanged = 0;
+    for (const auto& positions : partial_motions(scene, 29)) {
+      unchanged += updated.step(positions).cells_unchanged;
+      anew.step(positions);
+      ASSERT_TRUE(updated.has_bits_of(anew));
+    }
+    EXPECT_GT(unchanged, 0);
+  }
+}
+
+}  // namespace
+}  // namespace tetwarp::test
