@@ -39,7 +39,7 @@ find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(TETWARP_PYTHON python3)
 if(TETWARP_PYTHON)
   add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
-    ${PROJECT_SOURCE_DIR}/tests/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
+    ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
   set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_compare COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/bench/compare.py --self-test)
