@@ -235,6 +235,15 @@ if(TETWARP_IO)
   include(cmake/FileTests.cmake)
 endif()
 
+# ---- includes between folders point one way ----------------------------------------------------
+find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(TETWARP_PYTHON python3)
+if(TETWARP_PYTHON)
+  add_test(NAME lint_folders COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/lint/folders.py --test)
+  set_tests_properties(lint_folders PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+endif()
+
 # ---- a stranger's project finds and links what was installed ----------------------------------
 if(NOT TETWARP_BUNDLE)
   add_test(NAME install COMMAND ${CMAKE_COMMAND}

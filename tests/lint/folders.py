@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Checks that includes between folders point one way, from users down to what they use.
+
+    folders.py           fails with one line per include that breaks the rules
+    folders.py --dot     prints the include graph of the folders for Graphviz
+    folders.py --test    checks this script on small made-up trees
+"""
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+# Folder -> folders that its files may include from, besides itself. A folder that is not listed may
+# include nothing of the project, so a new folder needs a line here.
+BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
+CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
+ALLOWED = {
+    "kernels/base": ["kernels/base/tetwarp"],
+    "kernels/base/tetwarp": [],
+    "kernels/emu": ["kernels/base"],
+    "kernels/exec": ["kernels/base", "kernels/base/tetwarp", "kernels/emu"],
+    "kernels/warp": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/contact": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "host/tetwarp": ["kernels/base/tetwarp"],
+    "host/base": BASE,
+    "host/exec": ["host/base", *BASE],
+    "host/make": ["host/base", *BASE],
+    "host/warp": ["host/base", "kernels/warp", *BASE],
+    "host/warp/cpu": ["host/warp", "host/base", "host/exec", "kernels/warp", *BASE],
+    "host/warp/cuda": ["host/warp", "host/base", "kernels/exec", "kernels/warp", *BASE],
+    "host/reference/warp": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
+    "host/reference/contact": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
+    "host/contact/problem": CONTACT,
+    "host/contact/structure": ["host/contact/problem", *CONTACT],
+    "host/contact/newton": ["host/contact/problem", *CONTACT],
+    "host/contact/sweeps": ["host/contact/structure", *CONTACT],
+    "host/contact/block_jacobi": [
+        "host/contact/problem", "host/contact/structure", "host/contact/sweeps", *CONTACT],
+    "host/contact/cuda": [
+        "host/contact/block_jacobi", "host/contact/structure", "host/contact/sweeps",
+        "kernels/exec", *CONTACT],
+    "host/contact/tracker": CONTACT,
+    "host/contact": [
+        "host/contact/problem", "host/contact/structure", "host/contact/newton",
+        "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
+        "host/reference/contact", *CONTACT],
+    "io": ["io/tetwarp", "host/base", *BASE],
+    "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],
+    "host/cli": ["io", "io/tetwarp", "host/base", *BASE],
+}
+INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>
+INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
+
+
+def includes(root):
+    """Yields (file, included file) for all includes of project files by project files."""
+    files = {}
+    for top in ("kernels", "host", "io"):
+        for path in sorted((root / top).rglob("*")):
+            if path.suffix in (".hpp", ".cpp", ".cu", ".cuh"):
+                files[path.relative_to(root).as_posix()] = path
+    for name, path in files.items():
+        for line in path.read_text(encoding="utf-8").splitlines():
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            for candidate in [match[1], *(f"{r}/{match[1]}" for r in INCLUDE_ROOTS)]:
+                if candidate in files:
+                    yield name, candidate
+                    break
+
+
+def folder_of(name):
+    return name.rsplit("/", 1)[0]
+
+
+def violations(root, allowed=ALLOWED):
+    for name, included in includes(root):
+        here, there = folder_of(name), folder_of(included)
+        if here != there and there not in allowed.get(here, []):
+            yield f"{name} includes {included}: {here} must not depend on {there}"
+
+
+def cycle_in(edges):
+    """One cycle of a graph {folder: folders}, as a list, or None."""
+    done, path = set(), []
+
+    def visit(folder):
+        if folder in path:
+            return path[path.index(folder):] + [folder]
+        if folder in done:
+            return None
+        path.append(folder)
+        for other in sorted(edges.get(folder, ())):
+            found = visit(other)
+            if found:
+                return found
+        path.pop()
+        done.add(folder)
+        return None
+
+    return next((c for c in map(visit, sorted(edges)) if c), None)
+
+
+def graph(root):
+    edges = defaultdict(set)
+    for name, included in includes(root):
+        if folder_of(name) != folder_of(included):
+            edges[folder_of(name)].add(folder_of(included))
+    return edges
+
+
+def print_dot(edges):
+    print("digraph folders {\n  rankdir=BT; node [shape=box, fontname=Helvetica];")
+    for folder in sorted(edges):
+        for other in sorted(edges[folder]):
+            print(f'  "{folder}" -> "{other}";')
+    print("}")
+
+
+def test():
+    """The rules have no cycle, and files that break them are found."""
+    import tempfile
+
+    assert cycle_in(ALLOWED) is None, cycle_in(ALLOWED)
+    assert cycle_in({"a": ["b"], "b": ["c"], "c": ["b"]}) == ["b", "c", "b"]
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, text in {
+            "kernels/base/view.hpp": "#include <vector>\n",
+            "kernels/warp/tet.hpp": '#include "kernels/base/view.hpp"\n',
+            "host/tetwarp/warp.hpp": "",
+            "host/warp/run.cpp": '#include <tetwarp/warp.hpp>\n#include "kernels/warp/tet.hpp"\n',
+        }.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text)
+        assert not list(violations(root))
+        (root / "kernels/base/bad.hpp").write_text("# include <tetwarp/warp.hpp>\n")
+        assert list(violations(root)) == [
+            "kernels/base/bad.hpp includes host/tetwarp/warp.hpp: "
+            "kernels/base must not depend on host/tetwarp"]
+
+
+def main():
+    root = Path(__file__).resolve().parents[2]
+    if "--test" in sys.argv:
+        test()
+    if "--dot" in sys.argv:
+        return print_dot(graph(root))
+    found = list(violations(root))
+    if not found and cycle_in(graph(root)):
+        found = [f"cycle of folders: {' -> '.join(cycle_in(graph(root)))}"]
+    print("\n".join(found) or "includes between folders point one way")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
