@@ -4,6 +4,7 @@ set(tetwarp_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tetwarp)
 
 install(TARGETS ${tetwarp_exported} EXPORT tetwarpTargets)
 install(DIRECTORY host/tetwarp kernels/base/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/include/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TETWARP_IO)
   install(DIRECTORY io/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()

@@ -228,7 +228,7 @@ foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
 endforeach()
 add_library(tetwarp_header_tests OBJECT ${tetwarp_header_sources})
 target_compile_features(tetwarp_header_tests PRIVATE cxx_std_20)
-target_include_directories(tetwarp_header_tests PRIVATE host kernels/base io)
+target_include_directories(tetwarp_header_tests PRIVATE host kernels/base io ${PROJECT_BINARY_DIR}/include)
 target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
 
 if(TETWARP_IO)

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <tetwarp/export.hpp>
 #include <tetwarp/names.hpp>
 
 namespace tetwarp {
@@ -21,10 +22,10 @@ struct BackendStatus {
 };
 
 /// Status of cuda (on device number `device`), cpu and reference, in that order. Never throws.
-std::vector<BackendStatus> available_backends(int device = 0);
+TETWARP_EXPORT std::vector<BackendStatus> available_backends(int device = 0);
 
 /// The back end that a warp runs on that asks for this one, and why, in one sentence.
 /// @throws CudaError when cuda is asked for and does not answer
-std::pair<Backend, std::string> choose_backend(Backend asked, int device = 0);
+TETWARP_EXPORT std::pair<Backend, std::string> choose_backend(Backend asked, int device = 0);
 
 }  // namespace tetwarp

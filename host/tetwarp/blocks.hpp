@@ -12,6 +12,7 @@
 #include <memory>
 #include <vector>
 
+#include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
 #include <tetwarp/warp.hpp>
@@ -52,7 +53,7 @@ struct BlockPlan {
 };
 
 /// Cuts the steps of a series into blocks.
-class BlockPlanner {
+class TETWARP_EXPORT BlockPlanner {
  public:
   /// @param source   grid of the sources
   /// @param mesh     kept by the caller, unchanged
@@ -75,7 +76,7 @@ class BlockPlanner {
 };
 
 /// The part of a mesh that a block needs.
-struct BlockMesh {
+struct TETWARP_EXPORT BlockMesh {
   Mesh mesh;
   std::vector<std::int32_t> nodes;  ///< of the whole mesh, one per node of the part
 
@@ -85,6 +86,6 @@ struct BlockMesh {
 
 /// Cuts out a block's cells, or the first of all where it has none: a mesh has one at least. Nodes
 /// keep their order, so that hexahedra are split alike.
-BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
+TETWARP_EXPORT BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
 
 }  // namespace tetwarp

@@ -20,6 +20,7 @@
 #include <tetwarp/backend.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact_problem.hpp>
+#include <tetwarp/export.hpp>
 
 namespace tetwarp {
 
@@ -132,7 +133,7 @@ struct ContactReport {
 };
 
 /// The report as a JSON object.
-std::string to_json(const ContactReport& report);
+TETWARP_EXPORT std::string to_json(const ContactReport& report);
 
 /// Results of a solve.
 struct ContactSolution {
@@ -166,7 +167,7 @@ struct AdhesionStep {
 /// Solves problem after problem, keeping buffers, and as long as the structure stays the same the
 /// colors and islands too. Same inputs in the same order, same bits, whatever the number of
 /// threads. Not safe for concurrent calls.
-class ContactSolver {
+class TETWARP_EXPORT ContactSolver {
  public:
   /// @throws std::invalid_argument  on options out of range, naming them
   /// @throws CudaError              when cuda was asked for and no device answers
@@ -189,19 +190,20 @@ class ContactSolver {
 };
 
 /// One problem. For several keep a ContactSolver.
-ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options = {});
+TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
+                                              const ContactOptions& options = {});
 
 /// Residuals of a given pair, in float64, with the true A. Empty `body_velocity`: computed from the
 /// impulses (local form: u = W r + q).
-ContactResidual residual_of(const ContactProblem& problem,
-                            std::span<const double> impulse,
-                            std::span<const double> body_velocity,
-                            const ContactOptions& options = {});
+TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
+                                           std::span<const double> impulse,
+                                           std::span<const double> body_velocity,
+                                           const ContactOptions& options = {});
 
 /// One step of adhesion intensity and anchor gaps after a solve (beta is frozen within it), on the
 /// host.
-AdhesionStep evolve_adhesion(const ContactProblem& problem,
-                             const ContactSolution& solution,
-                             const EvolutionOptions& options = {});
+TETWARP_EXPORT AdhesionStep evolve_adhesion(const ContactProblem& problem,
+                                            const ContactSolution& solution,
+                                            const EvolutionOptions& options = {});
 
 }  // namespace tetwarp

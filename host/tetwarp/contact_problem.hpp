@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/export.hpp>
+
 namespace tetwarp {
 
 /// Sparse matrix by rows (CSR). Columns of a row need not be sorted; repeated entries add up.
@@ -68,7 +70,7 @@ struct ContactProblem {
 
 /// A problem that cannot be solved as it stands. `what()` is one line: field, index, what is wrong,
 /// what would mend it. `field()` is the member's name as above ("friction", "adhesion.area", ...).
-class ContactProblemError : public std::invalid_argument {
+class TETWARP_EXPORT ContactProblemError : public std::invalid_argument {
  public:
   ContactProblemError(std::string field, const std::string& problem)
       : std::invalid_argument(field + problem), field_(std::move(field)) {}
@@ -85,6 +87,6 @@ class ContactProblemError : public std::invalid_argument {
 /// 1e-9 relative, diagonal blocks of A that are not positive definite, rows of W without a positive
 /// normal diagonal, NaN or infinity anywhere.
 /// @throws ContactProblemError
-void check_problem(const ContactProblem& problem);
+TETWARP_EXPORT void check_problem(const ContactProblem& problem);
 
 }  // namespace tetwarp

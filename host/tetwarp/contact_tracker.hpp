@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tetwarp/contact.hpp>
+#include <tetwarp/export.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
@@ -98,7 +99,7 @@ struct ContactTrackerOptions {
 /// unstretched; it is forgotten when it is no longer reported.
 ///
 /// The order of contacts is that of their keys, whatever the order of the reports.
-class ContactTracker {
+class TETWARP_EXPORT ContactTracker {
  public:
   /// @param records  of an earlier tracker, to go on from; sorted by key
   /// @throws std::invalid_argument  on materials or records out of range, naming them

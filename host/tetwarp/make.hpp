@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
 
@@ -25,7 +26,7 @@ struct LatticeOptions {
 /// centres), five tetrahedra per cell, mirrored on odd cells so that faces match, all with positive
 /// volume; tetrahedra whose cell holds no foreground voxel are dropped, and unused nodes with them.
 /// The lattice follows the grid's axes. Throws std::invalid_argument when there is no foreground.
-Mesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options = {});
+TETWARP_EXPORT Mesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options = {});
 
 /// Kinds of procedural deformation.
 enum class Deformation { twist, bend, swim, random, rotate, translate };
@@ -42,13 +43,15 @@ struct DeformOptions {
 
 /// Node positions at phase `time` in [0, 1] of a smooth deformation about the box of the rest
 /// positions; time 0 is rest, time 1 the full amount. Deterministic.
-std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& options, double time);
+TETWARP_EXPORT std::vector<Point3> deform_positions(const Mesh& mesh,
+                                                    const DeformOptions& options,
+                                                    double time);
 
 /// A torso with ribs, spine, lungs, heart and vessels: analytic, deterministic, float32 in [0, 1].
 /// x points to the left of the body, y to its back, z to its head; the box is 384 x 240 x 366 mm
 /// about the origin for every dims.
 /// @param dims  voxels
-Volume make_phantom(const std::array<std::int64_t, 3>& dims = {256, 160, 122});
+TETWARP_EXPORT Volume make_phantom(const std::array<std::int64_t, 3>& dims = {256, 160, 122});
 
 /// An 8-bit RGB picture, rows from top to bottom.
 struct Image {
@@ -67,6 +70,7 @@ struct RenderOptions {
 /// Three orthogonal middle slices and a maximum-intensity projection side by side, one row per
 /// volume, in true proportions (spacing respected), all with the first volume's window.
 /// Throws std::invalid_argument when there is no volume.
-Image render(std::span<const Volume* const> volumes, const RenderOptions& options = {});
+TETWARP_EXPORT Image render(std::span<const Volume* const> volumes,
+                            const RenderOptions& options = {});
 
 }  // namespace tetwarp

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/export.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
@@ -26,7 +27,7 @@ struct Mesh {
 
 /// Throws std::invalid_argument naming the first offender unless there is a cell, every
 /// index is in range and every position finite.
-void check_mesh(const Mesh& mesh);
+TETWARP_EXPORT void check_mesh(const Mesh& mesh);
 
 /// Node positions owned by somebody else, possibly on the GPU: x y z per node, float64, world.
 struct PositionsView {

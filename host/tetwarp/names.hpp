@@ -5,6 +5,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include <tetwarp/export.hpp>
+
 namespace tetwarp {
 
 /// One enumerator and its word.
@@ -19,7 +21,7 @@ struct EnumName {
 /// ContactMethod, ContactCoupling, ContactMeasure, ContactPrecision, ContactStatus and
 /// AdhesionIntegrator; a use for another enum does not link.
 template <class Enum>
-std::span<const EnumName<Enum>> names_of();
+TETWARP_EXPORT std::span<const EnumName<Enum>> names_of();
 
 /// The word of an enumerator, e.g. "int16", "auto" or "not converged".
 template <class Enum>
@@ -34,6 +36,6 @@ const char* name_of(Enum value) {
 /// The enumerator of a word: parse<Filter>("linear").
 /// @throws std::invalid_argument that lists the words
 template <class Enum>
-Enum parse(std::string_view word);
+TETWARP_EXPORT Enum parse(std::string_view word);
 
 }  // namespace tetwarp

@@ -3,12 +3,14 @@
 #pragma once
 #include <cstddef>
 
+#include <tetwarp/export.hpp>
+
 namespace tetwarp {
 
 /// Locks host memory in place for as long as it lives: a CUDA device then copies to and from it at
 /// the speed of the bus, and beside kernels and other work of the host. Locking itself takes time:
 /// lock what many steps use, e.g. the buffers of WarpTarget.
-class PageLock {
+class TETWARP_EXPORT PageLock {
  public:
   PageLock() = default;
   /// @param data   outlives the lock; steps in flight that use it must be finished before its end

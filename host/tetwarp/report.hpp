@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tetwarp/backend.hpp>
+#include <tetwarp/export.hpp>
 
 namespace tetwarp {
 
@@ -89,6 +90,6 @@ struct Report {
 };
 
 /// The report as a JSON object.
-std::string to_json(const Report& report);
+TETWARP_EXPORT std::string to_json(const Report& report);
 
 }  // namespace tetwarp

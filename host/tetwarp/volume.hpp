@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <tetwarp/choices.hpp>
+#include <tetwarp/export.hpp>
 #include <tetwarp/names.hpp>
 
 namespace tetwarp {
@@ -18,14 +19,14 @@ namespace tetwarp {
 using Point3 = std::array<double, 3>;
 
 /// Bytes of one sample.
-std::size_t size_of(PixelType type);
+TETWARP_EXPORT std::size_t size_of(PixelType type);
 
 /// True for the eight integer types.
-bool is_integer(PixelType type);
+TETWARP_EXPORT bool is_integer(PixelType type);
 
 /// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k))
 /// [world].
-struct Grid {
+struct TETWARP_EXPORT Grid {
   std::array<std::int64_t, 3> dims{0, 0, 0};  ///< voxels along i, j, k
   Point3 origin{0, 0, 0};                     ///< centre of voxel (0, 0, 0) [world]
   Point3 spacing{1, 1, 1};                    ///< distance of centres [world], > 0
@@ -43,7 +44,7 @@ struct Grid {
 /// Throws std::invalid_argument, naming `what`, unless dims are positive and at most 2^30 each,
 /// their product fits 64 bits, spacing is positive and finite, origin is finite and direction
 /// invertible.
-void check_grid(const Grid& grid, const std::string& what);
+TETWARP_EXPORT void check_grid(const Grid& grid, const std::string& what);
 
 /// Half-open range of voxels [begin, end) per axis, in the indices of a grid.
 struct Region {
@@ -58,7 +59,7 @@ struct Region {
 };
 
 /// Samples of one array on a grid, stored [k][j][i][component].
-struct Volume {
+struct TETWARP_EXPORT Volume {
   Grid grid;
   std::string name = "values";  ///< array name; no '/' and no '.'
   PixelType type = PixelType::float32;
@@ -85,16 +86,16 @@ struct Volume {
 };
 
 /// A zero-filled volume. Throws std::invalid_argument on a bad grid or component count.
-Volume make_volume(const Grid& grid,
-                   PixelType type,
-                   int components = 1,
-                   std::string name = "values");
+TETWARP_EXPORT Volume make_volume(const Grid& grid,
+                                  PixelType type,
+                                  int components = 1,
+                                  std::string name = "values");
 
 /// Where memory lives.
 enum class Memory { host, device };
 
 /// Samples owned by somebody else, possibly on the GPU: [k][j][i][component].
-struct VolumeView {
+struct TETWARP_EXPORT VolumeView {
   Grid grid;
   PixelType type = PixelType::float32;
   int components = 1;

@@ -16,6 +16,7 @@
 
 #include <tetwarp/backend.hpp>
 #include <tetwarp/choices.hpp>
+#include <tetwarp/export.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/report.hpp>
 #include <tetwarp/volume.hpp>
@@ -126,7 +127,7 @@ struct WarpResult {
 /// The owner of a voxel is the lowest-indexed tetrahedron whose closed deformed shape contains its
 /// centre, decided in exact integers after node positions have been rounded once to 2^-20 voxel:
 /// the same on every back end and for every thread count. Not safe for concurrent calls.
-class Warper {
+class TETWARP_EXPORT Warper {
  public:
   /// @param sources  volumes on one common grid, host or (cuda) device memory, kept by the caller,
   ///                 unchanged, for the life of the Warper; at least one
@@ -199,9 +200,9 @@ class Warper {
 };
 
 /// One volume, one step. For several steps keep a Warper.
-WarpResult warp(const Volume& source,
-                const Mesh& mesh,
-                const std::vector<Point3>& deformed,
-                const WarpOptions& options = {});
+TETWARP_EXPORT WarpResult warp(const Volume& source,
+                               const Mesh& mesh,
+                               const std::vector<Point3>& deformed,
+                               const WarpOptions& options = {});
 
 }  // namespace tetwarp

@@ -7,6 +7,7 @@
 
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/io_export.hpp>
 
 namespace tetwarp {
 
@@ -21,10 +22,11 @@ struct ContactCheckpoint {
 
 /// Writes a checkpoint, under a temporary name until it is complete. Throws IoError.
 /// @returns bytes of the file
-std::int64_t write_contact_checkpoint(const std::string& path, const ContactCheckpoint& checkpoint);
+TETWARP_IO_EXPORT std::int64_t write_contact_checkpoint(const std::string& path,
+                                                        const ContactCheckpoint& checkpoint);
 
 /// Reads a checkpoint. Throws IoError when the file is no checkpoint, of a later version, or its
 /// arrays do not fit each other.
-ContactCheckpoint read_contact_checkpoint(const std::string& path);
+TETWARP_IO_EXPORT ContactCheckpoint read_contact_checkpoint(const std::string& path);
 
 }  // namespace tetwarp

@@ -15,6 +15,7 @@
 
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/io_export.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/volume.hpp>
@@ -38,15 +39,17 @@ struct VolumeHeader {
 };
 
 /// Reads the header of a VTKHDF ImageData file.
-VolumeHeader read_volume_header(const std::string& path);
+TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path);
 
 /// Reads one array of a VTKHDF ImageData file.
 /// @param array  empty: the only or first array
 /// @param step   of a temporal file; static files have step 0 only
-Volume read_volume(const std::string& path, const std::string& array = {}, std::int64_t step = 0);
+TETWARP_IO_EXPORT Volume read_volume(const std::string& path,
+                                     const std::string& array = {},
+                                     std::int64_t step = 0);
 
 /// One array of a VTKHDF ImageData file, read region by region.
-class VolumeReader {
+class TETWARP_IO_EXPORT VolumeReader {
  public:
   /// Arguments as of read_volume().
   explicit VolumeReader(const std::string& path,
@@ -89,7 +92,7 @@ struct MeshReadOptions {
 /// A VTKHDF UnstructuredGrid of tetrahedra with its deformation, in this order of preference:
 /// point array `displacement` added to the rest points; points that move with the steps; the points
 /// of `rest_file` as rest and this file's points as deformed. Partitions are concatenated.
-class MeshReader {
+class TETWARP_IO_EXPORT MeshReader {
  public:
   explicit MeshReader(const std::string& path, const MeshReadOptions& options = {});
   MeshReader(MeshReader&&) noexcept;
@@ -123,12 +126,12 @@ struct WrittenFile {
 
 /// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
 /// Throws IoError on an axis of one sample (VTK crashes on those) and on any write failure.
-WrittenFile write_volumes(const std::string& path,
-                          const std::vector<const Volume*>& volumes,
-                          const VolumeWriteOptions& options = {});
+TETWARP_IO_EXPORT WrittenFile write_volumes(const std::string& path,
+                                            const std::vector<const Volume*>& volumes,
+                                            const VolumeWriteOptions& options = {});
 
 /// Writes one temporal VTKHDF ImageData file, Version [2,0], step by step.
-class TemporalVolumeWriter {
+class TETWARP_IO_EXPORT TemporalVolumeWriter {
  public:
   TemporalVolumeWriter(const std::string& path, const VolumeWriteOptions& options = {});
   TemporalVolumeWriter(TemporalVolumeWriter&&) noexcept;
@@ -150,7 +153,7 @@ class TemporalVolumeWriter {
 
 /// Writes a VTKHDF ImageData file whose arrays come in regions: a static one, or a temporal one
 /// step by step. Chunks are bricks, so that regions of any proportions end where chunks do.
-class BlockVolumeWriter {
+class TETWARP_IO_EXPORT BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
                     const Grid& grid,
@@ -178,22 +181,23 @@ class BlockVolumeWriter {
 };
 
 /// Edges of the bricks in which BlockVolumeWriter stores such arrays [voxel].
-std::array<std::int64_t, 3> block_step(const Grid& grid, const std::vector<ArrayHeader>& arrays);
+TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
+                                                         const std::vector<ArrayHeader>& arrays);
 
 /// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
-void write_mesh(const std::string& path,
-                const Mesh& mesh,
-                const std::vector<std::vector<Point3>>& displacements = {},
-                const std::vector<double>& times = {});
+TETWARP_IO_EXPORT void write_mesh(const std::string& path,
+                                  const Mesh& mesh,
+                                  const std::vector<std::vector<Point3>>& displacements = {},
+                                  const std::vector<double>& times = {});
 
 /// The fingerprint attribute of a complete file, nothing when there is no such file or attribute.
-std::optional<std::string> read_fingerprint(const std::string& path);
+TETWARP_IO_EXPORT std::optional<std::string> read_fingerprint(const std::string& path);
 
 /// Reads a NIfTI file (.nii, .nii.gz); the affine (sform, else qform) becomes the grid. Positions
 /// keep NIfTI's RAS world. scl_slope and scl_inter other than 1 and 0 give float32 samples
 /// (float64 for float64). A shear in the sform that no grid can hold is an error.
 /// Axis `dim[4]` (time) must be 1; `dim[5]` becomes components.
-Volume read_nifti(const std::string& path);
+TETWARP_IO_EXPORT Volume read_nifti(const std::string& path);
 
 /// Axes in which a NIfTI file holds samples that are vectors.
 enum class NiftiVectors {
@@ -206,12 +210,12 @@ enum class NiftiVectors {
 ///
 /// NIfTI's world is RAS, that of ITK and ANTs LPS: they turn positions when they read a file, but
 /// not the samples of an image of vectors.
-void write_nifti(const std::string& path,
-                 const Volume& volume,
-                 NiftiVectors vectors = NiftiVectors::world);
+TETWARP_IO_EXPORT void write_nifti(const std::string& path,
+                                   const Volume& volume,
+                                   NiftiVectors vectors = NiftiVectors::world);
 
 /// Writes an 8-bit RGB PNG.
-void write_png(const std::string& path, const Image& image);
+TETWARP_IO_EXPORT void write_png(const std::string& path, const Image& image);
 
 /// What an FCLIB file says around its problem.
 struct ContactFileHeader {
@@ -224,7 +228,7 @@ struct ContactFileHeader {
 };
 
 /// Reads what an FCLIB file says around its problem.
-ContactFileHeader read_contact_header(const std::string& path);
+TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);
 
 /// Where the iterations start.
 enum class ContactStart {
@@ -239,15 +243,15 @@ enum class ContactStart {
 ///
 /// Three dimensions, no equality constraints (G, or V and R) and no rolling friction.
 /// In /adhesion a missing `intensity` is 0; other vectors that are missing stay empty.
-ContactProblem read_contact_problem(const std::string& path,
-                                    ContactStart start = ContactStart::zero);
+TETWARP_IO_EXPORT ContactProblem read_contact_problem(const std::string& path,
+                                                      ContactStart start = ContactStart::zero);
 
 /// Writes a problem that check_problem() accepts as an FCLIB file; matrices by rows, H by columns.
 /// @returns bytes of the file
-std::int64_t write_contact_problem(const std::string& path,
-                                   const ContactProblem& problem,
-                                   const std::string& title = {},
-                                   const std::string& description = {});
+TETWARP_IO_EXPORT std::int64_t write_contact_problem(const std::string& path,
+                                                     const ContactProblem& problem,
+                                                     const std::string& title = {},
+                                                     const std::string& description = {});
 
 /// Writes a complete FCLIB file: everything the problem's file holds, with this solution in place
 /// of its own and, when given, the adhesion of the next step.
@@ -256,15 +260,15 @@ std::int64_t write_contact_problem(const std::string& path,
 /// 0), `status`, `residual` (eta), `fclib_error` and `method`; /adhesion_next holds `intensity` and
 /// `gap`. Throws IoError when the solution is that of another problem.
 /// @returns bytes of the file
-std::int64_t write_contact_solution(const std::string& path,
-                                    const std::string& problem_path,
-                                    const ContactSolution& solution,
-                                    const AdhesionStep* adhesion_next = nullptr);
+TETWARP_IO_EXPORT std::int64_t write_contact_solution(const std::string& path,
+                                                      const std::string& problem_path,
+                                                      const ContactSolution& solution,
+                                                      const AdhesionStep* adhesion_next = nullptr);
 
 /// Kinds of files that info and the checks of swapped arguments tell apart.
 enum class FileKind { volume, mesh, other_vtkhdf, contact_problem, hdf5, nifti, unknown };
 
 /// What a file is, by content. Throws IoError only when it cannot be opened.
-FileKind kind_of(const std::string& path);
+TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);
 
 }  // namespace tetwarp

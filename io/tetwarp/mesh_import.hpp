@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/io_export.hpp>
 #include <tetwarp/mesh.hpp>
 
 namespace tetwarp {
@@ -29,13 +30,14 @@ struct ImportedMesh {
 };
 
 /// True for names that end in .msh, .vtu or .vtk.
-bool has_mesh_extension(const std::string& path);
+TETWARP_IO_EXPORT bool has_mesh_extension(const std::string& path);
 
 /// Reads a mesh of tetrahedra and hexahedra with its displacement, step by step where the file has
 /// several. Files are told apart by the end of their name.
 ///
 /// Throws IoError on other cells of three dimensions, naming kind and number; on files that are
 /// damaged; and, naming the package, where this build lacks the library.
-ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& options = {});
+TETWARP_IO_EXPORT ImportedMesh import_mesh(const std::string& path,
+                                           const MeshImportOptions& options = {});
 
 }  // namespace tetwarp

@@ -4,10 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include <tetwarp/export.hpp>
+
 namespace tetwarp {
 
 /// A file could not be read or written. `what()` is one line naming file, dataset and remedy.
-class IoError : public std::runtime_error {
+class TETWARP_EXPORT IoError : public std::runtime_error {
  public:
   /// @param file     path as the caller gave it
   /// @param dataset  path inside the file, empty when the file as a whole is meant
@@ -23,13 +25,13 @@ class IoError : public std::runtime_error {
 };
 
 /// A CUDA call failed, or no device answers. `what()` carries the call and the runtime's reason.
-class CudaError : public std::runtime_error {
+class TETWARP_EXPORT CudaError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// The progress callback asked to stop. Nothing of the interrupted step is valid.
-class Cancelled : public std::runtime_error {
+class TETWARP_EXPORT Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}
 };

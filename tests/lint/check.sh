@@ -1,0 +1,164 @@
+# ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
+
+# Parts in the order in which they run; each builds into a folder of its own below build/.
+check_parts=(lint format host tidy small shared cuda release asan fuzz docs)
+
+# source_files EXTENSION...: the C++ and CUDA sources, from the root
+source_files() {
+  local extension
+  for extension in "$@"; do find "${sources[@]}" -type f -name "*.$extension"; done | sort
+}
+
+# refuse MESSAGE GREP-ARGUMENT...: fails when grep finds something
+refuse() {
+  local message=$1
+  shift
+  if grep -rn "$@"; then
+    echo "lint: $message" >&2
+    return 1
+  fi
+}
+
+lint() {
+  local file lines status=0
+  refuse 'dead code' -E '^[[:space:]]*#[[:space:]]*if[[:space:]]+0' "${sources[@]}" || status=1
+  refuse 'printing in a kernel' printf kernels || status=1
+  refuse 'a path of one machine' -E '/(home|root|work|tmp|Users)/' \
+    "${sources[@]}" cmake CMakeLists.txt dev .ci || status=1
+  python3 tests/lint/folders.py || status=1
+  while read -r file; do
+    lines=$(wc -l <"$file")
+    if ((lines > 300)); then
+      echo "$file: $lines lines, more than 300" >&2
+      status=1
+    fi
+  done < <(source_files hpp cpp cuh cu py cmake txt; find cmake dev CMakeLists.txt -type f)
+  return "$status"
+}
+
+# register_table: registers, stack and spills of our kernels from ptxas' output. Fails on a spill,
+# unless tests/lint/spills_allowed.txt has a line with the architecture and a part of the kernel's
+# name.
+register_table() {
+  c++filt | awk -v allowed="$root/tests/lint/spills_allowed.txt" '
+    BEGIN {
+      while ((getline line < allowed) > 0) {
+        if (line ~ /^#/ || line == "") continue
+        split(line, word, " "); architectures[++count] = word[1]; names[count] = word[2]
+      }
+    }
+    function is_allowed(architecture, kernel,   i) {
+      for (i = 1; i <= count; ++i) {
+        if (architectures[i] == architecture && index(kernel, names[i])) return 1
+      }
+      return 0
+    }
+    /Compiling entry function/ {
+      split($0, part, "\047"); kernel = part[2]; architecture = part[4]
+      sub(/^void /, "", kernel)
+      ours = kernel ~ /^tetwarp::/
+      sub(/\(.*/, "", kernel)
+    }
+    /bytes stack frame/ { stack = $1; spills = $5 + $9 }
+    ours && /Used [0-9]+ registers/ {
+      match($0, /Used [0-9]+/)
+      registers = substr($0, RSTART + 5, RLENGTH - 5)
+      verdict = spills == 0 ? "" : is_allowed(architecture, kernel) ? "  (allowed)" : "  (REFUSED)"
+      printf "%-6s %4d registers %5d stack %5d spilled  %s%s\n",
+        architecture, registers, stack, spills, kernel, verdict
+      refused += verdict ~ /REFUSED/
+    }
+    END { exit refused > 0 }' | sort -k8 -k1
+}
+
+check_lint() { lint && python3 "$root/tests/lint/folders.py" --test; }
+
+check_format() {
+  has clang-format || { echo "left out: no clang-format"; return 0; }
+  source_files hpp cpp cuh cu | xargs clang-format --dry-run -Werror
+}
+
+# Without CUDA and precompiled headers: warnings are errors, every file includes what it needs.
+configure_host() {
+  configure "$root/build/check-host" -DTETWARP_CUDA=OFF -DTETWARP_BENCH=ON -DCMAKE_CXX_FLAGS=-Werror \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
+}
+check_host() { configure_host && cmake --build "$root/build/check-host"; }
+
+check_tidy() {
+  has clang-tidy || { echo "left out: no clang-tidy"; return 0; }
+  configure_host
+  source_files cpp | grep -v '^tests/install/' |
+    xargs -n 1 -P "$CMAKE_BUILD_PARALLEL_LEVEL" clang-tidy --quiet -p "$root/build/check-host"
+}
+
+# Without tetwarp::io and OpenMP.
+check_small() {
+  configure "$root/build/check-small" -DTETWARP_CUDA=OFF -DTETWARP_IO=OFF -DCMAKE_CXX_FLAGS=-Werror \
+    -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON
+  cmake --build "$root/build/check-small"
+  run_tests "$root/build/check-small" -LE long
+}
+
+check_shared() {
+  configure "$root/build/check-shared" -DBUILD_SHARED_LIBS=ON -DTETWARP_BENCH=OFF \
+    -DCMAKE_CUDA_ARCHITECTURES="$(cuda_architecture)"
+  cmake --build "$root/build/check-shared"
+  run_tests "$root/build/check-shared" -LE long
+}
+
+# All architectures: registers and spills of every kernel.
+check_cuda() {
+  local folder=$root/build/check-cuda
+  if ! configure "$folder" -DTETWARP_CUDA=ON -DTETWARP_TESTS=OFF \
+    -DCMAKE_CUDA_FLAGS='-Xptxas -v,-warn-spills' >"$folder.log" 2>&1; then
+    echo "left out: no CUDA compiler"
+    return 0
+  fi
+  cmake --build "$folder" --clean-first >"$folder.log" 2>&1 || { cat "$folder.log"; return 1; }
+  register_table <"$folder.log"
+}
+
+# All tests, the long ones too.
+check_release() {
+  build_release
+  run_tests "$release"
+}
+
+check_asan() {
+  cmake --preset asan -S "$root"
+  cmake --build "$root/build/asan"
+  run_tests "$root/build/asan" -LE long
+}
+
+check_fuzz() {
+  cmake --preset asan -S "$root"
+  cmake --build "$root/build/asan" --target fuzz_io
+  "$root/build/asan/fuzz_io" 60 "${RANDOM}"
+}
+
+check_docs() { docs; }
+
+# check [PART...]: all parts, or these; prints how long each took.
+check() {
+  local part start times=()
+  local -a parts=("$@")
+  ((${#parts[@]})) || parts=("${check_parts[@]}")
+  install_packages "${packages[@]}"
+  cd "$root"
+  mkdir -p build
+  for part in "${parts[@]}"; do
+    if ! declare -F "check_$part" >/dev/null; then
+      echo "check has the parts ${check_parts[*]}, not $part" >&2
+      return 2
+    fi
+  done
+  for part in "${parts[@]}"; do
+    say "check $part"
+    start=$SECONDS
+    "check_$part"
+    times+=("$part $((SECONDS - start)) s")
+  done
+  say "all checks passed"
+  printf '%s\n' "${times[@]}"
+}
