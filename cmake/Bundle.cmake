@@ -1,5 +1,5 @@
-# Target `bundle`: a folder of programs and the shared libraries they need beyond glibc, to be
-# copied to a machine that has a driver and nothing else.
+# Target `bundle`: a folder with the programs and the shared libraries that they need besides glibc,
+# to be copied to a machine that has only a CUDA driver.
 set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_contact_tests)
 if(TETWARP_IO)
   list(APPEND tetwarp_bundled tetwarp_command)
@@ -7,8 +7,8 @@ endif()
 if(TETWARP_BENCH)
   list(APPEND tetwarp_bundled tetwarp_bench)
 endif()
-# RPATH, not RUNPATH: it holds for the libraries' libraries, too. The folder must be called lib,
-# where libniftiio looks for its own.
+# RPATH, not RUNPATH: it also applies to the libraries that libraries need. The folder must be
+# called lib, because libniftiio looks there for its own dependencies.
 set_target_properties(${tetwarp_bundled} PROPERTIES
   BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/lib")
 foreach(program IN LISTS tetwarp_bundled)

@@ -15,7 +15,7 @@ if(NOT TETWARP_CUDA STREQUAL "OFF")
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER AND CUDAToolkit_FOUND)
     enable_language(CUDA)
-    if(CMAKE_VERSION VERSION_LESS 3.26)  # which does not know how nvcc calls C++20
+    if(CMAKE_VERSION VERSION_LESS 3.26)  # which lacks nvcc's option for C++20
       set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
       set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
     endif()
@@ -29,8 +29,8 @@ message(STATUS "tetwarp: CUDA back end: ${TETWARP_HAS_CUDA}")
 
 # ---- flags that every file of ours gets; not exported ---------------------------
 # No contraction: results must not depend on the processor that runs them.
-# g++ 12 warns of overlaps inside std::string that are not there (-Wrestrict).
-# x86-64-v2 (2009) is what Highway's narrowest vectors need; wider ones are chosen at run time.
+# g++ 12 reports false overlaps inside std::string (-Wrestrict).
+# x86-64-v2 (2009) is the minimum for Highway's narrowest vectors; wider ones are chosen at run time.
 add_library(tetwarp_options INTERFACE)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(tetwarp_options INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-march=x86-64-v2>)
@@ -39,15 +39,14 @@ target_compile_options(tetwarp_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wconversion;-ffp-contract=off>
   $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;$<$<BOOL:${TETWARP_STRICT_FP}>:-fmad=false>>)
-# Eigen would share products among OpenMP's threads and cut them by their number, on which bits then
-# depend; for matrices of a few hundred rows, on a busy machine, that also took 100 times as long.
+# Eigen would split products by the number of OpenMP threads, on which the bits would then depend;
+# for matrices of a few hundred rows on a busy machine that was also 100 times slower.
 target_compile_definitions(tetwarp_options INTERFACE EIGEN_DONT_PARALLELIZE)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.2 REQUIRED)
 
-# ---- libraries behind one target each, installed as plain paths, so that a consumer
-#      needs none of their find modules
+# ---- one target per library, installed as plain paths, so that users need no find modules for them
 function(tetwarp_wrap name)  # tetwarp_wrap(NAME build-time targets... INSTALLED installed libraries...)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "INSTALLED")
   add_library(${name} INTERFACE)
@@ -90,7 +89,7 @@ if(TETWARP_IO)
     if(TETWARP_MPI STREQUAL "ON")
       find_package(MPI REQUIRED COMPONENTS CXX)
     else()
-      # Without its headers, as where only the run-time package is, FindMPI stops the configuration.
+      # FindMPI stops the configuration where the run-time package is installed without headers.
       find_path(TETWARP_MPI_HEADER mpi.h PATH_SUFFIXES openmpi/include openmpi mpich mpi
         PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE} /usr/include/${CMAKE_LIBRARY_ARCHITECTURE})
       if(TETWARP_MPI_HEADER)

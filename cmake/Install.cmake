@@ -1,4 +1,4 @@
-# What `cmake --install` puts down: libraries, public headers, package files for find_package().
+# `cmake --install`: libraries, public headers and package files for find_package().
 include(CMakePackageConfigHelpers)
 set(tetwarp_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tetwarp)
 
@@ -9,7 +9,7 @@ if(TETWARP_IO)
   install(DIRECTORY io/tetwarp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 
-if(BUILD_SHARED_LIBS AND TETWARP_IO)  # an installed tree may stand anywhere
+if(BUILD_SHARED_LIBS AND TETWARP_IO)  # an installed tree may be moved
   file(RELATIVE_PATH tetwarp_lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
   set_target_properties(tetwarp_command PROPERTIES INSTALL_RPATH "$ORIGIN/${tetwarp_lib_from_bin}")
   set_target_properties(tetwarp_io PROPERTIES INSTALL_RPATH "$ORIGIN")

@@ -1,11 +1,11 @@
-# ITK judges our displacement fields where it is installed (libinsighttoolkit5-dev).
+# Compares displacement fields with ITK where it is installed (libinsighttoolkit5-dev).
 set(TETWARP_ITK_TESTS AUTO CACHE STRING "Tests against ITK: AUTO, ON or OFF")
 set_property(CACHE TETWARP_ITK_TESTS PROPERTY STRINGS AUTO ON OFF)
 
-function(tetwarp_add_itk_tests)  # a function: ITK sets variables by the hundred
+function(tetwarp_add_itk_tests)  # in a function, to keep the hundreds of variables that ITK sets local
   set(ITK_FOUND FALSE)
   if(NOT TETWARP_ITK_TESTS STREQUAL "OFF")
-    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # it looks for programs nobody needs, and says so
+    set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # hides its notes about optional programs
     find_package(ITK 5 QUIET COMPONENTS ITKImageGrid ITKIONIFTI)
     unset(CMAKE_MESSAGE_LOG_LEVEL)
   endif()

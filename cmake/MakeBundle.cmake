@@ -9,7 +9,7 @@ file(GET_RUNTIME_DEPENDENCIES
   PRE_EXCLUDE_REGEXES "^(libc|libm|libdl|libpthread|librt|ld-linux-.*)\\.so")
 foreach(library IN LISTS libraries)
   get_filename_component(name ${library} NAME)
-  file(COPY_FILE ${library} ${FOLDER}/lib/${name})  # no links: they get lost on the way to machines
+  file(COPY_FILE ${library} ${FOLDER}/lib/${name})  # files, not links: copying tools may drop links
 endforeach()
 foreach(program IN LISTS PROGRAMS)
   get_filename_component(name ${program} NAME)

@@ -1,5 +1,5 @@
-# tetwarp_hdf5 from archives: only members that are reached get linked, and with them neither the
-# curl nor the OpenSSL that the shared libhdf5 brings along.
+# tetwarp_hdf5 from static archives: only the object files in use are linked, so that the programs
+# do not need libcurl and OpenSSL as the shared libhdf5 does.
 find_path(TETWARP_HDF5_INCLUDE hdf5.h PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(TETWARP_HDF5_ARCHIVE NAMES libhdf5_serial.a libhdf5.a PATH_SUFFIXES hdf5/serial REQUIRED)
 find_library(TETWARP_SZ_ARCHIVE libsz.a REQUIRED)

@@ -1,8 +1,8 @@
 #!/bin/sh
-# All that a device has to say about this bundle, in one call: tests, memory and race checks, times.
+# Runs everything in this bundle that needs a CUDA device: tests, memory and race checks, timings.
 # Results go to FOLDER (default: results, beside this script). Ends with 1 when anything failed.
-# A peer program in Python, if one is given, is timed on the same device; bench/gpu_rows.py says
-# what it prints, and bench/table.py --gpu-peers FOLDER/gpu_peers.log puts it beside ours.
+# A peer program in Python, if given, is timed on the same device; its output goes to
+# FOLDER/gpu_peers.log, from which the benchmark report makes a column.
 # usage: ./run_on_device.sh [FOLDER [PEERS.py]]
 here=$(cd "$(dirname "$0")" && pwd)
 results=${1:-$here/results}
@@ -37,7 +37,7 @@ if command -v compute-sanitizer >/dev/null 2>&1; then
 else
   echo "left out memory and race checks: no compute-sanitizer"
 fi
-# Among its rows: the sampling floor of the device, what overlapping and what updating save.
+# Rows for cuda include the sampling floor of the device and the savings by overlap and updates.
 run bench "$here/tetwarp_bench" --benchmark_filter='/cuda' --benchmark_out="$results/bench.json"
 grep -h -m 1 'back end cuda is left out' "$results/bench.log"
 [ -z "$peers" ] || run gpu_peers python3 "$peers"
