@@ -8,13 +8,13 @@
 #pragma once
 #include "kernels/exec/launch.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/voxel_rule.hpp"
+#include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
 
 constexpr int raster_threads = 128;
 constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
-constexpr int raster_wide_blocks = 2;  ///< the same of the kernel that knows the wide filters
+constexpr int raster_general_blocks = 2;  ///< the same of the kernel that knows the wide filters
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
@@ -92,8 +92,8 @@ __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
 
 /// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
 /// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
-template <class T, bool Wide>
-__global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : raster_blocks)
+template <class T, bool General>
+__global__ void __launch_bounds__(raster_threads, General ? raster_general_blocks : raster_blocks)
     cell_raster_kernel(RasterJob<T> job) {
   using Real = ArithmeticOf<T>;
   __shared__ RasterChunk<Real> chunk;
@@ -137,17 +137,17 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
       ++mine.covered;
       const int t = chunk.tet[slot];
       const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-      const bool ruled = Wide && has_rule(job, t);
-      mine.copied += chunk.copied[slot] && !ruled;
+      const bool transformed = General && has_transform(job, t);
+      mine.copied += chunk.copied[slot] && !transformed;
       if (work >= 0) {
         store_filled(job, work, voxel);
-      } else if (ruled) {
-        store_ruled(job, t, corner, i, j, k, voxel);
-      } else if ((Wide || sizeof(Real) == 4) && chunk.alone[slot]) {
-        store_owned<Wide, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
+      } else if (transformed) {
+        store_transformed_voxel(job, t, corner, i, j, k, voxel);
+      } else if ((General || sizeof(Real) == 4) && chunk.alone[slot]) {
+        store_owned<General, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
       } else {
-        store_sample<Wide>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],
-                           i, j, k, voxel);
+        store_sample<General>(job, chunk.copied[slot] ? Filter::nearest : job.filter,
+                              chunk.maps[slot], i, j, k, voxel);
       }
       if (job.mask != nullptr) job.mask[voxel] = 1;
       if (job.tet != nullptr) job.tet[voxel] = t;
@@ -157,10 +157,10 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
     if ((open >> d & 1) == 0) continue;
     const int k = k_first + 2 * d;
     const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-    if (Wide && has_outside_rule(job)) {
-      store_outside_ruled(job, corner, i, j, k, voxel);
+    if (General && has_outside_transform(job)) {
+      store_transformed_outside(job, corner, i, j, k, voxel);
     } else {
-      store_outside<Wide>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
+      store_outside<General>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
     }
     if (job.mask != nullptr) job.mask[voxel] = 0;
     if (job.tet != nullptr) job.tet[voxel] = -1;
@@ -180,11 +180,12 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
   }
 }
 
-/// The kernel for a job: wide filters, rules and hexahedra have their own, whose registers the
+/// The kernel for a job: wide filters, transforms and hexahedra have their own, whose registers the
 /// others need not pay for.
 template <class T>
 auto raster_kernel(const RasterJob<T>& job) {
-  const bool is_plain = !is_wide(job.filter) && job.rules.size == 0 && job.hexes.nodes.size == 0;
+  const bool is_plain =
+      !is_wide(job.filter) && job.transforms.size == 0 && job.hexes.nodes.size == 0;
   return is_plain ? cell_raster_kernel<T, false> : cell_raster_kernel<T, true>;
 }
 

@@ -11,8 +11,8 @@
 #include "kernels/warp/cell_pairs.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
-#include "kernels/warp/tet_rule.hpp"
 #include "kernels/warp/tet_setup.hpp"
+#include "kernels/warp/tet_transform.hpp"
 #include "kernels/warp/volume_filter.hpp"
 #include "kernels/warp/volume_label.hpp"
 #include "kernels/warp/volume_sample.hpp"
@@ -67,22 +67,22 @@ struct RasterJob {
   /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
   View<std::uint16_t> cell_covered;
 
-  /// Per tetrahedron: what its voxels get, see voxel_rule.hpp. Size 0: all are plain.
-  View<const TetRule> rules;
-  TetRule outside_rule;    ///< of voxels that no tetrahedron covers
-  Quantity reorientation;  ///< that the matrices of rules are made for
+  /// Per tetrahedron: what its voxels get, see voxel_transform.hpp. Size 0: all are plain.
+  View<const VoxelTransform> transforms;
+  VoxelTransform outside_transform;  ///< of voxels that no tetrahedron covers
+  Quantity reorientation;            ///< that the matrices of transforms are made for
 };
 
 /// Whether voxels of tetrahedron t get more than a plain sample.
 template <class T>
-TETWARP_HD bool has_rule(const RasterJob<T>& job, std::int64_t t) {
-  return job.rules.size > 0 && !job.rules[t].is_plain;
+TETWARP_HD bool has_transform(const RasterJob<T>& job, std::int64_t t) {
+  return job.transforms.size > 0 && !job.transforms[t].is_plain;
 }
 
 /// Whether voxels that no tetrahedron covers get more than a plain sample.
 template <class T>
-TETWARP_HD bool has_outside_rule(const RasterJob<T>& job) {
-  return job.rules.size > 0 && job.outside.use_source && !job.outside_rule.is_plain;
+TETWARP_HD bool has_outside_transform(const RasterJob<T>& job) {
+  return job.transforms.size > 0 && job.outside.use_source && !job.outside_transform.is_plain;
 }
 
 template <class T>
@@ -185,13 +185,13 @@ TETWARP_HD void store_wide_sample(
 
 /// Stores one voxel's samples at a position x of the source relative to `whole`, or the background.
 ///
-/// @tparam Wide  whether the filter may be a wide one: device code that knows better keeps its
+/// @tparam General  whether the filter may be a wide one: device code that knows better keeps its
 ///               registers
-template <bool Wide, class T, class Real>
+template <bool General, class T, class Real>
 TETWARP_HD void store_position(
     const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, std::int64_t voxel) {
   T* out = job.volume + voxel * job.source.components;
-  if constexpr (Wide) {
+  if constexpr (General) {
     if (is_wide(filter)) return store_wide_sample(job, filter, whole, x, out);
   }
   const Tap<Real> tap = tap_of(job.source, filter, whole, x);
@@ -201,7 +201,7 @@ TETWARP_HD void store_position(
 }
 
 /// The same for voxel (i, j, k) of a cell under a map.
-template <bool Wide, class T, class Real>
+template <bool General, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Filter filter,
                              const SourceMap<Real>& map,
@@ -211,7 +211,7 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
                              std::int64_t voxel) {
   Real x[3];
   local_position(map, i, j, k, x);
-  store_position<Wide>(job, filter, map.whole, x, voxel);
+  store_position<General>(job, filter, map.whole, x, voxel);
 }
 
 /// The map of the hexahedron that tetrahedron t of a job belongs to.
@@ -221,7 +221,7 @@ TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
 }
 
 /// Stores frame voxel x, which `tet` owns and `map` is of.
-template <bool Wide, class T>
+template <bool General, class T>
 TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      const TetSetup& tet,
                                      const HexMap& map,
@@ -231,7 +231,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   double at[3];
   place_in_hex(tet, map, x, whole, at);
   for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
-  store_position<Wide>(job, job.filter, whole, at, voxel);
+  store_position<General>(job, job.filter, whole, at, voxel);
 }
 
 /// A voxel that moved by whole voxels needs one sample, whatever the filter.
@@ -242,7 +242,7 @@ TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
 
 /// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that tetrahedron t owns; the map is made
 /// anew.
-template <bool Wide, class T, class Real>
+template <bool General, class T, class Real>
 TETWARP_HD void store_owned(const RasterJob<T>& job,
                             std::int64_t t,
                             int cx,
@@ -253,17 +253,17 @@ TETWARP_HD void store_owned(const RasterJob<T>& job,
                             int k,
                             std::int64_t voxel) {
   const TetSetup& tet = job.setups[t];
-  if constexpr (Wide) {
+  if constexpr (General) {
     if (tet.kind == MapKind::trilinear) {
       const int x[3] = {cx + i, cy + j, cz + k};
-      store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
+      store_hex_voxel<General>(job, tet, hex_map_of(job, t), x, voxel);
       return;
     }
   }
   double start[3], linear[3][3];
   map_start(tet, cx, cy, cz, start, linear);
-  store_sample<Wide>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
-                     make_source_map<Real>(job.source, start, linear), i, j, k, voxel);
+  store_sample<General>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
+                        make_source_map<Real>(job.source, start, linear), i, j, k, voxel);
 }
 
 /// Stores a voxel that gets the samples of voxel `from` of the source.
@@ -276,16 +276,16 @@ TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::in
 }
 
 /// Stores a voxel that no tetrahedron covers.
-template <bool Wide, class T>
+template <bool General, class T>
 TETWARP_HD void store_outside(
     const RasterJob<T>& job, int cx, int cy, int cz, int i, int j, int k, std::int64_t voxel) {
   if (job.outside.use_source) {
     double start[3];
     outside_start(job.outside, cx, cy, cz, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
-    store_sample<Wide>(job, copies ? Filter::nearest : job.filter,
-                       make_source_map<double>(job.source, start, job.outside.linear), i, j, k,
-                       voxel);
+    store_sample<General>(job, copies ? Filter::nearest : job.filter,
+                          make_source_map<double>(job.source, start, job.outside.linear), i, j, k,
+                          voxel);
     return;
   }
   T* out = job.volume + voxel * job.source.components;

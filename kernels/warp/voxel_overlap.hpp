@@ -7,7 +7,7 @@
 #include "kernels/base/any_number.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/convex_part.hpp"
-#include "kernels/warp/voxel_rule.hpp"
+#include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
 
@@ -72,9 +72,9 @@ void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> m
 struct VoxelOverlapBody {
   static constexpr int resident_blocks = 1;  ///< all registers: no spills
   View<const TetSetup> setups;
-  View<const TetRule> rules;           ///< their scale
-  PairList list;                       ///< of widened boxes, none rejected
-  View<const std::int64_t> cell_work;  ///< cells to keep; size 0: none
+  View<const VoxelTransform> transforms;  ///< their scale
+  PairList list;                          ///< of widened boxes, none rejected
+  View<const std::int64_t> cell_work;     ///< cells to keep; size 0: none
   OutputFrame frame;
   NumberView source;
   int dims[3];
@@ -96,7 +96,7 @@ struct VoxelOverlapBody {
     const std::int64_t cell =
         frame.cell_index(x[0] >> cell_shift, x[1] >> cell_shift, x[2] >> cell_shift);
     if (cell_work.size > 0 && cell_work[cell] == keep_cell) return;
-    double sums[max_rule_components] = {};
+    double sums[max_transform_components] = {};
     const std::int64_t end = end_of_cell(list, cell);
     for (std::int64_t p = list.ranges[cell].begin; p < end; ++p) {
       add_tet(tet_of(list.pairs[p]), x, sums);
@@ -120,7 +120,7 @@ struct VoxelOverlapBody {
     for_slabs(parts, map, 2, *whole, [&](std::int64_t k, const ConvexPart& slab) {
       for_slabs(parts, map, 1, slab, [&](std::int64_t j, const ConvexPart& bar) {
         for_slabs(parts, map, 0, bar, [&](std::int64_t i, const ConvexPart& piece) {
-          const double share = volume_of(piece) * rules[t].scale;
+          const double share = volume_of(piece) * transforms[t].scale;
           if (!(share > 0)) return;
           const std::int64_t from = ((k * dims[1] + j) * dims[0] + i) * components;
           for (int c = 0; c < components; ++c) sums[c] += share * source.at(from + c);
