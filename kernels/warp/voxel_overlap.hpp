@@ -88,13 +88,9 @@ struct VoxelOverlapBody {
   };
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
-    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
-    const std::int64_t row = voxel / nx;
-    const int x[3] = {frame.begin[0] + static_cast<int>(voxel % nx),
-                      frame.begin[1] + static_cast<int>(row % ny),
-                      frame.begin[2] + static_cast<int>(row / ny)};
-    const std::int64_t cell =
-        frame.cell_index(x[0] >> cell_shift, x[1] >> cell_shift, x[2] >> cell_shift);
+    int x[3];
+    frame.set_voxel(voxel, x);
+    const std::int64_t cell = frame.cell_of_voxel(x);
     if (cell_work.size > 0 && cell_work[cell] == keep_cell) return;
     double sums[max_transform_components] = {};
     const std::int64_t end = end_of_cell(list, cell);
@@ -115,7 +111,7 @@ struct VoxelOverlapBody {
     if (whole == nullptr) return;
     parts.spare = parts.two + (whole == parts.two ? 1 : 0);
     double start[3], linear[3][3];
-    map_start(tet, x[0], x[1], x[2], start, linear);
+    map_start(tet, x, start, linear);
     const auto map = make_source_map<double>(start, linear);
     for_slabs(parts, map, 2, *whole, [&](std::int64_t k, const ConvexPart& slab) {
       for_slabs(parts, map, 1, slab, [&](std::int64_t j, const ConvexPart& bar) {

@@ -209,37 +209,33 @@ TETWARP_HD_RARE void store_transformed(TransformSampler<T> job,
   }
 }
 
-/// Stores the voxel (i, j, k) of the cell at `corner` that tetrahedron t owns, by its transform.
+/// Stores a voxel that tetrahedron t owns, by the transform of t.
 template <class T>
 TETWARP_HD void store_transformed_voxel(const RasterJob<T>& job,
                                         std::int64_t t,
-                                        const int* corner,
-                                        int i,
-                                        int j,
-                                        int k,
-                                        std::int64_t voxel) {
+                                        const CellVoxel& voxel) {
   double start[3], linear[3][3], x[3];
-  map_start(job.setups[t], corner[0], corner[1], corner[2], start, linear);
+  map_start(job.setups[t], voxel.corner, start, linear);
   auto map = make_source_map<double>(job.source, start, linear);
-  local_position(map, i, j, k, x);
+  local_position(map, voxel.i, voxel.j, voxel.k, x);
   if (job.setups[t].kind == MapKind::trilinear) {
-    const int frame_voxel[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
+    const int frame_voxel[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
+                                voxel.corner[2] + voxel.k};
     place_in_hex(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
     for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
   }
-  T* const out = job.volume + voxel * job.source.components;
+  T* const out = job.volume + voxel.offset * job.source.components;
   store_transformed(TransformSampler<T>(job), job.transforms[t], map, x, out);
 }
 
-/// Stores a voxel that no tetrahedron covers, by the transform of those.
+/// Stores a voxel that no tetrahedron covers, by job.outside_transform.
 template <class T>
-TETWARP_HD void store_transformed_outside(
-    const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
+TETWARP_HD void store_transformed_outside(const RasterJob<T>& job, const CellVoxel& voxel) {
   double start[3], x[3];
-  outside_start(job.outside, corner[0], corner[1], corner[2], start);
+  outside_start(job.outside, voxel.corner, start);
   const auto map = make_source_map<double>(job.source, start, job.outside.linear);
-  local_position(map, i, j, k, x);
-  T* const out = job.volume + voxel * job.source.components;
+  local_position(map, voxel.i, voxel.j, voxel.k, x);
+  T* const out = job.volume + voxel.offset * job.source.components;
   store_transformed(TransformSampler<T>(job), job.outside_transform, map, x, out);
 }
 

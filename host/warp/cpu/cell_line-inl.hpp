@@ -242,7 +242,7 @@ class CellLine {
       if (has_outside_transform(row_job_)) {
         write_outside_transformed(row_job_, corner, voxel - cell, j, k, voxel);
       } else {
-        store_outside<true>(row_job_, corner[0], corner[1], corner[2], voxel - cell, j, k, voxel);
+        store_outside<true>(row_job_, {corner, voxel - cell, j, k, voxel});
       }
     }
   }

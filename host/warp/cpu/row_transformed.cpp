@@ -17,14 +17,14 @@ void write_row_transformed(const RasterJob<T>& job,
                            std::int64_t row) {
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
-    store_transformed_voxel(job, t, corner, i, j, k, row + i);
+    store_transformed_voxel(job, t, {corner, i, j, k, row + i});
   }
 }
 
 template <class T>
 void write_outside_transformed(
     const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
-  store_transformed_outside(job, corner, i, j, k, voxel);
+  store_transformed_outside(job, {corner, i, j, k, voxel});
 }
 
 template void write_row_transformed(
