@@ -25,7 +25,7 @@ struct WarpPlan {
 
 /// One of cpu, cuda and reference. A step has five parts, called in this order and each once; a
 /// part that throws ends its step. Two steps, numbers 0 and 1, may be in flight: of the later one
-/// only upload() comes before settle(), and only compute() before deliver() and finish() of the
+/// only upload() comes before settle(), and only compute() before download() and finish() of the
 /// earlier.
 class WarpBackend {
  public:
@@ -38,7 +38,7 @@ class WarpBackend {
   /// Waits until it is computed; what is wrong with it is known then.
   virtual void settle(int) {}
   /// Asks for the result to be brought to the target.
-  virtual void deliver(int) {}
+  virtual void download(int) {}
   /// Waits until it is there. The report lacks the total time.
   virtual StepReport finish(int flight) = 0;
   /// Waits until nothing is under way.

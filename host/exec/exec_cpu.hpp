@@ -40,7 +40,7 @@ class CpuExec {
   template <class T>
   using Buffer = HostBuffer<T>;
   template <class T>
-  using HomeBuffer = HostBuffer<T>;
+  using PinnedBuffer = HostBuffer<T>;
   template <class T>
   struct Staged {};  ///< nothing: what upload() is given is read in place
 
@@ -77,8 +77,8 @@ class CpuExec {
   }
   /// Brings what was written to writable() memory home: it is there.
   template <class T>
-  void deliver(const char*, View<const T>, T*) {}
-  bool delivers_beside(const void*) const { return true; }
+  void download(const char*, View<const T>, T*) {}
+  bool downloads_async(const void*) const { return true; }
 
   /// The value of a few entries, once all stages before have run.
   template <class T>
@@ -86,7 +86,7 @@ class CpuExec {
     std::copy_n(from.data, from.size, to);
   }
   template <class T>
-  void fetch(View<const T> from, HomeBuffer<T>& to) {
+  void fetch(View<const T> from, PinnedBuffer<T>& to) {
     read(from, to.view(from.size).data);
   }
   template <class T>

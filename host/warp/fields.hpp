@@ -80,10 +80,16 @@ class WarpFields {
     unused_.reserve(2 * (tets + 1) + tet_class_count);
     const View<std::int64_t> unused = unused_.view(2 * (tets + 1) + tet_class_count);
     exec_.zero("warp/fields", unused);
-    tet_setup(exec_, pairs.tets(), View<const Node>(rest_.view(pairs.rest().size)), pairs.nodes(),
-              pairs.rest_orientation(), frame, exchanged_.view(tets), {unused.data, tets + 1},
-              {unused.data + tets + 1, tets + 1}, {unused.data + 2 * (tets + 1), tet_class_count},
-              pairs.hexes());
+    tet_setup(exec_, {.tets = pairs.tets(),
+                      .deformed = rest_.const_view(pairs.rest().size),
+                      .rest = pairs.nodes(),
+                      .rest_orientation = pairs.rest_orientation(),
+                      .frame = frame,
+                      .setups = exchanged_.view(tets),
+                      .corner_counts = {unused.data, tets + 1},
+                      .pair_counts = {unused.data + tets + 1, tets + 1},
+                      .class_counts = {unused.data + 2 * (tets + 1), tet_class_count},
+                      .hexes = pairs.hexes()});
     DisplacementMap map = make_displacement_map(plan_, frame);
     for (std::int64_t& shift : map.frame) shift = 0;
     const View<const Node> rest = rest_.const_view(pairs.rest().size);

@@ -102,21 +102,21 @@ class WarpOutputs {
     return window;
   }
 
-  /// True when deliver() to this target does not keep the host waiting.
-  bool delivers_beside(const WarpTarget& target) const {
+  /// True when download() to this target does not keep the host waiting.
+  bool downloads_async(const WarpTarget& target) const {
     return std::ranges::all_of(arrays_of(target), [&](const void* to) {
-      return to == nullptr || exec_.delivers_beside(to);
+      return to == nullptr || exec_.downloads_async(to);
     });
   }
 
   /// Brings home a window of what a step wrote to the memory of a slot. The forward field is not
   /// on the cells of the output and comes whole.
-  void deliver(int from, const WarpTarget& target, const CellWindow& window) {
+  void download(int from, const WarpTarget& target, const CellWindow& window) {
     const std::vector<void*> arrays = arrays_of(target);
     for (std::size_t a = 0; a < arrays.size(); ++a) {
       if (arrays[a] == nullptr) continue;
-      deliver(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
-              a == place_of(Extra::forward) ? window_of({}) : window);
+      download(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
+               a == place_of(Extra::forward) ? window_of({}) : window);
     }
   }
 
@@ -159,10 +159,10 @@ class WarpOutputs {
   }
 
   /// Slices as long as they are whole, else slice by slice.
-  void deliver(const Buffer<std::byte>& from,
-               std::int64_t per_voxel,
-               std::byte* to,
-               const CellWindow& window) {
+  void download(const Buffer<std::byte>& from,
+                std::int64_t per_voxel,
+                std::byte* to,
+                const CellWindow& window) {
     int begin[2], end[2];
     for (int axis = 0; axis < 2; ++axis) {
       begin[axis] = std::max(window.begin[axis] * cell_edge, frame_.begin[axis + 1]);
@@ -175,8 +175,8 @@ class WarpOutputs {
       const std::int64_t past =
           frame_.offset_of(frame_.end[0], end[0] - 1, k + slices - 1) * per_voxel;
       const View<const std::byte> all = from.const_view(frame_.voxel_count() * per_voxel);
-      exec_.deliver("warp/download", View<const std::byte>{all.data + first, past - first},
-                    to + first);
+      exec_.download("warp/download", View<const std::byte>{all.data + first, past - first},
+                     to + first);
     }
   }
 

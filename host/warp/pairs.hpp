@@ -114,9 +114,7 @@ class WarpPairs {
   void make() {
     exec_.zero("warp/setup", View<MeshCounters>{&counters().data->mesh, 1});
     const TetSetupBody setup = setup_body();
-    tet_setup(exec_, mesh_.tets, nodes(), mesh_.rest, mesh_.orientation, geometry_.frame,
-              setup.setups, setup.corner_counts, setup.pair_counts, setup.class_counts,
-              mesh_.hexes);
+    tet_setup(exec_, setup);
     if (keeps_totals()) tet_widen(exec_, setup, {});
     sum_up(setup, {});
     if (Exec::reads_are_free) {

@@ -158,15 +158,15 @@ class WarpSources {
     UniformMap map = make_uniform_map(view);
     const std::int64_t blocks = map.block_count();
     Buffer<std::uint8_t> scratch;
-    Buffer<std::int64_t> wide_count;
+    Buffer<std::int64_t> extended_count;
     sources_[s].reach.reserve(blocks);
     scratch.reserve(blocks);
-    wide_count.reserve(1);
-    exec_.zero("warp/setup", wide_count.view(1));
+    extended_count.reserve(1);
+    exec_.zero("warp/setup", extended_count.view(1));
     volume_uniform(exec_, view, tets, rest, sources_[s].reach.view(blocks), scratch.view(blocks),
-                   wide_count.view(1));
+                   extended_count.view(1));
     std::int64_t count = 0;
-    exec_.read(wide_count.const_view(1), &count);
+    exec_.read(extended_count.const_view(1), &count);
     if (count > 0) map.reach = sources_[s].reach.const_view(blocks);
     return map;
   }

@@ -40,7 +40,7 @@ void StepQueue::begin(const PositionsView& deformed,
   // comes when the device has the next kernels to run.
   if (before != nullptr) settle(*before);
   attempt(now, [&] { backend_->compute(now.number, now.target, progress); });
-  if (before != nullptr) attempt(*before, [&] { backend_->deliver(before->number); });
+  if (before != nullptr) attempt(*before, [&] { backend_->download(before->number); });
 }
 
 StepReport StepQueue::finish() {
@@ -49,7 +49,7 @@ StepReport StepQueue::finish() {
   settle(*flight);
   StepReport report;
   attempt(*flight, [&] {
-    backend_->deliver(flight->number);
+    backend_->download(flight->number);
     report = backend_->finish(flight->number);
   });
   if (flight->error) {

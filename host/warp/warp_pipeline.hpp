@@ -11,10 +11,10 @@
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
 #include "host/warp/pairs.hpp"
-#include "host/warp/rules.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/step_counters.hpp"
 #include "host/warp/totals.hpp"
+#include "host/warp/transforms.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/voxel_cells.hpp"
@@ -32,7 +32,7 @@ class WarpPipeline : public WarpBackend {
         exec_(std::move(exec)),
         pairs_(exec_, plan_, geometry_),
         outputs_(exec_, plan_, geometry_.frame),
-        rules_(exec_, plan_, geometry_),
+        transforms_(exec_, plan_, geometry_),
         fields_(exec_, plan_, geometry_),
         sources_(exec_, plan_),
         totals_(exec_, plan_, geometry_) {
@@ -61,9 +61,9 @@ class WarpPipeline : public WarpBackend {
     flight.is_delivered = false;
     compute(flight, progress);
     // Parts of an output are known when the step is settled; a whole one may be on its way by then.
-    if (stale_.size == 0 && target.memory == Memory::host && outputs_.delivers_beside(target)) {
+    if (stale_.size == 0 && target.memory == Memory::host && outputs_.downloads_async(target)) {
       flight.window = outputs_.window_of({});
-      deliver(number);
+      download(number);
     }
   }
 
@@ -81,11 +81,11 @@ class WarpPipeline : public WarpBackend {
     if (flight.target.memory == Memory::host) flight.window = outputs_.window_of(stale_);
   }
 
-  void deliver(int number) override {
+  void download(int number) override {
     Flight& flight = flights_[number];
     if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
     exec_.select(number);
-    outputs_.deliver(flight.slot, flight.target, flight.window);
+    outputs_.download(flight.slot, flight.target, flight.window);
   }
 
   StepReport finish(int number) override {
@@ -112,8 +112,8 @@ class WarpPipeline : public WarpBackend {
   struct Flight {
     typename Exec::template Staged<double> position_buffer;
     View<const double> positions;
-    typename Exec::template HomeBuffer<StepCounters> counters;
-    typename Exec::template HomeBuffer<double> totals;
+    typename Exec::template PinnedBuffer<StepCounters> counters;
+    typename Exec::template PinnedBuffer<double> totals;
     WarpTarget target;
     int age = 0;   ///< steps since the target got what it holds; 0: nothing is known
     int slot = 0;  ///< of outputs_
@@ -142,7 +142,7 @@ class WarpPipeline : public WarpBackend {
            int age,
            const Progress& progress) {
     pairs_.run(positions);
-    rules_.run(pairs_);
+    transforms_.run(pairs_);
     stale_ = {};
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
@@ -198,9 +198,9 @@ class WarpPipeline : public WarpBackend {
       job.tet = s == 0 ? outputs_.tet(target) : nullptr;
       job.counts = s == 0 ? &work_counters().raster : nullptr;
       if (s == 0) job.cell_covered = cell_covered_.view(frame.cell_count());
-      job.rules = rules_.rules(s, pairs_.tet_count());
-      job.outside_rule = rules_.outside();
-      job.reorientation = rules_.reorientation(s);
+      job.transforms = transforms_.transforms(s, pairs_.tet_count());
+      job.outside_transform = transforms_.outside();
+      job.reorientation = transforms_.reorientation(s);
       choose_work(s, job);
       const double share = 1.0 / static_cast<double>(sources_.size());
       const ProgressPart part{progress, static_cast<double>(s) * share, share};
@@ -219,7 +219,7 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
     VoxelOverlapBody body = {job.setups,
-                             job.rules,
+                             job.transforms,
                              pairs_.list(),
                              job.cell_work,
                              job.frame,
@@ -228,7 +228,7 @@ class WarpPipeline : public WarpBackend {
                              job.source.components,
                              number_view(job.volume)};
     job.filter = Filter::nearest;
-    job.rules = {};
+    job.transforms = {};
     if (s == 0) cell_raster(exec_, job, progress);
     voxel_overlap(exec_, body);
     progress.report(1.0);
@@ -249,7 +249,7 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   void choose_work(std::size_t s, RasterJob<T>& job) {
     const UniformMap uniform =
-        plan_.options.skip.constant_cells && job.rules.size == 0
+        plan_.options.skip.constant_cells && job.transforms.size == 0
             ? sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest())
             : UniformMap{};
     if (stale_.size == 0 && uniform.reach.size == 0) return;
@@ -280,7 +280,7 @@ class WarpPipeline : public WarpBackend {
   Exec exec_;
   WarpPairs<Exec> pairs_;
   WarpOutputs<Exec> outputs_;
-  WarpRules<Exec> rules_;
+  WarpTransforms<Exec> transforms_;
   WarpFields<Exec> fields_;
   WarpSources<Exec> sources_;
   WarpTotals<Exec> totals_;

@@ -12,8 +12,8 @@
 
 #include "host/base/warp_backend.hpp"
 #include "host/warp/hex_split.hpp"
-#include "host/warp/rule_checks.hpp"
 #include "host/warp/step_queue.hpp"
+#include "host/warp/transform_checks.hpp"
 #include "kernels/warp/node_quantize.hpp"
 
 namespace tetwarp {
@@ -118,7 +118,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   plan.sources.assign(sources.begin(), sources.end());
   plan.options = options;
   check_sources(plan.sources, options);
-  check_rules(plan.sources, options);
+  check_transforms(plan.sources, options);
   check_mesh(mesh);
   plan.mesh = with_split_hexes(mesh);
   if (options.threads < 0) throw std::invalid_argument("threads: negative");

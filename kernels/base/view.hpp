@@ -43,8 +43,32 @@ struct OutputFrame {
     const std::int64_t slice = std::int64_t{k - begin[2]} * (end[1] - begin[1]) + (j - begin[1]);
     return slice * (end[0] - begin[0]) + (i - begin[0]);
   }
+  /// First voxel [frame] of a row of the output array; rows along i are numbered j fastest.
+  TETWARP_HD void set_row_start(std::int64_t row, int* ijk) const {
+    const int ny = end[1] - begin[1];
+    ijk[0] = begin[0];
+    ijk[1] = begin[1] + static_cast<int>(row % ny);
+    ijk[2] = begin[2] + static_cast<int>(row / ny);
+  }
+  /// The frame voxel at a position of the output array: the inverse of offset_of().
+  TETWARP_HD void set_voxel(std::int64_t offset, int* ijk) const {
+    const int nx = end[0] - begin[0];
+    set_row_start(offset / nx, ijk);
+    ijk[0] += static_cast<int>(offset % nx);
+  }
   TETWARP_HD std::int64_t cell_index(int ci, int cj, int ck) const {
     return (std::int64_t{ck} * cells[1] + cj) * cells[0] + ci;
+  }
+  /// The cell that a frame voxel belongs to.
+  TETWARP_HD std::int64_t cell_of_voxel(const int* ijk) const {
+    return cell_index(ijk[0] >> cell_shift, ijk[1] >> cell_shift, ijk[2] >> cell_shift);
+  }
+  /// First voxel [frame] of a cell.
+  TETWARP_HD void set_corner(std::int64_t cell, int* corner) const {
+    const std::int64_t line = cell / cells[0];
+    corner[0] = static_cast<int>(cell % cells[0]) * cell_edge;
+    corner[1] = static_cast<int>(line % cells[1]) * cell_edge;
+    corner[2] = static_cast<int>(line / cells[1]) * cell_edge;
   }
 };
 

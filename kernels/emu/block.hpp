@@ -30,11 +30,11 @@ class Fault : public std::runtime_error {
 };
 
 /// Which thread runs first where CUDA leaves it open.
-enum class Order { forward, reverse, shuffled };
+enum class ThreadOrder { forward, reverse, shuffled };
 
 /// Order of threads, and the seed of the shuffled one.
 struct Schedule {
-  Order order = Order::forward;
+  ThreadOrder order = ThreadOrder::forward;
   unsigned seed = 1;
 };
 
@@ -236,15 +236,15 @@ class Block {
   std::vector<unsigned> ordered(unsigned count) {
     std::vector<unsigned> numbers(count);
     std::iota(numbers.begin(), numbers.end(), 0u);
-    if (order_ == Order::reverse) std::reverse(numbers.begin(), numbers.end());
-    if (order_ == Order::shuffled) std::shuffle(numbers.begin(), numbers.end(), random_);
+    if (order_ == ThreadOrder::reverse) std::reverse(numbers.begin(), numbers.end());
+    if (order_ == ThreadOrder::shuffled) std::shuffle(numbers.begin(), numbers.end(), random_);
     return numbers;
   }
 
   std::vector<std::unique_ptr<Thread>> threads_;  ///< kept from launch to launch
   unsigned thread_count_ = 0;
   unsigned running_ = 0;
-  Order order_ = Order::forward;
+  ThreadOrder order_ = ThreadOrder::forward;
   std::minstd_rand random_;
   std::vector<std::byte> shared_;
   std::exception_ptr fault_;

@@ -54,7 +54,7 @@ struct Stream {
     while (done < item) run_one();
   }
   /// As far as it gets without what other streams have not done yet.
-  void run_ahead() {
+  void run_ready() {
     while (!work.empty() && work.front().after.is_passed()) run_one();
   }
 
@@ -76,7 +76,7 @@ inline void Event::pass() const {
 }
 
 /// What the host asked for, in order.
-enum class Call : char {
+enum class ApiCall : char {
   launch = 'L',
   allocate = 'A',
   release = 'F',
@@ -92,12 +92,12 @@ class Device {
  public:
   std::recursive_mutex lock;
 
-  static constexpr int nobody = -1;
+  static constexpr int none = -1;
   /// Number of the stream, in their order of making, that runs as soon as events let it; the others
   /// run when somebody waits for them.
-  int ahead = nobody;
+  int eager_stream = none;
   /// Number of the cudaStreamWaitEvent from now on that does nothing, to see that it is missed.
-  int forgotten_wait = nobody;
+  int skipped_wait = none;
 
   static Device& only() {
     static Device device;
@@ -109,7 +109,7 @@ class Device {
     const std::lock_guard guard(lock);
     return std::exchange(calls_, {});
   }
-  void note(Call call) { calls_ += static_cast<char>(call); }
+  void note(ApiCall call) { calls_ += static_cast<char>(call); }
 
   void* allocate(std::size_t size, bool is_pinned) {
     auto memory = std::make_unique<std::byte[]>(std::max<std::size_t>(size, 1));
@@ -141,10 +141,10 @@ class Device {
   void run_all() {
     for (const auto& stream : streams_) stream->run_until(stream->queued);
   }
-  /// To be called after everything that may let the stream ahead go on.
-  void go_ahead() {
-    const auto number = static_cast<std::size_t>(ahead);
-    if (ahead != nobody && number < streams_.size()) streams_[number]->run_ahead();
+  /// To be called after everything that may let the stream eager_stream go on.
+  void run_eager() {
+    const auto number = static_cast<std::size_t>(eager_stream);
+    if (eager_stream != none && number < streams_.size()) streams_[number]->run_ready();
   }
 
  private:
@@ -177,10 +177,10 @@ void launch_on(cudaStream_t stream,
                const Args&... args) {
   if (stream == nullptr) return launch(kernel, grid, block, shared_bytes, args...);
   const std::lock_guard guard(Device::only().lock);
-  Device::only().note(Call::launch);
+  Device::only().note(ApiCall::launch);
   static_cast<Stream*>(stream)->enqueue(
       [=] { launch(kernel, grid, block, shared_bytes, args...); });
-  Device::only().go_ahead();
+  Device::only().run_eager();
 }
 
 }  // namespace tetwarp::simt

@@ -36,10 +36,10 @@ inline cudaError_t cudaGraphInstantiate(cudaGraphExec_t* exec, cudaGraph_t graph
 inline cudaError_t cudaGraphLaunch(cudaGraphExec_t exec, cudaStream_t stream) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  device.note(tetwarp::simt::Call::launch);
+  device.note(tetwarp::simt::ApiCall::launch);
   auto* const own = static_cast<tetwarp::simt::Stream*>(stream);
   for (const auto& work : *exec) own->enqueue(work);
-  device.go_ahead();
+  device.run_eager();
   return cudaSuccess;
 }
 inline cudaError_t cudaGraphDestroy(cudaGraph_t graph) {

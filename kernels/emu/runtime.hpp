@@ -44,7 +44,7 @@ template <class T>
 cudaError_t cudaMalloc(T** data, std::size_t size) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  device.note(tetwarp::simt::Call::allocate);
+  device.note(tetwarp::simt::ApiCall::allocate);
   *data = static_cast<T*>(device.allocate(size, false));
   return cudaSuccess;
 }
@@ -52,7 +52,7 @@ template <class T>
 cudaError_t cudaMallocHost(T** data, std::size_t size) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  device.note(tetwarp::simt::Call::allocate);
+  device.note(tetwarp::simt::ApiCall::allocate);
   *data = static_cast<T*>(device.allocate(size, true));
   return cudaSuccess;
 }
@@ -60,7 +60,7 @@ inline cudaError_t cudaFree(void* data) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
   if (data == nullptr) return cudaSuccess;
-  device.note(tetwarp::simt::Call::release);
+  device.note(tetwarp::simt::ApiCall::release);
   return device.release(data) ? cudaSuccess : cudaErrorInvalidValue;
 }
 inline cudaError_t cudaFreeHost(void* data) {
@@ -99,10 +99,10 @@ inline cudaError_t cudaStreamDestroy(cudaStream_t stream) {
 inline cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  device.note(tetwarp::simt::Call::wait);
+  device.note(tetwarp::simt::ApiCall::wait);
   auto* const own = static_cast<tetwarp::simt::Stream*>(stream);
   own->run_until(own->queued);
-  device.go_ahead();
+  device.run_eager();
   return cudaSuccess;
 }
 
@@ -123,17 +123,17 @@ inline cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
 inline cudaError_t cudaEventSynchronize(cudaEvent_t event) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  device.note(tetwarp::simt::Call::wait);
+  device.note(tetwarp::simt::ApiCall::wait);
   event->pass();
-  device.go_ahead();
+  device.run_eager();
   return cudaSuccess;
 }
 inline cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
-  if (device.forgotten_wait == device.nobody || device.forgotten_wait-- != 0) {
+  if (device.skipped_wait == device.none || device.skipped_wait-- != 0) {
     static_cast<tetwarp::simt::Stream*>(stream)->enqueue([] {}, *event);
-    device.go_ahead();
+    device.run_eager();
   }
   return cudaSuccess;
 }
@@ -146,7 +146,7 @@ inline cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t, cudaEv
 /// Copies from pageable memory are staged at once, those to it wait, as CUDA's do.
 inline cudaError_t cudaMemcpyAsync(
     void* to, const void* from, std::size_t size, cudaMemcpyKind kind, cudaStream_t stream) {
-  using tetwarp::simt::Call;
+  using tetwarp::simt::ApiCall;
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
   auto* const own = static_cast<tetwarp::simt::Stream*>(stream);
@@ -154,30 +154,32 @@ inline cudaError_t cudaMemcpyAsync(
   if (device.is_on_device(to, size) == to_host || device.is_on_device(from, size) == from_host) {
     return cudaErrorInvalidValue;
   }
-  device.note(to_host ? Call::copy_to_host : from_host ? Call::copy_to_device : Call::copy_within);
+  device.note(to_host     ? ApiCall::copy_to_host
+              : from_host ? ApiCall::copy_to_device
+                          : ApiCall::copy_within);
   if (from_host && !device.is_pinned(from, size)) {
     const auto* const bytes = static_cast<const std::byte*>(from);
     own->enqueue([to, staged = std::vector<std::byte>(bytes, bytes + size)] {
       std::memcpy(to, staged.data(), staged.size());
     });
-    device.go_ahead();
+    device.run_eager();
     return cudaSuccess;
   }
   own->enqueue([=] { std::memcpy(to, from, size); });
   if (to_host && !device.is_pinned(to, size)) {
-    device.note(Call::wait);
+    device.note(ApiCall::wait);
     own->run_until(own->queued);
   }
-  device.go_ahead();
+  device.run_eager();
   return cudaSuccess;
 }
 inline cudaError_t cudaMemsetAsync(void* data, int value, std::size_t size, cudaStream_t stream) {
   auto& device = tetwarp::simt::Device::only();
   const std::lock_guard guard(device.lock);
   if (!device.is_on_device(data, size)) return cudaErrorInvalidValue;
-  device.note(tetwarp::simt::Call::fill);
+  device.note(tetwarp::simt::ApiCall::fill);
   static_cast<tetwarp::simt::Stream*>(stream)->enqueue([=] { std::memset(data, value, size); });
-  device.go_ahead();
+  device.run_eager();
   return cudaSuccess;
 }
 // NOLINTEND(readability-identifier-naming)

@@ -141,8 +141,9 @@ inline Schedule& schedule() {
 template <class Check>
 void for_each_schedule(Check check) {
   for (const Schedule next :
-       {Schedule{Order::forward}, Schedule{Order::reverse}, Schedule{Order::shuffled, 1},
-        Schedule{Order::shuffled, 2}, Schedule{Order::shuffled, 3}}) {
+       {Schedule{ThreadOrder::forward}, Schedule{ThreadOrder::reverse},
+        Schedule{ThreadOrder::shuffled, 1}, Schedule{ThreadOrder::shuffled, 2},
+        Schedule{ThreadOrder::shuffled, 3}}) {
     schedule() = next;
     check(next);
   }

@@ -71,11 +71,11 @@ class CudaExec {
   template <class T>
   using Buffer = DeviceBuffer<T>;
   template <class T>
-  using HomeBuffer = PinnedBuffer<T>;  ///< on the host
+  using PinnedBuffer = tetwarp::PinnedBuffer<T>;
   template <class T>
   struct Staged {
-    HomeBuffer<T> home;
-    Buffer<T> far;
+    PinnedBuffer<T> host;
+    Buffer<T> device;
   };
 
   /// Reading a size waits for the device: pipelines do it once, then trust their buffers.
@@ -110,9 +110,9 @@ class CudaExec {
   /// The kernels of the selected step come now; they wait for its upload().
   void begin_compute(void* stream) {
     use_stream(stream);
-    flight().uploaded.hold_back(this->stream());
+    flight().uploaded.make_wait(this->stream());
   }
-  /// There are no more of them: what deliver() brings home is there when they have run.
+  /// There are no more of them: what download() brings home is there when they have run.
   void end_compute() { flight().computed.record(stream()); }
   /// From then on the caller may end his stream.
   void wait_computed() {
@@ -145,16 +145,16 @@ class CudaExec {
   /// Numbers for the selected step, taken as they are now, that travel beside earlier kernels.
   template <class T>
   View<const T> upload(const char* label, const T* host, std::int64_t size, Staged<T>& staged) {
-    staged.home.reserve(size);
-    staged.far.reserve(size);
-    std::copy_n(host, size, staged.home.view(size).data);
+    staged.host.reserve(size);
+    staged.device.reserve(size);
+    std::copy_n(host, size, staged.host.view(size).data);
     flight().timed(label, state_->upload, [&] {
-      check_cuda(cudaMemcpyAsync(staged.far.view(size).data, staged.home.view(size).data,
+      check_cuda(cudaMemcpyAsync(staged.device.view(size).data, staged.host.view(size).data,
                                  bytes_of<T>(size), cudaMemcpyHostToDevice, state_->upload),
                  "cudaMemcpyAsync to device");
     });
     flight().uploaded.record(state_->upload);
-    return staged.far.const_view(size);
+    return staged.device.const_view(size);
   }
   template <class T>
   T* writable(T*, std::int64_t size, Buffer<T>& buffer) {
@@ -162,10 +162,10 @@ class CudaExec {
     return buffer.view(size).data;
   }
   /// Brings home what the selected step has computed, beside the kernels of the next. Returns
-  /// before it is there if delivers_beside().
+  /// before it is there if downloads_async().
   template <class T>
-  void deliver(const char* label, View<const T> from, T* to) {
-    flight().computed.hold_back(state_->download);
+  void download(const char* label, View<const T> from, T* to) {
+    flight().computed.make_wait(state_->download);
     flight().timed(label, state_->download, [&] {
       check_cuda(cudaMemcpyAsync(to, from.data, bytes_of<T>(from.size), cudaMemcpyDeviceToHost,
                                  state_->download),
@@ -173,14 +173,14 @@ class CudaExec {
     });
   }
   /// True for page-locked memory. Copies to other memory wait on the host.
-  bool delivers_beside(const void* to) const {
+  bool downloads_async(const void* to) const {
     cudaPointerAttributes attributes;
     check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
     return attributes.type == cudaMemoryTypeHost;
   }
   /// As read(), but they are there after wait_computed().
   template <class T>
-  void fetch(View<const T> from, HomeBuffer<T>& to) {
+  void fetch(View<const T> from, PinnedBuffer<T>& to) {
     check_cuda(cudaMemcpyAsync(to.view(from.size).data, from.data, bytes_of<T>(from.size),
                                cudaMemcpyDeviceToHost, stream()),
                "cudaMemcpyAsync to host");

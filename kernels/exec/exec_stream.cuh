@@ -46,7 +46,7 @@ class DeviceEvent {
     check_cuda(cudaEventRecord(event_, stream), "cudaEventRecord");
   }
   /// What is put on the stream from now on waits. Of an event never recorded: for nothing.
-  void hold_back(cudaStream_t stream) const {
+  void make_wait(cudaStream_t stream) const {
     check_cuda(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
   }
   void wait() const { check_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }

@@ -8,13 +8,13 @@
 #pragma once
 #include "kernels/exec/launch.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/voxel_rule.hpp"
+#include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
 
 constexpr int raster_threads = 128;
 constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
-constexpr int raster_wide_blocks = 2;  ///< the same of the kernel that knows the wide filters
+constexpr int raster_general_blocks = 2;  ///< the same of the kernel that knows the wide filters
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
@@ -46,14 +46,13 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
   const int thread = static_cast<int>(threadIdx.x);
   if (thread < 4 * count) {
     const CellPair pair = job.pairs[first + static_cast<unsigned>(thread / 4)];
-    set_cell_plane(job.setups[tet_of(pair)], thread % 4, corner[0], corner[1], corner[2],
-                   chunk.planes[thread / 4]);
+    set_cell_plane(job.setups[tet_of(pair)], thread % 4, corner, chunk.planes[thread / 4]);
   } else if (thread >= 4 * raster_chunk && thread - 4 * raster_chunk < count) {
     const int slot = thread - 4 * raster_chunk;
     const CellPair pair = job.pairs[first + static_cast<unsigned>(slot)];
     const TetSetup& tet = job.setups[tet_of(pair)];
     double start[3], linear[3][3];
-    map_start(tet, corner[0], corner[1], corner[2], start, linear);
+    map_start(tet, corner, start, linear);
     chunk.maps[slot] = make_source_map<ArithmeticOf<T>>(job.source, start, linear);
     chunk.tet[slot] = tet_of(pair);
     chunk.rows[slot] =
@@ -90,83 +89,68 @@ __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
   return -1;
 }
 
-/// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
-/// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
-template <class T, bool Wide>
-__global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : raster_blocks)
-    cell_raster_kernel(RasterJob<T> job) {
-  using Real = ArithmeticOf<T>;
-  __shared__ RasterChunk<Real> chunk;
-  __shared__ int block_counts[4];
-
-  const int thread = static_cast<int>(threadIdx.x);
-  const std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
-  const std::int64_t line = cell / job.frame.cells[0];
-  const int corner[3] = {static_cast<int>(cell % job.frame.cells[0]) * cell_edge,
-                         static_cast<int>(line % job.frame.cells[1]) * cell_edge,
-                         static_cast<int>(line / job.frame.cells[1]) * cell_edge};
-  const int i = thread % cell_edge;
-  const int j = thread / cell_edge % cell_edge;
-  const int k_first = thread / (cell_edge * cell_edge);
-  const std::int64_t work = work_of(job, cell);
-  if (work == keep_cell) return;
-  const CellRange range = job.ranges[cell];
-  RasterCounts mine = {0, 0, 0, 0};
-  unsigned open = 0;  // bit d: voxel d of this thread is in the output and has no owner yet
+/// Voxels of the output among the `raster_depth` of this thread: bit d for (i, j, k + 2 d).
+__device__ __forceinline__ unsigned voxels_in_output(
+    const OutputFrame& frame, const int* corner, int i, int j, int k) {
+  unsigned voxels = 0;
   for (int d = 0; d < raster_depth; ++d) {
-    const int x[3] = {corner[0] + i, corner[1] + j, corner[2] + k_first + 2 * d};
+    const int x[3] = {corner[0] + i, corner[1] + j, corner[2] + k + 2 * d};
     bool within = true;
     for (int axis = 0; axis < 3; ++axis) {
-      within = within && x[axis] >= job.frame.begin[axis] && x[axis] < job.frame.end[axis];
+      within = within && x[axis] >= frame.begin[axis] && x[axis] < frame.end[axis];
     }
-    open |= static_cast<unsigned>(within) << d;
+    voxels |= static_cast<unsigned>(within) << d;
   }
-  if (thread < 4) block_counts[thread] = 0;
+  return voxels;
+}
 
-  for (std::uint32_t first = range.begin; first < range.end; first += raster_chunk) {
-    const int count = static_cast<int>(min_of(range.end - first, std::uint32_t{raster_chunk}));
-    __syncthreads();  // everybody has finished with the chunk before
-    load_chunk(job, first, count, corner, chunk);
-    __syncthreads();
-    for (int d = 0; d < raster_depth; ++d) {
-      const int k = k_first + 2 * d;
-      if ((open >> d & 1) == 0) continue;
-      const int slot = find_owner(job, chunk, count, corner, i, j, k, mine);
-      if (slot < 0) continue;
-      open &= ~(1u << d);
-      ++mine.covered;
-      const int t = chunk.tet[slot];
-      const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-      const bool ruled = Wide && has_rule(job, t);
-      mine.copied += chunk.copied[slot] && !ruled;
-      if (work >= 0) {
-        store_filled(job, work, voxel);
-      } else if (ruled) {
-        store_ruled(job, t, corner, i, j, k, voxel);
-      } else if ((Wide || sizeof(Real) == 4) && chunk.alone[slot]) {
-        store_owned<Wide, T, double>(job, t, corner[0], corner[1], corner[2], i, j, k, voxel);
-      } else {
-        store_sample<Wide>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],
-                           i, j, k, voxel);
-      }
-      if (job.mask != nullptr) job.mask[voxel] = 1;
-      if (job.tet != nullptr) job.tet[voxel] = t;
-    }
+/// Stores a voxel whose owner is tetrahedron `slot` of the chunk.
+/// @param work  of the cell, see RasterJob::cell_work
+template <bool General, class T>
+__device__ __forceinline__ void store_covered(const RasterJob<T>& job,
+                                              const RasterChunk<ArithmeticOf<T>>& chunk,
+                                              int slot,
+                                              std::int64_t work,
+                                              const CellVoxel& voxel,
+                                              RasterCounts& mine) {
+  const int t = chunk.tet[slot];
+  const bool transformed = General && has_transform(job, t);
+  ++mine.covered;
+  mine.copied += chunk.copied[slot] && !transformed;
+  if (work >= 0) {
+    store_filled(job, work, voxel.offset);
+  } else if (transformed) {
+    store_transformed_voxel(job, t, voxel);
+  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.alone[slot]) {
+    store_owned<General, T, double>(job, t, voxel);
+  } else {
+    store_sample<General>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],
+                          voxel.i, voxel.j, voxel.k, voxel.offset);
   }
-  for (int d = 0; d < raster_depth; ++d) {
-    if ((open >> d & 1) == 0) continue;
-    const int k = k_first + 2 * d;
-    const std::int64_t voxel = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k);
-    if (Wide && has_outside_rule(job)) {
-      store_outside_ruled(job, corner, i, j, k, voxel);
-    } else {
-      store_outside<Wide>(job, corner[0], corner[1], corner[2], i, j, k, voxel);
-    }
-    if (job.mask != nullptr) job.mask[voxel] = 0;
-    if (job.tet != nullptr) job.tet[voxel] = -1;
-  }
+  if (job.mask != nullptr) job.mask[voxel.offset] = 1;
+  if (job.tet != nullptr) job.tet[voxel.offset] = t;
+}
 
-  __syncthreads();
+/// Stores a voxel of the output that no tetrahedron covers.
+template <bool General, class T>
+__device__ __forceinline__ void store_uncovered(const RasterJob<T>& job, const CellVoxel& voxel) {
+  if (General && has_outside_transform(job)) {
+    store_transformed_outside(job, voxel);
+  } else {
+    store_outside<General>(job, voxel);
+  }
+  if (job.mask != nullptr) job.mask[voxel.offset] = 0;
+  if (job.tet != nullptr) job.tet[voxel.offset] = -1;
+}
+
+/// Adds the counts of all threads of the block to those of the job.
+/// @param block_counts  shared, four zeros that all threads see
+template <class T>
+__device__ __forceinline__ void add_counts(const RasterJob<T>& job,
+                                           std::int64_t cell,
+                                           const RasterCounts& mine,
+                                           int* block_counts) {
+  const int thread = static_cast<int>(threadIdx.x);
   atomicAdd(&block_counts[0], static_cast<int>(mine.covered));
   atomicAdd(&block_counts[1], static_cast<int>(mine.inside_tests));
   atomicAdd(&block_counts[2], static_cast<int>(mine.exact_tests));
@@ -180,11 +164,63 @@ __global__ void __launch_bounds__(raster_threads, Wide ? raster_wide_blocks : ra
   }
 }
 
-/// The kernel for a job: wide filters, rules and hexahedra have their own, whose registers the
+/// Finds the owner of every voxel of a cell and stores its samples.
+///
+/// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
+/// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
+/// @tparam General  whether the job may have wide filters, transforms or hexahedra
+template <class T, bool General>
+__global__ void __launch_bounds__(raster_threads, General ? raster_general_blocks : raster_blocks)
+    cell_raster_kernel(RasterJob<T> job) {
+  __shared__ RasterChunk<ArithmeticOf<T>> chunk;
+  __shared__ int block_counts[4];
+
+  const int thread = static_cast<int>(threadIdx.x);
+  const std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
+  int corner[3];
+  job.frame.set_corner(cell, corner);
+  const int i = thread % cell_edge;
+  const int j = thread / cell_edge % cell_edge;
+  const int k_first = thread / (cell_edge * cell_edge);
+  const std::int64_t work = work_of(job, cell);
+  if (work == keep_cell) return;
+  const CellRange range = job.ranges[cell];
+  RasterCounts mine = {0, 0, 0, 0};
+  unsigned open = voxels_in_output(job.frame, corner, i, j, k_first);  // those without an owner yet
+  if (thread < 4) block_counts[thread] = 0;
+  const auto voxel_at = [&](int k) {
+    return CellVoxel{corner, i, j, k,
+                     job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2] + k)};
+  };
+
+  for (std::uint32_t first = range.begin; first < range.end; first += raster_chunk) {
+    const int count = static_cast<int>(min_of(range.end - first, std::uint32_t{raster_chunk}));
+    __syncthreads();  // all threads have finished with the chunk before
+    load_chunk(job, first, count, corner, chunk);
+    __syncthreads();
+    for (int d = 0; d < raster_depth; ++d) {
+      const int k = k_first + 2 * d;
+      if ((open >> d & 1) == 0) continue;
+      const int slot = find_owner(job, chunk, count, corner, i, j, k, mine);
+      if (slot < 0) continue;
+      open &= ~(1u << d);
+      store_covered<General>(job, chunk, slot, work, voxel_at(k), mine);
+    }
+  }
+  for (int d = 0; d < raster_depth; ++d) {
+    if ((open >> d & 1) != 0) store_uncovered<General>(job, voxel_at(k_first + 2 * d));
+  }
+
+  __syncthreads();
+  add_counts(job, cell, mine, block_counts);
+}
+
+/// The kernel for a job: wide filters, transforms and hexahedra have their own, whose registers the
 /// others need not pay for.
 template <class T>
 auto raster_kernel(const RasterJob<T>& job) {
-  const bool is_plain = !is_wide(job.filter) && job.rules.size == 0 && job.hexes.nodes.size == 0;
+  const bool is_plain =
+      !is_wide(job.filter) && job.transforms.size == 0 && job.hexes.nodes.size == 0;
   return is_plain ? cell_raster_kernel<T, false> : cell_raster_kernel<T, true>;
 }
 

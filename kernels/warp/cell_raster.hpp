@@ -11,8 +11,8 @@
 #include "kernels/warp/cell_pairs.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
-#include "kernels/warp/tet_rule.hpp"
 #include "kernels/warp/tet_setup.hpp"
+#include "kernels/warp/tet_transform.hpp"
 #include "kernels/warp/volume_filter.hpp"
 #include "kernels/warp/volume_label.hpp"
 #include "kernels/warp/volume_sample.hpp"
@@ -67,22 +67,22 @@ struct RasterJob {
   /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
   View<std::uint16_t> cell_covered;
 
-  /// Per tetrahedron: what its voxels get, see voxel_rule.hpp. Size 0: all are plain.
-  View<const TetRule> rules;
-  TetRule outside_rule;    ///< of voxels that no tetrahedron covers
-  Quantity reorientation;  ///< that the matrices of rules are made for
+  /// Per tetrahedron: what its voxels get, see voxel_transform.hpp. Size 0: all are plain.
+  View<const VoxelTransform> transforms;
+  VoxelTransform outside_transform;  ///< of voxels that no tetrahedron covers
+  Quantity reorientation;            ///< that the matrices of transforms are made for
 };
 
 /// Whether voxels of tetrahedron t get more than a plain sample.
 template <class T>
-TETWARP_HD bool has_rule(const RasterJob<T>& job, std::int64_t t) {
-  return job.rules.size > 0 && !job.rules[t].is_plain;
+TETWARP_HD bool has_transform(const RasterJob<T>& job, std::int64_t t) {
+  return job.transforms.size > 0 && !job.transforms[t].is_plain;
 }
 
 /// Whether voxels that no tetrahedron covers get more than a plain sample.
 template <class T>
-TETWARP_HD bool has_outside_rule(const RasterJob<T>& job) {
-  return job.rules.size > 0 && job.outside.use_source && !job.outside_rule.is_plain;
+TETWARP_HD bool has_outside_transform(const RasterJob<T>& job) {
+  return job.transforms.size > 0 && job.outside.use_source && !job.outside_transform.is_plain;
 }
 
 template <class T>
@@ -97,16 +97,18 @@ struct CellPlanes {
   float step[3][4];  ///< per voxel along i, j, k
 };
 
-/// float32 planes relative to the cell's corner (cx, cy, cz) [frame].
+/// One float32 plane relative to a cell's first voxel `corner` [frame].
 ///
 /// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
 /// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
 /// unit of the scaled planes is u (8 |v| + 192).
-TETWARP_HD void set_cell_plane(
-    const TetSetup& tet, int face, int cx, int cy, int cz, CellPlanes& planes) {
-  const double value = tet.plane[0][face] * static_cast<double>(cx - tet.anchor[0]) +
-                       tet.plane[1][face] * static_cast<double>(cy - tet.anchor[1]) +
-                       tet.plane[2][face] * static_cast<double>(cz - tet.anchor[2]) +
+TETWARP_HD void set_cell_plane(const TetSetup& tet,
+                               int face,
+                               const int* corner,
+                               CellPlanes& planes) {
+  const double value = tet.plane[0][face] * static_cast<double>(corner[0] - tet.anchor[0]) +
+                       tet.plane[1][face] * static_cast<double>(corner[1] - tet.anchor[1]) +
+                       tet.plane[2][face] * static_cast<double>(corner[2] - tet.anchor[2]) +
                        tet.plane[3][face];
   const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
   planes.value[face] = static_cast<float>(value * scale);
@@ -127,11 +129,13 @@ TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
 }
 
 /// Source position of a cell's corner under a tetrahedron's map, in float64.
-TETWARP_HD void map_start(
-    const TetSetup& tet, int cx, int cy, int cz, double* start, double (*linear)[3]) {
-  const double from[3] = {static_cast<double>(cx - tet.anchor[0]),
-                          static_cast<double>(cy - tet.anchor[1]),
-                          static_cast<double>(cz - tet.anchor[2])};
+TETWARP_HD void map_start(const TetSetup& tet,
+                          const int* corner,
+                          double* start,
+                          double (*linear)[3]) {
+  const double from[3] = {static_cast<double>(corner[0] - tet.anchor[0]),
+                          static_cast<double>(corner[1] - tet.anchor[1]),
+                          static_cast<double>(corner[2] - tet.anchor[2])};
   for (int row = 0; row < 3; ++row) {
     start[row] = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] + tet.map[2][row] * from[2] +
                  tet.map[3][row];
@@ -140,8 +144,9 @@ TETWARP_HD void map_start(
 }
 
 /// The same under the map of uncovered voxels.
-TETWARP_HD void outside_start(const OutsideMap& map, int cx, int cy, int cz, double* start) {
-  const double x = map.origin[0] + cx, y = map.origin[1] + cy, z = map.origin[2] + cz;
+TETWARP_HD void outside_start(const OutsideMap& map, const int* corner, double* start) {
+  const double x = map.origin[0] + corner[0], y = map.origin[1] + corner[1],
+               z = map.origin[2] + corner[2];
   for (int row = 0; row < 3; ++row) {
     const double* m = map.linear[row];
     start[row] = m[0] * x + m[1] * y + m[2] * z + map.offset[row];
@@ -185,13 +190,13 @@ TETWARP_HD void store_wide_sample(
 
 /// Stores one voxel's samples at a position x of the source relative to `whole`, or the background.
 ///
-/// @tparam Wide  whether the filter may be a wide one: device code that knows better keeps its
+/// @tparam General  whether the filter may be a wide one: device code that knows better keeps its
 ///               registers
-template <bool Wide, class T, class Real>
+template <bool General, class T, class Real>
 TETWARP_HD void store_position(
     const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, std::int64_t voxel) {
   T* out = job.volume + voxel * job.source.components;
-  if constexpr (Wide) {
+  if constexpr (General) {
     if (is_wide(filter)) return store_wide_sample(job, filter, whole, x, out);
   }
   const Tap<Real> tap = tap_of(job.source, filter, whole, x);
@@ -201,7 +206,7 @@ TETWARP_HD void store_position(
 }
 
 /// The same for voxel (i, j, k) of a cell under a map.
-template <bool Wide, class T, class Real>
+template <bool General, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Filter filter,
                              const SourceMap<Real>& map,
@@ -211,7 +216,7 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
                              std::int64_t voxel) {
   Real x[3];
   local_position(map, i, j, k, x);
-  store_position<Wide>(job, filter, map.whole, x, voxel);
+  store_position<General>(job, filter, map.whole, x, voxel);
 }
 
 /// The map of the hexahedron that tetrahedron t of a job belongs to.
@@ -221,7 +226,7 @@ TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
 }
 
 /// Stores frame voxel x, which `tet` owns and `map` is of.
-template <bool Wide, class T>
+template <bool General, class T>
 TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      const TetSetup& tet,
                                      const HexMap& map,
@@ -231,7 +236,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   double at[3];
   place_in_hex(tet, map, x, whole, at);
   for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
-  store_position<Wide>(job, job.filter, whole, at, voxel);
+  store_position<General>(job, job.filter, whole, at, voxel);
 }
 
 /// A voxel that moved by whole voxels needs one sample, whatever the filter.
@@ -240,30 +245,31 @@ TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;
 }
 
-/// Stores the voxel (i, j, k) of the cell at (cx, cy, cz) that tetrahedron t owns; the map is made
-/// anew.
-template <bool Wide, class T, class Real>
-TETWARP_HD void store_owned(const RasterJob<T>& job,
-                            std::int64_t t,
-                            int cx,
-                            int cy,
-                            int cz,
-                            int i,
-                            int j,
-                            int k,
-                            std::int64_t voxel) {
+/// A voxel of a cell.
+struct CellVoxel {
+  const int* corner;    ///< first voxel of the cell [frame]
+  int i, j, k;          ///< from there on, 0 to 7
+  std::int64_t offset;  ///< position in the output array [voxel]
+};
+
+/// Stores a voxel that tetrahedron t owns. Computes the map anew: for the few voxels whose map is
+/// not shared by the cell.
+template <bool General, class T, class Real>
+TETWARP_HD void store_owned(const RasterJob<T>& job, std::int64_t t, const CellVoxel& voxel) {
   const TetSetup& tet = job.setups[t];
-  if constexpr (Wide) {
+  if constexpr (General) {
     if (tet.kind == MapKind::trilinear) {
-      const int x[3] = {cx + i, cy + j, cz + k};
-      store_hex_voxel<Wide>(job, tet, hex_map_of(job, t), x, voxel);
+      const int x[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
+                        voxel.corner[2] + voxel.k};
+      store_hex_voxel<General>(job, tet, hex_map_of(job, t), x, voxel.offset);
       return;
     }
   }
   double start[3], linear[3][3];
-  map_start(tet, cx, cy, cz, start, linear);
-  store_sample<Wide>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
-                     make_source_map<Real>(job.source, start, linear), i, j, k, voxel);
+  map_start(tet, voxel.corner, start, linear);
+  store_sample<General>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
+                        make_source_map<Real>(job.source, start, linear), voxel.i, voxel.j, voxel.k,
+                        voxel.offset);
 }
 
 /// Stores a voxel that gets the samples of voxel `from` of the source.
@@ -276,19 +282,18 @@ TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::in
 }
 
 /// Stores a voxel that no tetrahedron covers.
-template <bool Wide, class T>
-TETWARP_HD void store_outside(
-    const RasterJob<T>& job, int cx, int cy, int cz, int i, int j, int k, std::int64_t voxel) {
+template <bool General, class T>
+TETWARP_HD void store_outside(const RasterJob<T>& job, const CellVoxel& voxel) {
   if (job.outside.use_source) {
     double start[3];
-    outside_start(job.outside, cx, cy, cz, start);
+    outside_start(job.outside, voxel.corner, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
-    store_sample<Wide>(job, copies ? Filter::nearest : job.filter,
-                       make_source_map<double>(job.source, start, job.outside.linear), i, j, k,
-                       voxel);
+    store_sample<General>(job, copies ? Filter::nearest : job.filter,
+                          make_source_map<double>(job.source, start, job.outside.linear), voxel.i,
+                          voxel.j, voxel.k, voxel.offset);
     return;
   }
-  T* out = job.volume + voxel * job.source.components;
+  T* out = job.volume + voxel.offset * job.source.components;
   for (int c = 0; c < job.source.components; ++c) out[c] = job.background;
 }
 

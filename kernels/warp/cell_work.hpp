@@ -23,7 +23,7 @@ TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
   const int around = reach_of(job.filter);
   constexpr double slack = 0.01;  // far more than the rounding of a position
   double start[3], linear[3][3], begin[3], end[3];
-  map_start(tet, corner[0], corner[1], corner[2], start, linear);
+  map_start(tet, corner, start, linear);
   for (int a = 0; a < 3; ++a) {
     begin[a] = max_of(tet.begin[a] - corner[a], 0);
     end[a] = min_of(tet.end[a] - corner[a], cell_edge) - 1;
@@ -79,10 +79,8 @@ struct CellWorkBody {
 
   /// The voxel whose samples all covered voxels of a cell get, or -1.
   TETWARP_HD std::int64_t value_of(std::int64_t cell) const {
-    const std::int64_t line = cell / job.frame.cells[0];
-    const int corner[3] = {static_cast<int>(cell % job.frame.cells[0]) * cell_edge,
-                           static_cast<int>(line % job.frame.cells[1]) * cell_edge,
-                           static_cast<int>(line / job.frame.cells[1]) * cell_edge};
+    int corner[3];
+    job.frame.set_corner(cell, corner);
     const CellRange range = job.ranges[cell];
     std::int64_t value = -1;
     for (std::uint32_t p = range.begin; p < range.end; ++p) {

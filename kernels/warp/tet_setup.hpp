@@ -169,16 +169,18 @@ TETWARP_HD void set_map(const TetNodes& source,
 
 /// One index = one tetrahedron; reads its nodes, writes its setup and sizes; any order.
 struct TetSetupBody {
-  View<const std::int32_t> tets;
-  View<const Node> deformed;
-  View<const Node> rest;
-  View<const std::int8_t> rest_orientation;
+  View<const std::int32_t> tets;             ///< node indices, shape [4 * tet_count]
+  View<const Node> deformed;                 ///< in the frame [quantum], shape [node_count]
+  View<const Node> rest;                     ///< in the source's index space [quantum], as many
+  View<const std::int8_t> rest_orientation;  ///< sign of the rest volume, shape [tet_count]
   OutputFrame frame;
-  View<TetSetup> setups;
+  View<TetSetup> setups;  ///< out, shape [tet_count]
+  /// Out, coarse corners of the box, none where it touches fewer than fewest_masked_cells cells,
+  /// shape [tet_count + 1], the last entry for the sum.
   View<std::int64_t> corner_counts;
-  View<std::int64_t> pair_counts;
-  View<std::int64_t> class_counts;
-  HexView hexes = {};
+  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], likewise
+  View<std::int64_t> class_counts;  ///< irregular ones are added to it, shape [tet_class_count]
+  HexView hexes = {};               ///< hexahedra that the last tetrahedra are parts of
 
   /// Sets everything but the class, which is returned; nothing that counts when flat or worse.
   TETWARP_HD TetClass set_up(std::int64_t t, TetSetup& setup) const {
@@ -242,38 +244,16 @@ struct TetSetupBody {
 ///
 /// The planes come from exact integer normals, so that thin tetrahedra lose nothing; a map that
 /// moves all nodes by the same whole voxels, to within a quantum, becomes a copy.
-/// @param exec              where to run
-/// @param tets              node indices, shape [4 * tet_count]
-/// @param deformed          nodes in the frame [quantum], shape [node_count]
-/// @param rest              nodes in the source's index space [quantum], shape [node_count]
-/// @param rest_orientation  sign of the rest volume, shape [tet_count]
-/// @param frame             the output
-/// @param setups            out, shape [tet_count]
-/// @param corner_counts     out, coarse corners of the box, none where it touches fewer than
-///                          fewest_masked_cells cells, shape [tet_count + 1]
-/// @param pair_counts       out, cells of the box, shape [tet_count + 1]
-/// @param class_counts      irregular tetrahedra are added to it, shape [tet_class_count]
-/// @param hexes             those that the last tetrahedra are parts of
-/// @pre  indices in tets are in range; the pipeline checks them
+/// @param exec  where to run
+/// @param body  input and output, see TetSetupBody
+/// @pre  indices in body.tets are in range; the pipeline checks them
 ///
 /// Determinism: boxes, classes and copies are exact; planes and maps within 2^-48 relative between
 /// back ends. Cost: about 150 integer multiplications, 330 bytes written per tetrahedron.
 /// Source: Gascon et al. 2013, section 3; the integer setup is ours.
 template <class Exec>
-void tet_setup(Exec& exec,
-               View<const std::int32_t> tets,
-               View<const Node> deformed,
-               View<const Node> rest,
-               View<const std::int8_t> rest_orientation,
-               const OutputFrame& frame,
-               View<TetSetup> setups,
-               View<std::int64_t> corner_counts,
-               View<std::int64_t> pair_counts,
-               View<std::int64_t> class_counts,
-               const HexView& hexes = {}) {
-  exec.for_each("warp/setup", setups.size,
-                TetSetupBody{tets, deformed, rest, rest_orientation, frame, setups, corner_counts,
-                             pair_counts, class_counts, hexes});
+void tet_setup(Exec& exec, const TetSetupBody& body) {
+  exec.for_each("warp/setup", body.setups.size, body);
 }
 
 }  // namespace tetwarp

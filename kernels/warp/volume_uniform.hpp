@@ -179,13 +179,13 @@ struct BlockReachBody {
   int n;
   View<const std::uint8_t> before;
   View<std::uint8_t> reach;
-  View<std::int64_t> wide_count;
+  View<std::int64_t> extended_count;
 
   TETWARP_HD void operator()(std::int64_t block) const {
     reach[block] = before[block];
     if (before[block] < n || !goes_on(block)) return;
     reach[block] = static_cast<std::uint8_t>(n + 1);
-    if (n == 1) atomic_add(&wide_count[0], 1);
+    if (n == 1) atomic_add(&extended_count[0], 1);
   }
 
   TETWARP_HD bool goes_on(std::int64_t block) const {
@@ -217,7 +217,8 @@ struct BlockReachBody {
 /// @param rest        nodes in the source's index space [quantum], shape [node_count]
 /// @param reach       out, see UniformMap, one per block
 /// @param scratch     as many
-/// @param wide_count  blocks that reach 2 or more are added to it, shape [1]: where there is none,
+/// @param extended_count  blocks that reach 2 or more are added to it, shape [1]: where there is
+/// none,
 ///                    hardly a cell can be filled
 ///
 /// Determinism: same bits on every back end. Cost: one read of the uniform part of the source, a
@@ -230,7 +231,7 @@ void volume_uniform(Exec& exec,
                     View<const Node> rest,
                     View<std::uint8_t> reach,
                     View<std::uint8_t> scratch,
-                    View<std::int64_t> wide_count) {
+                    View<std::int64_t> extended_count) {
   const UniformMap map = make_uniform_map(source);
   exec.zero("warp/setup", reach);
   exec.for_each(
@@ -241,7 +242,7 @@ void volume_uniform(Exec& exec,
   View<std::uint8_t> from = reach, to = scratch;
   for (int n = 1; n < longest_reach; ++n) {  // an even number of passes: ends in `reach`
     exec.for_each("warp/setup", reach.size,
-                  BlockReachBody<T>{source, map, n, from, to, wide_count});
+                  BlockReachBody<T>{source, map, n, from, to, extended_count});
     const View<std::uint8_t> last = from;
     from = to;
     to = last;

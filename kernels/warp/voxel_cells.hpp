@@ -16,12 +16,9 @@ struct VoxelCellBody {
   View<std::int32_t> owners;         ///< in: tetrahedra, out: cells
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
-    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
-    const std::int64_t row = voxel / nx;
-    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
-    const int j = frame.begin[1] + static_cast<int>(row % ny);
-    const int k = frame.begin[2] + static_cast<int>(row / ny);
-    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
+    int x[3];
+    frame.set_voxel(voxel, x);
+    const std::int64_t cell = frame.cell_of_voxel(x);
     if (touched.size > 0 && touched[cell] == 0) return;
     owners[voxel] = static_cast<std::int32_t>(hexes.cell_of(owners[voxel]));
   }

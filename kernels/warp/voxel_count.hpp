@@ -21,18 +21,15 @@ struct VoxelFoldBody {
   std::int64_t weight;  ///< of a folded voxel: 1 counts it, -1 takes it back
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
-    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
-    const std::int64_t row = voxel / nx;
-    const int i = frame.begin[0] + static_cast<int>(voxel % nx);
-    const int j = frame.begin[1] + static_cast<int>(row % ny);
-    const int k = frame.begin[2] + static_cast<int>(row / ny);
-    const std::int64_t cell = frame.cell_index(i >> cell_shift, j >> cell_shift, k >> cell_shift);
+    int x[3];
+    frame.set_voxel(voxel, x);
+    const std::int64_t cell = frame.cell_of_voxel(x);
     if (touched.size > 0 && touched[cell] == 0) return;
     const std::int64_t end = end_of_cell(list, cell);
     int inside = 0;
     for (std::int64_t p = list.ranges[cell].begin; p < end && inside < 2; ++p) {
       const TetNodes tet = tet_nodes(nodes, tets.data + std::int64_t{4} * tet_of(list.pairs[p]));
-      inside += is_inside_exact(tet, i, j, k, true);
+      inside += is_inside_exact(tet, x[0], x[1], x[2], true);
     }
     if (inside == 2) atomic_add(&folded[0], weight);
   }

@@ -126,17 +126,15 @@ struct VoxelFieldsJob {
   /// Writes a stretch: voxels within hexahedra, or all others.
   template <bool in_hexes>
   TETWARP_HD void write_stretch(std::int64_t index) const {
-    const std::int64_t row = index / stretches_per_row();
-    const int ny = frame.end[1] - frame.begin[1];
-    const int first = frame.begin[0] + static_cast<int>(index % stretches_per_row()) * stretch;
-    const int past = min_of(first + stretch, frame.end[0]);
-    int voxel[3] = {first, frame.begin[1] + static_cast<int>(row % ny),
-                    frame.begin[2] + static_cast<int>(row / ny)};
+    int voxel[3];
+    frame.set_row_start(index / stretches_per_row(), voxel);
+    voxel[0] += static_cast<int>(index % stretches_per_row()) * stretch;
+    const int past = min_of(voxel[0] + stretch, frame.end[0]);
     std::int64_t at = frame.offset_of(voxel[0], voxel[1], voxel[2]);
     while (voxel[0] < past) {
       const int count = run_length(voxel[0], past, at);
       if (is_in_hex(owners[at]) == in_hexes &&
-          (touched.size == 0 || touched[cell_of_voxel(voxel)] != 0)) {
+          (touched.size == 0 || touched[frame.cell_of_voxel(voxel)] != 0)) {
         if constexpr (in_hexes) {
           write_in_hex(owners[at], voxel, at, count);
         } else {
@@ -158,10 +156,6 @@ struct VoxelFieldsJob {
 
   TETWARP_HD bool is_in_hex(std::int32_t owner) const {
     return mesh.hexes.has(owner) && setups[owner].kind == MapKind::trilinear;
-  }
-
-  TETWARP_HD std::int64_t cell_of_voxel(const int* voxel) const {
-    return frame.cell_index(voxel[0] >> cell_shift, voxel[1] >> cell_shift, voxel[2] >> cell_shift);
   }
 
   TETWARP_HD void write(std::int32_t owner, const int* voxel, std::int64_t at, int count) const {

@@ -7,7 +7,7 @@
 #include "kernels/base/any_number.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/convex_part.hpp"
-#include "kernels/warp/voxel_rule.hpp"
+#include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
 
@@ -72,9 +72,9 @@ void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> m
 struct VoxelOverlapBody {
   static constexpr int resident_blocks = 1;  ///< all registers: no spills
   View<const TetSetup> setups;
-  View<const TetRule> rules;           ///< their scale
-  PairList list;                       ///< of widened boxes, none rejected
-  View<const std::int64_t> cell_work;  ///< cells to keep; size 0: none
+  View<const VoxelTransform> transforms;  ///< their scale
+  PairList list;                          ///< of widened boxes, none rejected
+  View<const std::int64_t> cell_work;     ///< cells to keep; size 0: none
   OutputFrame frame;
   NumberView source;
   int dims[3];
@@ -88,15 +88,11 @@ struct VoxelOverlapBody {
   };
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
-    const int nx = frame.end[0] - frame.begin[0], ny = frame.end[1] - frame.begin[1];
-    const std::int64_t row = voxel / nx;
-    const int x[3] = {frame.begin[0] + static_cast<int>(voxel % nx),
-                      frame.begin[1] + static_cast<int>(row % ny),
-                      frame.begin[2] + static_cast<int>(row / ny)};
-    const std::int64_t cell =
-        frame.cell_index(x[0] >> cell_shift, x[1] >> cell_shift, x[2] >> cell_shift);
+    int x[3];
+    frame.set_voxel(voxel, x);
+    const std::int64_t cell = frame.cell_of_voxel(x);
     if (cell_work.size > 0 && cell_work[cell] == keep_cell) return;
-    double sums[max_rule_components] = {};
+    double sums[max_transform_components] = {};
     const std::int64_t end = end_of_cell(list, cell);
     for (std::int64_t p = list.ranges[cell].begin; p < end; ++p) {
       add_tet(tet_of(list.pairs[p]), x, sums);
@@ -115,12 +111,12 @@ struct VoxelOverlapBody {
     if (whole == nullptr) return;
     parts.spare = parts.two + (whole == parts.two ? 1 : 0);
     double start[3], linear[3][3];
-    map_start(tet, x[0], x[1], x[2], start, linear);
+    map_start(tet, x, start, linear);
     const auto map = make_source_map<double>(start, linear);
     for_slabs(parts, map, 2, *whole, [&](std::int64_t k, const ConvexPart& slab) {
       for_slabs(parts, map, 1, slab, [&](std::int64_t j, const ConvexPart& bar) {
         for_slabs(parts, map, 0, bar, [&](std::int64_t i, const ConvexPart& piece) {
-          const double share = volume_of(piece) * rules[t].scale;
+          const double share = volume_of(piece) * transforms[t].scale;
           if (!(share > 0)) return;
           const std::int64_t from = ((k * dims[1] + j) * dims[0] + i) * components;
           for (int c = 0; c < components; ++c) sums[c] += share * source.at(from + c);

@@ -166,7 +166,7 @@ TYPED_TEST(Executor, DeliversWhatWasWritten) {
   this->exec().zero("test", View<std::int64_t>{place, 33});
   this->exec().for_each("test", 33, SquareBody{{place, 33}});
   this->exec().end_compute();
-  this->exec().deliver("test", View<const std::int64_t>{place, 33}, home.data());
+  this->exec().download("test", View<const std::int64_t>{place, 33}, home.data());
   this->exec().times();  // waits
 
   EXPECT_EQ(home, squares);

@@ -18,9 +18,9 @@ namespace {
 template <class Work>
 void enqueue(cudaStream_t stream, Work&& work) {
   const std::lock_guard guard(simt::Device::only().lock);
-  simt::Device::only().note(simt::Call::launch);
+  simt::Device::only().note(simt::ApiCall::launch);
   static_cast<simt::Stream*>(stream)->enqueue(std::forward<Work>(work));
-  simt::Device::only().go_ahead();
+  simt::Device::only().run_eager();
 }
 
 /// Like CUB's, the primitives want scratch memory that grows with their input.

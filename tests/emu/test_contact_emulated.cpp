@@ -23,7 +23,7 @@ std::string calls_of(ContactSolver& solver, const ContactProblem& problem) {
   return simt::Device::only().take_calls();
 }
 
-auto count_of(const std::string& calls, simt::Call call) {
+auto count_of(const std::string& calls, simt::ApiCall call) {
   return std::count(calls.begin(), calls.end(), static_cast<char>(call));
 }
 
@@ -43,13 +43,13 @@ TEST(ContactEmulated, ASolverThatGoesOnAllocatesNothing) {
       {make_elastic_problem({}), elastic}};
   for (const auto& [problem, options] : cases) {
     ContactSolver solver(options);
-    EXPECT_GT(count_of(calls_of(solver, problem), simt::Call::allocate), 10);
+    EXPECT_GT(count_of(calls_of(solver, problem), simt::ApiCall::allocate), 10);
 
     const std::string calls = calls_of(solver, problem);
 
-    EXPECT_EQ(count_of(calls, simt::Call::allocate), 0);
-    EXPECT_EQ(count_of(calls, simt::Call::release), 0);
-    EXPECT_GT(count_of(calls, simt::Call::launch), 5);
+    EXPECT_EQ(count_of(calls, simt::ApiCall::allocate), 0);
+    EXPECT_EQ(count_of(calls, simt::ApiCall::release), 0);
+    EXPECT_GT(count_of(calls, simt::ApiCall::launch), 5);
   }
 }
 
@@ -64,7 +64,7 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
   const std::string short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
 
   EXPECT_EQ(short_solve, long_solve);  // whatever the number of sweeps
-  EXPECT_LE(count_of(long_solve, simt::Call::launch), 12);
+  EXPECT_LE(count_of(long_solve, simt::ApiCall::launch), 12);
 }
 
 TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {

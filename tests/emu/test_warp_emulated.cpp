@@ -40,7 +40,7 @@ std::vector<Point3> shaken(const scenes::Scene& scene, int step) {
                        static_cast<std::uint64_t>(step));
 }
 
-/// Letters of the calls that the host made, see simt::Call.
+/// Letters of the calls that the host made, see simt::ApiCall.
 std::string take_calls() {
   return simt::Device::only().take_calls();
 }

@@ -28,7 +28,7 @@ class EmulatedOverlap : public ::testing::Test {
   const WarpOptions options = {.backend = Backend::cuda};
   simt::Device& device = simt::Device::only();
 
-  void TearDown() override { device.ahead = device.forgotten_wait = device.nobody; }
+  void TearDown() override { device.eager_stream = device.skipped_wait = device.none; }
 
   /// All nodes move, so that every step is a whole one.
   Steps shaken(std::uint64_t count) const {
@@ -44,10 +44,10 @@ TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
   const Steps steps = partial_motions(scene, 72);
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
 
-  for (const int ahead : {device.nobody, +compute_stream, +upload_stream, +download_stream}) {
+  for (const int ahead : {device.none, +compute_stream, +upload_stream, +download_stream}) {
     for (const Pages pages : {Pages::locked, Pages::pageable}) {
       for (const bool holds_previous : {true, false}) {
-        device.ahead = ahead;
+        device.eager_stream = ahead;
         EXPECT_TRUE(steps_in_flight(sources, scene, options, steps, pages, holds_previous) ==
                     expected)
             << "stream " << ahead;
@@ -63,17 +63,17 @@ TEST_F(EmulatedOverlap, AForgottenWaitIsSeen) {
   const Steps steps = shaken(5);
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
   const auto run = [&](int ahead, int forgotten) {
-    device.ahead = ahead;
-    device.forgotten_wait = forgotten;
+    device.eager_stream = ahead;
+    device.skipped_wait = forgotten;
     return steps_in_flight(sources, scene, options, steps, Pages::locked, false);
   };
 
   for (int step = 2; step < 5; ++step) {
     const int first = waits_of_step * step;
     EXPECT_FALSE(run(compute_stream, first) == expected) << "positions of step " << step;
-    EXPECT_EQ(device.forgotten_wait, device.nobody);
+    EXPECT_EQ(device.skipped_wait, device.none);
     EXPECT_FALSE(run(download_stream, first + 1) == expected) << "kernels of step " << step;
-    EXPECT_TRUE(run(download_stream, device.nobody) == expected);
+    EXPECT_TRUE(run(download_stream, device.none) == expected);
   }
 }
 

@@ -93,10 +93,8 @@ class Stages {
     corner_offsets = arrays.template zeros<std::int64_t>(count + 1);
     pair_offsets = arrays.template zeros<std::int64_t>(count + 1);
     classes = arrays.template zeros<std::int64_t>(tet_class_count);
-    tet_setup(exec, View<const std::int32_t>(tets), View<const Node>(nodes),
-              View<const Node>(arrays.upload(input.rest)),
-              View<const std::int8_t>(arrays.upload(input.rest_orientation)), input.frame, setups,
-              corner_offsets, pair_offsets, classes);
+    tet_setup(exec, {tets, nodes, arrays.upload(input.rest), arrays.upload(input.rest_orientation),
+                     input.frame, setups, corner_offsets, pair_offsets, classes});
     exec.exclusive_scan("test/setup", corner_offsets);
     exec.exclusive_scan("test/setup", pair_offsets);
     masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());

@@ -162,7 +162,7 @@ TYPED_TEST(CellWork, IsRightAboutEveryTap) {
       for (std::uint32_t p = ranges[cell].begin; p < ranges[cell].end; ++p) {
         const TetSetup& tet = setups[static_cast<std::size_t>(tet_of(pairs[p]))];
         double start[3], linear[3][3];
-        map_start(tet, corner[0], corner[1], corner[2], start, linear);
+        map_start(tet, corner, start, linear);
         const auto map = make_source_map<double>(start, linear);
         for (int voxel = 0; voxel < 512; ++voxel) {
           const int x[3] = {voxel % 8, voxel / 8 % 8, voxel / 64};

@@ -37,19 +37,19 @@ class FarExec : public CpuExec {
     return buffer.view(size).data;
   }
   template <class T>
-  void deliver(const char*, View<const T> from, T* to) {
+  void download(const char*, View<const T> from, T* to) {
     std::copy_n(from.data, from.size, to);
-    *delivered_ += from.size * static_cast<std::int64_t>(sizeof(T));
+    *downloaded_ += from.size * static_cast<std::int64_t>(sizeof(T));
   }
 
   /// As to memory that is not page-locked: parts of an output are sent when they are known.
-  bool delivers_beside(const void*) const { return false; }
+  bool downloads_async(const void*) const { return false; }
 
   /// Adds the bytes that come home to `bytes` from now on.
-  void count_in(std::int64_t& bytes) { delivered_ = &bytes; }
+  void count_in(std::int64_t& bytes) { downloaded_ = &bytes; }
 
  private:
-  std::int64_t* delivered_ = nullptr;
+  std::int64_t* downloaded_ = nullptr;
 };
 
 StepReport step(StepQueue& far, const std::vector<Point3>& positions, const WarpTarget& target) {

@@ -122,7 +122,7 @@ class CellLine {
       const int t = tet_of(job_.pairs[p]);
       const int voxels = count_of(bits);
       counts_.covered += voxels;
-      if (is_copied(job_, job_.setups[t]) && !has_rule(job_, t)) counts_.copied += voxels;
+      if (is_copied(job_, job_.setups[t]) && !has_transform(job_, t)) counts_.copied += voxels;
       if (work >= 0) return write_extra(box, bits, t);
       sources_.emplace_back(job_, bounds_, job_.setups[t], box.corner, t);
       add_runs(bits, cell);
@@ -239,10 +239,10 @@ class CellLine {
     for (int voxel = begin; voxel < end; ++voxel) {
       const int cell = voxel / cell_edge * cell_edge;
       const int corner[3] = {first.corner[0] + cell, first.corner[1], first.corner[2]};
-      if (has_outside_rule(row_job_)) {
-        write_outside_ruled(row_job_, corner, voxel - cell, j, k, voxel);
+      if (has_outside_transform(row_job_)) {
+        write_outside_transformed(row_job_, corner, voxel - cell, j, k, voxel);
       } else {
-        store_outside<true>(row_job_, corner[0], corner[1], corner[2], voxel - cell, j, k, voxel);
+        store_outside<true>(row_job_, {corner, voxel - cell, j, k, voxel});
       }
     }
   }

@@ -174,10 +174,7 @@ template <class T>
 void sample_row_filtered(
     const RasterJob<T>& job, const RowMap& row_map, unsigned bits, int j, int k, std::int64_t row) {
   double start[3], linear[3][3];
-  const auto set_start = [&] {
-    const int* corner = row_map.corner;
-    map_start(row_map.tet, corner[0], corner[1], corner[2], start, linear);
-  };
+  const auto set_start = [&] { map_start(row_map.tet, row_map.corner, start, linear); };
   if constexpr (sizeof(ArithmeticOf<T>) == 4) {
     if (row_map.tet.kind == MapKind::affine) {
       RowWalk walk(job.source, row_map, reach_of(job.filter), j, k);

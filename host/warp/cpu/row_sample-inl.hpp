@@ -18,8 +18,8 @@
 
 #include "host/warp/cpu/row_components-inl.hpp"
 #include "host/warp/cpu/row_filtered.hpp"
-#include "host/warp/cpu/row_ruled.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
+#include "host/warp/cpu/row_transformed.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
 #include "host/warp/cpu/row_wide-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -39,7 +39,7 @@ class RowSampler {
   /// Writes the covered voxels of row (j, k). Runs of a cell stand side by side; their order within
   /// it is lost.
   void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    if (job_.rules.size > 0) count = write_ruled(sources, runs, count, j, k);
+    if (job_.transforms.size > 0) count = write_transformed(sources, runs, count, j, k);
     if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
     for (int r = 0; r < count;) {
       int past = r;
@@ -60,14 +60,15 @@ class RowSampler {
   }
 
  private:
-  /// Writes the runs that have a rule. @returns how many others there are; they move to the front
-  int write_ruled(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+  /// Writes the runs that have a transform. @returns how many others there are; they move to the
+  /// front
+  int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int plain_count = 0;
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
-      if (has_rule(job_, source.tet())) {
-        write_row_ruled(job_, source.tet(), source.corner(), runs[r].bits, j, k,
-                        cell_edge * runs[r].cell);
+      if (has_transform(job_, source.tet())) {
+        write_row_transformed(job_, source.tet(), source.corner(), runs[r].bits, j, k,
+                              cell_edge * runs[r].cell);
       } else {
         runs[plain_count++] = runs[r];
       }

@@ -162,8 +162,7 @@ inline void sample_narrow(const RasterJob<T>& job,
                           int k,
                           std::int64_t row) {
   double start[3], linear[3][3];
-  const int* corner = source.corner();
-  map_start(source.setup(), corner[0], corner[1], corner[2], start, linear);
+  map_start(source.setup(), source.corner(), start, linear);
   const auto map = make_source_map<float>(job.source, start, linear);
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);

@@ -1,5 +1,5 @@
-/// @file rule_checks.cpp
-#include "host/warp/rule_checks.hpp"
+/// @file transform_checks.cpp
+#include "host/warp/transform_checks.hpp"
 
 #include <cstddef>
 #include <stdexcept>
@@ -51,7 +51,7 @@ void check_conservative(const WarpOptions& options) {
 
 }  // namespace
 
-void check_rules(std::span<const VolumeView> sources, const WarpOptions& options) {
+void check_transforms(std::span<const VolumeView> sources, const WarpOptions& options) {
   const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
   if (options.antialias && !blends) {
     throw std::invalid_argument(

@@ -1,4 +1,4 @@
-/// @file voxel_rule.hpp
+/// @file voxel_transform.hpp
 /// Stage "raster" of the warp, the body for voxels that get more than a plain sample: the mean over
 /// a footprint, reoriented and scaled; in float64, rounded once.
 #pragma once
@@ -6,25 +6,25 @@
 
 #include "kernels/base/symmetric_eigen.hpp"
 #include "kernels/warp/cell_raster.hpp"
-#include "kernels/warp/tet_rule.hpp"
+#include "kernels/warp/tet_transform.hpp"
 #include "kernels/warp/volume_filter.hpp"
 #include "kernels/warp/volume_sample.hpp"
 
 namespace tetwarp {
 
-constexpr int max_rule_components = 9;
+constexpr int max_transform_components = 9;
 
 /// filter_taps() for any pixel type: of the source only its shape counts.
-TETWARP_HD_RARE void set_rule_taps(const SourceView<double>& shape,
-                                   Filter filter,
-                                   const SourcePosition<double>& at,
-                                   FilterTaps<double>& taps) {
+TETWARP_HD_RARE void set_transform_taps(const SourceView<double>& shape,
+                                        Filter filter,
+                                        const SourcePosition<double>& at,
+                                        FilterTaps<double>& taps) {
   taps = filter_taps(shape, filter, at);
 }
 
 /// blended() in loops: small.
 template <class Sample>
-TETWARP_HD double rule_blend(const FilterTaps<double>& taps, const Sample* samples) {
+TETWARP_HD double looped_blend(const FilterTaps<double>& taps, const Sample* samples) {
   const double near = static_cast<double>(samples[taps.near]);
   double sum = 0;
   for (int z = 0; z < taps.count; ++z) {
@@ -65,12 +65,12 @@ TETWARP_HD bool add_values(
   FilterTaps<double> taps;
   SourceView<double> shape = {
       nullptr, {source.dims[0], source.dims[1], source.dims[2]}, source.components};
-  set_rule_taps(shape, filter, at, taps);
+  set_transform_taps(shape, filter, at, taps);
   const bool is_centre = at.fraction[0] == 0 && at.fraction[1] == 0 && at.fraction[2] == 0;
   for (int c = 0; c < source.components; ++c) {
     sums[c] += is_centre                   ? static_cast<double>(source.data[taps.near + c])
-               : filter == Filter::bspline ? rule_blend(taps, source.coefficients + c)
-                                           : rule_blend(taps, source.data + c);
+               : filter == Filter::bspline ? looped_blend(taps, source.coefficients + c)
+                                           : looped_blend(taps, source.data + c);
   }
   return true;
 }
@@ -138,7 +138,7 @@ TETWARP_HD_RARE void preserve_principal(const Matrix3& backward, double* d) {
   set_tensor(turned, d);
 }
 
-/// Components as a tetrahedron's rule turns them.
+/// Components as a tetrahedron's transform turns them.
 TETWARP_HD void reorient(Quantity reorientation, const Matrix3& matrix, double* values) {
   switch (reorientation) {
     case Quantity::components:
@@ -154,39 +154,39 @@ TETWARP_HD void reorient(Quantity reorientation, const Matrix3& matrix, double* 
   }
 }
 
-/// What the rules of a job need of it.
+/// What the transforms of a job need of it.
 template <class T>
-struct RuleSampler {
+struct TransformSampler {
   SourceView<T> source;
   Filter filter;
   Quantity reorientation;
   T background;
 
-  explicit TETWARP_HD RuleSampler(const RasterJob<T>& job)
+  explicit TETWARP_HD TransformSampler(const RasterJob<T>& job)
       : source(job.source),
         filter(job.filter),
         reorientation(job.reorientation),
         background(job.background) {}
 };
 
-/// Stores the samples around a position of the source by a rule. Of the voxel's parts those that
-/// lie beyond the source do not count; where none is left, the background.
+/// Stores the samples around a position of the source by a transform. Of the voxel's parts those
+/// that lie beyond the source do not count; where none is left, the background.
 /// @param map  how the position changes from voxel to voxel, and the whole voxel that x counts from
 /// @param out  one per component
 template <class T>
-TETWARP_HD_RARE void store_by_rule(RuleSampler<T> job,
-                                   const TetRule& rule,
-                                   const SourceMap<double>& map,
-                                   const double* x,
-                                   T* out) {
+TETWARP_HD_RARE void store_transformed(TransformSampler<T> job,
+                                       const VoxelTransform& transform,
+                                       const SourceMap<double>& map,
+                                       const double* x,
+                                       T* out) {
   if constexpr (can_blend<T>) {
     const int components = job.source.components;
-    double values[max_rule_components] = {}, offset[3];
+    double values[max_transform_components] = {}, offset[3];
     int part[3], count = 0;
-    for (part[2] = 0; part[2] < rule.parts[2]; ++part[2]) {
-      for (part[1] = 0; part[1] < rule.parts[1]; ++part[1]) {
-        for (part[0] = 0; part[0] < rule.parts[0]; ++part[0]) {
-          for (int a = 0; a < 3; ++a) offset[a] = (part[a] + 0.5) / rule.parts[a] - 0.5;
+    for (part[2] = 0; part[2] < transform.parts[2]; ++part[2]) {
+      for (part[1] = 0; part[1] < transform.parts[1]; ++part[1]) {
+        for (part[0] = 0; part[0] < transform.parts[0]; ++part[0]) {
+          for (int a = 0; a < 3; ++a) offset[a] = (part[a] + 0.5) / transform.parts[a] - 0.5;
           double at[3];
           for (int row = 0; row < 3; ++row) {
             at[row] = x[row] + (map.axis[0][row] * offset[0] + map.axis[1][row] * offset[1] +
@@ -202,45 +202,41 @@ TETWARP_HD_RARE void store_by_rule(RuleSampler<T> job,
       const double low = job.source.range[2 * c], high = job.source.range[2 * c + 1];
       values[c] = values[c] < low ? low : values[c] > high ? high : values[c];
     }
-    if (!rule.is_plain) reorient(job.reorientation, rule.matrix, values);
+    if (!transform.is_plain) reorient(job.reorientation, transform.matrix, values);
     for (int c = 0; c < components; ++c) {
-      out[c] = count > 0 ? rounded_to<T>(values[c] * rule.scale) : job.background;
+      out[c] = count > 0 ? rounded_to<T>(values[c] * transform.scale) : job.background;
     }
   }
 }
 
-/// Stores the voxel (i, j, k) of the cell at `corner` that tetrahedron t owns, by its rule.
+/// Stores a voxel that tetrahedron t owns, by the transform of t.
 template <class T>
-TETWARP_HD void store_ruled(const RasterJob<T>& job,
-                            std::int64_t t,
-                            const int* corner,
-                            int i,
-                            int j,
-                            int k,
-                            std::int64_t voxel) {
+TETWARP_HD void store_transformed_voxel(const RasterJob<T>& job,
+                                        std::int64_t t,
+                                        const CellVoxel& voxel) {
   double start[3], linear[3][3], x[3];
-  map_start(job.setups[t], corner[0], corner[1], corner[2], start, linear);
+  map_start(job.setups[t], voxel.corner, start, linear);
   auto map = make_source_map<double>(job.source, start, linear);
-  local_position(map, i, j, k, x);
+  local_position(map, voxel.i, voxel.j, voxel.k, x);
   if (job.setups[t].kind == MapKind::trilinear) {
-    const int frame_voxel[3] = {corner[0] + i, corner[1] + j, corner[2] + k};
+    const int frame_voxel[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
+                                voxel.corner[2] + voxel.k};
     place_in_hex(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
     for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
   }
-  T* const out = job.volume + voxel * job.source.components;
-  store_by_rule(RuleSampler<T>(job), job.rules[t], map, x, out);
+  T* const out = job.volume + voxel.offset * job.source.components;
+  store_transformed(TransformSampler<T>(job), job.transforms[t], map, x, out);
 }
 
-/// Stores a voxel that no tetrahedron covers, by the rule of those.
+/// Stores a voxel that no tetrahedron covers, by job.outside_transform.
 template <class T>
-TETWARP_HD void store_outside_ruled(
-    const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
+TETWARP_HD void store_transformed_outside(const RasterJob<T>& job, const CellVoxel& voxel) {
   double start[3], x[3];
-  outside_start(job.outside, corner[0], corner[1], corner[2], start);
+  outside_start(job.outside, voxel.corner, start);
   const auto map = make_source_map<double>(job.source, start, job.outside.linear);
-  local_position(map, i, j, k, x);
-  T* const out = job.volume + voxel * job.source.components;
-  store_by_rule(RuleSampler<T>(job), job.outside_rule, map, x, out);
+  local_position(map, voxel.i, voxel.j, voxel.k, x);
+  T* const out = job.volume + voxel.offset * job.source.components;
+  store_transformed(TransformSampler<T>(job), job.outside_transform, map, x, out);
 }
 
 }  // namespace tetwarp

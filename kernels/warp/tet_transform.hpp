@@ -1,7 +1,7 @@
-/// @file tet_rule.hpp
+/// @file tet_transform.hpp
 /// Stage "setup" of a warp whose voxels get more than a plain sample: what each tetrahedron does to
 /// the samples it brings.
-/// @see voxel_rule.hpp for how a voxel follows its rule
+/// @see voxel_transform.hpp for how a voxel follows its transform
 #pragma once
 #include <cstdint>
 #include <tetwarp/choices.hpp>
@@ -19,23 +19,23 @@ constexpr double averaged_step = 1.5;   ///< source voxels per output voxel: mor
 constexpr double step_slack = 0x1p-20;  ///< far more than the rounding of a map's step
 
 /// What a voxel gets: the mean of samples at the midpoints of its parts, reoriented, scaled.
-struct TetRule {
+struct VoxelTransform {
   double scale;
   Matrix3 matrix;  ///< see matrix_of()
   int parts[3];    ///< along each axis of the output
   bool is_plain;   ///< one sample as it is
 };
 
-TETWARP_HD TetRule plain_rule() {
+TETWARP_HD VoxelTransform plain_transform() {
   return {1.0, identity3(), {1, 1, 1}, true};
 }
 
-TETWARP_HD bool is_averaging(const TetRule& rule) {
-  return rule.parts[0] > 1 || rule.parts[1] > 1 || rule.parts[2] > 1;
+TETWARP_HD bool is_averaging(const VoxelTransform& transform) {
+  return transform.parts[0] > 1 || transform.parts[1] > 1 || transform.parts[2] > 1;
 }
 
-/// What a job asks of its rules.
-struct RuleChoice {
+/// What a job asks of its transforms.
+struct TransformChoice {
   bool averages;  ///< where the source is compressed
   bool divides;   ///< by the determinant of F, inverted or not
   Quantity reorientation;
@@ -112,49 +112,50 @@ TETWARP_HD Int128 volume6_of(const TetNodes& tet) {
 }
 
 /// One index = one tetrahedron; any order.
-struct TetRuleBody {
+struct TetTransformBody {
   static constexpr int resident_blocks = 2;  ///< of 128 registers a thread: no spills
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
   View<const Node> nodes;
   View<const Node> rest;
-  View<const std::uint8_t> moved;  ///< others keep their rules; size 0: all are made
-  RuleChoice choice;
-  View<TetRule> rules;
+  View<const std::uint8_t> moved;  ///< others keep their transforms; size 0: all are made
+  TransformChoice choice;
+  View<VoxelTransform> transforms;
   View<std::int64_t> averaged_count;  ///< kept up to date; size 0: not wanted
 
   TETWARP_HD void operator()(std::int64_t t) const {
     if (moved.size > 0 && moved[t] == 0) return;
-    const int before = moved.size > 0 && is_averaging(rules[t]);
-    rules[t] = rule_of(t);
-    const int change = static_cast<int>(is_averaging(rules[t])) - before;
+    const int before = moved.size > 0 && is_averaging(transforms[t]);
+    transforms[t] = transform_of(t);
+    const int change = static_cast<int>(is_averaging(transforms[t])) - before;
     if (averaged_count.size > 0 && change != 0) atomic_add(&averaged_count[0], change);
   }
 
-  TETWARP_HD TetRule rule_of(std::int64_t t) const {
-    TetRule rule = plain_rule();
+  TETWARP_HD VoxelTransform transform_of(std::int64_t t) const {
+    VoxelTransform transform = plain_transform();
     const TetSetup& tet = setups[t];
     const bool is_still = tet.kind == MapKind::copy && choice.axes.are_same;
     if (is_still || (tet.tet_class != TetClass::regular && tet.tet_class != TetClass::inverted)) {
-      return rule;
+      return transform;
     }
     if (choice.averages) {
-      for (int axis = 0; axis < 3; ++axis) rule.parts[axis] = parts_of(tet.map[axis]);
+      for (int axis = 0; axis < 3; ++axis) transform.parts[axis] = parts_of(tet.map[axis]);
     }
     // Exact integers: a ratio of volumes loses nothing where the tetrahedron is thin.
     const Int128 rest_volume6 = volume6_of(tet_nodes(rest, tets.data + 4 * t));
     if (choice.divides) {
       const Int128 volume6 = volume6_of(tet_nodes(nodes, tets.data + 4 * t));
-      rule.scale = fabs(as_double(rest_volume6) / as_double(volume6)) * choice.voxel_ratio;
+      transform.scale = fabs(as_double(rest_volume6) / as_double(volume6)) * choice.voxel_ratio;
     }
     const bool turns = choice.reorientation != Quantity::components && rest_volume6 != 0;
-    if (turns) rule.matrix = matrix_of(choice.reorientation, backward_gradient(tet, choice.axes));
-    rule.is_plain = !is_averaging(rule) && !turns && rule.scale == 1;
-    return rule;
+    if (turns)
+      transform.matrix = matrix_of(choice.reorientation, backward_gradient(tet, choice.axes));
+    transform.is_plain = !is_averaging(transform) && !turns && transform.scale == 1;
+    return transform;
   }
 };
 
-/// Makes the rule of every tetrahedron, or of those that have moved.
+/// Makes the transform of every tetrahedron, or of those that have moved.
 ///
 /// A tetrahedron that moves by whole voxels between grids of the same axes is plain, so that its
 /// samples are copies; one that is flat at rest reorients nothing.
@@ -164,25 +165,26 @@ struct TetRuleBody {
 /// @param nodes           deformed, in the frame [quantum]
 /// @param rest            in the source's index space [quantum]
 /// @param moved           from tet_moved; empty: all have
-/// @param choice          see RuleChoice
-/// @param rules           in and out, shape [tet_count]
+/// @param choice          see TransformChoice
+/// @param transforms           in and out, shape [tet_count]
 /// @param averaged_count  in and out: tetrahedra that average, shape [1]; empty: not wanted
 ///
 /// Determinism: how many samples make a mean is the same on every back end; matrices within 2^-48
 /// relative times the condition of F. Cost: a rotation takes about 1500 operations.
 /// Source: R of finite strain and F: D. C. Alexander et al., 2001.
 template <class Exec>
-void tet_rule(Exec& exec,
-              View<const TetSetup> setups,
-              View<const std::int32_t> tets,
-              View<const Node> nodes,
-              View<const Node> rest,
-              View<const std::uint8_t> moved,
-              const RuleChoice& choice,
-              View<TetRule> rules,
-              View<std::int64_t> averaged_count) {
-  exec.for_each("warp/setup", rules.size,
-                TetRuleBody{setups, tets, nodes, rest, moved, choice, rules, averaged_count});
+void tet_transform(Exec& exec,
+                   View<const TetSetup> setups,
+                   View<const std::int32_t> tets,
+                   View<const Node> nodes,
+                   View<const Node> rest,
+                   View<const std::uint8_t> moved,
+                   const TransformChoice& choice,
+                   View<VoxelTransform> transforms,
+                   View<std::int64_t> averaged_count) {
+  exec.for_each(
+      "warp/setup", transforms.size,
+      TetTransformBody{setups, tets, nodes, rest, moved, choice, transforms, averaged_count});
 }
 
 }  // namespace tetwarp

@@ -1,5 +1,5 @@
-/// @file rules.hpp
-/// The rules of a step's tetrahedra, for the sources that ask for more than plain samples.
+/// @file transforms.hpp
+/// The transforms of a step's tetrahedra, for the sources that ask for more than plain samples.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -9,16 +9,16 @@
 #include "host/base/warp_backend.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/pairs.hpp"
-#include "kernels/warp/tet_rule.hpp"
+#include "kernels/warp/tet_transform.hpp"
 
 namespace tetwarp {
 
 template <class Exec>
-class WarpRules {
+class WarpTransforms {
  public:
   /// The arguments must outlive it.
-  WarpRules(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
-      : exec_(exec), options_(plan.options), axes_(geometry.axes), outside_(plain_rule()) {
+  WarpTransforms(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
+      : exec_(exec), options_(plan.options), axes_(geometry.axes), outside_(plain_transform()) {
     for (std::size_t s = 0; s < plan.sources.size(); ++s) {
       const bool is_plain = !options_.antialias && options_.intensity == Intensity::value &&
                             reorientation(s) == Quantity::components;
@@ -32,30 +32,31 @@ class WarpRules {
     outside_.is_plain = !is_averaging(outside_);
   }
 
-  /// Makes the rules of a step whose pairs are there; of an update those that have changed.
+  /// Makes the transforms of a step whose pairs are there; of an update those that have changed.
   void run(const WarpPairs<Exec>& pairs) {
     bool is_first = true;  // tetrahedra that average are counted once
     for (auto& [reorientation, buffer] : buffers_) {
-      tet_rule(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
-               choice(reorientation), buffer.view(pairs.tet_count()),
-               {&pairs.counters().data->mesh.averaged, is_first ? 1 : 0});
+      tet_transform(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
+                    choice(reorientation), buffer.view(pairs.tet_count()),
+                    {&pairs.counters().data->mesh.averaged, is_first ? 1 : 0});
       is_first = false;
     }
   }
 
   /// Of source s; size 0: all are plain.
-  View<const TetRule> rules(std::size_t s, std::int64_t tet_count) const {
+  View<const VoxelTransform> transforms(std::size_t s, std::int64_t tet_count) const {
     const auto found = buffers_.find(reorientation(s));
-    return found == buffers_.end() ? View<const TetRule>{} : found->second.const_view(tet_count);
+    return found == buffers_.end() ? View<const VoxelTransform>{}
+                                   : found->second.const_view(tet_count);
   }
   Quantity reorientation(std::size_t s) const {
     return options_.quantities.empty() ? Quantity::components : options_.quantities[s];
   }
   /// Of voxels that no tetrahedron covers.
-  const TetRule& outside() const { return outside_; }
+  const VoxelTransform& outside() const { return outside_; }
 
  private:
-  RuleChoice choice(Quantity reorientation) const {
+  TransformChoice choice(Quantity reorientation) const {
     const double ratio = std::abs(determinant(axes_.source) * determinant(axes_.output_index));
     return {.averages = options_.antialias,
             .divides = options_.intensity != Intensity::value,
@@ -67,8 +68,8 @@ class WarpRules {
   Exec& exec_;
   const WarpOptions& options_;
   const GridAxes& axes_;
-  TetRule outside_;
-  std::map<Quantity, typename Exec::template Buffer<TetRule>> buffers_;
+  VoxelTransform outside_;
+  std::map<Quantity, typename Exec::template Buffer<VoxelTransform>> buffers_;
 };
 
 }  // namespace tetwarp
