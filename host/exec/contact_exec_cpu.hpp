@@ -82,13 +82,13 @@ class CpuContactExec {
     return *value;
   }
   template <class T>
-  T load_if_free(const T* value, T) const {
+  T load_without_sync(const T* value, T) const {
     return *value;
   }
-  bool is_look(std::int64_t) const {
+  bool is_sync_point(std::int64_t) const {
     return true;
   }
-  static constexpr bool reads_are_free = true;
+  static constexpr bool reads_need_sync = false;
 
   template <class Sum, class Body>
   void sum_to(

@@ -38,8 +38,8 @@ enum class Place { shared, global };
 template <class T>
 class IslandSolves {
  public:
-  IslandSolves(const SweepScene& scene, const MethodPlan& plan, const StopRule& rule)
-      : scene_(scene), system_(system_in(scene, T{})), plan_(plan), rule_(rule) {}
+  IslandSolves(const SweepScene& scene, const MethodPlan& plan, const StopCriterion& criterion)
+      : scene_(scene), system_(system_in(scene, T{})), plan_(plan), criterion_(criterion) {}
 
   ContactSwitches switches;
   std::int64_t events = 32;  ///< room for each island
@@ -50,7 +50,7 @@ class IslandSolves {
     HostContactState<T> state = start();
     HostMethodWork<T> work(system_.constants.size());
     std::vector<IslandTask> tasks;
-    for (const ContactIsland& island : islands()) tasks.push_back({island, rule_});
+    for (const ContactIsland& island : islands()) tasks.push_back({island, criterion_});
     results.assign(tasks.size(), {});
     logs.assign(tasks.size() * static_cast<std::size_t>(events), {-1, -1});
     contact_solve_islands<T>(
@@ -83,7 +83,7 @@ class IslandSolves {
                                                   view_of(scene_.structure.color_start), island,
                                                   switches, state.view());
       HostEventLog log;
-      host_ends.push_back(solve_island(pipeline, rule_, plan_, 0, work.view(), log));
+      host_ends.push_back(solve_island(pipeline, criterion_, plan_, 0, work.view(), log));
       host_sums.push_back(pipeline.measure());
       host_logs.push_back(log.events);
     }
@@ -106,8 +106,8 @@ class IslandSolves {
     HostContactState<T> state(system_);
     state.impulse.assign(state.impulse.size(), T(0.001));
     if (freezes) {
-      state.calm.assign(system_.constants.size(), 0);
-      state.left_out.assign(system_.constants.size(), 0);
+      state.unchanged_visits.assign(system_.constants.size(), 0);
+      state.skipped_visits.assign(system_.constants.size(), 0);
     }
     return state;
   }
@@ -115,7 +115,7 @@ class IslandSolves {
   const SweepScene& scene_;
   ContactSystem<T> system_;
   MethodPlan plan_;
-  StopRule rule_;
+  StopCriterion criterion_;
 };
 
 /// 11 sweeps of all islands: in shared memory under every schedule, in place under one.
@@ -211,7 +211,7 @@ TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
         for (std::size_t i = 0; i < solves.results.size(); ++i) {
           const IslandResult& result = solves.results[i];
           EXPECT_EQ(result.end.reason, StopReason::converged) << name_of(method);
-          EXPECT_LE(StopRule({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(solves.sums[i].sums),
+          EXPECT_LE(StopCriterion({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(solves.sums[i].sums),
                     1.001);
           EXPECT_NEAR(static_cast<double>(result.end.sweeps),
                       static_cast<double>(solves.host_ends[i].sweeps),

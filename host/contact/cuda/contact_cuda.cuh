@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/contact/block_jacobi/outer.hpp"
+#include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
 #include "host/contact/sweeps/run.hpp"
@@ -31,13 +31,13 @@ class CudaContactDevice final : public ContactDevice {
     exec_.use_stream(nullptr);  // makes the device current on this thread
     if (serial_ != structure.serial) {
       grid_.forget_sweeps();  // with the same structure they find everything in its place
-      indices_ = indices_there(grid_, structure.indices(), arrays_);
+      indices_ = indices_on_device(grid_, structure.indices(), arrays_);
       serial_ = structure.serial;
     }
     structure_ = &structure;
     float64_.resize(grid_, indices_);
-    const ContactSavings savings = fill_numbers(grid_, input_there(grid_, input, given_), indices_,
-                                                choices_of(options), float64_.views());
+    const ContactSavings savings = fill_numbers(grid_, input_on_device(grid_, input, given_),
+                                                indices_, choices_of(options), float64_.views());
     numbers_ = float64_.numbers(indices_);
     if (options.precision == ContactPrecision::float32) {
       convert_system(grid_, indices_, float64_, float32_);
@@ -57,22 +57,22 @@ class CudaContactDevice final : public ContactDevice {
       outcomes[i].free = sums.sums;
       outcomes[i].free_square = sums.free_square;
     });
-    const std::vector<StopRule> rules = stop_rules(options, *structure_, outcomes);
+    const std::vector<StopCriterion> criteria = stop_criteria(options, *structure_, outcomes);
     put(impulse, state64_.impulse);
     std::int64_t skipped = 0;
     if (options.precision == ContactPrecision::float64) {
-      skipped = solve(options, rules, numbers_, state64_, outcomes);
+      skipped = solve(options, criteria, numbers_, state64_, outcomes);
     } else {
       state32_.reset(grid_, rounded_, freezes_contacts(options));
       state32_.impulse.resize(numbers_.free_velocity.size);
       convert(grid_, View<const double>(view_of(state64_.impulse)), view_of(state32_.impulse));
-      skipped = solve(options, rules, rounded_, state32_, outcomes);
+      skipped = solve(options, criteria, rounded_, state32_, outcomes);
       convert(grid_, View<const float>(view_of(state32_.impulse)), view_of(state64_.impulse));
     }
     measure(options, [&](std::size_t i, const IslandSums& sums) {
       IslandOutcome& outcome = outcomes[i];
       outcome.sums = sums.sums;
-      const bool is_done = rules[i].excess_of(sums.sums) <= 1;
+      const bool is_done = criteria[i].excess_of(sums.sums) <= 1;
       if (is_done != (outcome.reason == StopReason::converged)) {
         outcome.reason = is_done ? StopReason::converged : StopReason::exhausted;
       }
@@ -90,11 +90,13 @@ class CudaContactDevice final : public ContactDevice {
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
     put(guess, guess_);
-    CoupledJudge<GridContactExec> judge(grid_, options, numbers_, island, coupled_.judge);
+    ResidualEstimator<GridContactExec> estimator(grid_, options, numbers_, island,
+                                                 block_jacobi_memory_.estimator);
     solve_coupled_island(grid_, options, numbers_, rounded_, view_of(structure_->color_start),
-                         island, view_of(std::as_const(guess_)), most, judge, coupled_, outcome);
-    grid_.get(judge.best_impulse(), impulse.data());
-    grid_.get(judge.best_body_velocity(), body_velocity.data());
+                         island, view_of(std::as_const(guess_)), most, estimator,
+                         block_jacobi_memory_, outcome);
+    grid_.get(estimator.best_impulse(), impulse.data());
+    grid_.get(estimator.best_body_velocity(), body_velocity.data());
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
@@ -120,7 +122,7 @@ class CudaContactDevice final : public ContactDevice {
   void evolve(const ContactAdhesionBody& body) override {
     exec_.use_stream(nullptr);
     ContactAdhesionBody there = body;
-    there.in = adhesion_there(grid_, body.in, given_);
+    there.in = adhesion_on_device(grid_, body.in, given_);
     next_intensity_.resize(body.next_intensity.size);
     next_gap_.resize(body.next_gap.size);
     debonded_.resize(body.debonded.size);
@@ -197,34 +199,34 @@ class CudaContactDevice final : public ContactDevice {
   /// @return visits left out
   template <class T>
   std::int64_t solve(const ContactOptions& options,
-                     const std::vector<StopRule>& rules,
+                     const std::vector<StopCriterion>& criteria,
                      const ContactNumbers<T>& numbers,
                      DeviceState<T>& state,
                      std::vector<IslandOutcome>& outcomes) {
-    if (!small_.empty()) solve_small(options, rules, numbers, state, outcomes);
+    if (!small_.empty()) solve_small(options, criteria, numbers, state, outcomes);
     for (const std::int64_t i : large_) {
       auto pipeline = pipeline_of(options, i, numbers, state);
       HostEventLog log;
       const auto k = static_cast<std::size_t>(i);
       const IslandEnd end =
-          solve_island(pipeline, rules[k], plan_of(options), 0, state.work(), log);
+          solve_island(pipeline, criteria[k], plan_of(options), 0, state.work(), log);
       outcomes[k].take(end, options.method, island(i).contact_count());
       outcomes[k].events = std::move(log.events);
     }
     std::vector<std::int32_t> visits;
-    get(state.left_out, visits);
+    get(state.skipped_visits, visits);
     return std::accumulate(visits.begin(), visits.end(), std::int64_t{0});
   }
 
   template <class T>
   void solve_small(const ContactOptions& options,
-                   const std::vector<StopRule>& rules,
+                   const std::vector<StopCriterion>& criteria,
                    const ContactNumbers<T>& numbers,
                    DeviceState<T>& state,
                    std::vector<IslandOutcome>& outcomes) {
     std::vector<IslandTask> tasks;
     for (const std::int64_t i : small_) {
-      tasks.push_back({island(i), rules[static_cast<std::size_t>(i)]});
+      tasks.push_back({island(i), criteria[static_cast<std::size_t>(i)]});
     }
     const auto count = static_cast<std::int64_t>(tasks.size());
     put(tasks, tasks_);
@@ -275,7 +277,7 @@ class CudaContactDevice final : public ContactDevice {
   ContactNumbers<float> rounded_;
   DeviceState<double> state64_;
   DeviceState<float> state32_;
-  CoupledMemory<GridContactExec> coupled_;
+  BlockJacobiMemory<GridContactExec> block_jacobi_memory_;
   DeviceVector<double> guess_;
   DeviceVector<std::int32_t> labels_;
   DeviceVector<double> next_intensity_, next_gap_;

@@ -37,9 +37,9 @@ class DeviceArrays {
 };
 
 /// The same indices there.
-inline ContactIndices indices_there(const GridContactExec& exec,
-                                    const ContactIndices& host,
-                                    DeviceArrays& arrays) {
+inline ContactIndices indices_on_device(const GridContactExec& exec,
+                                        const ContactIndices& host,
+                                        DeviceArrays& arrays) {
   arrays.restart();
   ContactIndices there = host;
   const auto move = [&](auto& view) { view = arrays.put(exec, view); };
@@ -71,32 +71,32 @@ inline ContactIndices indices_there(const GridContactExec& exec,
 /// The same numbers there.
 /// @param members  of the struct: views to copy
 template <class Numbers>
-Numbers numbers_there(const GridContactExec& exec,
-                      const Numbers& host,
-                      std::initializer_list<View<const double> Numbers::*> members,
-                      DeviceArrays& arrays) {
+Numbers numbers_on_device(const GridContactExec& exec,
+                          const Numbers& host,
+                          std::initializer_list<View<const double> Numbers::*> members,
+                          DeviceArrays& arrays) {
   arrays.restart();
   Numbers there = host;
   for (const auto member : members) there.*member = arrays.put(exec, host.*member);
   return there;
 }
 
-inline ContactInput input_there(const GridContactExec& exec,
-                                const ContactInput& host,
-                                DeviceArrays& arrays) {
+inline ContactInput input_on_device(const GridContactExec& exec,
+                                    const ContactInput& host,
+                                    DeviceArrays& arrays) {
   using In = ContactInput;
-  return numbers_there(
+  return numbers_on_device(
       exec, host,
       {&In::matrix, &In::jacobian, &In::load, &In::given_velocity, &In::friction, &In::area,
        &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap},
       arrays);
 }
 
-inline AdhesionViews adhesion_there(const GridContactExec& exec,
-                                    const AdhesionViews& host,
-                                    DeviceArrays& arrays) {
+inline AdhesionViews adhesion_on_device(const GridContactExec& exec,
+                                        const AdhesionViews& host,
+                                        DeviceArrays& arrays) {
   using In = AdhesionViews;
-  return numbers_there(
+  return numbers_on_device(
       exec, host,
       {&In::area, &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap, &In::energy,
        &In::viscosity, &In::bonding_rate, &In::saturation_pressure, &In::impulse, &In::velocity},
@@ -106,9 +106,9 @@ inline AdhesionViews adhesion_there(const GridContactExec& exec,
 /// What a solve changes and works with.
 template <class T>
 struct DeviceState {
-  DeviceVector<T> impulse;              ///< [3 slots]
-  DeviceVector<T> body_velocity;        ///< [dofs]
-  DeviceVector<std::int32_t> left_out;  ///< [slots], or empty
+  DeviceVector<T> impulse;                    ///< [3 slots]
+  DeviceVector<T> body_velocity;              ///< [dofs]
+  DeviceVector<std::int32_t> skipped_visits;  ///< [slots], or empty
 
   /// Velocities without impulses, which are not touched; nothing calm.
   void reset(GridContactExec& exec, const ContactNumbers<T>& numbers, bool freezes) {
@@ -116,13 +116,13 @@ struct DeviceState {
     exec.copy("contact/setup", numbers.free_velocity, view_of(velocity_));
     body_velocity.resize(numbers.body_free.size);
     exec.copy("contact/setup", numbers.body_free, view_of(body_velocity));
-    exec.resize(calm_, freezes ? numbers.constants.size : 0);
-    exec.resize(left_out, freezes ? numbers.constants.size : 0);
+    exec.resize(unchanged_visits_, freezes ? numbers.constants.size : 0);
+    exec.resize(skipped_visits, freezes ? numbers.constants.size : 0);
   }
 
   ContactState<T> state() {
-    return {view_of(impulse), view_of(velocity_), view_of(body_velocity), {},
-            view_of(calm_),   view_of(left_out)};
+    return {view_of(impulse),           view_of(velocity_),     view_of(body_velocity), {},
+            view_of(unchanged_visits_), view_of(skipped_visits)};
   }
 
   /// Memory that methods work with.
@@ -139,7 +139,7 @@ struct DeviceState {
   DeviceVector<T> velocity_, before_, best_, mixed_;
   DeviceVector<double> weights_;
   DeviceVector<ContactConstants<T>> metric_;
-  DeviceVector<std::uint8_t> calm_;
+  DeviceVector<std::uint8_t> unchanged_visits_;
 };
 
 }  // namespace tetwarp

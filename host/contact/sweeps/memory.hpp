@@ -15,8 +15,8 @@ namespace tetwarp {
 template <class T>
 struct HostContactState {
   std::vector<T> impulse, velocity, body_velocity, defect;
-  std::vector<std::uint8_t> calm;
-  std::vector<std::int32_t> left_out;
+  std::vector<std::uint8_t> unchanged_visits;
+  std::vector<std::int32_t> skipped_visits;
 
   explicit HostContactState(const ContactSystem<T>& system)
       : impulse(system.free_velocity.size(), T(0)),
@@ -24,8 +24,8 @@ struct HostContactState {
         body_velocity(system.body_free) {}
 
   ContactState<T> view() {
-    return {view_of(impulse), view_of(velocity), view_of(body_velocity),
-            view_of(defect),  view_of(calm),     view_of(left_out)};
+    return {view_of(impulse), view_of(velocity),         view_of(body_velocity),
+            view_of(defect),  view_of(unchanged_visits), view_of(skipped_visits)};
   }
 };
 

@@ -52,7 +52,7 @@ class GradientError {
 
 /// Vectors that conjugate gradients work with, [dofs].
 template <class Exec>
-struct LinearMemory {
+struct CoupledSystemMemory {
   typename Exec::template Vector<double> direction, product, image;
 
   // Of each step, [max_products + 1]: g . D^-1 g before it, p . A p, their quotient a, and what
@@ -64,13 +64,13 @@ struct LinearMemory {
 /// Linear systems of one island, preconditioned by the inverse diagonal blocks of A (Hestenes and
 /// Stiefel 1952). Vectors are [dofs] of the whole problem; only the island's part is touched.
 template <class Exec>
-class CoupledLinear {
+class CoupledSystem {
  public:
   /// @param memory  kept by the caller
-  CoupledLinear(Exec& exec,
+  CoupledSystem(Exec& exec,
                 const ContactNumbers<double>& numbers,
                 const ContactIsland& island,
-                LinearMemory<Exec>& memory)
+                CoupledSystemMemory<Exec>& memory)
       : exec_(exec),
         island_(island),
         memory_(memory),
@@ -107,7 +107,7 @@ class CoupledLinear {
     gained_ = 0;
     std::int64_t next_ask = first_ask;
     for (std::int64_t k = 0; k < max_products; ++k) {
-      if (Exec::reads_are_free && !(size[k].value[0] > 0)) break;
+      if (!Exec::reads_need_sync && !(size[k].value[0] > 0)) break;
       sum_to(GradientProductBody{matrix_, direction, product}, curvature + k);
       exec_.once("contact/relax", GradientQuotientBody{size + k, curvature + k, factor + k});
       sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, rest.data, image},
@@ -115,7 +115,7 @@ class CoupledLinear {
       exec_.once("contact/relax", GradientQuotientBody{size + k + 1, size + k, shrink + k});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  GradientTurnBody{inverse_.dof_start, shrink + k, image, direction});
-      const bool is_over = Exec::reads_are_free && !(size[k + 1].value[0] > 0);
+      const bool is_over = !Exec::reads_need_sync && !(size[k + 1].value[0] > 0);
       if (!is_over && k + 1 < std::min(next_ask, max_products)) continue;
       const double left = take_steps(k + 1);
       progress.moved = std::sqrt(gained_);
@@ -163,7 +163,7 @@ class CoupledLinear {
 
   Exec& exec_;
   const ContactIsland& island_;
-  LinearMemory<Exec>& memory_;
+  CoupledSystemMemory<Exec>& memory_;
   SystemView<double> matrix_;
   InverseBlocks inverse_;
   GradientError error_;

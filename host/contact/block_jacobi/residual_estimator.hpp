@@ -8,43 +8,43 @@
 #include <utility>
 #include <vector>
 
-#include "host/contact/block_jacobi/linear.hpp"
+#include "host/contact/block_jacobi/coupled_system.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_bound.hpp"
-#include "kernels/contact/contact_judge.hpp"
-#include "kernels/contact/contact_monitor.hpp"
+#include "kernels/contact/contact_residual_estimate.hpp"
+#include "kernels/contact/convergence_test.hpp"
 #include "kernels/contact/vector_bodies.hpp"
 
 namespace tetwarp {
 
 /// What a judge works with.
 template <class Exec>
-struct JudgeMemory {
+struct EstimatorMemory {
   using Vector = typename Exec::template Vector<double>;
 
-  LinearMemory<Exec> linear;
-  typename Exec::template Vector<ContactConstants<double>> constants;              ///< [slots]
-  Vector body_velocity, rest, best_body_velocity;                                  ///< [dofs]
-  Vector velocity, obedient_velocity, free_velocity, seen, impulse, best_impulse;  ///< [3 slots]
+  CoupledSystemMemory<Exec> linear;
+  typename Exec::template Vector<ContactConstants<double>> constants;                ///< [slots]
+  Vector body_velocity, rest, best_body_velocity;                                    ///< [dofs]
+  Vector velocity, consistent_velocity, free_velocity, seen, impulse, best_impulse;  ///< [3 slots]
 };
 
 /// Judges the impulses of one coupled island by the velocities they cause, A v = b + J^T r solved
 /// by conjugate gradients, and keeps the best pair.
 ///
 /// eta weighs each contact by its own block of J A^-1 J^T, which only a factorization yields, so
-/// eta is bounded; see CoupledBoundBody. The measure of FCLIB has no weights and is as exact as the
-/// velocities.
+/// eta is bounded; see ResidualBoundBody. The measure of FCLIB has no weights and is as exact as
+/// the velocities.
 template <class Exec>
-class CoupledJudge {
+class ResidualEstimator {
  public:
   using Vector = typename Exec::template Vector<double>;
 
   /// @param memory  kept by the caller
-  CoupledJudge(Exec& exec,
-               const ContactOptions& options,
-               const ContactNumbers<double>& numbers,
-               const ContactIsland& island,
-               JudgeMemory<Exec>& memory)
+  ResidualEstimator(Exec& exec,
+                    const ContactOptions& options,
+                    const ContactNumbers<double>& numbers,
+                    const ContactIsland& island,
+                    EstimatorMemory<Exec>& memory)
       : exec_(exec),
         options_(options),
         numbers_(numbers),
@@ -55,7 +55,7 @@ class CoupledJudge {
         rest_(memory.rest),
         best_body_velocity_(memory.best_body_velocity),
         velocity_(memory.velocity),
-        obedient_velocity_(memory.obedient_velocity),
+        consistent_velocity_(memory.consistent_velocity),
         free_velocity_(memory.free_velocity),
         seen_(memory.seen),
         impulse_(memory.impulse),
@@ -64,7 +64,7 @@ class CoupledJudge {
       exec.resize(*dofs, numbers.load.size);
     }
     for (Vector* rows :
-         {&velocity_, &obedient_velocity_, &free_velocity_, &seen_, &impulse_, &best_impulse_}) {
+         {&velocity_, &consistent_velocity_, &free_velocity_, &seen_, &impulse_, &best_impulse_}) {
       exec.resize(*rows, numbers.bodies.offset.size);
     }
     exec.resize(constants_, numbers.constants.size);
@@ -91,11 +91,12 @@ class CoupledJudge {
     if (is_still) be_without_impulses();
     outcome.reason = StopReason::exhausted;
     find_free(outcome);
-    if (rule_.error_of(outcome.free) == 0) {  // a scale of zero: nothing else could be judged by it
+    if (criterion_.error_of(outcome.free) ==
+        0) {  // a scale of zero: nothing else could be judged by it
       linear_.solve(view_of(body_velocity_), view_of(rest_),
                     [&](const LinearProgress&) { return is_balanced(); });
       find_free(outcome);
-      if (rule_.error_of(outcome.free) == 0 && is_balanced()) {
+      if (criterion_.error_of(outcome.free) == 0 && is_balanced()) {
         outcome.reason = StopReason::converged;
         outcome.events.push_back({outcome.sweeps, 0.0});
       }
@@ -122,26 +123,26 @@ class CoupledJudge {
   ///                       contacts obey their law
   /// @param is_last        false: impulses far from a solution are told so early
   /// @returns  at most 1 when done: residual and imbalance over the tolerance
-  double judge(View<const double> impulse,
-               View<const double> body_velocity,
-               bool is_last,
-               IslandOutcome& outcome) {
+  double estimate(View<const double> impulse,
+                  View<const double> body_velocity,
+                  bool is_last,
+                  IslandOutcome& outcome) {
     copy(impulse, impulse_);
     copy(body_velocity, body_velocity_);
     find_rest();
-    find_velocity(obedient_velocity_);
-    copy(view_of(std::as_const(obedient_velocity_)), seen_);
+    find_velocity(consistent_velocity_);
+    copy(view_of(std::as_const(consistent_velocity_)), seen_);
     ContactSums sums = bounded_sums();
-    double excess = rule_.excess_of(sums), doubt = 0, moved = 0;
+    double excess = criterion_.excess_of(sums), doubt = 0, moved = 0;
     linear_.solve(view_of(body_velocity_), view_of(rest_), [&](const LinearProgress& progress) {
       sums = bounded_sums();
-      excess = rule_.excess_of(sums);
+      excess = criterion_.excess_of(sums);
       if (options_.measure == ContactMeasure::fclib) return is_within(0.1, progress);
       // What is left moves the contacts as much as the free motion did, or the last steps.
       const double step = std::sqrt(square_of(progress.moved) - square_of(moved));
       const double apart = distance(view_of(std::as_const(seen_)));
       const double share = std::max(step > 0 ? apart / step : 0, seen_share_);
-      doubt = share * progress.left / rule_.allowed_at(sums);
+      doubt = share * progress.left / criterion_.allowed_at(sums);
       copy(view_of(std::as_const(velocity_)), seen_);
       moved = progress.moved;
       const bool is_bad = !is_last && excess > 0.8;  // soon over 1, or only after many steps below
@@ -151,10 +152,10 @@ class CoupledJudge {
     const bool is_settled = is_last || excess + doubt <= 1 || doubt <= settled * excess;
     excess += is_settled ? doubt : std::min(doubt, excess);
     if (is_settled) {
-      sums.eta = square_of(std::sqrt(sums.eta) + doubt * rule_.allowed_at(sums));
+      sums.eta = square_of(std::sqrt(sums.eta) + doubt * criterion_.allowed_at(sums));
     }
     excess = std::max(excess, imbalance() / options_.tolerance);
-    outcome.events.push_back({outcome.sweeps, rule_.error_of(sums)});
+    outcome.events.push_back({outcome.sweeps, criterion_.error_of(sums)});
     if (is_settled && excess < best_excess_) {
       best_excess_ = excess;
       keep_best();
@@ -192,7 +193,7 @@ class CoupledJudge {
     find_velocity(free_velocity_);
     outcome.free =
         exec_.template sum<ContactSums>("contact/residual", island_.slot_begin, island_.slot_end,
-                                        CoupledFreeBody{natural(view_of(free_velocity_))});
+                                        FreeResidualBoundBody{natural(view_of(free_velocity_))});
     outcome.free_square = exec_
                               .template sum<PlainSums<1>>(
                                   "contact/residual", 3 * island_.slot_begin, 3 * island_.slot_end,
@@ -201,7 +202,7 @@ class CoupledJudge {
     const double scale =
         options_.measure == ContactMeasure::eta ? outcome.free.eta : outcome.free_square;
     const double tolerance = margin * options_.tolerance;
-    rule_ = {options_.measure, tolerance, tolerance * std::sqrt(scale)};
+    criterion_ = {options_.measure, tolerance, tolerance * std::sqrt(scale)};
   }
 
   /// b + J^T r - A v.
@@ -231,12 +232,13 @@ class CoupledJudge {
             .value[0]);
   }
 
-  /// Of the impulses and the velocities of the bodies at hand, against the obedient velocities.
+  /// Of the impulses and the velocities of the bodies at hand, against the consistent velocities.
   ContactSums bounded_sums() {
     find_velocity(velocity_);
     return exec_.template sum<ContactSums>(
         "contact/residual", island_.slot_begin, island_.slot_end,
-        CoupledBoundBody{natural(view_of(velocity_)), view_of(std::as_const(obedient_velocity_))});
+        ResidualBoundBody{natural(view_of(velocity_)),
+                          view_of(std::as_const(consistent_velocity_))});
   }
 
   static bool is_within(double share, const LinearProgress& progress) {
@@ -274,11 +276,11 @@ class CoupledJudge {
   const ContactOptions& options_;
   ContactNumbers<double> numbers_;
   const ContactIsland& island_;
-  CoupledLinear<Exec> linear_;
+  CoupledSystem<Exec> linear_;
   typename Exec::template Vector<ContactConstants<double>>& constants_;
-  Vector &body_velocity_, &rest_, &best_body_velocity_, &velocity_, &obedient_velocity_,
+  Vector &body_velocity_, &rest_, &best_body_velocity_, &velocity_, &consistent_velocity_,
       &free_velocity_, &seen_, &impulse_, &best_impulse_;
-  StopRule rule_;
+  StopCriterion criterion_;
   double best_excess_ = std::numeric_limits<double>::infinity();
   double seen_share_ = 0;  ///< distance() per size in the norm of A, of smooth motion
 };

@@ -1,5 +1,5 @@
 /// @file linear.cpp
-#include "host/contact/block_jacobi/linear.hpp"
+#include "host/contact/block_jacobi/coupled_system.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,4 +1,4 @@
-/// @file outer.hpp
+/// @file block_jacobi.hpp
 /// Contacts of bodies that A couples, by an outer block-Jacobi iteration around sweeps.
 #pragma once
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "host/contact/block_jacobi/coupled.hpp"
+#include "host/contact/block_jacobi/residual_estimator.hpp"
 #include "kernels/contact/anderson.hpp"
 #include "kernels/contact/contact_accelerators.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
@@ -36,7 +36,7 @@ inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& i
 /// In float32 it ends where rounding does not let it come closer, too; whoever judges does so in
 /// float64.
 template <class Exec, class T = double>
-class OuterIteration {
+class BlockJacobi {
  public:
   template <class U>
   using Vector = typename Exec::template Vector<U>;
@@ -69,16 +69,16 @@ class OuterIteration {
   /// @param color_start  on the host
   /// @param judge        has been started
   /// @param memory       kept by the caller
-  OuterIteration(Exec& exec,
-                 const ContactOptions& options,
-                 const ContactNumbers<T>& numbers,
-                 View<const std::int64_t> color_start,
-                 const ContactIsland& island,
-                 CoupledJudge<Exec>& judge,
-                 Memory& memory)
+  BlockJacobi(Exec& exec,
+              const ContactOptions& options,
+              const ContactNumbers<T>& numbers,
+              View<const std::int64_t> color_start,
+              const ContactIsland& island,
+              ResidualEstimator<Exec>& estimator,
+              Memory& memory)
       : exec_(exec),
         options_(options),
-        judge_(judge),
+        estimator_(estimator),
         inner_sweeps_(sweeps_per_step(options, island)),
         memory_((memory.resize(exec, numbers, island), memory)),
         pipeline_(exec, numbers, color_start, island, switches_of(options), memory_.state()),
@@ -153,7 +153,7 @@ class OuterIteration {
       accelerator.observe(before, pipeline_.body_velocity());
       const bool is_last = outcome.outer_iterations == most;
       const bool is_first = outcome.outer_iterations == first;
-      if (!is_last && !is_first && !exec_.is_look(outcome.outer_iterations)) {
+      if (!is_last && !is_first && !exec_.is_sync_point(outcome.outer_iterations)) {
         accelerator.advance(before, pipeline_.body_velocity());
         continue;
       }
@@ -165,7 +165,7 @@ class OuterIteration {
       is_lost_ = !(defect <= divergence * start);
       if (is_lost_) return;
       const bool is_due = is_last || defect <= aim_ || outcome.outer_iterations >= next_;
-      if (is_due && judge(defect, is_last, outcome) <= 1) return;
+      if (is_due && estimate(defect, is_last, outcome) <= 1) return;
       if (std::is_same_v<T, float> && is_as_close_as_float32(defect / start, outcome)) return;
       accelerator.advance(before, pipeline_.body_velocity());
     }
@@ -190,8 +190,8 @@ class OuterIteration {
 
   /// Judging costs as much as 5 to 30 steps: it is done when the defect of the iteration has
   /// dropped as far as the last judgement asked for, at first to the tolerance, and now and then.
-  double judge(double defect, bool is_last, IslandOutcome& outcome) {
-    const double excess = judge_.judge(impulse(), body_velocity(), is_last, outcome);
+  double estimate(double defect, bool is_last, IslandOutcome& outcome) {
+    const double excess = estimator_.estimate(impulse(), body_velocity(), is_last, outcome);
     aim_ = 0.9 * defect / excess;
     next_ = 2 * std::max(outcome.outer_iterations, first_check);
     return excess;
@@ -202,7 +202,7 @@ class OuterIteration {
 
   Exec& exec_;
   const ContactOptions& options_;
-  CoupledJudge<Exec>& judge_;
+  ResidualEstimator<Exec>& estimator_;
   int inner_sweeps_;
   Memory& memory_;
   ContactPipeline<Exec, T> pipeline_;
@@ -216,10 +216,10 @@ class OuterIteration {
 
 /// Memory for islands whose blocks A couples, one after the other.
 template <class Exec>
-struct CoupledMemory {
-  JudgeMemory<Exec> judge;
-  typename OuterIteration<Exec, double>::Memory fine;
-  typename OuterIteration<Exec, float>::Memory coarse;
+struct BlockJacobiMemory {
+  EstimatorMemory<Exec> estimator;
+  typename BlockJacobi<Exec, double>::Memory fine;
+  typename BlockJacobi<Exec, float>::Memory coarse;
   typename Exec::template Vector<double> no_impulse, no_velocity;
 };
 
@@ -236,22 +236,22 @@ void solve_coupled_island(Exec& exec,
                           const ContactIsland& island,
                           View<const double> guess,
                           std::int64_t most,
-                          CoupledJudge<Exec>& judge,
-                          CoupledMemory<Exec>& memory,
+                          ResidualEstimator<Exec>& estimator,
+                          BlockJacobiMemory<Exec>& memory,
                           IslandOutcome& outcome) {
-  judge.start(outcome);
+  estimator.start(outcome);
   if (outcome.reason == StopReason::converged) return;
   exec.resize(memory.no_impulse, numbers.bodies.offset.size);
   exec.resize(memory.no_velocity, numbers.load.size);
   View<const double> r = view_of(memory.no_impulse), v = view_of(memory.no_velocity);
   if (guess.size > 0) {
-    judge.find_body_velocity(guess);
+    estimator.find_body_velocity(guess);
     r = guess;
-    v = judge.body_velocity();
+    v = estimator.body_velocity();
   }
   if (options.precision == ContactPrecision::float32) {
-    OuterIteration<Exec, float> coarse(exec, options, rounded, color_start, island, judge,
-                                       memory.coarse);
+    BlockJacobi<Exec, float> coarse(exec, options, rounded, color_start, island, estimator,
+                                    memory.coarse);
     coarse.solve(most, r, v, outcome);
     if (outcome.reason == StopReason::converged) return;
     if (!coarse.is_lost()) {
@@ -259,8 +259,9 @@ void solve_coupled_island(Exec& exec,
       v = coarse.body_velocity();
     }
   }
-  OuterIteration<Exec> outer(exec, options, numbers, color_start, island, judge, memory.fine);
-  outer.solve(most, r, v, outcome);
+  BlockJacobi<Exec> block_jacobi(exec, options, numbers, color_start, island, estimator,
+                                 memory.fine);
+  block_jacobi.solve(most, r, v, outcome);
 }
 
 }  // namespace tetwarp
