@@ -80,7 +80,7 @@ class ContactEngine {
   void solve_coupled(const ContactProblem& problem, EngineResult& result);
   void iterate(const ContactProblem& problem,
                std::int64_t island,
-               std::int64_t most,
+               std::int64_t max_iterations,
                EngineResult& result);
   void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
 

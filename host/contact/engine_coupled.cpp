@@ -99,7 +99,7 @@ void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& r
 
 void ContactEngine::iterate(const ContactProblem& problem,
                             std::int64_t i,
-                            std::int64_t most,
+                            std::int64_t max_iterations,
                             EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   IslandOutcome& outcome = result.outcomes[index_of(i)];
@@ -108,7 +108,8 @@ void ContactEngine::iterate(const ContactProblem& problem,
   std::vector<double> body_velocity(structure_.dof_of_place.size());
   if (device_ != nullptr) {
     take_to_device(problem, result);
-    device_->solve_coupled(options_, island, guess, most, impulse, body_velocity, outcome);
+    device_->solve_coupled(options_, island, guess, max_iterations, impulse, body_velocity,
+                           outcome);
   } else {
     CpuContactExec exec(threads_);
     if (block_jacobi_memory_ == nullptr)
@@ -118,12 +119,12 @@ void ContactEngine::iterate(const ContactProblem& problem,
     const ContactNumbers<double> numbers = system.numbers(indices);
     ContactSystem<float> rounded;
     if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
-    ResidualEstimator<CpuContactExec> estimator(exec, options_, numbers, island,
-                                                block_jacobi_memory_->estimator);
-    solve_coupled_island(exec, options_, numbers, rounded.numbers(indices), indices.color_start,
-                         island, view_of(guess), most, estimator, *block_jacobi_memory_, outcome);
-    exec.get(estimator.best_impulse(), impulse.data());
-    exec.get(estimator.best_body_velocity(), body_velocity.data());
+    const CoupledTask task{
+        options_,       island,        indices.color_start, numbers, rounded.numbers(indices),
+        view_of(guess), max_iterations};
+    const CoupledSolution best = solve_coupled_island(exec, task, *block_jacobi_memory_, outcome);
+    exec.get(best.impulse, impulse.data());
+    exec.get(best.body_velocity, body_velocity.data());
   }
   to_problem_index(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);

@@ -97,19 +97,22 @@ TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
-  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure.indices());
+  const CoupledTask task{options,
+                         stages.island(),
+                         view_of(stages.structure.color_start),
+                         stages.system.numbers(stages.structure.indices()),
+                         {},
+                         {},
+                         1};
   BlockJacobiMemory<CpuContactExec> memory;
-  ResidualEstimator<CpuContactExec> estimator(exec, options, numbers, stages.island(),
-                                              memory.estimator);
-  BlockJacobi<CpuContactExec> block_jacobi(exec, options, numbers,
-                                           view_of(stages.structure.color_start), stages.island(),
-                                           estimator, memory.fine);
+  ResidualEstimator<CpuContactExec> estimator(exec, task, memory.estimator);
+  BlockJacobi<CpuContactExec> block_jacobi(exec, task, estimator, memory.fine);
   const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
   const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;
   estimator.start(outcome);
 
-  block_jacobi.solve(1, view_of(no_impulse), view_of(no_velocity), outcome);
+  block_jacobi.solve(view_of(no_impulse), view_of(no_velocity), outcome);
 
   EXPECT_EQ(outcome.reason, StopReason::converged);
   EXPECT_EQ(outcome.outer_iterations, 1);

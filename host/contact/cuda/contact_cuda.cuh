@@ -85,18 +85,17 @@ class CudaContactDevice final : public ContactDevice {
   void solve_coupled(const ContactOptions& options,
                      const ContactIsland& island,
                      const std::vector<double>& guess,
-                     std::int64_t most,
+                     std::int64_t max_iterations,
                      std::vector<double>& impulse,
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
     put(guess, guess_);
-    ResidualEstimator<GridContactExec> estimator(grid_, options, numbers_, island,
-                                                 block_jacobi_memory_.estimator);
-    solve_coupled_island(grid_, options, numbers_, rounded_, view_of(structure_->color_start),
-                         island, view_of(std::as_const(guess_)), most, estimator,
-                         block_jacobi_memory_, outcome);
-    grid_.get(estimator.best_impulse(), impulse.data());
-    grid_.get(estimator.best_body_velocity(), body_velocity.data());
+    const CoupledTask task{options,       island,   view_of(structure_->color_start),
+                           numbers_,      rounded_, view_of(std::as_const(guess_)),
+                           max_iterations};
+    const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
+    grid_.get(best.impulse, impulse.data());
+    grid_.get(best.body_velocity, body_velocity.data());
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
