@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "host/exec/host_buffer.hpp"
 #include "kernels/base/view.hpp"
 
 namespace tetwarp {
@@ -18,6 +19,8 @@ class CpuContactExec {
 
   template <class T>
   using Vector = std::vector<T>;
+  template <class T>
+  using Buffer = HostBuffer<T>;
 
   int threads() const { return threads_; }
 

@@ -77,6 +77,8 @@ class GridContactExec {
  public:
   template <class T>
   using Vector = DeviceVector<T>;
+  template <class T>
+  using Buffer = DeviceBuffer<T>;
 
   /// @param exec  kept by the caller
   explicit GridContactExec(CudaExec& exec) : exec_(&exec) {}

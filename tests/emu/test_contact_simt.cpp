@@ -47,22 +47,22 @@ class IslandSolves {
 
   /// Impulses by blocks; `results` and `logs` of each island.
   std::vector<T> by_blocks(Place place) {
-    HostContactState<T> state = start();
-    HostMethodWork<T> work(system_.constants.size());
+    StateMemory<CpuContactExec, T> state = start();
+    MethodMemory<CpuContactExec, T> work;
     std::vector<IslandTask> tasks;
     for (const ContactIsland& island : islands()) tasks.push_back({island, criterion_});
     results.assign(tasks.size(), {});
     logs.assign(tasks.size() * static_cast<std::size_t>(events), {-1, -1});
     contact_solve_islands<T>(
         nullptr,
-        {system_.numbers(scene_.structure.indices()), state.view(), work.view(),
+        {system_.numbers(scene_.structure.indices()), state.views(), work.reserve(slots()),
          view_of(scene_.structure.color_start), switches, plan_, view_of(std::as_const(tasks)),
          place == Place::shared ? shared_values_for<T>(view_of(std::as_const(tasks))) : 0,
          view_of(results), view_of(logs), events});
     sums.assign(tasks.size(), {});
     contact_measure_islands<T>(nullptr,
                                {system_.numbers(scene_.structure.indices()),
-                                state.view(),
+                                state.views(),
                                 view_of(scene_.structure.color_start),
                                 switches,
                                 {islands().data(), static_cast<std::int64_t>(islands().size())},
@@ -72,8 +72,8 @@ class IslandSolves {
 
   /// By the host, one island after the other.
   std::vector<T> by_host() {
-    HostContactState<T> state = start();
-    HostMethodWork<T> work(system_.constants.size());
+    StateMemory<CpuContactExec, T> state = start();
+    MethodMemory<CpuContactExec, T> work;
     CpuContactExec exec(1);
     host_ends.clear();
     host_sums.clear();
@@ -81,9 +81,9 @@ class IslandSolves {
     for (const ContactIsland& island : islands()) {
       ContactPipeline<CpuContactExec, T> pipeline(exec, system_.numbers(scene_.structure.indices()),
                                                   view_of(scene_.structure.color_start), island,
-                                                  switches, state.view());
+                                                  switches, state.views());
       HostEventLog log;
-      host_ends.push_back(solve_island(pipeline, criterion_, plan_, 0, work.view(), log));
+      host_ends.push_back(solve_island(pipeline, criterion_, plan_, 0, work.reserve(slots()), log));
       host_sums.push_back(pipeline.measure());
       host_logs.push_back(log.events);
     }
@@ -102,13 +102,12 @@ class IslandSolves {
     return {scene_.structure.islands.data(),
             static_cast<std::size_t>(scene_.structure.contact_islands)};
   }
-  HostContactState<T> start() const {
-    HostContactState<T> state(system_);
+  std::int64_t slots() const { return scene_.structure.indices().slots(); }
+  StateMemory<CpuContactExec, T> start() const {
+    CpuContactExec exec(1);
+    StateMemory<CpuContactExec, T> state;
+    state.reset(exec, system_.numbers(scene_.structure.indices()), freezes);
     state.impulse.assign(state.impulse.size(), T(0.001));
-    if (freezes) {
-      state.unchanged_visits.assign(system_.constants.size(), 0);
-      state.skipped_visits.assign(system_.constants.size(), 0);
-    }
     return state;
   }
 

@@ -7,8 +7,9 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/sweeps/memory.hpp"
+#include "host/contact/structure/system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_methods.hpp"
 
 namespace tetwarp {
@@ -28,6 +29,13 @@ struct IslandOutcome {
 
   /// Takes the end of an island's solve by solve_island().
   void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
+};
+
+/// Keeps every measured residual.
+struct HostEventLog {
+  std::vector<ContactEvent> events;
+
+  void note(const ContactEvent& event) { events.push_back(event); }
 };
 
 inline ContactSwitches switches_of(const ContactOptions& options) {
@@ -63,20 +71,17 @@ class ContactRun {
         structure_(structure),
         system_(system),
         numbers_(system.numbers(structure.indices())),
-        state_(system),
-        work_(system.constants.size()),
+        work_(work_memory_.reserve(static_cast<std::int64_t>(system.constants.size()))),
         outcomes_(outcomes) {
-    if (freezes_contacts(options)) {
-      state_.unchanged_visits.assign(system.constants.size(), 0);
-      state_.skipped_visits.assign(system.constants.size(), 0);
-    }
+    CpuContactExec exec(1);
+    state_.reset(exec, numbers_, freezes_contacts(options));
     for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
       if (!island(i).is_coupled) measure_free(i);
     }
     criteria_ = stop_criteria(options, structure, outcomes);
   }
 
-  HostContactState<T>& state() { return state_; }
+  StateMemory<CpuContactExec, T>& state() { return state_; }
   const ContactSystem<T>& system() const { return system_; }
   std::int64_t updates_skipped() const {
     std::int64_t sum = 0;
@@ -136,8 +141,8 @@ class ContactRun {
   }
   ContactPipeline<CpuContactExec, T> pipeline_of(std::int64_t i, CpuContactExec& exec) {
     return {
-        exec,         numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
-        state_.view()};
+        exec,          numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
+        state_.views()};
   }
 
   void measure_free(std::int64_t i) {
@@ -156,7 +161,7 @@ class ContactRun {
     MethodPlan plan = plan_of(options_);
     plan.method = method;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
-                                       outcome.sweeps, work_.view(), log);
+                                       outcome.sweeps, work_, log);
     outcome.take(end, method, island(i).contact_count());
     outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
   }
@@ -166,8 +171,9 @@ class ContactRun {
   const ContactStructure& structure_;
   const ContactSystem<T>& system_;
   ContactNumbers<T> numbers_;
-  HostContactState<T> state_;
-  HostMethodWork<T> work_;
+  StateMemory<CpuContactExec, T> state_;
+  MethodMemory<CpuContactExec, T> work_memory_;
+  MethodWork<T> work_;
   std::vector<StopCriterion> criteria_;
   std::vector<IslandOutcome>& outcomes_;
 };
