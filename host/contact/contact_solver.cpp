@@ -16,6 +16,7 @@
 
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
+#include "host/contact/problem/imbalance.hpp"
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {
@@ -150,42 +151,6 @@ void set_status(const EngineResult& result, const ContactOptions& options, Conta
       " others together; their normal offsets were raised to 0, which the residual refers to";
 }
 
-/// row + matrix x, added in the order of the entries.
-void add_product(const SparseMatrix& matrix,
-                 const std::vector<double>& x,
-                 std::vector<double>& row) {
-  for (std::size_t r = 0; r < row.size(); ++r) {
-    const auto end = static_cast<std::size_t>(matrix.row_start[r + 1]);
-    for (auto e = static_cast<std::size_t>(matrix.row_start[r]); e < end; ++e) {
-      row[r] += matrix.value[e] * x[static_cast<std::size_t>(matrix.column[e])];
-    }
-  }
-}
-
-/// |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form.
-double imbalance(const ContactProblem& problem, const ContactSolution& solution) {
-  if (problem.is_local()) return 0;
-  std::vector<double> push(problem.load.size(), 0.0), defect(problem.load.size(), 0.0);
-  const SparseMatrix& jacobian = problem.jacobian;
-  for (std::size_t row = 0; row < solution.impulse.size(); ++row) {
-    const auto end = static_cast<std::size_t>(jacobian.row_start[row + 1]);
-    for (auto e = static_cast<std::size_t>(jacobian.row_start[row]); e < end; ++e) {
-      push[static_cast<std::size_t>(jacobian.column[e])] +=
-          jacobian.value[e] * solution.impulse[row];
-    }
-  }
-  add_product(problem.system, solution.body_velocity, defect);
-  double square = 0, push_square = 0, load_square = 0;
-  for (std::size_t dof = 0; dof < defect.size(); ++dof) {
-    const double left = defect[dof] - push[dof] - problem.load[dof];
-    square += left * left;
-    push_square += push[dof] * push[dof];
-    load_square += problem.load[dof] * problem.load[dof];
-  }
-  const double scale = std::sqrt(std::max(push_square, load_square));
-  return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
-}
-
 /// u = W r + q, or u = J v + w.
 std::vector<double> contact_velocity(const ContactProblem& problem,
                                      const ContactSolution& solution) {
@@ -259,7 +224,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);
-  report.residual.balance = imbalance(problem, solution);
+  report.residual.balance = imbalance(problem, solution.impulse, solution.body_velocity);
   set_status(result, s.options, report);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);

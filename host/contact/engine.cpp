@@ -171,7 +171,7 @@ void ContactEngine::solve_on_device(const ContactProblem& problem, EngineResult&
       take_from_run(problem, i, *run, result);
       continue;
     }
-    name_largest(structure_, 0, outcome.sums);
+    to_problem_index(structure_, 0, outcome.sums);
     scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
     if (structure_.is_local) continue;
     scatter_velocities(structure_, island, free_motion_.data() + island.dof_begin,
@@ -189,7 +189,7 @@ void ContactEngine::take_from_run(const ContactProblem& problem,
   outcome.sums = run.measure(i);
   outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
   if (!run.is_done(i, outcome.sums)) fall_back(problem, i, run, result);
-  name_largest(structure_, 0, outcome.sums);
+  to_problem_index(structure_, 0, outcome.sums);
   scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
                    result.impulse);
   if (structure_.is_local) return;
@@ -212,7 +212,7 @@ void ContactEngine::fall_back(const ContactProblem& problem,
   }
   outcome.sums = run.measure(island);
   if (options_.method != ContactMethod::automatic || run.is_done(island, outcome.sums)) return;
-  run.insist(island);
+  run.run_to_budget(island);
   outcome.sums = run.measure(island);
   if (run.is_done(island, outcome.sums)) return;
   polish(problem, island, run, outcome);  // from closer by it may find the way

@@ -32,7 +32,7 @@ struct EngineResult {
 
 struct Condensation;
 template <class Exec>
-struct CoupledMemory;
+struct BlockJacobiMemory;
 
 /// What a series of problems with the same A and J has of its coupled islands.
 struct KeptSystem {
@@ -80,7 +80,7 @@ class ContactEngine {
   void solve_coupled(const ContactProblem& problem, EngineResult& result);
   void iterate(const ContactProblem& problem,
                std::int64_t island,
-               std::int64_t most,
+               std::int64_t max_iterations,
                EngineResult& result);
   void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
 
@@ -96,7 +96,8 @@ class ContactEngine {
   bool has_host_system_ = false;     ///< it is that of the problem at hand
   bool has_device_system_ = false;   ///< the device has that
   std::vector<double> free_motion_;  ///< v without contacts, [dofs]; of coupled islands not set
-  std::shared_ptr<CoupledMemory<CpuContactExec>> coupled_;  ///< null: not needed so far
+  std::shared_ptr<BlockJacobiMemory<CpuContactExec>>
+      block_jacobi_memory_;  ///< null: not needed so far
   KeptSystem kept_;
 };
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "host/contact/block_jacobi/outer.hpp"
+#include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "host/contact/condense.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/structure/extract.hpp"
@@ -99,7 +99,7 @@ void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& r
 
 void ContactEngine::iterate(const ContactProblem& problem,
                             std::int64_t i,
-                            std::int64_t most,
+                            std::int64_t max_iterations,
                             EngineResult& result) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   IslandOutcome& outcome = result.outcomes[index_of(i)];
@@ -108,22 +108,25 @@ void ContactEngine::iterate(const ContactProblem& problem,
   std::vector<double> body_velocity(structure_.dof_of_place.size());
   if (device_ != nullptr) {
     take_to_device(problem, result);
-    device_->solve_coupled(options_, island, guess, most, impulse, body_velocity, outcome);
+    device_->solve_coupled(options_, island, guess, max_iterations, impulse, body_velocity,
+                           outcome);
   } else {
     CpuContactExec exec(threads_);
-    if (coupled_ == nullptr) coupled_ = std::make_shared<CoupledMemory<CpuContactExec>>();
+    if (block_jacobi_memory_ == nullptr)
+      block_jacobi_memory_ = std::make_shared<BlockJacobiMemory<CpuContactExec>>();
     ContactSystem<double>& system = host_system(problem);
     const ContactIndices indices = structure_.indices();
     const ContactNumbers<double> numbers = system.numbers(indices);
     ContactSystem<float> rounded;
     if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
-    CoupledJudge<CpuContactExec> judge(exec, options_, numbers, island, coupled_->judge);
-    solve_coupled_island(exec, options_, numbers, rounded.numbers(indices), indices.color_start,
-                         island, view_of(guess), most, judge, *coupled_, outcome);
-    exec.get(judge.best_impulse(), impulse.data());
-    exec.get(judge.best_body_velocity(), body_velocity.data());
+    const CoupledTask task{
+        options_,       island,        indices.color_start, numbers, rounded.numbers(indices),
+        view_of(guess), max_iterations};
+    const CoupledSolution best = solve_coupled_island(exec, task, *block_jacobi_memory_, outcome);
+    exec.get(best.impulse, impulse.data());
+    exec.get(best.body_velocity, body_velocity.data());
   }
-  name_largest(structure_, 0, outcome.sums);
+  to_problem_index(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
   scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
   scatter_velocities(structure_, island, body_velocity.data() + island.dof_begin,
@@ -149,7 +152,7 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
   scatter_velocities(structure_, island, v.data(), result.body_velocity);
   IslandOutcome& outcome = result.outcomes[index_of(i)];
   const IslandOutcome before = std::exchange(outcome, inner.outcomes[0]);
-  name_largest(structure_, island.slot_begin, outcome.sums);
+  to_problem_index(structure_, island.slot_begin, outcome.sums);
   outcome.sweeps += before.sweeps;
   outcome.outer_iterations = before.outer_iterations;
   outcome.contact_updates += before.contact_updates;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/contact/sweeps/memory.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
 
 namespace tetwarp {
@@ -31,11 +31,12 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   const std::int64_t sweeps = std::min<std::int64_t>(budget, 4096);
   constexpr double far = 1e7;  // times the distance that the contacts ask for one by one
   const ContactSystem<double> bare = make_bare(system);
-  HostContactState<double> state(bare);
+  const ContactNumbers<double> numbers = bare.numbers(structure.indices());
   CpuContactExec exec(1);
-  ContactPipeline<CpuContactExec, double> pipeline(exec, bare.numbers(structure.indices()),
-                                                   view_of(structure.color_start), island, {},
-                                                   state.view());
+  StateMemory<CpuContactExec, double> state;
+  state.reset(exec, numbers, false);
+  ContactPipeline<CpuContactExec, double> pipeline(exec, numbers, view_of(structure.color_start),
+                                                   island, {}, state.views());
   double wanted = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);

@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "host/exec/host_buffer.hpp"
 #include "kernels/base/view.hpp"
 
 namespace tetwarp {
@@ -18,6 +19,8 @@ class CpuContactExec {
 
   template <class T>
   using Vector = std::vector<T>;
+  template <class T>
+  using Buffer = HostBuffer<T>;
 
   int threads() const { return threads_; }
 
@@ -82,13 +85,13 @@ class CpuContactExec {
     return *value;
   }
   template <class T>
-  T load_if_free(const T* value, T) const {
+  T load_without_sync(const T* value, T) const {
     return *value;
   }
-  bool is_look(std::int64_t) const {
+  bool is_sync_point(std::int64_t) const {
     return true;
   }
-  static constexpr bool reads_are_free = true;
+  static constexpr bool reads_need_sync = false;
 
   template <class Sum, class Body>
   void sum_to(

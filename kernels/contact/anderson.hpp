@@ -202,7 +202,7 @@ class AndersonMixer {
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
     exec_.once("contact/mix", DecideBody{state_});
     exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
-    return exec_.load_if_free(&state_->action, AndersonState::Action::combine) !=
+    return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=
            AndersonState::Action::keep;
   }
 

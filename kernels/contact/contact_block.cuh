@@ -64,10 +64,10 @@ class BlockContactExec {
     return *value;
   }
   template <class T>
-  __device__ __forceinline__ T load_if_free(const T* value, T) const {
+  __device__ __forceinline__ T load_without_sync(const T* value, T) const {
     return *value;
   }
-  __device__ __forceinline__ bool is_look(std::int64_t) const { return true; }
+  __device__ __forceinline__ bool is_sync_point(std::int64_t) const { return true; }
 
   template <class T>
   __device__ __forceinline__ void copy(const char*, View<const T> from, View<T> to) const {
@@ -159,7 +159,7 @@ class ThinnedEventLog {
 /// An island to solve.
 struct IslandTask {
   ContactIsland island;
-  StopRule rule;
+  StopCriterion criterion;
 };
 
 /// What became of it.
@@ -214,7 +214,7 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   ThinnedEventLog log({job.events.data + which * job.events_per_island, job.events_per_island},
                       threadIdx.x == 0);
   IslandResult result;
-  result.end = solve_island(pipeline, job.tasks[which].rule, job.plan, 0, job.work, log);
+  result.end = solve_island(pipeline, job.tasks[which].criterion, job.plan, 0, job.work, log);
   result.events = log.end();
   if (is_shared) {
     exec.copy("contact/sweep", View<const T>(pipeline.impulse()), home);

@@ -14,7 +14,7 @@ namespace tetwarp {
 /// Each term of the natural map rises with its weight, then falls, so that it is least at an end;
 /// under tangential offsets nearly so: the least sum over the ends was then seen to be up to 2.2 %
 /// too high, and a fifth is taken off for that. This part is measured, not proven.
-struct CoupledFreeBody {
+struct FreeResidualBoundBody {
   ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {
@@ -45,17 +45,17 @@ struct CoupledFreeBody {
 ///
 /// What the law leaves over at u' (bodies with several contacts, swept in turn) is added, weighed
 /// by rho(B'): there it is an estimate.
-struct CoupledBoundBody {
-  ContactResidualBody<double> natural;   ///< with blocks B' and the velocities u
-  View<const double> obedient_velocity;  ///< u'
+struct ResidualBoundBody {
+  ContactResidualBody<double> natural;     ///< with blocks B' and the velocities u
+  View<const double> consistent_velocity;  ///< u'
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {
     ContactSums sums = natural(i);
     const ContactConstants<double>& c = natural.constants[i];
     const double* u = natural.velocity.data + 3 * i;
-    const double* obedient = obedient_velocity.data + 3 * i;
-    const double d_n = u[0] - obedient[0];
-    const double d_t = sqrt(square_of(u[1] - obedient[1]) + square_of(u[2] - obedient[2]));
+    const double* consistent = consistent_velocity.data + 3 * i;
+    const double d_n = u[0] - consistent[0];
+    const double d_t = sqrt(square_of(u[1] - consistent[1]) + square_of(u[2] - consistent[2]));
     double square = normal_weight(c) * d_n * d_n;
     if (c.kind != ContactKind::frictionless) {
       const double rho_t = tangent_weight(c);
@@ -64,7 +64,7 @@ struct CoupledBoundBody {
       const double low = max_of(c.tangent_spring, 1e-300);
       square += square_of(slope / sqrt(rho_t) * d_t + (turn > 0 ? turn / sqrt(low) : 0.0));
     }
-    const double left = eta_square(c, natural.switches, natural.impulse.data + 3 * i, obedient);
+    const double left = eta_square(c, natural.switches, natural.impulse.data + 3 * i, consistent);
     sums.eta = sums.largest = square_of(sqrt(left) + sqrt(square));
     return sums;
   }

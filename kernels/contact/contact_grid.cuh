@@ -77,6 +77,8 @@ class GridContactExec {
  public:
   template <class T>
   using Vector = DeviceVector<T>;
+  template <class T>
+  using Buffer = DeviceBuffer<T>;
 
   /// @param exec  kept by the caller
   explicit GridContactExec(CudaExec& exec) : exec_(&exec) {}
@@ -148,12 +150,12 @@ class GridContactExec {
     return *home;
   }
   template <class T>
-  T load_if_free(const T*, T otherwise) const {
+  T load_without_sync(const T*, T otherwise) const {
     return otherwise;
   }
   /// The device would stand still at every look.
-  bool is_look(std::int64_t step) const { return step % 8 == 0; }
-  static constexpr bool reads_are_free = false;
+  bool is_sync_point(std::int64_t step) const { return step % 8 == 0; }
+  static constexpr bool reads_need_sync = true;
 
   template <class Sum, class Body>
   Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {

@@ -7,8 +7,8 @@
 
 #include "kernels/contact/anderson.hpp"
 #include "kernels/contact/contact_accelerators.hpp"
-#include "kernels/contact/contact_monitor.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
+#include "kernels/contact/convergence_test.hpp"
 
 namespace tetwarp {
 
@@ -74,9 +74,9 @@ class ContactMethods {
 
   /// @param work  of the whole problem
   TETWARP_ANY_EXEC ContactMethods(ContactPipeline<Exec, T>& pipeline,
-                                  ContactMonitor<Log>& monitor,
+                                  ConvergenceTest<Log>& convergence,
                                   const MethodWork<T>& work)
-      : pipeline_(pipeline), monitor_(monitor), work_(work.of(pipeline.island())) {
+      : pipeline_(pipeline), convergence_(convergence), work_(work.of(pipeline.island())) {
     exec().for_each("contact/sweep", pipeline_.constants().size,
                     ImpulseWeightsBody<T>{pipeline_.constants(), work_.weights});
     exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
@@ -88,8 +88,8 @@ class ContactMethods {
     return measure(0);
   }
 
-  TETWARP_ANY_EXEC StopReason gauss_seidel(std::int64_t patience, const CalmContacts<T>& calm) {
-    return iterate<PlainSteps<Exec, T>>(patience, calm);
+  TETWARP_ANY_EXEC StopReason gauss_seidel(std::int64_t patience, const FrozenContacts<T>& frozen) {
+    return iterate<PlainSteps<Exec, T>>(patience, frozen);
   }
   TETWARP_ANY_EXEC StopReason anderson(std::int64_t patience) {
     return iterate<AndersonMixer<Exec, T>>(patience, {});
@@ -101,21 +101,21 @@ class ContactMethods {
   /// Nesterov's acceleration, restarted when it leads uphill, of contacts solved all at once in the
   /// metric of split masses.
   TETWARP_ANY_EXEC StopReason mass_splitting(std::int64_t patience) {
-    monitor_.start_method(patience);
+    convergence_.start_method(patience);
     pipeline_.split_metric(work_.metric);
     const View<T> x = pipeline_.impulse();
     const View<T> last = {work_.mixed.data, x.size};
     exec().copy("contact/mix", View<const T>(x), last);
     double momentum = 1;
     PlainSteps<Exec, T> steps(exec(), work_.weights, {});
-    while (!monitor_.is_exhausted()) {
+    while (!convergence_.is_exhausted()) {
       exec().copy("contact/mix", View<const T>(x), work_.before);
       pipeline_.split(work_.metric);
-      monitor_.count_sweep();
-      if (is_look()) {
+      convergence_.count_sweep();
+      if (is_sync_point()) {
         steps.observe(work_.before, x);
         const double defect = steps.defect();
-        if (monitor_.is_due(defect)) {
+        if (convergence_.is_due(defect)) {
           pipeline_.follow_impulses();
           if (measure(defect)) break;
         }
@@ -132,17 +132,17 @@ class ContactMethods {
       exec().for_each("contact/mix", x.size, MomentumBody{factor, last, x});
       pipeline_.follow_impulses();
     }
-    return monitor_.reason();
+    return convergence_.reason();
   }
 
   /// What an option asks for; several methods in turn where it leaves the choice.
   /// @param calm  which contacts plain sweeps may leave out
   /// @return whether accelerated sweeps got stuck and conjugate directions went on from their best
-  TETWARP_ANY_EXEC bool run(ContactMethod method, const CalmContacts<T>& calm) {
+  TETWARP_ANY_EXEC bool run(ContactMethod method, const FrozenContacts<T>& frozen) {
     constexpr std::int64_t patience = 100;  // sweeps without a drop
     switch (method) {
       case ContactMethod::gauss_seidel:
-        gauss_seidel(endless, calm);
+        gauss_seidel(endless, frozen);
         return false;
       case ContactMethod::nonlinear_cg:
         conjugate_directions(endless);
@@ -173,40 +173,41 @@ class ContactMethods {
   TETWARP_HD Exec& exec() const { return pipeline_.exec(); }
 
   template <class Accelerator>
-  TETWARP_ANY_EXEC StopReason iterate(std::int64_t patience, CalmContacts<T> calm) {
+  TETWARP_ANY_EXEC StopReason iterate(std::int64_t patience, FrozenContacts<T> frozen) {
     Accelerator accelerator(exec(), work_.weights, work_.mixed);
-    monitor_.start_method(patience);
+    convergence_.start_method(patience);
     const View<T> x = pipeline_.impulse();
     const View<const T> before = work_.before;
-    while (!monitor_.is_exhausted()) {
+    while (!convergence_.is_exhausted()) {
       exec().copy("contact/mix", View<const T>(x), work_.before);
-      calm.all_awake = calm.visits.size == 0 || monitor_.sweeps() % CalmContacts<T>::pause == 0;
-      pipeline_.sweep(calm);
-      monitor_.count_sweep();
+      frozen.all_active = frozen.unchanged_visits.size == 0 ||
+                          convergence_.sweeps() % FrozenContacts<T>::revisit_interval == 0;
+      pipeline_.sweep(frozen);
+      convergence_.count_sweep();
       accelerator.observe(before, x);
-      if (is_look()) {
+      if (is_sync_point()) {
         const double defect = accelerator.defect();
-        if (monitor_.is_due(defect) && measure(defect)) break;
+        if (convergence_.is_due(defect) && measure(defect)) break;
       }
       if (accelerator.advance(before, x)) pipeline_.follow_impulses();
     }
-    return monitor_.reason();
+    return convergence_.reason();
   }
 
   /// Whether the executor lets those who decide look now.
-  TETWARP_ANY_EXEC bool is_look() const {
-    return exec().is_look(monitor_.sweeps()) || monitor_.is_exhausted();
+  TETWARP_ANY_EXEC bool is_sync_point() const {
+    return exec().is_sync_point(convergence_.sweeps()) || convergence_.is_exhausted();
   }
 
   TETWARP_ANY_EXEC bool measure(double defect) {
     bool is_best = false;
-    const bool is_done = monitor_.take(pipeline_.measure(), defect, is_best);
+    const bool is_done = convergence_.take(pipeline_.measure(), defect, is_best);
     if (is_best) exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
     return is_done;
   }
 
   ContactPipeline<Exec, T>& pipeline_;
-  ContactMonitor<Log>& monitor_;
+  ConvergenceTest<Log>& convergence_;
   MethodWork<T> work_;
 };
 
@@ -220,28 +221,28 @@ struct IslandEnd {
 /// What every island is solved by.
 struct MethodPlan {
   ContactMethod method = ContactMethod::automatic;
-  double calm_share = 0;  ///< see CalmContacts; where the state has room for calm contacts
+  double freeze_share = 0;  ///< see FrozenContacts; where the state has room for calm contacts
   std::int64_t sweep_budget = 0;
 };
 
 /// Solves one island from the impulses at hand; the best are left.
 template <class Exec, class T, class Log>
 TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
-                                        const StopRule& rule,
+                                        const StopCriterion& criterion,
                                         const MethodPlan& plan,
                                         std::int64_t sweeps_done,
                                         const MethodWork<T>& work,
                                         Log& log) {
-  ContactMonitor<Log> monitor(rule, sweeps_done, plan.sweep_budget, log);
-  ContactMethods<Exec, T, Log> methods(pipeline, monitor, work);
+  ConvergenceTest<Log> convergence(criterion, sweeps_done, plan.sweep_budget, log);
+  ContactMethods<Exec, T, Log> methods(pipeline, convergence, work);
   bool has_turned = false;
   if (!methods.is_done_at_start()) {
     const ContactState<T>& state = pipeline.state();
-    has_turned = methods.run(plan.method,
-                             {state.calm, state.left_out, true, static_cast<T>(plan.calm_share)});
+    has_turned = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
+                                           static_cast<T>(plan.freeze_share)});
     methods.restore_best();
   }
-  return {monitor.reason(), monitor.sweeps(), has_turned};
+  return {convergence.reason(), convergence.sweeps(), has_turned};
 }
 
 /// Where an island stands.

@@ -49,12 +49,12 @@ struct ContactNumbers {
 /// What a solve changes, for all islands together.
 template <class T>
 struct ContactState {
-  View<T> impulse;              ///< r, [3 slots]
-  View<T> velocity;             ///< u, [3 slots]
-  View<T> body_velocity;        ///< v, [dofs]
-  View<T> defect;               ///< b + J^T r - A v, [dofs], of coupled islands
-  View<std::uint8_t> calm;      ///< [slots], or empty where no contact may be frozen
-  View<std::int32_t> left_out;  ///< [slots]
+  View<T> impulse;                      ///< r, [3 slots]
+  View<T> velocity;                     ///< u, [3 slots]
+  View<T> body_velocity;                ///< v, [dofs]
+  View<T> defect;                       ///< b + J^T r - A v, [dofs], of coupled islands
+  View<std::uint8_t> unchanged_visits;  ///< [slots], or empty where no contact may be frozen
+  View<std::int32_t> skipped_visits;    ///< [slots]
 };
 
 }  // namespace tetwarp

@@ -48,16 +48,16 @@ class ContactPipeline {
   }
 
   /// One pass over all contacts.
-  TETWARP_ANY_EXEC void sweep(const CalmContacts<T>& calm) {
+  TETWARP_ANY_EXEC void sweep(const FrozenContacts<T>& frozen) {
     const View<const std::int64_t> colors = {color_start_.data + island_.color_begin,
                                              island_.color_end - island_.color_begin};
     if (numbers_.is_local) {
       contact_sweep(exec_, colors,
-                    DelassusSweepBody<T>{numbers_.delassus, numbers_.constants, switches_, calm,
+                    DelassusSweepBody<T>{numbers_.delassus, numbers_.constants, switches_, frozen,
                                          state_.impulse});
     } else {
       contact_sweep(exec_, colors,
-                    BodySweepBody<T>{numbers_.bodies, numbers_.constants, switches_, calm,
+                    BodySweepBody<T>{numbers_.bodies, numbers_.constants, switches_, frozen,
                                      state_.impulse, state_.body_velocity});
     }
   }

@@ -109,29 +109,32 @@ struct BodiesView {
 
 /// Contacts that have come to rest are visited only every few sweeps. Empty views: none are.
 template <class T>
-struct CalmContacts {
-  static constexpr int calm_visits = 10;  ///< so many calm visits in a row, and a contact is frozen
-  static constexpr int pause = 8;         ///< frozen contacts wake every so many sweeps
+struct FrozenContacts {
+  static constexpr int visits_to_freeze =
+      10;  ///< so many calm visits in a row, and a contact is frozen
+  static constexpr int revisit_interval = 8;  ///< frozen contacts wake every so many sweeps
 
-  View<std::uint8_t> visits;    ///< calm visits in a row, [contacts]
-  View<std::int32_t> left_out;  ///< visits left out, [contacts]
-  bool all_awake = true;
+  View<std::uint8_t> unchanged_visits;  ///< calm visits in a row, [contacts]
+  View<std::int32_t> skipped_visits;    ///< visits left out, [contacts]
+  bool all_active = true;
   T share = 0;  ///< a calm visit changes the impulse by less than this share
 
-  TETWARP_HD bool is_asleep(std::int64_t c) const {
-    if (all_awake || visits[c] < calm_visits) return false;
-    ++left_out[c];
+  TETWARP_HD bool skips(std::int64_t c) const {
+    if (all_active || unchanged_visits[c] < visits_to_freeze) return false;
+    ++skipped_visits[c];
     return true;
   }
   TETWARP_HD void note(std::int64_t c, const T* change, const T* impulse) const {
-    if (visits.size == 0) return;
+    if (unchanged_visits.size == 0) return;
     T moved = 0, size = 0;
     for (int a = 0; a < 3; ++a) {
       moved += square_of(change[a]);
       size += square_of(impulse[a]);
     }
-    const bool is_calm = moved <= square_of(share) * size;
-    visits[c] = is_calm ? static_cast<std::uint8_t>(min_of(visits[c] + 1, calm_visits)) : 0;
+    const bool is_unchanged = moved <= square_of(share) * size;
+    unchanged_visits[c] =
+        is_unchanged ? static_cast<std::uint8_t>(min_of(unchanged_visits[c] + 1, visits_to_freeze))
+                     : 0;
   }
 };
 
@@ -166,15 +169,15 @@ struct DelassusSweepBody {
   DelassusView<T> delassus;
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
-  CalmContacts<T> calm;
+  FrozenContacts<T> frozen;
   View<T> impulse;
 
   TETWARP_HD void operator()(std::int64_t c) const {
-    if (calm.is_asleep(c)) return;
+    if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
     answer_contact(constants[c], switches, delassus, c, impulse.data, r, change);
-    calm.note(c, change, r);
+    frozen.note(c, change, r);
   }
 };
 
@@ -184,12 +187,12 @@ struct BodySweepBody {
   BodiesView<T> bodies;
   View<const ContactConstants<T>> constants;
   ContactSwitches switches;
-  CalmContacts<T> calm;
+  FrozenContacts<T> frozen;
   View<T> impulse;
   View<T> body_velocity;
 
   TETWARP_HD void operator()(std::int64_t c) const {
-    if (calm.is_asleep(c)) return;
+    if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
     if (answer_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
@@ -197,7 +200,7 @@ struct BodySweepBody {
     } else {
       bodies.push_normal(c, change[0], body_velocity.data);
     }
-    calm.note(c, change, r);
+    frozen.note(c, change, r);
   }
 };
 

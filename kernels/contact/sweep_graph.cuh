@@ -69,18 +69,18 @@ struct SweepKey {
   const std::int64_t* colors;
   const void* impulse;
   const void* body_velocity;
-  bool all_awake;
+  bool all_active;
 
   bool operator==(const SweepKey&) const = default;
 };
 
 template <class T>
 SweepKey key_of(View<const std::int64_t> color_start, const DelassusSweepBody<T>& body) {
-  return {color_start.data, body.impulse.data, nullptr, body.calm.all_awake};
+  return {color_start.data, body.impulse.data, nullptr, body.frozen.all_active};
 }
 template <class T>
 SweepKey key_of(View<const std::int64_t> color_start, const BodySweepBody<T>& body) {
-  return {color_start.data, body.impulse.data, body.body_velocity.data, body.calm.all_awake};
+  return {color_start.data, body.impulse.data, body.body_velocity.data, body.frozen.all_active};
 }
 
 /// The graphs of one solve.

@@ -28,19 +28,19 @@ struct BoundCase {
     exact.block[0] *= std::pow(10, draw(0, 3));
     exact.tangent_metric *= std::pow(10, draw(0, 3));
     const bool is_open = seed % 4 == 0, slides = seed % 4 == 1;
-    obedient[0] = is_open ? draw(0, 1) : 0;
+    consistent[0] = is_open ? draw(0, 1) : 0;
     const double push = is_open ? 0 : draw(0, 2), angle = draw(0, 6);
     const double slip = is_open || slides ? draw(0, 1) : 0;
     const double pull = known.friction * push * (slides ? 1 : draw(0, 1));
     const double along[2] = {std::cos(angle), std::sin(angle)};
-    impulse[0] = push - known.normal_spring * obedient[0];
+    impulse[0] = push - known.normal_spring * consistent[0];
     for (int a = 0; a < 2; ++a) {
-      obedient[1 + a] = slip * along[a];
+      consistent[1 + a] = slip * along[a];
       impulse[1 + a] =
-          -pull * along[a] - known.tangent_spring * (obedient[1 + a] + known.tangent_offset[a]);
+          -pull * along[a] - known.tangent_spring * (consistent[1 + a] + known.tangent_offset[a]);
     }
     const double distance = std::pow(10, draw(-3, 0));
-    for (int a = 0; a < 3; ++a) velocity[a] = obedient[a] + distance * draw(-1, 1);
+    for (int a = 0; a < 3; ++a) velocity[a] = consistent[a] + distance * draw(-1, 1);
   }
 
   double draw(double low, double high) {
@@ -52,7 +52,7 @@ struct BoundCase {
 
   std::mt19937 random;
   Constants known = {}, exact = {};
-  double impulse[3], obedient[3], velocity[3];
+  double impulse[3], consistent[3], velocity[3];
   static constexpr double zero[3] = {0, 0, 0};
 };
 
@@ -60,9 +60,10 @@ TEST(ContactBound, EtaIsAtMostWhatIsSaid) {
   double closest = 0;
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);
-    ASSERT_LE(eta_square(c.exact, {}, c.impulse, c.obedient), 1e-24) << seed;
+    ASSERT_LE(eta_square(c.exact, {}, c.impulse, c.consistent), 1e-24) << seed;
 
-    const double bound = CoupledBoundBody{c.natural(c.impulse, c.velocity), {c.obedient, 3}}(0).eta;
+    const double bound =
+        ResidualBoundBody{c.natural(c.impulse, c.velocity), {c.consistent, 3}}(0).eta;
 
     const double eta = eta_square(c.exact, {}, c.impulse, c.velocity);
     EXPECT_LE(eta, (1 + 1e-9) * bound + 1e-24) << seed;
@@ -76,7 +77,7 @@ TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastWhatIsSaid) {
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);
 
-    const double bound = CoupledFreeBody{c.natural(BoundCase::zero, c.velocity)}(0).eta;
+    const double bound = FreeResidualBoundBody{c.natural(BoundCase::zero, c.velocity)}(0).eta;
 
     const double eta = eta_square(c.exact, {}, BoundCase::zero, c.velocity);
     EXPECT_GE(eta, bound) << seed;

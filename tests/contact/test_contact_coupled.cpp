@@ -17,7 +17,7 @@ namespace tetwarp::test {
 namespace {
 
 /// The bound that stops the iteration is one from soft to stiff, free to glued.
-TEST(CoupledJudge, WhatIsCalledConvergedIsWithinTheTolerance) {
+TEST(ResidualEstimator, WhatIsCalledConvergedIsWithinTheTolerance) {
   for (const double young : {1e4, 1e5, 1e6, 1e7}) {
     for (const double glue : {0.0, 1e6, 4e7}) {
       const ContactProblem problem = scenes::elastic_slab(
@@ -51,7 +51,7 @@ ContactProblem slab_at_rest(const scenes::ElasticSlab& choice) {
 }
 
 /// Bodies at rest show nothing of A.
-TEST(CoupledJudge, BoundsTheErrorOfBodiesAtRest) {
+TEST(ResidualEstimator, BoundsTheErrorOfBodiesAtRest) {
   const ContactProblem problem = slab_at_rest(
       {.cubes = {6, 5, 2}, .contacts = 30, .young = 2e5, .friction = 1, .glue = {4e8, 1}});
 
@@ -62,7 +62,7 @@ TEST(CoupledJudge, BoundsTheErrorOfBodiesAtRest) {
 }
 
 /// The first of two islands rests, the other moves.
-TEST(CoupledJudge, SeesAnIslandAsIfItWereAlone) {
+TEST(ResidualEstimator, SeesAnIslandAsIfItWereAlone) {
   const ContactProblem still =
       slab_at_rest({.cubes = {9, 7, 4}, .contacts = 45, .young = 3e4, .glue = {1e8, 1}});
   const ContactProblem moving = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
@@ -83,7 +83,7 @@ TEST(CoupledJudge, SeesAnIslandAsIfItWereAlone) {
 }
 
 /// Contacts far below, or as near as can be without being pushed: there is nothing to iterate.
-TEST(CoupledJudge, LetsBodiesGoThatNoContactHolds) {
+TEST(ResidualEstimator, LetsBodiesGoThatNoContactHolds) {
   for (const double offset : {100.0, 0.0}) {
     ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30, .glue = {}});
     for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
@@ -108,7 +108,7 @@ TEST(CoupledJudge, LetsBodiesGoThatNoContactHolds) {
 }
 
 /// Springs much stiffer than the bodies they hold feel errors that the energy hardly knows.
-TEST(CoupledJudge, IsRightAboutStiffGlueOnSoftBodies) {
+TEST(ResidualEstimator, IsRightAboutStiffGlueOnSoftBodies) {
   for (const double young : {3e4, 2e5, 3e6}) {
     for (const double glue : {1e8, 1e9}) {
       const ContactProblem problem = scenes::elastic_slab(

@@ -166,7 +166,7 @@ TEST_F(ContactCuda, FrozenContactsAreLeftOut) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 309, .edge = 4});
   const ContactSolution with = expect_solved(problem, options, "frozen");
   options.skip.frozen_contacts = false;
-  const ContactSolution without = expect_solved(problem, options, "all awake");
+  const ContactSolution without = expect_solved(problem, options, "all active");
 
   EXPECT_GT(with.report.updates_skipped, 0);
   EXPECT_EQ(without.report.updates_skipped, 0);

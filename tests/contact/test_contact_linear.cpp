@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/contact/block_jacobi/linear.hpp"
+#include "host/contact/block_jacobi/coupled_system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "tests/scenes/contact_samples.hpp"
 #include "tests/scenes/contact_stages.hpp"
@@ -47,7 +47,7 @@ struct LinearCase {
   std::mt19937 random;
   Eigen::MatrixXd matrix;
   VectorXd goal;
-  mutable LinearMemory<CpuContactExec> memory;  ///< of one solver at a time
+  mutable CoupledSystemMemory<CpuContactExec> memory;  ///< of one solver at a time
 };
 
 /// Coupled bodies of six dofs.
@@ -56,13 +56,13 @@ LinearCase bodies(double coupling) {
   return LinearCase(samples::random_global(random, 30, 6, coupling, 0.3));
 }
 
-using Linear = CoupledLinear<CpuContactExec>;
+using Linear = CoupledSystem<CpuContactExec>;
 
 Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
   return Linear(exec, c.stages.numbers(), c.stages.island(), c.memory);
 }
 
-TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
+TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
   const double size = c.size_of(exact);
@@ -84,7 +84,7 @@ TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
 
 /// From well to badly conditioned, at every question; a rough solve before has shown the smallest
 /// eigenvalue.
-TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
+TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};
   for (const LinearCase& c : cases) {
@@ -112,7 +112,7 @@ TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   }
 }
 
-TEST(CoupledLinear, StopsWhereItIsToldTo) {
+TEST(CoupledSystem, StopsWhereItIsToldTo) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
   CpuContactExec exec(1);
@@ -125,7 +125,7 @@ TEST(CoupledLinear, StopsWhereItIsToldTo) {
 }
 
 /// Couplings twice as strong as the blocks they join: these stay positive, the whole does not.
-TEST(CoupledLinear, DoesNotBlameTheSystemForSquaresThatUnderflow) {
+TEST(CoupledSystem, DoesNotBlameTheSystemForSquaresThatUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);
@@ -140,7 +140,7 @@ TEST(CoupledLinear, DoesNotBlameTheSystemForSquaresThatUnderflow) {
   }
 }
 
-TEST(CoupledLinear, RefusesASystemThatIsNotPositiveDefinite) {
+TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   const LinearCase c = bodies(2);
   CpuContactExec exec(1);
   Linear linear = make_linear(exec, c);

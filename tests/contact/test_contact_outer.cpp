@@ -15,7 +15,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/block_jacobi/outer.hpp"
+#include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "tests/scenes/contact_methods.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 #include "tests/scenes/contact_stages.hpp"
@@ -92,29 +92,33 @@ TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
 }
 
 /// Where A couples nothing, D is A: the inner problem is all there is.
-TEST(OuterIteration, IsExactInOneStepWhereNothingIsCoupled) {
+TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactProblem problem = global_problem(133, 6, 0);
   const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
   const ContactStages stages(problem, options);
   CpuContactExec exec(1);
-  const ContactNumbers<double> numbers = stages.system.numbers(stages.structure.indices());
-  CoupledMemory<CpuContactExec> memory;
-  CoupledJudge<CpuContactExec> judge(exec, options, numbers, stages.island(), memory.judge);
-  OuterIteration<CpuContactExec> outer(exec, options, numbers,
-                                       view_of(stages.structure.color_start), stages.island(),
-                                       judge, memory.fine);
+  const CoupledTask task{options,
+                         stages.island(),
+                         view_of(stages.structure.color_start),
+                         stages.system.numbers(stages.structure.indices()),
+                         {},
+                         {},
+                         1};
+  BlockJacobiMemory<CpuContactExec> memory;
+  ResidualEstimator<CpuContactExec> estimator(exec, task, memory.estimator);
+  BlockJacobi<CpuContactExec> block_jacobi(exec, task, estimator, memory.fine);
   const std::vector<double> no_impulse(problem.velocity_offset.size(), 0.0);
   const std::vector<double> no_velocity(problem.load.size(), 0.0);
   IslandOutcome outcome;
-  judge.start(outcome);
+  estimator.start(outcome);
 
-  outer.solve(1, view_of(no_impulse), view_of(no_velocity), outcome);
+  block_jacobi.solve(view_of(no_impulse), view_of(no_velocity), outcome);
 
   EXPECT_EQ(outcome.reason, StopReason::converged);
   EXPECT_EQ(outcome.outer_iterations, 1);
 }
 
-TEST(OuterIteration, AcceleratedNeedsAThirdOfThePlainSteps) {
+TEST(BlockJacobi, AcceleratedNeedsAThirdOfThePlainSteps) {
   const ContactProblem problem = make_elastic_problem({.young = 1e6});
   ContactOptions plain = iterated(ContactMethod::gauss_seidel);
   plain.max_sweeps = 100000;
@@ -128,7 +132,7 @@ TEST(OuterIteration, AcceleratedNeedsAThirdOfThePlainSteps) {
 }
 
 /// A shorter step takes in proportion more of them.
-TEST(OuterIteration, HalfTheRelaxationTakesTwiceTheSteps) {
+TEST(BlockJacobi, HalfTheRelaxationTakesTwiceTheSteps) {
   const ContactProblem problem = make_elastic_problem({});
   ContactOptions options = iterated(ContactMethod::gauss_seidel);
   const auto half = static_cast<double>(solve_contacts(problem, options).report.outer_iterations);
@@ -143,7 +147,7 @@ TEST(OuterIteration, HalfTheRelaxationTakesTwiceTheSteps) {
 
 /// Bodies with several contacts: better inner solutions save outer steps. Nodes with one contact
 /// each are solved by one sweep, whatever is asked for.
-TEST(OuterIteration, InnerSweepsSaveStepsWhereContactsShareBodies) {
+TEST(BlockJacobi, InnerSweepsSaveStepsWhereContactsShareBodies) {
   ContactOptions once = iterated(), often = iterated();
   once.inner_sweeps = 1;
   often.inner_sweeps = 20;
@@ -159,7 +163,7 @@ TEST(OuterIteration, InnerSweepsSaveStepsWhereContactsShareBodies) {
   expect_same_bits(solve_contacts(nodes, once), solve_contacts(nodes, often), "nodes");
 }
 
-TEST(OuterIteration, ReportsWhatItDid) {
+TEST(BlockJacobi, ReportsWhatItDid) {
   const ContactSolution solution =
       solve_contacts(scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30}), iterated());
 
@@ -170,7 +174,7 @@ TEST(OuterIteration, ReportsWhatItDid) {
   EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 1e-12 * report.residual.eta);
 }
 
-TEST(OuterIteration, HasTheSameBitsForAnyNumberOfThreads) {
+TEST(BlockJacobi, HasTheSameBitsForAnyNumberOfThreads) {
   const ContactProblem problem =
       scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});  // 1365 nodes wake the threads
   ContactOptions options = iterated();
@@ -183,7 +187,7 @@ TEST(OuterIteration, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(OuterIteration, StartsFromImpulsesGiven) {
+TEST(BlockJacobi, StartsFromImpulsesGiven) {
   ContactProblem problem = make_elastic_problem({});
   const ContactSolution cold = solve_contacts(problem, iterated());
   problem.impulse_guess = cold.impulse;
@@ -194,7 +198,7 @@ TEST(OuterIteration, StartsFromImpulsesGiven) {
   EXPECT_LT(2 * warm.report.outer_iterations, cold.report.outer_iterations);
 }
 
-TEST(OuterIteration, IsChosenForLargeIslandsOnly) {
+TEST(BlockJacobi, IsChosenForLargeIslandsOnly) {
   const ContactProblem small = make_elastic_problem({});
   const ContactProblem large = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
 
@@ -205,7 +209,7 @@ TEST(OuterIteration, IsChosenForLargeIslandsOnly) {
 }
 
 /// Two steps are not enough; the Delassus matrix and Newton's method are.
-TEST(OuterIteration, IsFollowedByCondensingWhereItFails) {
+TEST(BlockJacobi, IsFollowedByCondensingWhereItFails) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
 
   const ContactSolution solution = solve_contacts(problem, {.tolerance = 1e-8, .max_sweeps = 100});

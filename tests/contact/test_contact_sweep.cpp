@@ -56,18 +56,19 @@ Swept sweep(const Exec& exec,
             const ContactOptions& options,
             View<const std::int64_t> colors,
             int sweeps,
-            const CalmContacts<double>& calm = {}) {
+            const FrozenContacts<double>& frozen = {}) {
   const ContactSystem<double>& system = stages.system;
   Swept swept = {std::vector<double>(system.free_velocity.size()), system.body_free};
   for (int s = 0; s < sweeps; ++s) {
     if (stages.structure.is_local) {
-      contact_sweep(exec, colors,
-                    DelassusSweepBody<double>{stages.numbers().delassus, view_of(system.constants),
-                                              switches_of(options), calm, view_of(swept.impulse)});
+      contact_sweep(
+          exec, colors,
+          DelassusSweepBody<double>{stages.numbers().delassus, view_of(system.constants),
+                                    switches_of(options), frozen, view_of(swept.impulse)});
     } else {
       contact_sweep(exec, colors,
                     BodySweepBody<double>{stages.numbers().bodies, view_of(system.constants),
-                                          switches_of(options), calm, view_of(swept.impulse),
+                                          switches_of(options), frozen, view_of(swept.impulse),
                                           view_of(swept.body_velocity)});
     }
   }
@@ -163,16 +164,17 @@ TEST_P(ContactSweep, WithoutColorsOrWithAnEmptyOneDoesNothing) {
   }
 }
 
-TEST_P(ContactSweep, LeavesContactsAloneThatAreAsleepAndCountsThem) {
+TEST_P(ContactSweep, SkipsFrozenContactsAndCountsThem) {
   const ContactStages stages(row_of_bodies(64, 4, GetParam()));
-  std::vector<std::uint8_t> visits(7, 0);
-  std::vector<std::int32_t> left_out(7, 0);
-  visits[2] = visits[5] = CalmContacts<double>::calm_visits;
-  const CalmContacts<double> calm = {view_of(visits), view_of(left_out), false, 0};
+  std::vector<std::uint8_t> unchanged_visits(7, 0);
+  std::vector<std::int32_t> skipped_visits(7, 0);
+  unchanged_visits[2] = unchanged_visits[5] = FrozenContacts<double>::visits_to_freeze;
+  const FrozenContacts<double> frozen = {view_of(unchanged_visits), view_of(skipped_visits), false,
+                                         0};
 
-  const Swept swept = sweep(CpuContactExec(1), stages, {}, stages.colors(), 3, calm);
+  const Swept swept = sweep(CpuContactExec(1), stages, {}, stages.colors(), 3, frozen);
 
-  EXPECT_EQ(left_out, (std::vector<std::int32_t>{0, 0, 3, 0, 0, 3, 0}));
+  EXPECT_EQ(skipped_visits, (std::vector<std::int32_t>{0, 0, 3, 0, 0, 3, 0}));
   for (const std::size_t slot : {2U, 5U}) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(swept.impulse[3 * slot + a], 0);
   }

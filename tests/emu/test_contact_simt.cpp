@@ -38,8 +38,8 @@ enum class Place { shared, global };
 template <class T>
 class IslandSolves {
  public:
-  IslandSolves(const SweepScene& scene, const MethodPlan& plan, const StopRule& rule)
-      : scene_(scene), system_(system_in(scene, T{})), plan_(plan), rule_(rule) {}
+  IslandSolves(const SweepScene& scene, const MethodPlan& plan, const StopCriterion& criterion)
+      : scene_(scene), system_(system_in(scene, T{})), plan_(plan), criterion_(criterion) {}
 
   ContactSwitches switches;
   std::int64_t events = 32;  ///< room for each island
@@ -47,22 +47,22 @@ class IslandSolves {
 
   /// Impulses by blocks; `results` and `logs` of each island.
   std::vector<T> by_blocks(Place place) {
-    HostContactState<T> state = start();
-    HostMethodWork<T> work(system_.constants.size());
+    StateMemory<CpuContactExec, T> state = start();
+    MethodMemory<CpuContactExec, T> work;
     std::vector<IslandTask> tasks;
-    for (const ContactIsland& island : islands()) tasks.push_back({island, rule_});
+    for (const ContactIsland& island : islands()) tasks.push_back({island, criterion_});
     results.assign(tasks.size(), {});
     logs.assign(tasks.size() * static_cast<std::size_t>(events), {-1, -1});
     contact_solve_islands<T>(
         nullptr,
-        {system_.numbers(scene_.structure.indices()), state.view(), work.view(),
+        {system_.numbers(scene_.structure.indices()), state.views(), work.reserve(slots()),
          view_of(scene_.structure.color_start), switches, plan_, view_of(std::as_const(tasks)),
          place == Place::shared ? shared_values_for<T>(view_of(std::as_const(tasks))) : 0,
          view_of(results), view_of(logs), events});
     sums.assign(tasks.size(), {});
     contact_measure_islands<T>(nullptr,
                                {system_.numbers(scene_.structure.indices()),
-                                state.view(),
+                                state.views(),
                                 view_of(scene_.structure.color_start),
                                 switches,
                                 {islands().data(), static_cast<std::int64_t>(islands().size())},
@@ -72,8 +72,8 @@ class IslandSolves {
 
   /// By the host, one island after the other.
   std::vector<T> by_host() {
-    HostContactState<T> state = start();
-    HostMethodWork<T> work(system_.constants.size());
+    StateMemory<CpuContactExec, T> state = start();
+    MethodMemory<CpuContactExec, T> work;
     CpuContactExec exec(1);
     host_ends.clear();
     host_sums.clear();
@@ -81,9 +81,9 @@ class IslandSolves {
     for (const ContactIsland& island : islands()) {
       ContactPipeline<CpuContactExec, T> pipeline(exec, system_.numbers(scene_.structure.indices()),
                                                   view_of(scene_.structure.color_start), island,
-                                                  switches, state.view());
+                                                  switches, state.views());
       HostEventLog log;
-      host_ends.push_back(solve_island(pipeline, rule_, plan_, 0, work.view(), log));
+      host_ends.push_back(solve_island(pipeline, criterion_, plan_, 0, work.reserve(slots()), log));
       host_sums.push_back(pipeline.measure());
       host_logs.push_back(log.events);
     }
@@ -102,20 +102,19 @@ class IslandSolves {
     return {scene_.structure.islands.data(),
             static_cast<std::size_t>(scene_.structure.contact_islands)};
   }
-  HostContactState<T> start() const {
-    HostContactState<T> state(system_);
+  std::int64_t slots() const { return scene_.structure.indices().slots(); }
+  StateMemory<CpuContactExec, T> start() const {
+    CpuContactExec exec(1);
+    StateMemory<CpuContactExec, T> state;
+    state.reset(exec, system_.numbers(scene_.structure.indices()), freezes);
     state.impulse.assign(state.impulse.size(), T(0.001));
-    if (freezes) {
-      state.calm.assign(system_.constants.size(), 0);
-      state.left_out.assign(system_.constants.size(), 0);
-    }
     return state;
   }
 
   const SweepScene& scene_;
   ContactSystem<T> system_;
   MethodPlan plan_;
-  StopRule rule_;
+  StopCriterion criterion_;
 };
 
 /// 11 sweeps of all islands: in shared memory under every schedule, in place under one.
@@ -211,7 +210,7 @@ TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
         for (std::size_t i = 0; i < solves.results.size(); ++i) {
           const IslandResult& result = solves.results[i];
           EXPECT_EQ(result.end.reason, StopReason::converged) << name_of(method);
-          EXPECT_LE(StopRule({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(solves.sums[i].sums),
+          EXPECT_LE(StopCriterion({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(solves.sums[i].sums),
                     1.001);
           EXPECT_NEAR(static_cast<double>(result.end.sweeps),
                       static_cast<double>(solves.host_ends[i].sweeps),

@@ -9,8 +9,8 @@
 
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
-#include "host/contact/sweeps/memory.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 
@@ -62,11 +62,12 @@ HostSweeps<T> sweep_on_host(const ContactStructure& structure,
                             const std::vector<T>& start,
                             std::int64_t sweeps) {
   CpuContactExec exec(1);
-  HostContactState<T> state(system);
+  const ContactNumbers<T> numbers = system.numbers(structure.indices());
+  StateMemory<CpuContactExec, T> state;
+  state.reset(exec, numbers, false);
   state.impulse = start;
-  ContactPipeline<CpuContactExec, T> pipeline(exec, system.numbers(structure.indices()),
-                                              view_of(structure.color_start), island, switches,
-                                              state.view());
+  ContactPipeline<CpuContactExec, T> pipeline(exec, numbers, view_of(structure.color_start), island,
+                                              switches, state.views());
   pipeline.follow_impulses();
   for (std::int64_t s = 0; s < sweeps; ++s) pipeline.sweep({});
   const View<T> r = pipeline.impulse();

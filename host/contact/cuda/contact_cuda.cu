@@ -1,5 +1,6 @@
 /// @file contact_cuda.cu
-// Executors of the host and of blocks share functions that run where their executor does.
+// Stages are host-device functions templated on the executor; nvcc warns of the executors whose
+// members run on one side only.
 #pragma nv_diag_suppress 20011, 20014
 #include "host/base/warp_backend.hpp"
 #include "host/contact/cuda/contact_cuda.cuh"

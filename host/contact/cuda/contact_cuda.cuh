@@ -1,6 +1,6 @@
 /// @file contact_cuda.cuh
-/// The contact solver on a device: islands that one block can hold in one launch, the others and
-/// those that A couples stage by stage on the whole device.
+/// The contact solver on a device. An island that fits one block is solved by one kernel launch;
+/// larger ones, and those whose blocks A couples, run stage by stage on the whole device.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -9,14 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "host/contact/block_jacobi/outer.hpp"
+#include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
+#include "host/contact/structure/indices.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_block.cuh"
 #include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"
 #include "kernels/contact/contact_grid.cuh"
+#include "kernels/contact/contact_memory.hpp"
+#include "kernels/contact/contact_system.hpp"
 
 namespace tetwarp {
 
@@ -30,18 +33,22 @@ class CudaContactDevice final : public ContactDevice {
                              const ContactInput& input) override {
     exec_.use_stream(nullptr);  // makes the device current on this thread
     if (serial_ != structure.serial) {
-      grid_.forget_sweeps();  // with the same structure they find everything in its place
-      indices_ = indices_there(grid_, structure.indices(), arrays_);
+      grid_.forget_sweeps();  // a new structure moves arrays; with the same one all addresses stay
+      indices_in_memory_.restart();
+      indices_ = make_indices(structure, [&](const auto& array) {
+        return indices_in_memory_.put(grid_, view_of(array));
+      });
       serial_ = structure.serial;
     }
     structure_ = &structure;
-    float64_.resize(grid_, indices_);
-    const ContactSavings savings = fill_numbers(grid_, input_there(grid_, input, given_), indices_,
-                                                choices_of(options), float64_.views());
-    numbers_ = float64_.numbers(indices_);
+    float64_.system.resize(grid_, indices_);
+    const ContactSavings savings =
+        fill_numbers(grid_, input_on_device(grid_, input, input_in_memory_), indices_,
+                     choices_of(options), float64_.system.views());
+    float64_.numbers = float64_.system.numbers(indices_);
     if (options.precision == ContactPrecision::float32) {
-      convert_system(grid_, indices_, float64_, float32_);
-      rounded_ = float32_.numbers(indices_);
+      convert_system(grid_, indices_, float64_.system, float32_.system);
+      float32_.numbers = float32_.system.numbers(indices_);
     }
     return savings;
   }
@@ -50,68 +57,67 @@ class CudaContactDevice final : public ContactDevice {
                                std::vector<double>& impulse,
                                std::vector<double>& body_velocity,
                                std::vector<IslandOutcome>& outcomes) override {
-    state64_.reset(grid_, numbers_, freezes_contacts(options));
+    float64_.state.reset(grid_, float64_.numbers, freezes_contacts(options));
     sort_islands();
-    grid_.resize(state64_.impulse, numbers_.free_velocity.size);
     measure(options, [&](std::size_t i, const IslandSums& sums) {
       outcomes[i].free = sums.sums;
       outcomes[i].free_square = sums.free_square;
     });
-    const std::vector<StopRule> rules = stop_rules(options, *structure_, outcomes);
-    put(impulse, state64_.impulse);
+    const std::vector<StopCriterion> criteria = stop_criteria(options, *structure_, outcomes);
+    put(impulse, float64_.state.impulse);
     std::int64_t skipped = 0;
     if (options.precision == ContactPrecision::float64) {
-      skipped = solve(options, rules, numbers_, state64_, outcomes);
+      skipped = solve(options, criteria, float64_, outcomes);
     } else {
-      state32_.reset(grid_, rounded_, freezes_contacts(options));
-      state32_.impulse.resize(numbers_.free_velocity.size);
-      convert(grid_, View<const double>(view_of(state64_.impulse)), view_of(state32_.impulse));
-      skipped = solve(options, rules, rounded_, state32_, outcomes);
-      convert(grid_, View<const float>(view_of(state32_.impulse)), view_of(state64_.impulse));
+      float32_.state.reset(grid_, float32_.numbers, freezes_contacts(options));
+      convert(grid_, View<const double>(view_of(float64_.state.impulse)),
+              view_of(float32_.state.impulse));
+      skipped = solve(options, criteria, float32_, outcomes);
+      convert(grid_, View<const float>(view_of(float32_.state.impulse)),
+              view_of(float64_.state.impulse));
     }
     measure(options, [&](std::size_t i, const IslandSums& sums) {
       IslandOutcome& outcome = outcomes[i];
       outcome.sums = sums.sums;
-      const bool is_done = rules[i].excess_of(sums.sums) <= 1;
+      const bool is_done = criteria[i].excess_of(sums.sums) <= 1;
       if (is_done != (outcome.reason == StopReason::converged)) {
         outcome.reason = is_done ? StopReason::converged : StopReason::exhausted;
       }
     });
-    get(state64_.impulse, impulse);
-    get(state64_.body_velocity, body_velocity);
+    get(float64_.state.impulse, impulse);
+    get(float64_.state.body_velocity, body_velocity);
     return skipped;
   }
 
   void solve_coupled(const ContactOptions& options,
                      const ContactIsland& island,
                      const std::vector<double>& guess,
-                     std::int64_t most,
+                     std::int64_t max_iterations,
                      std::vector<double>& impulse,
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
     put(guess, guess_);
-    CoupledJudge<GridContactExec> judge(grid_, options, numbers_, island, coupled_.judge);
-    solve_coupled_island(grid_, options, numbers_, rounded_, view_of(structure_->color_start),
-                         island, view_of(std::as_const(guess_)), most, judge, coupled_, outcome);
-    grid_.get(judge.best_impulse(), impulse.data());
-    grid_.get(judge.best_body_velocity(), body_velocity.data());
+    const CoupledTask task{options,          island,           view_of(structure_->color_start),
+                           float64_.numbers, float32_.numbers, view_of(std::as_const(guess_)),
+                           max_iterations};
+    const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
+    grid_.get(best.impulse, impulse.data());
+    grid_.get(best.body_velocity, body_velocity.data());
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
     exec_.use_stream(nullptr);
-    given_.restart();
-    const View<const std::int64_t> start = there(lists.start);
-    const View<const std::int32_t> item = there(lists.item);
+    input_in_memory_.restart();
     labels_.resize(item_count);
-    contact_components(grid_, start, item, view_of(labels_));
+    contact_components(grid_, on_device(lists.start), on_device(lists.item), view_of(labels_));
     return labels();
   }
 
   std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override {
     exec_.use_stream(nullptr);
-    given_.restart();
-    const ContactGroups views = {there(groups.start), there(groups.item), there(members.start),
-                                 there(members.item)};
+    input_in_memory_.restart();
+    const ContactGroups views = {on_device(groups.start), on_device(groups.item),
+                                 on_device(members.start), on_device(members.item)};
     labels_.resize(groups.size());
     contact_color(grid_, views, view_of(labels_));
     return labels();
@@ -119,15 +125,15 @@ class CudaContactDevice final : public ContactDevice {
 
   void evolve(const ContactAdhesionBody& body) override {
     exec_.use_stream(nullptr);
-    ContactAdhesionBody there = body;
-    there.in = adhesion_there(grid_, body.in, given_);
+    ContactAdhesionBody on_device = body;
+    on_device.in = adhesion_on_device(grid_, body.in, input_in_memory_);
     next_intensity_.resize(body.next_intensity.size);
     next_gap_.resize(body.next_gap.size);
     debonded_.resize(body.debonded.size);
-    there.next_intensity = view_of(next_intensity_);
-    there.next_gap = view_of(next_gap_);
-    there.debonded = view_of(debonded_);
-    contact_adhesion(grid_, there);
+    on_device.next_intensity = view_of(next_intensity_);
+    on_device.next_gap = view_of(next_gap_);
+    on_device.debonded = view_of(debonded_);
+    contact_adhesion(grid_, on_device);
     grid_.get(view_of(std::as_const(next_intensity_)), body.next_intensity.data);
     grid_.get(view_of(std::as_const(next_gap_)), body.next_gap.data);
     grid_.get(view_of(std::as_const(debonded_)), body.debonded.data);
@@ -138,19 +144,28 @@ class CudaContactDevice final : public ContactDevice {
  private:
   static constexpr std::int64_t events_per_island = 32;
 
+  /// A problem in one precision, and the memory of its solve.
   template <class T>
-  void put(const std::vector<T>& host, DeviceVector<T>& there) {
-    grid_.put(host.data(), static_cast<std::int64_t>(host.size()), there);
+  struct Problem {
+    SystemMemory<GridContactExec, T> system;
+    ContactNumbers<T> numbers;  ///< views of `system`
+    StateMemory<GridContactExec, T> state;
+    MethodMemory<GridContactExec, T> work;
+  };
+
+  template <class T>
+  void put(const std::vector<T>& host, DeviceVector<T>& device) {
+    grid_.put(host.data(), static_cast<std::int64_t>(host.size()), device);
   }
   template <class T>
-  void get(const DeviceVector<T>& there, std::vector<T>& host) {
-    host.resize(static_cast<std::size_t>(view_of(there).size));
-    grid_.get(view_of(there), host.data());
+  void get(const DeviceVector<T>& device, std::vector<T>& host) {
+    host.resize(static_cast<std::size_t>(view_of(device).size));
+    grid_.get(view_of(device), host.data());
   }
 
   template <class T>
-  View<const T> there(const std::vector<T>& host) {
-    return given_.put(grid_, view_of(host));
+  View<const T> on_device(const std::vector<T>& host) {
+    return input_in_memory_.put(grid_, view_of(host));
   }
   std::vector<std::int32_t> labels() {
     std::vector<std::int32_t> result;
@@ -158,7 +173,8 @@ class CudaContactDevice final : public ContactDevice {
     return result;
   }
 
-  /// Those for blocks, the longest first, so that none of them is begun last; and the large ones.
+  /// Divides the islands into those for one block each and those for the whole device. The small
+  /// ones are sorted by falling size, so that no long block starts last.
   void sort_islands() {
     small_.clear();
     large_.clear();
@@ -171,7 +187,8 @@ class CudaContactDevice final : public ContactDevice {
     });
   }
 
-  /// Sums of the impulses at hand, in float64, told to `take(island, sums)`.
+  /// Measures the current impulses in float64.
+  /// @param take  (std::size_t island, const IslandSums&), called once for each uncoupled island
   template <class Take>
   void measure(const ContactOptions& options, const Take& take) {
     if (!small_.empty()) {
@@ -180,8 +197,9 @@ class CudaContactDevice final : public ContactDevice {
       put(islands, islands_);
       measured_.resize(static_cast<std::int64_t>(islands.size()));
       contact_measure_islands<double>(
-          exec_.stream(), {numbers_, state64_.state(), indices_.color_start, switches_of(options),
-                           view_of(std::as_const(islands_)), view_of(measured_)});
+          exec_.stream(),
+          {float64_.numbers, float64_.state.views(), indices_.color_start, switches_of(options),
+           view_of(std::as_const(islands_)), view_of(measured_)});
       std::vector<IslandSums> sums;
       get(measured_, sums);
       for (std::size_t k = 0; k < sums.size(); ++k) {
@@ -189,49 +207,47 @@ class CudaContactDevice final : public ContactDevice {
       }
     }
     for (const std::int64_t i : large_) {
-      take(static_cast<std::size_t>(i),
-           measure_island(pipeline_of(options, i, numbers_, state64_)));
+      take(static_cast<std::size_t>(i), measure_island(pipeline_of(options, i, float64_)));
     }
   }
 
-  /// @return visits left out
+  /// Solves all uncoupled islands.
+  /// @return  visits of frozen contacts that sweeps skipped
   template <class T>
   std::int64_t solve(const ContactOptions& options,
-                     const std::vector<StopRule>& rules,
-                     const ContactNumbers<T>& numbers,
-                     DeviceState<T>& state,
+                     const std::vector<StopCriterion>& criteria,
+                     Problem<T>& problem,
                      std::vector<IslandOutcome>& outcomes) {
-    if (!small_.empty()) solve_small(options, rules, numbers, state, outcomes);
+    const MethodWork<T> work = problem.work.reserve(indices_.slots());
+    if (!small_.empty()) solve_small(options, criteria, problem, work, outcomes);
     for (const std::int64_t i : large_) {
-      auto pipeline = pipeline_of(options, i, numbers, state);
+      auto pipeline = pipeline_of(options, i, problem);
       HostEventLog log;
       const auto k = static_cast<std::size_t>(i);
-      const IslandEnd end =
-          solve_island(pipeline, rules[k], plan_of(options), 0, state.work(), log);
+      const IslandEnd end = solve_island(pipeline, criteria[k], plan_of(options), 0, work, log);
       outcomes[k].take(end, options.method, island(i).contact_count());
       outcomes[k].events = std::move(log.events);
     }
-    std::vector<std::int32_t> visits;
-    get(state.left_out, visits);
-    return std::accumulate(visits.begin(), visits.end(), std::int64_t{0});
+    std::vector<std::int32_t> skipped;
+    get(problem.state.skipped_visits, skipped);
+    return std::accumulate(skipped.begin(), skipped.end(), std::int64_t{0});
   }
 
   template <class T>
   void solve_small(const ContactOptions& options,
-                   const std::vector<StopRule>& rules,
-                   const ContactNumbers<T>& numbers,
-                   DeviceState<T>& state,
+                   const std::vector<StopCriterion>& criteria,
+                   Problem<T>& problem,
+                   const MethodWork<T>& work,
                    std::vector<IslandOutcome>& outcomes) {
     std::vector<IslandTask> tasks;
     for (const std::int64_t i : small_) {
-      tasks.push_back({island(i), rules[static_cast<std::size_t>(i)]});
+      tasks.push_back({island(i), criteria[static_cast<std::size_t>(i)]});
     }
-    const auto count = static_cast<std::int64_t>(tasks.size());
     put(tasks, tasks_);
-    results_.resize(count);
-    events_.resize(count * events_per_island);
+    results_.resize(view_of(tasks_).size);
+    events_.resize(view_of(tasks_).size * events_per_island);
     contact_solve_islands<T>(
-        exec_.stream(), {numbers, state.state(), state.work(), indices_.color_start,
+        exec_.stream(), {problem.numbers, problem.state.views(), work, indices_.color_start,
                          switches_of(options), plan_of(options), view_of(std::as_const(tasks_)),
                          shared_values_for<T>(view_of(std::as_const(tasks))), view_of(results_),
                          view_of(events_), events_per_island});
@@ -251,11 +267,9 @@ class CudaContactDevice final : public ContactDevice {
   template <class T>
   ContactPipeline<GridContactExec, T> pipeline_of(const ContactOptions& options,
                                                   std::int64_t i,
-                                                  const ContactNumbers<T>& numbers,
-                                                  DeviceState<T>& state) {
-    return {
-        grid_,        numbers, view_of(structure_->color_start), island(i), switches_of(options),
-        state.state()};
+                                                  Problem<T>& problem) {
+    return {grid_,     problem.numbers,      view_of(structure_->color_start),
+            island(i), switches_of(options), problem.state.views()};
   }
 
   const ContactIsland& island(std::int64_t i) const {
@@ -266,21 +280,16 @@ class CudaContactDevice final : public ContactDevice {
   GridContactExec grid_;
   std::string name_;
   const ContactStructure* structure_ = nullptr;
-  std::int64_t serial_ = 0;  ///< of the structure whose indices are there
-  DeviceArrays arrays_, given_;
-  ContactIndices indices_;
-  SystemMemory<GridContactExec, double> float64_;
-  SystemMemory<GridContactExec, float> float32_;
-  ContactNumbers<double> numbers_;
-  ContactNumbers<float> rounded_;
-  DeviceState<double> state64_;
-  DeviceState<float> state32_;
-  CoupledMemory<GridContactExec> coupled_;
-  DeviceVector<double> guess_;
+  std::int64_t serial_ = 0;  ///< of the structure that `indices_` were copied from
+  DeviceArrays indices_in_memory_, input_in_memory_;
+  ContactIndices indices_;  ///< views of indices_in_memory_
+  Problem<double> float64_;
+  Problem<float> float32_;  ///< set if the options ask for float32
+  BlockJacobiMemory<GridContactExec> block_jacobi_memory_;
+  DeviceVector<double> guess_, next_intensity_, next_gap_;
   DeviceVector<std::int32_t> labels_;
-  DeviceVector<double> next_intensity_, next_gap_;
   DeviceVector<std::uint8_t> debonded_;
-  std::vector<std::int64_t> small_, large_;
+  std::vector<std::int64_t> small_, large_;  ///< islands; see sort_islands()
   DeviceVector<ContactIsland> islands_;
   DeviceVector<IslandSums> measured_;
   DeviceVector<IslandTask> tasks_;

@@ -1,5 +1,5 @@
 /// @file contact_nocuda.cpp
-/// The contact solver's device in a build without the CUDA toolkit: it says so.
+/// make_contact_device() of a build without CUDA: always throws.
 #include <tetwarp/error.hpp>
 
 #include "host/contact/cuda/device.hpp"

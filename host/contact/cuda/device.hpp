@@ -1,6 +1,5 @@
 /// @file device.hpp
-/// What the contact solver asks of a device: islands, from the numbers of a problem to impulses.
-/// What is left to Newton's method stays with the host.
+/// Interface of a device that runs stages of the contact solver. Newton's method stays on the host.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,59 +16,59 @@ namespace tetwarp {
 
 struct IslandOutcome;
 
-/// Islands on a device. Every executor runs the same methods; see
-/// kernels/contact/contact_methods.hpp.
+/// A device that solves islands of contacts, with the methods of
+/// kernels/contact/contact_methods.hpp. All vectors are in memory of the host.
 class ContactDevice : public StructureStages {
  public:
-  /// The numbers of a problem, for the calls that follow.
+  /// Copies a problem to the device, for the calls that follow.
   /// @param structure  kept by the caller until the next set_problem()
-  /// @return what was left out
+  /// @return  rows and springs that the solve leaves out
   /// @throws CudaError
   virtual ContactSavings set_problem(const ContactOptions& options,
                                      const ContactStructure& structure,
                                      const ContactInput& input) = 0;
 
-  /// Solves all islands whose blocks A does not couple, in the precision of the options, and judges
-  /// them in float64.
-  /// @param impulse        [3 slots]; in: to start from; out: the best seen
-  /// @param body_velocity  out: what they cause, [dofs], without contacts the free motion; not set
-  ///                       in coupled islands
-  /// @param outcomes       what it took; the reason says `converged` where nothing is left to do
-  /// @return visits of contacts left out
+  /// Solves all islands whose blocks A does not couple, in the precision of the options, and
+  /// measures the result in float64.
+  /// @param impulse        [3 slots]; in: to start from; out: the best found
+  /// @param body_velocity  out: what they cause, [dofs]; in islands without contacts the free
+  ///                       motion; in coupled islands not set
+  /// @param outcomes       out, [islands with contacts]: reason is `converged` within the tolerance
+  /// @return  visits of frozen contacts that sweeps skipped
   virtual std::int64_t solve_uncoupled(const ContactOptions& options,
                                        std::vector<double>& impulse,
                                        std::vector<double>& body_velocity,
                                        std::vector<IslandOutcome>& outcomes) = 0;
 
-  /// Iterates one island whose blocks A couples.
-  /// @param guess          [3 slots], or empty: none
-  /// @param most           outer iterations
-  /// @param impulse        out: the best, [3 slots], set in the island
-  /// @param body_velocity  out: what it causes, [dofs], set in the island
+  /// Solves one island whose blocks A couples; see solve_coupled_island().
+  /// @param guess           impulses to start from, [3 slots]; empty: zero
+  /// @param max_iterations  outer iterations
+  /// @param impulse         out: the best, [3 slots], set in the island
+  /// @param body_velocity   out: what it causes, [dofs], set in the island
   virtual void solve_coupled(const ContactOptions& options,
                              const ContactIsland& island,
                              const std::vector<double>& guess,
-                             std::int64_t most,
+                             std::int64_t max_iterations,
                              std::vector<double>& impulse,
                              std::vector<double>& body_velocity,
                              IslandOutcome& outcome) = 0;
 
-  /// The stage "adhesion".
-  /// @param body  views of the host: what it reads, and [contacts] that it writes
+  /// Runs the stage "adhesion".
+  /// @param body  views of host memory: what it reads, and [contacts] that it writes
   virtual void evolve(const ContactAdhesionBody& body) = 0;
 
-  /// The device's name.
+  /// The name of the device, as in reports.
   virtual std::string name() const = 0;
 };
 
-/// As the public call.
-/// @param device  runs the stage; null: the host does
+/// The public evolve_adhesion() with a choice of where it runs.
+/// @param device  runs the stage; null: the host
 AdhesionStep evolve_adhesion(const ContactProblem& problem,
                              const ContactSolution& solution,
                              const EvolutionOptions& options,
                              ContactDevice* device);
 
-/// @throws CudaError  no such device answers; the text is the runtime's reason
+/// @throws CudaError  the device cannot be used; the text is the reason given by the CUDA runtime
 std::unique_ptr<ContactDevice> make_contact_device(int device);
 
 }  // namespace tetwarp

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
 #include "host/contact/problem/matrix.hpp"
 
@@ -116,13 +115,6 @@ VectorXd Delassus::body_velocity(const VectorXd& impulse) const {
 
 VectorXd Delassus::contact_velocity(const VectorXd& body_velocity) const {
   return jacobian_.transpose() * body_velocity + offset_;
-}
-
-double Delassus::imbalance(const VectorXd& impulse, const VectorXd& body_velocity) const {
-  if (is_local_) return 0;
-  const VectorXd pushed = jacobian_ * impulse;
-  const double scale = std::max({load_.norm(), pushed.norm(), std::numeric_limits<double>::min()});
-  return (matrix_ * body_velocity - pushed - load_).norm() / scale;
 }
 
 std::vector<Matrix3d> Delassus::diagonal_blocks() const {

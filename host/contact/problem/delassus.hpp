@@ -34,9 +34,6 @@ class Delassus {
   /// @pre global form
   Eigen::VectorXd contact_velocity(const Eigen::VectorXd& body_velocity) const;
 
-  /// |A v - J^T r - b| relative to the larger of |b| and |J^T r|; 0 in local form.
-  double imbalance(const Eigen::VectorXd& impulse, const Eigen::VectorXd& body_velocity) const;
-
   /// B_cc of every contact, [contacts], 1/kg. Cost in global form: per contact the part of the
   /// factor that its dofs reach, which for bodies of their own is their block.
   std::vector<Eigen::Matrix3d> diagonal_blocks() const;

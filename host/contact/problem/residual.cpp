@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/contact/problem/delassus.hpp"
+#include "host/contact/problem/imbalance.hpp"
 #include "host/contact/problem/measure.hpp"
 
 namespace tetwarp {
@@ -104,7 +105,7 @@ ContactResidual residual_of(const ContactProblem& problem,
             ? delassus.body_velocity(r)
             : make_vector(body_velocity, static_cast<Index>(problem.dof_count()), "body_velocity");
     if (!body_velocity.empty()) u = delassus.contact_velocity(v);
-    residual.balance = delassus.imbalance(r, v);
+    residual.balance = imbalance(problem, impulse, {v.data(), static_cast<std::size_t>(v.size())});
   }
   Eta eta = eta_of(contacts, r, u, change, options);
   if (!body_velocity.empty()) {

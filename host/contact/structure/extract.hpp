@@ -37,6 +37,8 @@ void scatter_velocities(const ContactStructure& structure,
                         std::vector<double>& to);
 
 /// The slot of the largest term, counted from `first_slot`, becomes its contact.
-void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums);
+void to_problem_index(const ContactStructure& structure,
+                      std::int64_t first_slot,
+                      ContactSums& sums);
 
 }  // namespace tetwarp

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <utility>
 
+#include "host/contact/structure/indices.hpp"
 #include "host/contact/structure/structure_parts.hpp"
 
 namespace tetwarp {
@@ -37,33 +38,7 @@ bool is_unique(const SparseMatrix& matrix) {
 }  // namespace
 
 ContactIndices ContactStructure::indices() const {
-  ContactIndices indices;
-  indices.is_local = is_local;
-  indices.contact_of_slot = view_of(contact_of_slot);
-  indices.color_start = view_of(color_start);
-  indices.delassus_row = view_of(delassus_row);
-  indices.delassus_column = view_of(delassus_column);
-  indices.delassus_target = view_of(delassus_target);
-  indices.delassus_diagonal = view_of(delassus_diagonal);
-  indices.pairs = {view_of(pair_start), view_of(pair_block), view_of(pair_value),
-                   view_of(dof_start)};
-  indices.block_contacts = {view_of(block_start), view_of(block_contact), view_of(block_value)};
-  indices.dof_of_place = view_of(dof_of_place);
-  indices.block_is_coupled = view_of(block_is_coupled);
-  indices.inverse_start = view_of(inverse_start);
-  indices.diagonal_value = view_of(diagonal_value);
-  indices.jacobian_target = view_of(jacobian_target);
-  indices.system_row = view_of(system_row);
-  indices.system_column = view_of(system_column);
-  indices.system_value = view_of(system_value);
-  indices.system_target = view_of(system_target);
-  indices.jacobian_size = jacobian_size;
-  indices.system_size = system_size;
-  indices.inverse_size = is_local ? 0 : inverse_start.back();
-  indices.has_only_nodes = has_only_nodes;
-  indices.matrix_is_unique = matrix_is_unique;
-  indices.jacobian_is_unique = jacobian_is_unique;
-  return indices;
+  return make_indices(*this, [](const auto& array) { return view_of(array); });
 }
 
 void take_order(ContactStructure& structure, ContactOrder order) {

@@ -32,9 +32,9 @@ void IslandOutcome::take(const IslandEnd& end, ContactMethod method, std::int64_
   sweeps = end.sweeps;
 }
 
-std::vector<StopRule> stop_rules(const ContactOptions& options,
-                                 const ContactStructure& structure,
-                                 const std::vector<IslandOutcome>& outcomes) {
+std::vector<StopCriterion> stop_criteria(const ContactOptions& options,
+                                         const ContactStructure& structure,
+                                         const std::vector<IslandOutcome>& outcomes) {
   const auto islands = static_cast<std::size_t>(structure.contact_islands);
   std::vector<double> squares(islands, 0.0);
   double total = 0;
@@ -46,14 +46,14 @@ std::vector<StopRule> stop_rules(const ContactOptions& options,
     total += squares[i];
     contacts += structure.islands[i].contact_count();
   }
-  std::vector<StopRule> rules;
+  std::vector<StopCriterion> criteria;
   for (std::size_t i = 0; i < islands; ++i) {
     const double share =
         static_cast<double>(structure.islands[i].contact_count()) / static_cast<double>(contacts);
     const double square = (squares[i] + total * share) / 2;
-    rules.push_back({options.measure, options.tolerance, options.tolerance * std::sqrt(square)});
+    criteria.push_back({options.measure, options.tolerance, options.tolerance * std::sqrt(square)});
   }
-  return rules;
+  return criteria;
 }
 
 }  // namespace tetwarp

@@ -7,8 +7,9 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/sweeps/memory.hpp"
+#include "host/contact/structure/system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_methods.hpp"
 
 namespace tetwarp {
@@ -30,6 +31,13 @@ struct IslandOutcome {
   void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
 };
 
+/// Keeps every measured residual.
+struct HostEventLog {
+  std::vector<ContactEvent> events;
+
+  void note(const ContactEvent& event) { events.push_back(event); }
+};
+
 inline ContactSwitches switches_of(const ContactOptions& options) {
   return {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
 }
@@ -46,9 +54,9 @@ inline bool freezes_contacts(const ContactOptions& options) {
 /// What each island may leave over: half by its share in the error without impulses, half by its
 /// number of contacts, so that none has to be solved to nothing.
 /// @param outcomes  with `free` and `free_square` of islands that are not coupled
-std::vector<StopRule> stop_rules(const ContactOptions& options,
-                                 const ContactStructure& structure,
-                                 const std::vector<IslandOutcome>& outcomes);
+std::vector<StopCriterion> stop_criteria(const ContactOptions& options,
+                                         const ContactStructure& structure,
+                                         const std::vector<IslandOutcome>& outcomes);
 
 template <class T>
 class ContactRun {
@@ -63,24 +71,21 @@ class ContactRun {
         structure_(structure),
         system_(system),
         numbers_(system.numbers(structure.indices())),
-        state_(system),
-        work_(system.constants.size()),
+        work_(work_memory_.reserve(static_cast<std::int64_t>(system.constants.size()))),
         outcomes_(outcomes) {
-    if (freezes_contacts(options)) {
-      state_.calm.assign(system.constants.size(), 0);
-      state_.left_out.assign(system.constants.size(), 0);
-    }
+    CpuContactExec exec(1);
+    state_.reset(exec, numbers_, freezes_contacts(options));
     for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
       if (!island(i).is_coupled) measure_free(i);
     }
-    rules_ = stop_rules(options, structure, outcomes);
+    criteria_ = stop_criteria(options, structure, outcomes);
   }
 
-  HostContactState<T>& state() { return state_; }
+  StateMemory<CpuContactExec, T>& state() { return state_; }
   const ContactSystem<T>& system() const { return system_; }
   std::int64_t updates_skipped() const {
     std::int64_t sum = 0;
-    for (const std::int32_t visits : state_.left_out) sum += visits;
+    for (const std::int32_t visits : state_.skipped_visits) sum += visits;
     return sum;
   }
 
@@ -106,7 +111,7 @@ class ContactRun {
   }
 
   /// More sweeps on one island, to the end of the budget.
-  void insist(std::int64_t i) {
+  void run_to_budget(std::int64_t i) {
     go_on(i, threads_, ContactMethod::nonlinear_cg);
   }
 
@@ -117,13 +122,13 @@ class ContactRun {
   }
   /// The error of an island over what it may leave.
   double excess(std::int64_t i, const ContactSums& sums) const {
-    return rules_[static_cast<std::size_t>(i)].excess_of(sums);
+    return criteria_[static_cast<std::size_t>(i)].excess_of(sums);
   }
   bool is_done(std::int64_t i, const ContactSums& sums) const {
     return excess(i, sums) <= 1;
   }
-  const std::vector<StopRule>& rules() const {
-    return rules_;
+  const std::vector<StopCriterion>& criteria() const {
+    return criteria_;
   }
 
  private:
@@ -136,8 +141,8 @@ class ContactRun {
   }
   ContactPipeline<CpuContactExec, T> pipeline_of(std::int64_t i, CpuContactExec& exec) {
     return {
-        exec,         numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
-        state_.view()};
+        exec,          numbers_, view_of(structure_.color_start), island(i), switches_of(options_),
+        state_.views()};
   }
 
   void measure_free(std::int64_t i) {
@@ -155,8 +160,8 @@ class ContactRun {
     HostEventLog log;
     MethodPlan plan = plan_of(options_);
     plan.method = method;
-    const IslandEnd end = solve_island(pipeline, rules_[static_cast<std::size_t>(i)], plan,
-                                       outcome.sweeps, work_.view(), log);
+    const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
+                                       outcome.sweeps, work_, log);
     outcome.take(end, method, island(i).contact_count());
     outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
   }
@@ -166,9 +171,10 @@ class ContactRun {
   const ContactStructure& structure_;
   const ContactSystem<T>& system_;
   ContactNumbers<T> numbers_;
-  HostContactState<T> state_;
-  HostMethodWork<T> work_;
-  std::vector<StopRule> rules_;
+  StateMemory<CpuContactExec, T> state_;
+  MethodMemory<CpuContactExec, T> work_memory_;
+  MethodWork<T> work_;
+  std::vector<StopCriterion> criteria_;
   std::vector<IslandOutcome>& outcomes_;
 };
 

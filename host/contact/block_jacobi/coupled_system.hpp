@@ -1,6 +1,5 @@
-/// @file linear.hpp
-/// A x = g for bodies that A couples, by conjugate gradients, for any executor: products with A and
-/// no factor of it.
+/// @file coupled_system.hpp
+/// A x = g for bodies that A couples, by preconditioned conjugate gradients on any executor.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -17,26 +16,26 @@
 
 namespace tetwarp {
 
-/// How far a linear solve is, in the norm of A.
+/// State of a linear solve, in the norm of A.
 struct LinearProgress {
-  double moved = 0;  ///< how far x has come
-  double left = 0;   ///< at most how far it is off; estimated
+  double moved = 0;  ///< size of the change of x since the start
+  double left = 0;   ///< estimated bound of the error of x
 };
 
-/// What the steps of conjugate gradients tell of the error that is left, in the norm of A.
+/// Estimates the remaining error of a conjugate gradient solve, in the norm of A.
 ///
-/// Bounded by Gauss-Radau quadrature (Golub and Meurant 1997; Meurant and Tichy 2013) from the
-/// smallest eigenvalue of D^-1 A, for which half of the smallest stands that the steps of all
-/// solves so far have seen (Lanczos).
+/// Gauss-Radau quadrature (Golub and Meurant 1997; Meurant and Tichy 2013) bounds the error, given
+/// a lower bound of the smallest eigenvalue of D^-1 A. Used for it is half of the smallest Ritz
+/// value (Lanczos) seen in all solves so far: an estimate, not a proven bound.
 class GradientError {
  public:
   void start_solve() { steps_.clear(); }
-  /// @param factor  of the direction
-  /// @param shrink  of g . D^-1 g
+  /// @param factor  step length a along the direction
+  /// @param shrink  ratio of g . D^-1 g after the step to that before
   void add_step(double factor, double shrink) { steps_.push_back({factor, shrink}); }
   std::size_t steps() const { return steps_.size(); }
 
-  /// The square of the error in the norm of A is at most this, times g . D^-1 g.
+  /// The squared error in the norm of A is at most this factor times g . D^-1 g.
   double left_factor();
 
  private:
@@ -44,33 +43,34 @@ class GradientError {
     double factor, shrink;
   };
 
-  void find_smallest();
+  void update_smallest();
 
-  std::vector<Step> steps_;  ///< of the solve at hand
-  double smallest_ = 1;      ///< eigenvalue of D^-1 A known
+  std::vector<Step> steps_;  ///< of the current solve
+  double smallest_ = 1;      ///< smallest Ritz value of D^-1 A so far
 };
 
-/// Vectors that conjugate gradients work with, [dofs].
+/// Work memory of a CoupledSystem.
 template <class Exec>
-struct LinearMemory {
-  typename Exec::template Vector<double> direction, product, image;
+struct CoupledSystemMemory {
+  typename Exec::template Vector<double> direction, product, image;  ///< [dofs]
 
-  // Of each step, [max_products + 1]: g . D^-1 g before it, p . A p, their quotient a, and what
-  // the first has shrunk by.
+  // Per step, [max_products + 1]: g . D^-1 g before it, p . A p, step length a, ratio of g . D^-1 g
+  // after the step to that before.
   typename Exec::template Vector<PlainSums<1>> sizes, curvatures;
   typename Exec::template Vector<double> factors, shrinks;
 };
 
-/// Linear systems of one island, preconditioned by the inverse diagonal blocks of A (Hestenes and
-/// Stiefel 1952). Vectors are [dofs] of the whole problem; only the island's part is touched.
+/// Solves linear systems with A on one island, preconditioned by the inverse diagonal blocks of A
+/// (Hestenes and Stiefel 1952). Vectors are [dofs] of the whole problem; only the island's part is
+/// read and written.
 template <class Exec>
-class CoupledLinear {
+class CoupledSystem {
  public:
   /// @param memory  kept by the caller
-  CoupledLinear(Exec& exec,
+  CoupledSystem(Exec& exec,
                 const ContactNumbers<double>& numbers,
                 const ContactIsland& island,
-                LinearMemory<Exec>& memory)
+                CoupledSystemMemory<Exec>& memory)
       : exec_(exec),
         island_(island),
         memory_(memory),
@@ -87,13 +87,15 @@ class CoupledLinear {
     }
   }
 
-  /// Moves x towards the solution until `enough`, asked now and then, or as far as rounding lets
-  /// it.
-  /// @param rest    in: g - A x before; out: after
-  /// @param enough  (LinearProgress) -> bool
+  /// Improves x until `is_enough` returns true, rounding stops the progress, or max_products steps
+  /// are done.
+  /// @param x          in: start; out: solution
+  /// @param defect     g - A x; in: at the start; out: at the end
+  /// @param is_enough  (LinearProgress) -> bool, called every few steps
+  /// @throws ContactProblemError  A is not positive definite
   template <class Enough>
-  LinearProgress solve(View<double> x, View<double> rest, const Enough& enough) {
-    constexpr std::int64_t first_ask = 4;
+  LinearProgress solve(View<double> x, View<double> defect, const Enough& is_enough) {
+    constexpr std::int64_t first_check = 4;
     double* const direction = view_of(memory_.direction).data;
     double* const product = view_of(memory_.product).data;
     double* const image = view_of(memory_.image).data;
@@ -101,28 +103,28 @@ class CoupledLinear {
     PlainSums<1>* const curvature = view_of(memory_.curvatures).data;
     double* const factor = view_of(memory_.factors).data;
     double* const shrink = view_of(memory_.shrinks).data;
-    sum_to(GradientStartBody{inverse_, rest.data, image, direction}, size);
+    sum_to(GradientStartBody{inverse_, defect.data, image, direction}, size);
     LinearProgress progress;
     error_.start_solve();
-    gained_ = 0;
-    std::int64_t next_ask = first_ask;
+    moved_square_ = 0;
+    std::int64_t next_check = first_check;
     for (std::int64_t k = 0; k < max_products; ++k) {
-      if (Exec::reads_are_free && !(size[k].value[0] > 0)) break;
+      if (!Exec::reads_need_sync && !(size[k].value[0] > 0)) break;
       sum_to(GradientProductBody{matrix_, direction, product}, curvature + k);
       exec_.once("contact/relax", GradientQuotientBody{size + k, curvature + k, factor + k});
-      sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, rest.data, image},
+      sum_to(GradientStepBody{inverse_, factor + k, direction, product, x.data, defect.data, image},
              size + k + 1);
       exec_.once("contact/relax", GradientQuotientBody{size + k + 1, size + k, shrink + k});
       body_relax(exec_, island_.block_begin, island_.block_end,
                  GradientTurnBody{inverse_.dof_start, shrink + k, image, direction});
-      const bool is_over = Exec::reads_are_free && !(size[k + 1].value[0] > 0);
-      if (!is_over && k + 1 < std::min(next_ask, max_products)) continue;
-      const double left = take_steps(k + 1);
-      progress.moved = std::sqrt(gained_);
+      const bool is_over = !Exec::reads_need_sync && !(size[k + 1].value[0] > 0);
+      if (!is_over && k + 1 < std::min(next_check, max_products)) continue;
+      const double left = read_steps(k + 1);
+      progress.moved = std::sqrt(moved_square_);
       if (error_.steps() == 0) break;
       progress.left = std::sqrt(left * error_.left_factor());
-      if (enough(progress) || left == 0) break;
-      next_ask += std::max(first_ask, next_ask / 8);
+      if (is_enough(progress) || left == 0) break;
+      next_check += std::max(first_check, next_check / 8);
     }
     return progress;
   }
@@ -135,10 +137,11 @@ class CoupledLinear {
     exec_.sum_to("contact/relax", island_.block_begin, island_.block_end, body, out);
   }
 
-  /// Tells `error_` and `gained_` of the steps up to `end`.
-  /// @return g . D^-1 g then; 0: nothing was left, or squares have underflowed
-  double take_steps(std::int64_t end) {
-    constexpr double vanishing = 1e-200;  // squares that underflow tell nothing of A
+  /// Reads the steps since the last call into `error_` and `moved_square_`.
+  /// @param end  steps done
+  /// @return  g . D^-1 g after them; 0 if the defect is zero or its square has underflowed
+  double read_steps(std::int64_t end) {
+    constexpr double vanishing = 1e-200;  // below, p . A p <= 0 may be underflow
     const auto first = static_cast<std::int64_t>(error_.steps());
     const auto count = static_cast<std::size_t>(end - first);
     std::vector<PlainSums<1>> sizes(count + 1), curvatures(count);
@@ -156,18 +159,18 @@ class CoupledLinear {
                                   "mass to every dof");
       }
       error_.add_step(size / curvature, sizes[k + 1].value[0] / size);
-      gained_ += size * size / curvature;
+      moved_square_ += size * size / curvature;
     }
     return sizes[count].value[0];
   }
 
   Exec& exec_;
   const ContactIsland& island_;
-  LinearMemory<Exec>& memory_;
+  CoupledSystemMemory<Exec>& memory_;
   SystemView<double> matrix_;
   InverseBlocks inverse_;
   GradientError error_;
-  double gained_ = 0;  ///< square of how far the solve at hand has come, in the norm of A
+  double moved_square_ = 0;  ///< of LinearProgress::moved
 };
 
 }  // namespace tetwarp

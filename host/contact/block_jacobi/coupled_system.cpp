@@ -1,5 +1,5 @@
-/// @file linear.cpp
-#include "host/contact/block_jacobi/linear.hpp"
+/// @file coupled_system.cpp
+#include "host/contact/block_jacobi/coupled_system.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -7,8 +7,9 @@
 
 namespace tetwarp {
 
-/// Lowers the smallest eigenvalue known to that of the tridiagonal matrix of the steps.
-void GradientError::find_smallest() {
+/// The steps of conjugate gradients give the tridiagonal matrix of the Lanczos process; its
+/// eigenvalues are the Ritz values.
+void GradientError::update_smallest() {
   const auto count = static_cast<Eigen::Index>(steps_.size());
   Eigen::VectorXd diagonal(count), beside(count);
   double carried = 0;
@@ -24,7 +25,7 @@ void GradientError::find_smallest() {
 }
 
 double GradientError::left_factor() {
-  find_smallest();
+  update_smallest();
   const double shift = smallest_ / 2;
   double bound = 1 / shift;
   for (const Step& step : steps_) {

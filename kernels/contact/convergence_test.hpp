@@ -11,7 +11,7 @@ namespace tetwarp {
 
 /// An island is done when error <= allowed + tolerance * sqrt(r . (u - q)), the last term for eta
 /// only. The allowances of all islands together keep the whole problem within the tolerance.
-struct StopRule {
+struct StopCriterion {
   ContactMeasure measure = ContactMeasure::eta;
   double tolerance = 0;
   double allowed = 0;
@@ -50,14 +50,14 @@ constexpr std::int64_t endless = INT64_MAX;  ///< sweeps, or patience
 /// iteration (free to know) suggests success, and every now and then.
 /// @tparam Log  has note(ContactEvent)
 template <class Log>
-class ContactMonitor {
+class ConvergenceTest {
  public:
   /// @param sweeps_done  by those who worked on the island before
-  TETWARP_HD ContactMonitor(const StopRule& rule,
-                            std::int64_t sweeps_done,
-                            std::int64_t sweep_budget,
-                            Log& log)
-      : rule_(rule),
+  TETWARP_HD ConvergenceTest(const StopCriterion& criterion,
+                             std::int64_t sweeps_done,
+                             std::int64_t sweep_budget,
+                             Log& log)
+      : criterion_(criterion),
         log_(log),
         sweep_budget_(sweep_budget),
         sweeps_(sweeps_done),
@@ -87,8 +87,8 @@ class ContactMonitor {
   /// Takes a measurement. True: stop.
   /// @param is_best  out: what was measured is the best so far
   TETWARP_HD bool take(const ContactSums& sums, double defect, bool& is_best) {
-    const double excess = rule_.excess_of(sums);
-    log_.note({sweeps_, rule_.error_of(sums)});
+    const double excess = criterion_.excess_of(sums);
+    log_.note({sweeps_, criterion_.error_of(sums)});
     measured_sweep_ = sweeps_;
     ratio_ = defect > 0 ? excess / defect : 0;
     is_best = excess < best_excess_;
@@ -111,7 +111,7 @@ class ContactMonitor {
   TETWARP_HD StopReason reason() const { return reason_; }
 
  private:
-  StopRule rule_;
+  StopCriterion criterion_;
   Log& log_;
   std::int64_t sweep_budget_;
   std::int64_t sweeps_;

@@ -1,0 +1,40 @@
+/// @file coupled_task.hpp
+/// Input and output of a solve for an island whose blocks A couples.
+#pragma once
+#include <cstdint>
+#include <type_traits>
+
+#include <tetwarp/contact.hpp>
+
+#include "kernels/contact/contact_numbers.hpp"
+
+namespace tetwarp {
+
+/// An island whose blocks A couples, and what its solve reads. Views cover the whole problem, in
+/// memory of the executor unless stated otherwise.
+struct CoupledTask {
+  const ContactOptions& options;
+  const ContactIsland& island;
+  View<const std::int64_t> color_start;  ///< of all islands, in memory of the host
+  ContactNumbers<double> numbers;
+  ContactNumbers<float> rounded;  ///< `numbers` in float32; read if options.precision is float32
+  View<const double> guess;       ///< impulses to start from, [3 slots]; empty: zero
+  std::int64_t max_iterations;    ///< outer iterations
+
+  template <class T>
+  const ContactNumbers<T>& numbers_in() const {
+    if constexpr (std::is_same_v<T, double>) {
+      return numbers;
+    } else {
+      return rounded;
+    }
+  }
+};
+
+/// Impulses and velocities of a whole problem, set in one island only.
+struct CoupledSolution {
+  View<const double> impulse;        ///< [3 slots]
+  View<const double> body_velocity;  ///< [dofs]
+};
+
+}  // namespace tetwarp
