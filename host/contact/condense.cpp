@@ -11,12 +11,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 CondensedProblem::CondensedProblem(const ContactProblem& problem)
-    : factor_(make_eigen(problem.system)), jacobian_(make_eigen(problem.jacobian)) {
-  if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0)) {
-    throw ContactProblemError("system",
-                              ": not positive definite although its diagonal blocks are; give mass "
-                              "to every dof");
-  }
+    : jacobian_(make_eigen(problem.jacobian)) {
+  factor_.factorize(make_eigen(problem.system));
   const Index rows = jacobian_.rows();
   constexpr Index run = 48;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus(rows, rows);

@@ -2,10 +2,12 @@
 /// A coupled problem in local form: its Delassus matrix, by a sparse Cholesky factorization.
 #pragma once
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <vector>
 
 #include <tetwarp/contact_problem.hpp>
+
+#include "host/contact/problem/system_factor.hpp"
 
 namespace tetwarp {
 
@@ -28,7 +30,7 @@ class CondensedProblem {
   std::vector<double> body_velocity(const std::vector<double>& impulse) const;
 
  private:
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  SystemFactor factor_;
   Eigen::SparseMatrix<double> jacobian_;
   Eigen::VectorXd load_;
   ContactProblem local_;

@@ -1,5 +1,5 @@
 /// @file contact_solver.cpp
-/// The public calls of the contact solver: options, back end, structure, run, report.
+/// The public calls of the contact solver: checks of the options, choice of the back end, report.
 #include <tetwarp/contact.hpp>
 
 #include <algorithm>
@@ -43,12 +43,13 @@ void check_options(const ContactOptions& options) {
   if (options.threads < 0) fail("threads: expected 0 (all cores) or more");
 }
 
-/// Sums of all islands; the largest contact by its index in the problem.
+/// Measures of the whole problem, summed over its islands.
 struct WholeResidual {
-  ContactSums sums, free;
-  double free_square = 0;
+  ContactSums sums;        ///< of the solution; contacts by their index in the problem
+  ContactSums free;        ///< without impulses
+  double free_square = 0;  ///< |q|^2
 
-  /// Root of an energy as a share of eta.
+  /// The share of an energy [J] in eta.
   double eta_of(double square) const {
     const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
     return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
@@ -69,8 +70,9 @@ WholeResidual whole_residual(const std::vector<IslandOutcome>& outcomes) {
   return whole;
 }
 
-/// The residual of the whole whenever that of an island was measured: each island counts with the
-/// last error it had by then.
+/// The residual of the whole problem at each sweep at which any island was measured, of each island
+/// the last error measured up to that sweep.
+/// @param scale  divides the root of the summed squares of the errors
 std::vector<double> merged_history(const std::vector<IslandOutcome>& outcomes, double scale) {
   struct Step {
     std::int64_t sweep;
@@ -85,8 +87,8 @@ std::vector<double> merged_history(const std::vector<IslandOutcome>& outcomes, d
   }
   std::stable_sort(steps.begin(), steps.end(),
                    [](const Step& a, const Step& b) { return a.sweep < b.sweep; });
-  // A tree of sums, its root at 1: adding differences up would leave the rounding of the first,
-  // large squares in the last, small ones.
+  // A binary tree of sums with its root at 1. Updating one running sum by differences would leave
+  // the rounding errors of the first, large squares in the last, small ones.
   std::vector<double> sums(2 * outcomes.size(), 0.0);
   std::vector<double> history;
   for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -120,7 +122,7 @@ void count_outcomes(const std::vector<IslandOutcome>& outcomes, ContactReport& r
   }
 }
 
-std::string text_of(double value) {
+std::string rounded_text_of(double value) {
   std::ostringstream text;
   text << std::setprecision(2) << value;
   return text.str();
@@ -129,19 +131,19 @@ std::string text_of(double value) {
 void set_status(const EngineResult& result, const ContactOptions& options, ContactReport& report) {
   const bool by_eta = options.measure == ContactMeasure::eta;
   const double residual = by_eta ? report.residual.eta : report.residual.fclib;
-  constexpr double rounding = 1e-10;  // of A v, where A is badly conditioned
+  constexpr double rounding = 1e-10;  // relative, of A v where A is ill-conditioned
   const bool is_within = residual <= options.tolerance;
   const bool is_balanced = report.residual.balance <= std::max(options.tolerance, rounding);
   report.status =
       is_within && is_balanced ? ContactStatus::converged : ContactStatus::not_converged;
   if (!is_balanced) {
-    report.status_reason = "A v - J^T r - b is " + text_of(report.residual.balance) +
-                           " of its terms, asked for " + text_of(options.tolerance);
+    report.status_reason = "A v - J^T r - b is " + rounded_text_of(report.residual.balance) +
+                           " of its terms, asked for " + rounded_text_of(options.tolerance);
   }
   if (!is_within) {
     report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
-                           text_of(residual) + " after " + std::to_string(report.sweeps) +
-                           " sweeps, asked for " + text_of(options.tolerance);
+                           rounded_text_of(residual) + " after " + std::to_string(report.sweeps) +
+                           " sweeps, asked for " + rounded_text_of(options.tolerance);
   }
   if (result.clamped.empty()) return;
   report.status = ContactStatus::infeasible;
@@ -163,44 +165,8 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
   return u;
 }
 
-}  // namespace
-
-struct ContactSolver::State {
-  ContactOptions options;
-  int threads = 1;
-  std::unique_ptr<ContactDevice> device;  ///< null: the host solves
-  ContactEngine engine;
-};
-
-ContactSolver::ContactSolver(const ContactOptions& options) {
-  check_options(options);
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
-  std::unique_ptr<ContactDevice> device;
-  if (options.backend == Backend::cuda) device = make_contact_device(options.device);
-  ContactEngine engine(options, threads, device.get());
-  state_ = std::make_unique<State>(State{options, threads, std::move(device), std::move(engine)});
-}
-
-ContactSolver::ContactSolver(ContactSolver&&) noexcept = default;
-ContactSolver& ContactSolver::operator=(ContactSolver&&) noexcept = default;
-ContactSolver::~ContactSolver() = default;
-
-ContactSolution ContactSolver::solve(const ContactProblem& problem) {
-  State& s = *state_;
-  if (s.options.backend == Backend::reference) {
-    return solve_contacts_reference(problem, s.options);
-  }
-  const auto start = Clock::now();
-  check_problem(problem);
-  EngineResult result = s.engine.solve(problem);
-  ContactSolution solution;
-  ContactReport& report = solution.report;
-  report.version = TETWARP_VERSION;
-  report.backend = s.device != nullptr ? Backend::cuda : Backend::cpu;
-  report.device = s.device != nullptr ? s.device->name() : processor_name();
-  report.threads = s.threads;
-  report.contacts = problem.contact_count();
+/// Counts and residuals of an engine's result; not the balance, the status and the times.
+void fill_report(const EngineResult& result, ContactMeasure measure, ContactReport& report) {
   report.colors = result.colors;
   report.islands = static_cast<std::int64_t>(result.outcomes.size());
   report.rows_skipped = result.savings.rows;
@@ -217,10 +183,59 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   report.residual.largest = whole.eta_of(whole.sums.largest);
   report.residual.largest_contact = whole.sums.largest_contact;
   report.residual.penetration = whole.sums.deepest;
-  const double error = s.options.measure == ContactMeasure::eta ? std::sqrt(whole.sums.eta)
-                                                                : std::sqrt(whole.sums.fclib);
-  const double residual = s.options.measure == ContactMeasure::eta ? whole.eta() : whole.fclib();
+  const bool by_eta = measure == ContactMeasure::eta;
+  const double error = std::sqrt(by_eta ? whole.sums.eta : whole.sums.fclib);
+  const double residual = by_eta ? whole.eta() : whole.fclib();
   report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
+}
+
+}  // namespace
+
+std::pair<Backend, std::string> choose_contact_backend(Backend asked, int device) {
+  if (asked == Backend::automatic) {
+    return {Backend::cpu, "contact runs on cuda only where it is asked for by name"};
+  }
+  return choose_backend(asked, device);
+}
+
+struct ContactSolver::State {
+  ContactOptions options;
+  Backend backend;
+  int threads;
+  std::unique_ptr<ContactDevice> device;  ///< null: the host solves
+  ContactEngine engine;
+};
+
+ContactSolver::ContactSolver(const ContactOptions& options) {
+  check_options(options);
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
+  const Backend backend = choose_contact_backend(options.backend, options.device).first;
+  std::unique_ptr<ContactDevice> device;
+  if (backend == Backend::cuda) device = make_contact_device(options.device);
+  ContactEngine engine(options, threads, device.get());
+  state_ = std::make_unique<State>(
+      State{options, backend, threads, std::move(device), std::move(engine)});
+}
+
+ContactSolver::ContactSolver(ContactSolver&&) noexcept = default;
+ContactSolver& ContactSolver::operator=(ContactSolver&&) noexcept = default;
+ContactSolver::~ContactSolver() = default;
+
+ContactSolution ContactSolver::solve(const ContactProblem& problem) {
+  State& s = *state_;
+  if (s.backend == Backend::reference) return solve_contacts_reference(problem, s.options);
+  const auto start = Clock::now();
+  check_problem(problem);
+  EngineResult result = s.engine.solve(problem);
+  ContactSolution solution;
+  ContactReport& report = solution.report;
+  report.version = TETWARP_VERSION;
+  report.backend = s.backend;
+  report.device = s.device != nullptr ? s.device->name() : processor_name();
+  report.threads = s.threads;
+  report.contacts = problem.contact_count();
+  fill_report(result, s.options.measure, report);
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);

@@ -16,10 +16,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Offsets that ask for more than a recovery speed are lowered to it.
 void clamp_offsets(ContactProblem& problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {

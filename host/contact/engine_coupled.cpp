@@ -14,10 +14,6 @@ namespace tetwarp {
 
 namespace {
 
-std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// How the contacts of coupled bodies are solved: by so many outer iterations, and condensed where
 /// these are none or fail.
 struct CoupledRoute {

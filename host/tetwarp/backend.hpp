@@ -10,7 +10,8 @@
 
 namespace tetwarp {
 
-/// Where a warp runs. `automatic` takes cuda when a device answers, else cpu.
+/// Where a computation runs. `automatic` means, for a warp, cuda when a device is usable, else cpu
+/// (choose_backend()); for contact it means cpu (choose_contact_backend() in contact.hpp).
 enum class Backend { automatic, cuda, cpu, reference };
 
 /// One back end on this machine.

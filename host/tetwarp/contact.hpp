@@ -1,13 +1,18 @@
 /// @file contact.hpp
-/// Solve one step of frictional, adhesive contact.
+/// Solves one time step of frictional, adhesive contact: impulses and velocities from a
+/// ContactProblem.
 ///
-/// With K = diag(kappa_n, kappa_t, kappa_t), kappa = dt^2 area C beta^2, o = (0, gap_t / dt) and
-/// nu = r + K (u + o), each contact obeys
+/// Per contact, r is the impulse [N s], u the relative velocity at the end of the step [m/s], mu
+/// the friction coefficient and beta the adhesion intensity. The adhesive springs, linear in the
+/// displacement of the step, are K = diag(kappa_n, kappa_t, kappa_t) [kg], kappa = dt^2 area C
+/// beta^2. With the stored tangential gap o = (0, gap_t / dt) and nu = r + K (u + o), the part of
+/// the impulse that contact and friction carry without the springs, each contact obeys
 ///
 ///     0 <= nu_n  perpendicular to  u_n >= 0
 ///     |nu_t| <= R,  nu_t . u_t = -R |u_t|,  R = max(mu nu_n - chi |kappa_t (u_t + o_t)|, 0)
 ///
-/// chi = 0: rule `parallel`; chi = 1: rule `restrictive`. Law `pyramid` takes |.| per tangent.
+/// chi = 0: AdhesionRule::parallel; chi = 1: AdhesionRule::restrictive. FrictionLaw::cone takes |.|
+/// of the tangential vector, FrictionLaw::pyramid of each tangential component.
 /// Sources: Gascon 2010/2013 (adhesion as constraints), Raous, Cangemi, Cocou 1999 (the model).
 #pragma once
 #include <cstdint>
@@ -15,6 +20,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/backend.hpp>
@@ -24,109 +30,124 @@
 
 namespace tetwarp {
 
-enum class FrictionLaw { cone, pyramid };
+/// Bound of the friction impulse.
+enum class FrictionLaw {
+  cone,    ///< Coulomb: |nu_t| <= R
+  pyramid  ///< |nu_t1| <= R and |nu_t2| <= R; depends on the directions of the tangents
+};
 
 /// How friction and tangential adhesion combine.
 enum class AdhesionRule {
-  parallel,    ///< spring and Coulomb slider side by side
-  restrictive  ///< friction only tops the spring up: the larger of both resists sliding
+  parallel,    ///< adhesive spring and Coulomb friction in parallel: both resist sliding in full
+  restrictive  ///< friction adds only what the spring lacks: the larger of both resists sliding
 };
 
-/// What is done with islands of bodies that A couples, as it does the nodes of elastic bodies.
+/// How islands of contacts are solved whose bodies A couples, as it couples the nodes of an elastic
+/// body. `automatic` is the one to use; the others are for experts.
 ///
-/// Iterated, with D the diagonal blocks of A and omega = `relaxation`:
+/// Iterated, with D the diagonal blocks of A and omega = ContactOptions::relaxation:
 ///
 ///     v_f = v - omega D^-1 (A v - b),  sweeps in omega J D^-1 J^T,  v = v_f + omega D^-1 J^T r
 ///
-/// It converges where omega lambda_max(D^-1 A) < 2, which 0.5 grants for tetrahedra. Anderson's
-/// method accelerates v, or with method `nonlinear_cg` conjugate directions; with `gauss_seidel`
-/// nothing does. `mass_splitting` and `newton` always condense. The eta that such an island reports
-/// and is stopped by is a bound, above what residual_of() says (an estimate where one body has
-/// several contacts).
+/// This converges where omega lambda_max(D^-1 A) < 2, which 0.5 satisfies for meshes of
+/// tetrahedra. Anderson acceleration is applied to v; with ContactMethod::nonlinear_cg conjugate
+/// directions instead, with `gauss_seidel` nothing. ContactMethod `mass_splitting` and `newton`
+/// always condense. For an iterated island, eta is an upper bound of what residual_of() computes
+/// (an estimate where one body has several contacts), because the exact value needs a factorization
+/// of A.
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation).
 enum class ContactCoupling {
-  automatic,  ///< method `automatic`: large islands iterated, and condensed should that fail, or
-              ///< have cost as much in a row with the same A and J (few contacts only), if they
-              ///< have at most 2000 contacts; all else condensed
-  condensed,  ///< sparse Cholesky of A, the Delassus matrix dense: 72 bytes per pair of contacts,
-              ///< about three times over
-  iterated    ///< outer block-Jacobi iteration around sweeps: memory as for A itself
+  automatic,  ///< ContactMethod::automatic iterates large islands and condenses them if that fails
+              ///< (at most 2000 contacts); a ContactSolver also condenses an island once the
+              ///< iterations of successive problems with the same A and J have cost as much. Small
+              ///< islands and all other methods: condensed
+  condensed,  ///< sparse Cholesky factorization of A and a dense Delassus matrix, which takes 72
+              ///< bytes per pair of contacts, held about twice
+  iterated    ///< outer block-Jacobi iteration around sweeps; memory proportional to that of A
 };
 
+/// Arithmetic of the iterations; results are always measured in float64.
 enum class ContactPrecision { float64, float32 };
 
-/// Work left out because it cannot change the solution beyond the tolerance.
+/// Work that is left out because it cannot change the solution by more than the tolerance. Set a
+/// member to false to have that work done.
 struct ContactSkipOptions {
   bool frictionless_rows = true;   ///< contacts with kappa = 0 and mu = 0 are one row, not three
-  bool debonded_springs = true;    ///< contacts with beta = 0 carry no springs
-  bool contactless_bodies = true;  ///< parts of A that no contact reaches are solved apart from
-                                   ///< those with contacts, linearly
-  bool converged_islands = true;   ///< a converged island stops; all are checked at the end
-  bool frozen_contacts = true;     ///< long converged contacts are revisited every few sweeps
+  bool debonded_springs = true;    ///< contacts with beta = 0 have no springs
+  bool contactless_bodies = true;  ///< bodies that are connected to no contact are solved
+                                   ///< separately, by A v = b alone
+  bool converged_islands = true;   ///< a converged island stops before the others do
+  bool frozen_contacts = true;     ///< contacts whose impulse has stopped changing are updated in
+                                   ///< every 8th sweep only (ContactMethod::gauss_seidel)
   bool constant_systems = true;    ///< a ContactSolver condenses a coupled island once for all
-                                   ///< problems in a row whose A and J are the same bits
+                                   ///< successive problems whose A and J have the same bits
 };
 
-/// Choices of a solve. Defaults give what most people want.
+/// Options of a solve. The defaults suit most problems; the members marked "expert" exist for
+/// comparing methods.
 struct ContactOptions {
   FrictionLaw law = FrictionLaw::cone;
   AdhesionRule rule = AdhesionRule::parallel;
-  ContactMethod method = ContactMethod::automatic;
-  ContactMeasure measure = ContactMeasure::eta;
-  double tolerance = 1e-6;
-  std::int64_t max_sweeps = 20000;  ///< passes over all contacts of an island, all methods
-  ContactCoupling coupling = ContactCoupling::automatic;
-  double relaxation = 0.5;  ///< omega of the outer block-Jacobi iteration
-  int inner_sweeps = 5;     ///< per outer iteration
-  double recovery_speed = std::numeric_limits<double>::infinity();  ///< penetration is undone at
-                                                                    ///< most this fast [m/s]
+  ContactMethod method = ContactMethod::automatic;  ///< others than `automatic`: expert
+  ContactMeasure measure = ContactMeasure::eta;     ///< what `tolerance` bounds
+  double tolerance = 1e-6;                          ///< of `measure`, relative, > 0
+  std::int64_t max_sweeps = 20000;  ///< passes over all contacts of an island, of all methods, >= 1
+  ContactCoupling coupling = ContactCoupling::automatic;  ///< others than `automatic`: expert
+  double relaxation = 0.5;  ///< omega of the outer block-Jacobi iteration, in (0, 2); expert
+  int inner_sweeps = 5;     ///< sweeps per outer iteration, >= 1; expert
+  double recovery_speed = std::numeric_limits<double>::infinity();  ///< existing penetration is
+                                                                    ///< undone at most this fast
+                                                                    ///< [m/s], >= 0
   ContactPrecision precision = ContactPrecision::float64;
-  Backend backend = Backend::automatic;
-  int device = 0;   ///< CUDA device number
-  int threads = 0;  ///< of the cpu back end; 0: all cores. Same bits for any number
+  Backend backend = Backend::automatic;  ///< see choose_contact_backend()
+  int device = 0;                        ///< CUDA device number
+  int threads =
+      0;  ///< of the cpu back end, 0: all cores; results have the same bits for any number
   ContactSkipOptions skip = {};
 };
 
 enum class ContactStatus {
   converged,
   not_converged,  ///< the best iterate is returned
-  infeasible      ///< no velocity satisfies all contacts; offsets were clamped to a recovery speed
+  infeasible      ///< no velocity satisfies all contacts; negative normal offsets of those that
+                  ///< contradict each other were raised to 0
 };
 
 /// How far a pair of impulses and velocities is from solving a problem.
 struct ContactResidual {
-  double eta = 0;
-  double fclib = 0;
-  double largest = 0;  ///< largest share of one contact in eta: eta^2 sums their squares
-  std::int64_t largest_contact = -1;  ///< whose that is; -1: no contact has any
+  double eta = 0;      ///< ContactMeasure::eta, relative
+  double fclib = 0;    ///< ContactMeasure::fclib, relative
+  double largest = 0;  ///< largest contribution of one contact: eta^2 is the sum of their squares
+  std::int64_t largest_contact = -1;  ///< index of that contact; -1: all contributions are 0
   double penetration = 0;             ///< max(-u_n), m/s
   double balance = 0;                 ///< |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form
 };
 
-/// What a solve did. Field names of the JSON are an interface.
+/// What a solve did. The field names of its JSON form are stable.
 struct ContactReport {
   std::string version;
-  Backend backend = Backend::cpu;
-  std::string device;
+  Backend backend = Backend::cpu;  ///< the one that ran
+  std::string device;              ///< name of the processor or CUDA device
   int threads = 1;
-  std::string method;  ///< what ran, in order, for example "anderson, newton"
+  std::string method;  ///< methods that ran, in order, for example "anderson, newton"
   ContactStatus status = ContactStatus::not_converged;
   std::string status_reason;  ///< one sentence when not converged
   std::int64_t contacts = 0;
-  std::int64_t colors = 0;
-  std::int64_t islands = 0;           ///< connected components that have contacts
-  std::int64_t outer_iterations = 0;  ///< over coupled bodies, of the island that took most
-  std::int64_t sweeps = 0;            ///< of the island that took most
+  std::int64_t colors = 0;            ///< of the island with the most: no two contacts of a color
+                                      ///< share a body
+  std::int64_t islands = 0;           ///< connected components of bodies that have contacts
+  std::int64_t outer_iterations = 0;  ///< of the coupled island that took the most
+  std::int64_t sweeps = 0;            ///< of the island that took the most
   std::int64_t newton_iterations = 0;
-  std::int64_t contact_updates = 0;      ///< local solves in all
-  std::vector<double> residual_history;  ///< measured residual, whenever it was evaluated
-  ContactResidual residual;              ///< of what is returned
+  std::int64_t contact_updates = 0;      ///< solves of a single contact, in all
+  std::vector<double> residual_history;  ///< `measure` each time it was evaluated
+  ContactResidual residual;              ///< of the solution returned
   std::int64_t rows_skipped = 0;         ///< rows of contacts without friction and springs
   std::int64_t springs_skipped = 0;      ///< contacts with beta = 0
-  std::int64_t bodies_skipped = 0;       ///< blocks that no contact reaches
-  std::int64_t islands_stopped = 0;      ///< stopped before the last one
-  std::int64_t updates_skipped = 0;      ///< local solves left out for frozen contacts
-  std::int64_t condensations_kept = 0;   ///< coupled islands condensed by an earlier solve
+  std::int64_t bodies_skipped = 0;       ///< blocks of bodies that are connected to no contact
+  std::int64_t islands_stopped = 0;      ///< islands that stopped before the last one
+  std::int64_t updates_skipped = 0;      ///< solves of frozen contacts that were left out
+  std::int64_t condensations_kept = 0;   ///< coupled islands that an earlier solve had condensed
   double setup_seconds = 0;
   double solve_seconds = 0;
   double total_seconds = 0;
@@ -145,7 +166,7 @@ struct ContactSolution {
   bool converged() const { return report.status == ContactStatus::converged; }
 };
 
-/// How the adhesion intensity is stepped.
+/// How the adhesion intensity is integrated over a step.
 enum class AdhesionIntegrator {
   exact,          ///< the piecewise linear law in closed form
   explicit_euler  ///< clamped to [0, 1]; for comparison
@@ -153,33 +174,49 @@ enum class AdhesionIntegrator {
 
 struct EvolutionOptions {
   AdhesionIntegrator integrator = AdhesionIntegrator::exact;
-  double debond_gap_factor = 10;   ///< a contact lets go beyond this multiple of sqrt(W / C)
-  double debond_intensity = 1e-3;  ///< or below this in traction
+  double debond_gap_factor = 10;   ///< a contact debonds (beta = 0) where its gap exceeds this
+                                   ///< multiple of sqrt(W / C), >= 1
+  double debond_intensity = 1e-3;  ///< and in traction where beta falls below this, >= 0
 };
 
 /// Adhesion at the start of the next step.
 struct AdhesionStep {
   std::vector<double> intensity;       ///< beta, [contacts]
-  std::vector<double> gap;             ///< [contacts][3], m, anchors rescaled where beta grew
-  std::vector<std::uint8_t> debonded;  ///< 1 where the contact let go in this step
+  std::vector<double> gap;             ///< [contacts][3], m; smaller where beta grew, so that new
+                                       ///< bonds form without tension
+  std::vector<std::uint8_t> debonded;  ///< 1 where the contact debonded in this step
 };
 
-/// Solves problem after problem, keeping buffers, and as long as the structure stays the same the
-/// colors and islands too. Same inputs in the same order, same bits, whatever the number of
-/// threads. Not safe for concurrent calls.
+/// The back end that a contact solve with this choice runs on, and the reason in one sentence.
+/// `automatic` means cpu: for contact, cuda is used only when asked for by name, until it has been
+/// measured on a device.
+/// @param asked   ContactOptions::backend
+/// @param device  CUDA device number
+/// @throws CudaError  cuda is asked for and device `device` is not usable
+TETWARP_EXPORT std::pair<Backend, std::string> choose_contact_backend(Backend asked,
+                                                                      int device = 0);
+
+/// Solves a series of problems and keeps its buffers between them; colors and islands too, as long
+/// as the sparsity pattern stays the same.
+///
+/// Determinism: the same problems in the same order give the same bits for any number of threads.
+/// Not safe for concurrent calls.
 class TETWARP_EXPORT ContactSolver {
  public:
-  /// @throws std::invalid_argument  on options out of range, naming them
-  /// @throws CudaError              when cuda was asked for and no device answers
+  /// @throws std::invalid_argument  an option is out of range; the text names it
+  /// @throws CudaError              cuda was asked for and the device is not usable
   explicit ContactSolver(const ContactOptions& options = {});
   ContactSolver(ContactSolver&&) noexcept;
   ContactSolver& operator=(ContactSolver&&) noexcept;
   ~ContactSolver();
 
-  /// @throws ContactProblemError  see check_problem(); never for a problem that is merely hard
+  /// A problem that does not converge is no error: see ContactReport::status.
+  /// @throws ContactProblemError  the problem fails check_problem(), or A as a whole is not
+  /// positive
+  ///                              definite
   ContactSolution solve(const ContactProblem& problem);
 
-  /// evolve_adhesion() where this solver runs.
+  /// evolve_adhesion() on this solver's back end; same results.
   AdhesionStep evolve(const ContactProblem& problem,
                       const ContactSolution& solution,
                       const EvolutionOptions& options = {});
@@ -189,19 +226,30 @@ class TETWARP_EXPORT ContactSolver {
   std::unique_ptr<State> state_;
 };
 
-/// One problem. For several keep a ContactSolver.
+/// Solves one problem; throws as ContactSolver does. For a series of problems a ContactSolver is
+/// faster.
 TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
                                               const ContactOptions& options = {});
 
-/// Residuals of a given pair, in float64, with the true A. Empty `body_velocity`: computed from the
-/// impulses (local form: u = W r + q).
+/// Residuals of given impulses and velocities, in float64, by a factorization of A.
+/// @param impulse        r, [3 contacts], N s
+/// @param body_velocity  v, [dofs], m/s, or empty: v is computed from r. Local form: not used, u =
+///                       W r + q
+/// @param options        law, rule and recovery_speed are read
+/// @throws std::invalid_argument  an array has the wrong size
+/// @throws ContactProblemError    as ContactSolver::solve()
 TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
                                            std::span<const double> impulse,
                                            std::span<const double> body_velocity,
                                            const ContactOptions& options = {});
 
-/// One step of adhesion intensity and anchor gaps after a solve (beta is frozen within it), on the
-/// host.
+/// Adhesion intensities and anchor gaps after a solve, which keeps beta constant; runs on the host.
+/// @param solution  of `problem`: impulse and velocity are read
+/// @return empty arrays for a problem without adhesion
+/// @throws std::invalid_argument  impulse or velocity has the wrong size, or an option is out of
+///                                range
+/// @throws ContactProblemError    an array of the adhesion has the wrong size, or time_step is not
+///                                above 0
 TETWARP_EXPORT AdhesionStep evolve_adhesion(const ContactProblem& problem,
                                             const ContactSolution& solution,
                                             const EvolutionOptions& options = {});

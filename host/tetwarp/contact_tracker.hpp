@@ -1,7 +1,8 @@
 /// @file contact_tracker.hpp
-/// What contacts between rigid bodies remember from step to step: how well they adhere, where, and
-/// with which impulse they pushed.
+/// Keeps the state of contacts between rigid bodies from one time step to the next: adhesion
+/// intensity, the bonded material points, and the last impulse as a start for the solver.
 ///
+/// Order of calls in a step:
 ///     collision detection -> begin_step -> fill -> solve -> integrate poses -> end_step
 #pragma once
 #include <array>
@@ -17,14 +18,15 @@
 
 namespace tetwarp {
 
-/// Where a body is: its point x is at position + rotation(x) [world].
+/// Position and rotation of a body: its point x is at position + rotation(x) [world].
 struct BodyPose {
   Point3 position = {0, 0, 0};
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 };
 
-/// Which features of which bodies touch. Bodies are indices of poses; scenery that never moves is a
-/// body too. Feature numbers mean what the caller wants, as long as they stay the same.
+/// Identifies a contact by the two bodies and the features (faces, vertices, ...) that touch.
+/// Bodies are indices into the poses; fixed obstacles are bodies too. Feature numbers are the
+/// caller's and must stay the same from step to step.
 struct ContactKey {
   std::int32_t body_a = 0;
   std::int32_t feature_a = 0;
@@ -34,7 +36,7 @@ struct ContactKey {
   auto operator<=>(const ContactKey&) const = default;
 };
 
-/// Constants of a pair of surfaces; units as in AdhesionState.
+/// Constants of a pair of surfaces; units and ranges as in ContactProblem and AdhesionState.
 struct ContactMaterial {
   double friction = 0;
   double stiffness = 0;
@@ -43,93 +45,101 @@ struct ContactMaterial {
   double viscosity = 0;
   double bonding_rate = 0;
   double saturation_pressure = 0;
-  double initial_intensity = 0;  ///< beta of a contact that touches for the first time
+  double initial_intensity = 0;  ///< beta of a contact that touches for the first time, 0 to 1
 };
 
-/// One contact as collision detection sees it, in any order and either order of the bodies.
+/// One contact from collision detection; the contacts may come in any order, and the two bodies of
+/// each in either order.
 struct ReportedContact {
   ContactKey key;
   Point3 point_a_world = {0, 0, 0};  ///< on body a
-  Point3 point_b_world = {0, 0, 0};  ///< on body b, nearest to it
+  Point3 point_b_world = {0, 0, 0};  ///< on body b, nearest to that
   Point3 normal = {0, 0, 1};         ///< unit, from b to a [world]
   double area = 0;                   ///< [m^2]
-  std::int32_t material = 0;
-  Point3 tangent = {0, 0, 0};  ///< wanted direction of tangent 1 [world]; zero: any
+  std::int32_t material = 0;         ///< index into ContactTrackerOptions::materials
+  Point3 tangent = {0, 0, 0};  ///< direction of tangent 1 [world], projected onto the tangential
+                               ///< plane; zero: chosen by the tracker
 };
 
-/// What is kept of a contact between steps. Body coordinates unless the name says world.
+/// State of a contact between steps, in body coordinates unless the name says world.
 struct ContactRecord {
-  ContactKey key;  ///< smallest (body, feature) first
-  std::int32_t material = 0;
+  ContactKey key;             ///< the smaller (body, feature) is a
+  std::int32_t material = 0;  ///< index into ContactTrackerOptions::materials
   bool has_touched = false;
-  double area = 0;
-  double intensity = 0;
+  double area = 0;              ///< [m^2]
+  double intensity = 0;         ///< beta
   Point3 anchor_a = {0, 0, 0};  ///< material points that coincided when the bond formed
   Point3 anchor_b = {0, 0, 0};
-  Point3 normal_a = {0, 0, 1};  ///< the last reported normal, carried along by each body
+  Point3 normal_a = {0, 0, 1};  ///< the last reported normal, in coordinates of each body
   Point3 normal_b = {0, 0, 1};
   Point3 impulse_world = {0, 0, 0};  ///< on body a in the last step [N s]
 };
 
-/// One contact of the current step: what a jacobian is made of.
+/// One contact of the current step; the caller computes the rows of the jacobian from it.
 struct TrackedContact {
   ContactKey key;
   Point3 point_a_world = {0, 0, 0};  ///< where the impulse acts on body a
   Point3 point_b_world = {0, 0, 0};  ///< and, reversed, on body b
   std::array<Point3, 3> axes = {};   ///< normal, tangent 1, tangent 2 [world]
-  Point3 gap = {0, 0, 0};            ///< along them [m]; tangents: of the anchors
-  bool is_reported = true;           ///< false: kept because it adheres
+  Point3 gap = {0, 0, 0};  ///< components along `axes` [m]; the tangential ones between the anchors
+  bool is_reported = true;  ///< false: not reported in this step, kept because it adheres
 };
 
 struct ContactTrackerOptions {
   std::vector<ContactMaterial> materials = {ContactMaterial{}};
-  double match_distance = 0;  ///< a contact whose features changed is still the same when its point
-                              ///< on body a lies this near to the anchor there [m]
-  double touch_distance = 0;  ///< a gap up to this counts as touching [m]
+  double match_distance = 0;  ///< a contact with a new key is matched with a record of the same two
+                              ///< bodies whose anchor on body a is at most this far away [m]
+  double touch_distance = 0;  ///< contacts with a gap up to this touch [m]
   EvolutionOptions evolution = {};
 };
 
 /// Follows contacts through the steps of a simulation.
 ///
-/// A reported contact is the one it was before if its key is the same, else if it is, of all of
-/// the same two bodies, the nearest within `match_distance`. Contacts that adhere are kept when
-/// they are no longer reported, as a pulled contact is not. A contact that touches for the first
-/// time (gap within `touch_distance`, or an impulse > 0) starts with its material's
-/// `initial_intensity`. A contact without adhesion has its anchors where it is, so that bonds form
-/// unstretched; it is forgotten when it is no longer reported.
+/// A reported contact continues the record with its key, else the nearest record of the same two
+/// bodies within `match_distance`, else it is new. Contacts with adhesion are kept when collision
+/// detection no longer reports them, because a bond that is pulled has a gap. A contact that
+/// touches for the first time (gap within `touch_distance`, or a normal impulse > 0) gets
+/// `initial_intensity` of its material. The anchors of a contact without adhesion follow the
+/// reported points, so that bonds form without tension; its record is deleted when it is no longer
+/// reported.
 ///
-/// The order of contacts is that of their keys, whatever the order of the reports.
+/// Contacts are sorted by key, whatever the order of the reports.
 class TETWARP_EXPORT ContactTracker {
  public:
-  /// @param records  of an earlier tracker, to go on from; sorted by key
-  /// @throws std::invalid_argument  on materials or records out of range, naming them
+  /// @param records  records() of an earlier tracker that this one continues; sorted by key
+  /// @throws std::invalid_argument  a material or record is out of range; the text names it
   explicit ContactTracker(ContactTrackerOptions options = {},
                           std::vector<ContactRecord> records = {});
 
-  /// Matches the reports with what is known.
-  /// @param poses  of all bodies at the start of the step
-  /// @returns the contacts of this step, valid until the next one begins
-  /// @throws std::invalid_argument  on a key that occurs twice, a body without pose or against
-  ///                                itself, a normal that is no unit vector, a negative area
+  /// Starts a step: matches the reported contacts with the records.
+  /// @param poses      of all bodies at the start of the step
+  /// @param time_step  dt [s], > 0
+  /// @return the contacts of this step, valid until the next call of begin_step() or end_step()
+  /// @throws std::invalid_argument  a key occurs twice, a body has no pose or touches itself, a
+  ///                                normal is no unit vector, an area is negative, a material does
+  ///                                not exist, a position is not finite, or time_step is not > 0
   const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
                                                 std::span<const BodyPose> poses,
                                                 double time_step);
 
-  /// Sets what the tracker knows of a problem in global form: velocity offset, friction, adhesion,
-  /// impulse guess. The caller adds system, jacobian (rows: axes of each contact) and load.
+  /// Sets velocity offset, friction, adhesion and impulse guess of a problem in global form, for
+  /// the contacts of this step. The caller sets system, jacobian (rows along the axes of each
+  /// contact) and load.
   void fill(ContactProblem& problem) const;
 
-  /// Takes the solution: intensities, bonds that form or let go, impulses to start from.
-  /// @param poses  of all bodies at the end of the step
+  /// Ends the step: updates intensities, anchors and impulses of the records.
+  /// @param solution  of the problem that fill() completed
+  /// @param poses     of all bodies at the end of the step
+  /// @throws std::invalid_argument  a body of a record has no pose, or as evolve_adhesion()
   AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPose> poses);
 
-  /// Everything that is remembered, sorted by key.
+  /// The state of all contacts, sorted by key.
   const std::vector<ContactRecord>& records() const { return records_; }
 
  private:
   ContactTrackerOptions options_;
   std::vector<ContactRecord> records_;
-  std::vector<TrackedContact> contacts_;  // of the step, as many as records
+  std::vector<TrackedContact> contacts_;  ///< of this step, in the order of records_
   double time_step_ = 0;
 };
 

@@ -65,7 +65,6 @@ class AssociatedContact {
   bool find_step(const TargetOf& target_of);
   double longest_step() const;
   Eigen::Vector3d nu_of(std::size_t c) const;
-  double weight_of(const Cone& cone) const;
 
   const std::vector<MeasuredContact>& contacts_;
   FrictionLaw law_;

@@ -14,23 +14,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-namespace {
-
-/// rho_n, rho_t, rho_t. Tangents that no impulse moves have no scale of their own.
-Vector3d natural_scale(const MeasuredContact& contact) {
-  const Matrix2d block = contact.diagonal_block.bottomRightCorner<2, 2>();
-  const double middle = 0.5 * block.trace();
-  const double slip =
-      middle + std::hypot(0.5 * (block(0, 0) - block(1, 1)), 0.5 * (block(0, 1) + block(1, 0)));
-  const double rho_t = slip > 0 ? 1 / slip + contact.stiffness(1) : 1;
-  return {1 / contact.diagonal_block(0, 0) + contact.stiffness(0), rho_t, rho_t};
-}
-
-}  // namespace
-
 NaturalMap::NaturalMap(std::vector<MeasuredContact> contacts, FrictionLaw law, AdhesionRule rule)
     : contacts_(std::move(contacts)),
       law_(law),
+      rule_(rule),
       chi_(rule == AdhesionRule::restrictive ? 1.0 : 0.0),
       compliance_(3 * static_cast<Index>(contacts_.size())) {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -63,7 +50,7 @@ VectorXd NaturalMap::linearize(const VectorXd& impulse,
     const Vector3d scale = (compliance_.segment<3>(row) / steepness).cwiseSqrt();
     values.segment<3>(row) = scale.cwiseProduct(
         contact_value(c, impulse.segment<3>(row), velocity.segment<3>(row), steepness, derivative));
-    // nu = r + K (u + o) moves with the velocity too.
+    // nu = r + K (u + o) depends on u, too.
     derivative.by_velocity += derivative.by_impulse * contacts_[c].stiffness.asDiagonal();
     derivative.by_impulse = scale.asDiagonal() * derivative.by_impulse;
     derivative.by_velocity = scale.asDiagonal() * derivative.by_velocity;
@@ -77,46 +64,45 @@ Vector3d NaturalMap::contact_value(std::size_t c,
                                    double steepness,
                                    MapDerivative& derivative) const {
   const MeasuredContact& contact = contacts_[c];
-  const Vector3d nu = impulse + contact.stiffness.cwiseProduct(velocity + contact.offset);
+  const NaturalTerms terms = natural_terms(contact, impulse, velocity, law_, rule_);
   const double rho_n = steepness / compliance_(3 * static_cast<Index>(c));
   const double rho_t = steepness / compliance_(3 * static_cast<Index>(c) + 1);
   derivative.by_impulse.setZero();
   derivative.by_velocity.setZero();
   Vector3d value;
-  if (nu(0) > rho_n * velocity(0)) {
+  if (terms.nu(0) > rho_n * velocity(0)) {
     value(0) = rho_n * velocity(0);
     derivative.by_velocity(0, 0) = rho_n;
   } else {
-    value(0) = nu(0);
+    value(0) = terms.nu(0);
     derivative.by_impulse(0, 0) = 1;
   }
   if (law_ == FrictionLaw::cone) {
-    slide_on_disc(contact, nu, velocity, rho_t, value, derivative);
+    slide_on_disc(contact, terms, rho_t, value, derivative);
   } else {
-    slide_on_axis(contact, nu, velocity, rho_t, 1, value, derivative);
-    slide_on_axis(contact, nu, velocity, rho_t, 2, value, derivative);
+    slide_on_axis(contact, terms, rho_t, 1, value, derivative);
+    slide_on_axis(contact, terms, rho_t, 2, value, derivative);
   }
   return value;
 }
 
 void NaturalMap::slide_on_disc(const MeasuredContact& contact,
-                               const Vector3d& nu,
-                               const Vector3d& velocity,
+                               const NaturalTerms& terms,
                                double rho,
                                Vector3d& value,
                                MapDerivative& derivative) const {
-  const Vector2d spring = contact.stiffness(1) * (velocity.tail<2>() + contact.offset.tail<2>());
-  const double pull = spring.norm();
-  const double radius = std::max(contact.friction * std::max(nu(0), 0.0) - chi_ * pull, 0.0);
-  const Vector2d target = nu.tail<2>() - rho * velocity.tail<2>();
+  const double pull = terms.spring.norm();
+  const double radius = terms.radius(0);
+  const Vector2d stuck = rho * terms.velocity.tail<2>();
+  const Vector2d target = terms.nu.tail<2>() - stuck;
   const double length = target.norm();
   if (length <= radius) {
-    value.tail<2>() = rho * velocity.tail<2>();
+    value.tail<2>() = stuck;
     derivative.by_velocity.bottomRightCorner<2, 2>().diagonal().setConstant(rho);
     return;
   }
   const Vector2d along = target / length;
-  value.tail<2>() = nu.tail<2>() - radius * along;
+  value.tail<2>() = terms.nu.tail<2>() - radius * along;
   // d(R t) = t dR + (R / |z|) (I - t t^T) dz with z the target and t its direction.
   const Matrix2d across = (radius / length) * (Matrix2d::Identity() - along * along.transpose());
   derivative.by_impulse.bottomRightCorner<2, 2>() = Matrix2d::Identity() - across;
@@ -125,27 +111,26 @@ void NaturalMap::slide_on_disc(const MeasuredContact& contact,
   derivative.by_impulse.bottomLeftCorner<2, 1>() = -contact.friction * along;
   if (chi_ == 0 || pull == 0) return;
   derivative.by_velocity.bottomRightCorner<2, 2>() +=
-      chi_ * contact.stiffness(1) / pull * along * spring.transpose();
+      chi_ * contact.stiffness(1) / pull * along * terms.spring.transpose();
 }
 
 void NaturalMap::slide_on_axis(const MeasuredContact& contact,
-                               const Vector3d& nu,
-                               const Vector3d& velocity,
+                               const NaturalTerms& terms,
                                double rho,
                                int axis,
                                Vector3d& value,
                                MapDerivative& derivative) const {
-  const double spring = contact.stiffness(axis) * (velocity(axis) + contact.offset(axis));
-  const double radius =
-      std::max(contact.friction * std::max(nu(0), 0.0) - chi_ * std::abs(spring), 0.0);
-  const double target = nu(axis) - rho * velocity(axis);
+  const double spring = terms.spring(axis - 1);
+  const double radius = terms.radius(axis - 1);
+  const double stuck = rho * terms.velocity(axis);
+  const double target = terms.nu(axis) - stuck;
   if (std::abs(target) <= radius) {
-    value(axis) = rho * velocity(axis);
+    value(axis) = stuck;
     derivative.by_velocity(axis, axis) = rho;
     return;
   }
   const double along = std::copysign(1.0, target);
-  value(axis) = nu(axis) - radius * along;
+  value(axis) = terms.nu(axis) - radius * along;
   derivative.by_impulse(axis, axis) = 1;
   if (radius == 0) return;
   derivative.by_impulse(axis, 0) = -contact.friction * along;

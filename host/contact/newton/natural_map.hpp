@@ -8,20 +8,19 @@
 
 namespace tetwarp {
 
-/// Derivatives of one contact's three equations.
+/// Derivatives of the three equations of one contact.
 struct MapDerivative {
   Eigen::Matrix3d by_impulse;
   Eigen::Matrix3d by_velocity;
 };
 
-/// With nu = r + K (u + o), steepness s, P the projection on the disc or square of radius R and rho
-/// as in natural_energy():
+/// With a steepness s > 0 and nu, rho and P as in natural_energy():
 ///
 ///     F_n = min(nu_n, s rho_n u_n) / sqrt(s rho_n)
 ///     F_t = (nu_t - P(nu_t - s rho_t u_t)) / sqrt(s rho_t)
 ///
-/// Every s > 0 has the same zeros. At s = 1, |F|^2 is the sum of natural_energy(); a steep map
-/// keeps contacts closed and sticking for longer.
+/// The zeros do not depend on s. At s = 1, |F|^2 is the sum of natural_energy(). The larger s, the
+/// larger the range of (r, u) in which a contact counts as closed and sticking.
 ///
 /// Source: Alart, Curnier 1991; adhesion and the radius R as in contact.hpp.
 class NaturalMap {
@@ -34,7 +33,8 @@ class NaturalMap {
                         const Eigen::VectorXd& velocity,
                         double steepness) const;
 
-  /// F, and one element of its generalized derivative.
+  /// F, and one element of its generalized Jacobian.
+  /// @param derivatives  out, [contacts], scaled like F
   Eigen::VectorXd linearize(const Eigen::VectorXd& impulse,
                             const Eigen::VectorXd& velocity,
                             double steepness,
@@ -44,21 +44,21 @@ class NaturalMap {
   const Eigen::VectorXd& compliance() const { return compliance_; }
 
  private:
-  /// F of one contact, before the division, and its derivative by nu and by u with nu held.
+  /// F of one contact before the division, and its derivatives by nu, and by u at constant nu.
   Eigen::Vector3d contact_value(std::size_t c,
                                 const Eigen::Vector3d& impulse,
                                 const Eigen::Vector3d& velocity,
                                 double steepness,
                                 MapDerivative& derivative) const;
+  /// Tangential rows of contact_value(), law cone: both together.
   void slide_on_disc(const MeasuredContact& contact,
-                     const Eigen::Vector3d& nu,
-                     const Eigen::Vector3d& velocity,
+                     const NaturalTerms& terms,
                      double rho,
                      Eigen::Vector3d& value,
                      MapDerivative& derivative) const;
+  /// Law pyramid: tangent `axis`, 1 or 2.
   void slide_on_axis(const MeasuredContact& contact,
-                     const Eigen::Vector3d& nu,
-                     const Eigen::Vector3d& velocity,
+                     const NaturalTerms& terms,
                      double rho,
                      int axis,
                      Eigen::Vector3d& value,
@@ -66,7 +66,8 @@ class NaturalMap {
 
   std::vector<MeasuredContact> contacts_;
   FrictionLaw law_;
-  double chi_;
+  AdhesionRule rule_;
+  double chi_;  ///< 1 with rule `restrictive`, else 0
   Eigen::VectorXd compliance_;
 };
 

@@ -20,13 +20,12 @@ VectorXd make_vector(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-/// J_c A^-1 J_c^T = Y^T D^-1 Y with Y = L^-1 P J_c^T, contact after contact.
-///
-/// Y is zero outside the ancestors of the contact's dofs in the elimination tree, so that only
+/// Diagonal blocks of J A^-1 J^T, one contact at a time: J_c A^-1 J_c^T = Y^T D^-1 Y with Y = L^-1
+/// P J_c^T. Y is zero outside the ancestors of the contact's dofs in the elimination tree; only
 /// those columns of L are visited.
 class HalfSolve {
  public:
-  explicit HalfSolve(const Eigen::SimplicialLDLT<Matrix>& factor)
+  explicit HalfSolve(const SystemFactor::Ldlt& factor)
       : lower_(factor.matrixL().nestedExpression()),
         diagonal_(factor.vectorD()),
         order_(factor.permutationP()),
@@ -57,7 +56,7 @@ class HalfSolve {
   }
 
  private:
-  /// A column and its ancestors: the parent is the first row below the diagonal.
+  /// Adds a column and its ancestors to `reached_`. The parent is the first row below the diagonal.
   void reach(Index column) {
     while (!is_reached_[static_cast<std::size_t>(column)]) {
       is_reached_[static_cast<std::size_t>(column)] = true;
@@ -86,7 +85,7 @@ Delassus::Delassus(const ContactProblem& problem, double recovery_speed)
     return;
   }
   matrix_ = make_eigen(problem.system);
-  // Without contacts J may be left empty.
+  // A problem without contacts may have an empty J.
   jacobian_.resize(matrix_.rows(), 0);
   if (!problem.jacobian.empty()) jacobian_ = make_eigen(problem.jacobian).transpose();
   load_ = make_vector(problem.load);
@@ -94,12 +93,7 @@ Delassus::Delassus(const ContactProblem& problem, double recovery_speed)
   for (Index row = 0; row < offset_.size(); row += 3) {
     offset_(row) = std::max(offset_(row), -recovery_speed);
   }
-  factor_.compute(matrix_);
-  if (factor_.info() != Eigen::Success || (factor_.vectorD().array() <= 0).any()) {
-    throw ContactProblemError("system",
-                              ": not positive definite, although its diagonal blocks are; the "
-                              "coupling between them is too strong to be a mass or a stiffness");
-  }
+  factor_.factorize(matrix_);
   free_velocity_ = contact_velocity(factor_.solve(load_));
 }
 
@@ -126,7 +120,7 @@ std::vector<Matrix3d> Delassus::diagonal_blocks() const {
     }
     return blocks;
   }
-  HalfSolve half(factor_);
+  HalfSolve half(factor_.ldlt());
   for (Index c = 0; c < contacts; ++c) {
     blocks[static_cast<std::size_t>(c)] = half.diagonal_block(jacobian_, c);
   }

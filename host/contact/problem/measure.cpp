@@ -3,47 +3,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "host/contact/problem/input.hpp"
 
 namespace tetwarp {
 
+using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
 
-double entry_of(const std::vector<double>& values, std::size_t c) {
-  return values.empty() ? 0.0 : values[c];
-}
-
-double largest_eigenvalue(const Eigen::Matrix2d& block) {
-  const double middle = 0.5 * (block(0, 0) + block(1, 1));
-  const double off = 0.5 * (block(0, 1) + block(1, 0));
-  return middle + std::hypot(0.5 * (block(0, 0) - block(1, 1)), off);
-}
-
-/// e_n and e_t of natural_energy() for given rho.
-Vector3d natural_map(const MeasuredContact& contact,
-                     const Vector3d& impulse,
-                     const Vector3d& velocity,
-                     FrictionLaw law,
-                     AdhesionRule rule,
-                     double rho_n,
-                     double rho_t) {
-  const Vector3d spring = contact.stiffness.cwiseProduct(velocity + contact.offset);
-  const Vector3d nu = impulse + spring;
-  const double coulomb = contact.friction * std::max(nu(0), 0.0);
-  const double chi = rule == AdhesionRule::restrictive ? 1.0 : 0.0;
-  const Vector2d target = nu.tail<2>() - rho_t * velocity.tail<2>();
+/// e_n and e_t of natural_energy() for given rho_n, rho_t, rho_t.
+Vector3d natural_error(const NaturalTerms& terms, FrictionLaw law, const Vector3d& rho) {
+  const Vector2d target = terms.nu.tail<2>() - rho(1) * terms.velocity.tail<2>();
   Vector3d error;
-  error(0) = std::min(nu(0), rho_n * velocity(0));
+  error(0) = std::min(terms.nu(0), rho(0) * terms.velocity(0));
   if (law == FrictionLaw::cone) {
-    const double radius = std::max(coulomb - chi * spring.tail<2>().norm(), 0.0);
-    const double length = target.norm();
-    error.tail<2>() = nu.tail<2>() - target * (length > radius ? radius / length : 1.0);
+    const double radius = terms.radius(0), length = target.norm();
+    error.tail<2>() = terms.nu.tail<2>() - target * (length > radius ? radius / length : 1.0);
   } else {
     for (int a = 0; a < 2; ++a) {
-      const double radius = std::max(coulomb - chi * std::abs(spring(a + 1)), 0.0);
-      error(a + 1) = nu(a + 1) - std::clamp(target(a), -radius, radius);
+      error(a + 1) = terms.nu(a + 1) - std::clamp(target(a), -terms.radius(a), terms.radius(a));
     }
   }
   return error;
@@ -52,7 +35,7 @@ Vector3d natural_map(const MeasuredContact& contact,
 /// The point of { |x_t| <= mu x_n } nearest to x.
 Vector3d project_on_cone(const Vector3d& x, double friction) {
   const double tangent = x.tail<2>().norm();
-  // The polar cone first: without friction the cone is a ray, and an open contact lies behind it.
+  // The polar cone first: without friction the cone is a ray, and x of an open contact is outside.
   if (friction * tangent <= -x(0)) return Vector3d::Zero();
   if (tangent <= friction * x(0)) return x;
   const double normal = (friction * tangent + x(0)) / (1 + friction * friction);
@@ -63,26 +46,50 @@ Vector3d project_on_cone(const Vector3d& x, double friction) {
 }  // namespace
 
 std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem) {
-  const AdhesionState& adhesion = problem.adhesion;
-  std::vector<MeasuredContact> contacts(problem.friction.size());
+  std::vector<std::int32_t> index(problem.friction.size());
+  std::iota(index.begin(), index.end(), 0);
+  std::vector<ContactConstants<double>> constants(index.size());
+  const ContactConstantsBody set_constants = {
+      input_of(problem), view_of(std::as_const(index)), {.skips_rows = false}, view_of(constants)};
+  std::vector<MeasuredContact> contacts(index.size());
   for (std::size_t c = 0; c < contacts.size(); ++c) {
+    set_constants(static_cast<std::int64_t>(c));
+    const ContactConstants<double>& constant = constants[c];
     MeasuredContact& contact = contacts[c];
     contact.diagonal_block.setZero();
     contact.stiffness.setZero();
     contact.offset.setZero();
-    contact.friction = problem.friction[c];
-    const double beta = entry_of(adhesion.intensity, c);
-    if (beta == 0) continue;
-    const double dt = adhesion.time_step;
-    const double normal = entry_of(adhesion.stiffness, c);
-    const double tangent =
-        adhesion.tangential_stiffness.empty() ? normal : adhesion.tangential_stiffness[c];
-    const double scale = dt * dt * entry_of(adhesion.area, c) * beta * beta;
-    contact.stiffness << scale * normal, scale * tangent, scale * tangent;
-    if (adhesion.gap.empty()) continue;
-    contact.offset << 0, adhesion.gap[3 * c + 1] / dt, adhesion.gap[3 * c + 2] / dt;
+    contact.friction = constant.friction;
+    if (constant.kind != ContactKind::adhesive) continue;
+    contact.stiffness << constant.normal_spring, constant.tangent_spring, constant.tangent_spring;
+    contact.offset << 0, constant.tangent_offset[0], constant.tangent_offset[1];
   }
   return contacts;
+}
+
+NaturalTerms natural_terms(const MeasuredContact& contact,
+                           const Vector3d& impulse,
+                           const Vector3d& velocity,
+                           FrictionLaw law,
+                           AdhesionRule rule) {
+  const Vector3d spring = contact.stiffness.cwiseProduct(velocity + contact.offset);
+  NaturalTerms terms = {velocity, impulse + spring, spring.tail<2>(), Vector2d::Zero()};
+  const double coulomb = contact.friction * std::max(terms.nu(0), 0.0);
+  const double chi = rule == AdhesionRule::restrictive ? 1.0 : 0.0;
+  for (int a = 0; a < 2; ++a) {
+    const double pull = law == FrictionLaw::cone ? terms.spring.norm() : std::abs(terms.spring(a));
+    terms.radius(a) = std::max(coulomb - chi * pull, 0.0);
+  }
+  return terms;
+}
+
+Vector3d natural_scale(const MeasuredContact& contact) {
+  const Matrix2d block = contact.diagonal_block.bottomRightCorner<2, 2>();
+  const double middle = 0.5 * block.trace();
+  const double slip =
+      middle + std::hypot(0.5 * (block(0, 0) - block(1, 1)), 0.5 * (block(0, 1) + block(1, 0)));
+  const double rho_t = slip > 0 ? 1 / slip + contact.stiffness(1) : 1;
+  return {1 / contact.diagonal_block(0, 0) + contact.stiffness(0), rho_t, rho_t};
 }
 
 double natural_energy(const MeasuredContact& contact,
@@ -90,13 +97,10 @@ double natural_energy(const MeasuredContact& contact,
                       const Vector3d& velocity,
                       FrictionLaw law,
                       AdhesionRule rule) {
-  const double rho_n = 1 / contact.diagonal_block(0, 0) + contact.stiffness(0);
-  const double slip = largest_eigenvalue(contact.diagonal_block.bottomRightCorner<2, 2>());
-  // Nothing that resists sliding may act on rows that no impulse moves: check_problem() sees to
-  // that.
-  const double rho_t = slip > 0 ? 1 / slip + contact.stiffness(1) : 1;
-  const Vector3d error = natural_map(contact, impulse, velocity, law, rule, rho_n, rho_t);
-  return error(0) * error(0) / rho_n + error.tail<2>().squaredNorm() / rho_t;
+  const Vector3d rho = natural_scale(contact);
+  const Vector3d error =
+      natural_error(natural_terms(contact, impulse, velocity, law, rule), law, rho);
+  return error(0) * error(0) / rho(0) + error.tail<2>().squaredNorm() / rho(1);
 }
 
 double fclib_square(const MeasuredContact& contact,
@@ -104,13 +108,13 @@ double fclib_square(const MeasuredContact& contact,
                     const Vector3d& velocity,
                     FrictionLaw law,
                     AdhesionRule rule) {
+  const NaturalTerms terms = natural_terms(contact, impulse, velocity, law, rule);
   const bool has_cone = law == FrictionLaw::cone &&
                         (rule == AdhesionRule::parallel || contact.stiffness.tail<2>().isZero(0));
-  if (!has_cone) return natural_map(contact, impulse, velocity, law, rule, 1, 1).squaredNorm();
-  const Vector3d nu = impulse + contact.stiffness.cwiseProduct(velocity + contact.offset);
-  Vector3d target = nu - velocity;
+  if (!has_cone) return natural_error(terms, law, Vector3d::Ones()).squaredNorm();
+  Vector3d target = terms.nu - velocity;
   target(0) -= contact.friction * velocity.tail<2>().norm();
-  return (nu - project_on_cone(target, contact.friction)).squaredNorm();
+  return (terms.nu - project_on_cone(target, contact.friction)).squaredNorm();
 }
 
 }  // namespace tetwarp

@@ -1,29 +1,48 @@
 /// @file measure.hpp
-/// How far impulses and velocities are from solving a problem, contact by contact, in float64.
+/// How far impulses and velocities are from satisfying the laws of contact, contact by contact, in
+/// float64; and the terms of the natural map, which Newton's method uses too.
 #pragma once
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
 namespace tetwarp {
 
-/// All that the measures know of one contact.
+/// The constants of one contact that its laws contain.
 struct MeasuredContact {
-  Eigen::Matrix3d diagonal_block;  ///< of the Delassus matrix [1/kg]
-  Eigen::Vector3d stiffness;       ///< K: kappa_n, kappa_t, kappa_t [kg]
+  Eigen::Matrix3d diagonal_block;  ///< B, of the Delassus matrix [1/kg]
+  Eigen::Vector3d stiffness;       ///< diagonal of K: kappa_n, kappa_t, kappa_t [kg]
   Eigen::Vector3d offset;          ///< o: 0 and the stored tangential gap over dt [m/s]
   double friction = 0;
 };
 
-/// The contacts of a problem, their diagonal blocks still zero.
+/// The contacts of a problem, with diagonal blocks of zeros: the caller sets them.
 std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem);
 
-/// Energy [J] of the natural residual of one contact: 0 exactly where the contact laws hold.
+/// Quantities of one contact in its laws, at given r and u.
+struct NaturalTerms {
+  Eigen::Vector3d velocity;  ///< u [m/s]
+  Eigen::Vector3d nu;        ///< r + K (u + o) [N s]
+  Eigen::Vector2d spring;    ///< kappa_t (u_t + o_t) [N s]
+  Eigen::Vector2d radius;    ///< bound of friction of each tangent [N s]; law cone: twice the same
+};
+
+NaturalTerms natural_terms(const MeasuredContact& contact,
+                           const Eigen::Vector3d& impulse,
+                           const Eigen::Vector3d& velocity,
+                           FrictionLaw law,
+                           AdhesionRule rule);
+
+/// rho_n, rho_t, rho_t of the natural map [kg]: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / (largest
+/// eigenvalue of the symmetric part of B_tt) + kappa_t; 1 for tangents that no impulse moves, which
+/// check_problem() allows only where nothing resists sliding.
+Eigen::Vector3d natural_scale(const MeasuredContact& contact);
+
+/// Energy [J] of the natural residual of one contact: 0 exactly where the laws hold.
 ///
-/// With nu = r + K (u + o), rho_n = 1 / B_nn + kappa_n, rho_t = 1 / (largest eigenvalue of B_tt) +
-/// kappa_t, and P the projection on the disc or square of radius R:
+/// With nu and R from natural_terms(), rho from natural_scale() and P the projection on the disc of
+/// radius R (pyramid: on the rectangle):
 ///
 ///     e_n = min(nu_n, rho_n u_n),   e_t = nu_t - P(nu_t - rho_t u_t)
 ///     energy = e_n^2 / rho_n + |e_t|^2 / rho_t
@@ -33,10 +52,9 @@ double natural_energy(const MeasuredContact& contact,
                       FrictionLaw law,
                       AdhesionRule rule);
 
-/// Squared natural-map error of one contact as FCLIB weighs it, without units made equal:
-/// |nu - P(nu - u - mu |u_t| n)|^2 with P the projection on Coulomb's cone, which is FCLIB's own
-/// measure where nothing adheres. The pyramid and the restrictive rule have no such cone: there it
-/// is the energy above with rho = 1.
+/// Squared natural-map error of one contact as FCLIB defines it, without scaling by rho:
+/// |nu - P(nu - u - mu |u_t| n)|^2, P the projection on Coulomb's cone. The pyramid and the
+/// restrictive rule have no such cone; for them it is |e|^2 of natural_energy() with rho = 1.
 double fclib_square(const MeasuredContact& contact,
                     const Eigen::Vector3d& impulse,
                     const Eigen::Vector3d& velocity,

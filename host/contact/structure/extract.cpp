@@ -7,10 +7,6 @@ namespace tetwarp {
 
 namespace {
 
-std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Where each item of a part stands in it; -1 for the others.
 std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::int32_t>& part) {
   std::vector<std::int32_t> place(index_of(count), -1);

@@ -4,23 +4,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "host/contact/vectors.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"
 
 namespace tetwarp {
-
-namespace {
-
-template <class T>
-View<const T> view_of(const std::vector<T>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-View<std::int32_t> view_of(std::vector<std::int32_t>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-
-}  // namespace
 
 Lists make_transposed(const Lists& lists, std::int64_t item_count) {
   Lists result;

@@ -8,6 +8,7 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/structure/islands.hpp"
+#include "host/contact/vectors.hpp"
 #include "kernels/contact/contact_indices.hpp"
 #include "kernels/contact/contact_numbers.hpp"
 
@@ -56,15 +57,6 @@ struct ContactStructure {
   /// As the stages read it.
   ContactIndices indices() const;
 };
-
-template <class T>
-View<const T> view_of(const std::vector<T>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
-template <class T>
-View<T> view_of(std::vector<T>& values) {
-  return {values.data(), static_cast<std::int64_t>(values.size())};
-}
 
 /// @param skip  without `converged_islands` all contacts are one island; without
 ///              `contactless_bodies` the blocks that no contact reaches join the first island

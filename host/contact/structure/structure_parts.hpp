@@ -10,10 +10,6 @@
 
 namespace tetwarp {
 
-inline std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Where each item stands in an order.
 inline std::vector<std::int32_t> places_of(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> place(order.size());

@@ -3,25 +3,6 @@
 
 namespace tetwarp {
 
-ContactInput input_of(const ContactProblem& problem) {
-  ContactInput in;
-  const bool is_local = problem.is_local();
-  in.matrix = view_of(is_local ? problem.delassus.value : problem.system.value);
-  in.jacobian = view_of(problem.jacobian.value);
-  in.load = view_of(problem.load);
-  in.given_velocity = view_of(is_local ? problem.free_velocity : problem.velocity_offset);
-  in.friction = view_of(problem.friction);
-  const AdhesionState& adhesion = problem.adhesion;
-  in.has_adhesion = !adhesion.empty();
-  in.time_step = adhesion.time_step;
-  in.area = view_of(adhesion.area);
-  in.stiffness = view_of(adhesion.stiffness);
-  in.tangential_stiffness = view_of(adhesion.tangential_stiffness);
-  in.intensity = view_of(adhesion.intensity);
-  in.gap = view_of(adhesion.gap);
-  return in;
-}
-
 ContactChoices choices_of(const ContactOptions& options) {
   return {options.relaxation, options.skip.debonded_springs, options.skip.frictionless_rows};
 }

@@ -6,6 +6,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/problem/input.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_system.hpp"
@@ -14,9 +15,6 @@ namespace tetwarp {
 
 template <class T>
 using ContactSystem = SystemMemory<CpuContactExec, T>;
-
-/// The numbers of a problem as it stores them; views of its memory.
-ContactInput input_of(const ContactProblem& problem);
 
 ContactChoices choices_of(const ContactOptions& options);
 
