@@ -24,7 +24,7 @@ std::set<std::string> names_of(const Json& object) {
 }
 
 Report report_of_two_steps() {
-  const scenes::Scene scene = scenes::adversarial_scenes(24)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::uint8);
   WarpOptions options;
   options.backend = Backend::cpu;

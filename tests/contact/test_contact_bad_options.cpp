@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tetwarp/contact.hpp>
+#include <tetwarp/error.hpp>
 
 namespace tetwarp::test {
 namespace {
@@ -88,6 +89,10 @@ TEST_P(ContactBadOptions, AreNamedByTheReferenceToo) {
   options.backend = Backend::reference;
 
   EXPECT_EQ(complaint([&] { solve_contacts(quiet_contact(), options); }), made);
+}
+
+TEST(ContactBadDevice, IsACudaError) {
+  EXPECT_THROW(ContactSolver(ContactOptions{.backend = Backend::cuda, .device = 4096}), CudaError);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <tetwarp/contact.hpp>
-#include <tetwarp/error.hpp>
 
 #include "host/base/warp_backend.hpp"
 #include "host/contact/cuda/device.hpp"
@@ -245,10 +244,6 @@ TEST_F(ContactCuda, EvolvesAdhesionAsTheHostDoes) {
     EXPECT_LE(relative_distance(there.gap, here.gap), 1e-14);
     EXPECT_EQ(there.debonded, here.debonded);
   }
-}
-
-TEST(ContactCudaMissing, IsNamed) {
-  EXPECT_THROW(ContactSolver(ContactOptions{.backend = Backend::cuda, .device = 4096}), CudaError);
 }
 
 }  // namespace

@@ -124,7 +124,6 @@ TEST(CoupledSystem, StopsWhereItIsToldTo) {
   EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
 
-/// Couplings twice as strong as the blocks they join: these stay positive, the whole does not.
 TEST(CoupledSystem, DoesNotBlameTheSystemForSquaresThatUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
@@ -140,6 +139,8 @@ TEST(CoupledSystem, DoesNotBlameTheSystemForSquaresThatUnderflow) {
   }
 }
 
+/// Couplings twice as strong as the blocks they join: the blocks stay positive definite, the matrix
+/// does not.
 TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   const LinearCase c = bodies(2);
   CpuContactExec exec(1);

@@ -29,7 +29,8 @@ ContactReport counting_report() {
         &ContactReport::outer_iterations, &ContactReport::sweeps, &ContactReport::newton_iterations,
         &ContactReport::contact_updates, &ContactReport::rows_skipped,
         &ContactReport::springs_skipped, &ContactReport::bodies_skipped,
-        &ContactReport::islands_stopped, &ContactReport::updates_skipped}) {
+        &ContactReport::islands_stopped, &ContactReport::updates_skipped,
+        &ContactReport::condensations_kept}) {
     report.*count = next++;
   }
   report.residual = {0.5, 0.25, 0.125, 7, 0.0625, 0.03125};
@@ -76,7 +77,7 @@ TEST(ContactReport, MixesUpNoField) {
   for (const char* name :
        {"threads", "contacts", "colors", "islands", "outer_iterations", "sweeps",
         "newton_iterations", "contact_updates", "rows_skipped", "springs_skipped", "bodies_skipped",
-        "islands_stopped", "updates_skipped"}) {
+        "islands_stopped", "updates_skipped", "condensations_kept"}) {
     EXPECT_EQ(json[name], value++) << name;
   }
   double residual = 1;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "tests/scenes/block_scenes.hpp"
 
@@ -13,9 +12,7 @@ namespace {
 
 struct StackRun {
   double worst_eta = 0;
-  double sink = 0;          ///< of the top block over its edge
-  double kinetic = 0;       ///< at the end, over weight times edge
-  std::int64_t sweeps = 0;  ///< most in a step
+  double sink = 0;  ///< of the top block over its edge
   bool is_finite = true;
 };
 
@@ -28,23 +25,16 @@ StackRun resting_stack(int count, double ratio, std::int64_t sweeps, int steps) 
   const double height = world.boxes.back().pose.position[2];
   StackRun run;
   for (int step = 0; step < steps; ++step) {
-    const ContactReport& report = world.step().report;
-    run.worst_eta = std::max(run.worst_eta, report.residual.eta);
-    run.sweeps = std::max(run.sweeps, report.sweeps);
+    run.worst_eta = std::max(run.worst_eta, world.step().report.residual.eta);
   }
-  double weight = 0;
-  for (const RigidBox& box : world.boxes) weight += box.mass * gravity;
   run.sink = (height - world.boxes.back().pose.position[2]) / block_edge;
-  run.kinetic = world.kinetic_energy() / (weight * block_edge);
-  run.is_finite = std::isfinite(run.sink) && std::isfinite(run.kinetic);
+  run.is_finite = std::isfinite(run.sink) && std::isfinite(world.kinetic_energy());
   return run;
 }
 
 /// Law: a stack at rest that is solved to eta 1e-6 stays at rest, whatever the masses: in 5 steps
 /// (a free fall of 0.03 edges) the top moves by less than 1e-5 edges.
 TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
-  std::printf("\n%7s %8s %10s %10s %10s %8s\n", "blocks", "ratio", "worst eta", "sink", "kinetic",
-              "sweeps");
   int solved = 0;
   for (const int count : {10, 30}) {
     for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
@@ -55,24 +45,16 @@ TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
         ++solved;
         EXPECT_LT(std::abs(run.sink), 1e-5) << count << " " << ratio;
       }
-      std::printf("%7d %8.0e %10.1e %10.1e %10.1e %8lld\n", count, ratio, run.worst_eta, run.sink,
-                  run.kinetic, static_cast<long long>(run.sweeps));
     }
   }
   EXPECT_GT(solved, 0);
 }
 
-/// With 10 sweeps a step nothing is promised but finite numbers: charted.
+/// With 10 sweeps a step nothing is promised but finite numbers.
 TEST(ContactStress, StacksSolvedByFewSweepsStayFinite) {
-  std::printf("\n10 sweeps a step\n%7s %8s %10s %10s %10s\n", "blocks", "ratio", "worst eta",
-              "sink", "kinetic");
   for (const int count : {10, 30}) {
     for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
-      const StackRun run = resting_stack(count, ratio, 10, 40);
-
-      EXPECT_TRUE(run.is_finite) << count << " " << ratio;
-      std::printf("%7d %8.0e %10.1e %10.1e %10.1e\n", count, ratio, run.worst_eta, run.sink,
-                  run.kinetic);
+      EXPECT_TRUE(resting_stack(count, ratio, 10, 40).is_finite) << count << " " << ratio;
     }
   }
 }

@@ -49,18 +49,11 @@ bool is_same(const Rastered<T>& a, const Rastered<T>& b) {
          a.counts.covered == b.counts.covered && a.counts.copied == b.counts.copied;
 }
 
-scenes::Scene scene_named(const std::string& name) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(20)) {
-    if (scene.name == name) return scene;
-  }
-  throw std::invalid_argument("no scene " + name);
-}
-
 template <class T>
 class RasterBench {
  public:
   explicit RasterBench(const RasterCase& what)
-      : scene_(scene_named(what.scene)),
+      : scene_(scenes::adversarial_scene(what.scene, 20)),
         source_(scenes::wavy_volume(scene_.source_grid, what.type, what.components)),
         input_(input_of(scene_, what.region)),
         exec_(2),

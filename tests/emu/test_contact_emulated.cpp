@@ -1,6 +1,6 @@
 /// @file test_contact_emulated.cpp
-/// What the contact solver asks of its device, seen on the emulated one, which writes down every
-/// call and runs threads in several orders.
+/// Calls of the contact solver to the emulated device, which records every call and runs threads in
+/// several orders.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,19 +12,15 @@
 #include "tests/scenes/contact_scenes.hpp"
 #include "tests/scenes/elastic_block.hpp"
 
-#include "kernels/exec/launch.hpp"
+#include "tests/emu/device_calls.hpp"
 
 namespace tetwarp::test {
 namespace {
 
-std::string calls_of(ContactSolver& solver, const ContactProblem& problem) {
-  simt::Device::only().take_calls();
+DeviceCalls calls_of(ContactSolver& solver, const ContactProblem& problem) {
+  take_calls();
   EXPECT_TRUE(solver.solve(problem).converged());
-  return simt::Device::only().take_calls();
-}
-
-auto count_of(const std::string& calls, simt::ApiCall call) {
-  return std::count(calls.begin(), calls.end(), static_cast<char>(call));
+  return take_calls();
 }
 
 /// Small islands, a large one, elastic bodies.
@@ -43,13 +39,13 @@ TEST(ContactEmulated, ASolverThatGoesOnAllocatesNothing) {
       {make_elastic_problem({}), elastic}};
   for (const auto& [problem, options] : cases) {
     ContactSolver solver(options);
-    EXPECT_GT(count_of(calls_of(solver, problem), simt::ApiCall::allocate), 10);
+    EXPECT_GT(calls_of(solver, problem).count(simt::ApiCall::allocate), 10);
 
-    const std::string calls = calls_of(solver, problem);
+    const DeviceCalls calls = calls_of(solver, problem);
 
-    EXPECT_EQ(count_of(calls, simt::ApiCall::allocate), 0);
-    EXPECT_EQ(count_of(calls, simt::ApiCall::release), 0);
-    EXPECT_GT(count_of(calls, simt::ApiCall::launch), 5);
+    EXPECT_EQ(calls.count(simt::ApiCall::allocate), 0);
+    EXPECT_EQ(calls.count(simt::ApiCall::release), 0);
+    EXPECT_GT(calls.count(simt::ApiCall::launch), 5);
   }
 }
 
@@ -61,10 +57,10 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
   calls_of(few, problem);
   calls_of(many, problem);
 
-  const std::string short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
+  const DeviceCalls short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
 
   EXPECT_EQ(short_solve, long_solve);  // whatever the number of sweeps
-  EXPECT_LE(count_of(long_solve, simt::ApiCall::launch), 12);
+  EXPECT_LE(long_solve.count(simt::ApiCall::launch), 12);
 }
 
 TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {

@@ -1,26 +1,17 @@
 /// @file test_warp_emulated.cpp
-/// What a step asks of the device, on an emulated one: from the second step on one sequence of
-/// work, one wait at its end, no allocation.
+/// Calls of a step to the emulated device: from the second step on one sequence of work, one wait
+/// at its end, no allocation.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
+#include <cstdint>
 #include <vector>
 
 #include "tests/scenes/skip_series.hpp"
 
-#include "kernels/exec/launch.hpp"
+#include "tests/emu/device_calls.hpp"
 
 namespace tetwarp::test {
 namespace {
-
-scenes::Scene scene_named(const std::string& name) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(24)) {
-    if (scene.name == name) return scene;
-  }
-  throw std::invalid_argument("no scene " + name);
-}
 
 WarpOptions on_device(bool updates = true) {
   WarpOptions options;
@@ -40,28 +31,29 @@ std::vector<Point3> shaken(const scenes::Scene& scene, int step) {
                        static_cast<std::uint64_t>(step));
 }
 
-/// Letters of the calls that the host made, see simt::ApiCall.
-std::string take_calls() {
-  return simt::Device::only().take_calls();
-}
+using simt::ApiCall;
 
-void expect_one_sequence(const std::string& calls) {
-  const std::size_t wait = calls.find('W');
-  ASSERT_NE(wait, std::string::npos);
-  EXPECT_EQ(calls.find_first_of("AF"), std::string::npos) << calls;
-  EXPECT_EQ(calls.find_first_of("LZUC", wait), std::string::npos) << calls;
-  EXPECT_GT(wait, 15u) << calls;
+/// The host queues at least 15 calls, none of which allocates or releases, then waits; after the
+/// first wait it only copies results to the host.
+void expect_one_sequence(const DeviceCalls& calls) {
+  EXPECT_EQ(calls.count(ApiCall::allocate), 0) << calls;
+  EXPECT_EQ(calls.count(ApiCall::release), 0) << calls;
+  ASSERT_GT(calls.count(ApiCall::wait), 0) << calls;
+  EXPECT_GT(calls.first(ApiCall::wait), 15) << calls;
+  for (const ApiCall work : {ApiCall::launch, ApiCall::fill, ApiCall::copy_to_device, ApiCall::copy_within}) {
+    EXPECT_LT(calls.last(work), calls.first(ApiCall::wait)) << calls;
+  }
 }
 
 TEST(WarpEmulated, StepsAfterTheFirstNeitherAllocateNorWaitInBetween) {
-  const scenes::Scene scene = scene_named("waved");
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   const std::vector<Volume> sources = sources_of(scene);
   for (const bool updates : {true, false}) {
     for (const bool holds_previous : {true, false}) {
       Series series(sources, scene, on_device(updates));
       take_calls();
       series.step(scene.deformed, holds_previous);
-      EXPECT_NE(take_calls().find('A'), std::string::npos);
+      EXPECT_GT(take_calls().count(ApiCall::allocate), 0);
       for (int step = 1; step < 6; ++step) {
         series.step(shaken(scene, step), holds_previous);
 
@@ -73,7 +65,7 @@ TEST(WarpEmulated, StepsAfterTheFirstNeitherAllocateNorWaitInBetween) {
 
 /// Parts of the mesh move; every other target holds the step before the last.
 TEST(WarpEmulated, UpdatesHaveTheBitsOfStepsFromScratch) {
-  const scenes::Scene scene = scene_named("waved");
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   const std::vector<Volume> sources = sources_of(scene);
   Series updated(sources, scene, on_device()), anew(sources, scene, on_device(false));
   std::int64_t unchanged_cells = 0;
@@ -87,9 +79,9 @@ TEST(WarpEmulated, UpdatesHaveTheBitsOfStepsFromScratch) {
   EXPECT_GT(unchanged_cells, 0);
 }
 
-/// What the device writes for others stays there: all that comes home are the counters.
+/// Outputs in device memory are not copied to the host; only the counters are.
 TEST(WarpEmulated, OutputsOnTheDeviceCostOneSmallCopy) {
-  const scenes::Scene scene = scene_named("waved");
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float32);
   WarpOptions options = on_device();
   options.output_grid = scene.output_grid;
@@ -104,15 +96,15 @@ TEST(WarpEmulated, OutputsOnTheDeviceCostOneSmallCopy) {
     take_calls();
     warper.step(shaken(scene, step), target);
 
-    const std::string calls = take_calls();
+    const DeviceCalls calls = take_calls();
     expect_one_sequence(calls);
-    EXPECT_EQ(std::ranges::count(calls, 'D'), 1) << calls;
+    EXPECT_EQ(calls.count(ApiCall::copy_to_host), 1) << calls;
   }
   cudaFree(output);
 }
 
 TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
-  const scenes::Scene scene = scene_named("tiny");
+  const scenes::Scene scene = scenes::adversarial_scene("tiny", 24);
   const std::vector<Volume> sources = sources_of(scene);
   Series series(sources, scene, on_device()), anew(sources, scene, on_device(false));
   std::vector<Point3> small = scene.deformed;
@@ -123,10 +115,10 @@ TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
   take_calls();
 
   series.step(scene.deformed);
-  const std::string calls = take_calls();
+  const DeviceCalls calls = take_calls();
   anew.step(scene.deformed);
 
-  EXPECT_NE(calls.find('A'), std::string::npos);
+  EXPECT_GT(calls.count(ApiCall::allocate), 0) << calls;
   EXPECT_TRUE(series.has_bits_of(anew));
 }
 

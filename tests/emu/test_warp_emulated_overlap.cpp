@@ -1,6 +1,6 @@
 /// @file test_warp_emulated_overlap.cpp
 /// Steps in flight on the emulated device: any order of events that CUDA allows gives the same
-/// bits, and a wait that is left out is seen.
+/// bits, and leaving out a wait changes them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,17 +12,19 @@
 #include "tests/scenes/skip_series.hpp"
 #include "tests/scenes/steps_in_flight.hpp"
 
-#include "kernels/exec/launch.hpp"
+#include "tests/emu/device_calls.hpp"
 
 namespace tetwarp::test {
 namespace {
 
-/// The streams of a Warper that is the only one, in the order of their making.
+using simt::ApiCall;
+
+/// The streams of the only Warper, in the order of their creation.
 enum StreamNumber { compute_stream, upload_stream, download_stream };
 
 class EmulatedOverlap : public ::testing::Test {
  protected:
-  const scenes::Scene scene = scenes::adversarial_scenes(16).front();
+  const scenes::Scene scene = scenes::adversarial_scene("identity", 16);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16),
                                        scenes::wavy_volume(scene.source_grid, PixelType::float32)};
   const WarpOptions options = {.backend = Backend::cuda};
@@ -58,7 +60,7 @@ TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
 
 /// A step waits once for its positions, then four times, per output, for its kernels: of these the
 /// first counts, as the others come after it on the same stream.
-TEST_F(EmulatedOverlap, AForgottenWaitIsSeen) {
+TEST_F(EmulatedOverlap, LeavingOutAWaitChangesTheResult) {
   constexpr int waits_of_step = 7;
   const Steps steps = shaken(5);
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
@@ -78,27 +80,28 @@ TEST_F(EmulatedOverlap, AForgottenWaitIsSeen) {
 }
 
 /// The host waits for the kernels of the step before and for nothing else, and does not allocate.
-TEST_F(EmulatedOverlap, KernelsAreAskedForBeforeTheLastStepIsHome) {
+TEST_F(EmulatedOverlap, KernelsAreLaunchedBeforeTheLastStepIsDownloaded) {
   const Steps steps = shaken(6);
   const StepBuffers buffers[] = {{sources, scene.output_grid, Pages::locked},
                                  {sources, scene.output_grid, Pages::locked}};
   Warper warper = make_warper(sources, scene, options);
   for (std::size_t s = 0; s < steps.size(); ++s) {
-    if (s > 2) device.take_calls();
+    if (s > 2) take_calls();
     const Bits before = buffers[(s + 1) % 2].bits();
 
     warper.begin_step(steps[s], buffers[s % 2].target(false));
 
-    const std::string calls = device.take_calls();
+    const DeviceCalls calls = take_calls();
     if (s > 2) {
-      EXPECT_EQ(calls.find_first_of("AF"), std::string::npos) << calls;
-      EXPECT_EQ(std::ranges::count(calls, 'W'), 1) << calls;
-      EXPECT_EQ(calls.find('U'), 0u) << calls;
-      EXPECT_LT(calls.find('W'), calls.find('L')) << calls;
-      EXPECT_EQ(std::ranges::count(calls, 'D'), 1 + 6) << calls;  // counters and outputs
+      EXPECT_EQ(calls.count(ApiCall::allocate), 0) << calls;
+      EXPECT_EQ(calls.count(ApiCall::release), 0) << calls;
+      EXPECT_EQ(calls.count(ApiCall::wait), 1) << calls;
+      EXPECT_EQ(calls.first(ApiCall::copy_to_device), 0) << calls;
+      EXPECT_LT(calls.first(ApiCall::wait), calls.first(ApiCall::launch)) << calls;
+      EXPECT_EQ(calls.count(ApiCall::copy_to_host), 1 + 6) << calls;  // counters and outputs
     }
     if (s == 0) continue;
-    EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is home already";
+    EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is downloaded already";
     warper.finish_step();
     EXPECT_FALSE(buffers[(s + 1) % 2].bits() == before);
   }

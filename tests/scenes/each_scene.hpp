@@ -1,39 +1,30 @@
 /// @file each_scene.hpp
-/// Suites over the adversarial scenes. Their parameter is a scene's number: a test makes the scene
-/// it needs, and starting a program, which ctest does once per test, makes none.
+/// Suites over the adversarial scenes. Their parameter is a scene's name: a test makes the scene it
+/// needs, and starting a program, which ctest does once per test, makes none.
 #pragma once
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tests/scenes/scenes.hpp"
 
 namespace tetwarp::test {
 
-/// Numbers of the scenes of these names, or of all.
-inline std::vector<std::size_t> scene_numbers(std::initializer_list<std::string_view> names = {}) {
-  std::vector<std::size_t> numbers;
-  for (std::size_t i = 0; i < scenes::adversarial_names.size(); ++i) {
-    const bool is_named =
-        std::find(names.begin(), names.end(), scenes::adversarial_names[i]) != names.end();
-    if (names.size() == 0 || is_named) numbers.push_back(i);
-  }
-  return numbers;
+using SceneNames = std::vector<std::string>;
+
+inline SceneNames all_scene_names() {
+  return {scenes::adversarial_names.begin(), scenes::adversarial_names.end()};
 }
 
 /// A scene of about n^3 voxels.
 template <std::int64_t n>
-class EachScene : public ::testing::TestWithParam<std::size_t> {
+class EachScene : public ::testing::TestWithParam<std::string> {
  protected:
   const scenes::Scene& scene() {
-    if (!scene_) scene_ = scenes::adversarial_scenes(n).at(GetParam());
+    if (!scene_) scene_ = scenes::adversarial_scene(GetParam(), n);
     return *scene_;
   }
 
@@ -41,14 +32,8 @@ class EachScene : public ::testing::TestWithParam<std::size_t> {
   std::optional<scenes::Scene> scene_;
 };
 
-/// slivers
-inline std::string scene_name(const ::testing::TestParamInfo<std::size_t>& info) {
-  return std::string(scenes::adversarial_names[info.param]);
-}
-
-/// slivers_8, unique among all scenes.
-inline std::string numbered_scene_name(const ::testing::TestParamInfo<std::size_t>& info) {
-  return scene_name(info) + "_" + std::to_string(info.param);
+inline std::string scene_name(const ::testing::TestParamInfo<std::string>& info) {
+  return info.param;
 }
 
 }  // namespace tetwarp::test

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::scenes {
+
+using namespace std::string_literals;
 
 namespace {
 
@@ -219,7 +224,7 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
       lattice({24, 24, 24}, {e / 3, e / 3, e / 3}, {e / 3 + 7.3, e / 3 + 7.1, e / 3 + 6.7});
   const Point3 centre{e / 2, e / 2, e / 2};
   std::vector<Scene> scenes;
-  const auto add = [&](const char* name, const Grid& on, const Mesh& mesh,
+  const auto add = [&](const std::string& name, const Grid& on, const Mesh& mesh,
                        const std::vector<Point3>& deformed) {
     scenes.push_back(on_grid(name, on, mesh, deformed));
   };
@@ -232,10 +237,10 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   add("outside", grid, box, shifted(waved(box.rest_positions, 2.0, 5), {e * 0.6, -e * 0.4, 1.5}));
   add("oblique", oblique_grid(n, n - 3, n + 2), loose, waved(loose.rest_positions, 2.5, 17));
 
-  for (const double thickness : {1e-1, 1e-3, 1e-5}) {
+  for (const auto& [decades, thickness] : {std::pair{"1", 1e-1}, {"3", 1e-3}, {"5", 1e-5}}) {
     const Mesh thin = sliver_lattice(e, thickness);
-    add("slivers", grid, thin, rotated_45_45(thin.rest_positions, centre));
-    add("thin_aligned", grid, thin, thin.rest_positions);
+    add("slivers_"s + decades, grid, thin, rotated_45_45(thin.rest_positions, centre));
+    add("thin_aligned_"s + decades, grid, thin, thin.rest_positions);
   }
   const Mesh random = soup(e, 60, 23);
   add("soup", grid, random, soup(e, 60, 29).rest_positions);
@@ -266,6 +271,13 @@ std::vector<Scene> adversarial_scenes(std::int64_t n) {
   other.output_grid.direction = {-1, 0, 0, 0, 1, 0, 0, 0, 1};
   scenes.push_back(std::move(other));
   return scenes;
+}
+
+Scene adversarial_scene(std::string_view name, std::int64_t n) {
+  for (Scene& scene : adversarial_scenes(n)) {
+    if (scene.name == name) return std::move(scene);
+  }
+  throw std::invalid_argument("no adversarial scene is named " + std::string(name));
 }
 
 }  // namespace tetwarp::scenes

@@ -54,11 +54,15 @@ std::vector<Point3> shifted(const std::vector<Point3>& points, const Point3& off
 /// oblique.
 std::vector<Scene> adversarial_scenes(std::int64_t n);
 
-/// Their names, in that order.
+/// The scene of that name among them. Throws std::invalid_argument when there is none.
+Scene adversarial_scene(std::string_view name, std::int64_t n);
+
+/// Their names, in the order of adversarial_scenes(). Layers of slivers_k and thin_aligned_k are
+/// 10^-k voxels thick.
 inline constexpr std::array<std::string_view, 20> adversarial_names{
-    "identity",    "aligned",      "half_voxel", "waved",        "rotated",
-    "tiny",        "outside",      "oblique",    "slivers",      "thin_aligned",
-    "slivers",     "thin_aligned", "slivers",    "thin_aligned", "soup",
-    "overlapping", "folded",       "flat",       "far",          "other_grid"};
+    "identity",  "aligned",        "half_voxel", "waved",          "rotated",   "tiny",
+    "outside",   "oblique",        "slivers_1",  "thin_aligned_1", "slivers_3", "thin_aligned_3",
+    "slivers_5", "thin_aligned_5", "soup",       "overlapping",    "folded",    "flat",
+    "far",       "other_grid"};
 
 }  // namespace tetwarp::scenes

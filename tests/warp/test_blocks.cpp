@@ -145,14 +145,10 @@ TEST_P(Blocks, OfHexahedraAndOfMeansHaveTheBitsOfTheWhole) {
 }
 
 TEST_P(Blocks, OfEveryFilterAndPixelTypeHaveTheBitsOfTheWhole) {
-  const std::vector<scenes::Scene> all = scenes::adversarial_scenes(20);
-  const auto named = [&](const std::string& name) {
-    return *std::ranges::find(all, name, &scenes::Scene::name);
-  };
   const std::pair<PixelType, int> types[] = {
       {PixelType::uint8, 1}, {PixelType::int16, 3}, {PixelType::float64, 1}, {PixelType::int64, 1}};
   for (const std::string name : {"rotated", "other_grid"}) {
-    const scenes::Scene scene = named(name);
+    const scenes::Scene scene = scenes::adversarial_scene(name, 20);
     for (const auto& [type, components] : types) {
       const Volume source = scenes::wavy_volume(scene.source_grid, type, components);
       for (const Filter filter :
@@ -179,7 +175,7 @@ TEST_P(Blocks, OfEveryFilterAndPixelTypeHaveTheBitsOfTheWhole) {
 }
 
 TEST_P(Blocks, ClampToTheRangeOfTheWholeSource) {
-  const scenes::Scene scene = scenes::adversarial_scenes(20)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 20);
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::uint8);
   const auto [low, high] = std::ranges::minmax(source.samples<std::uint8_t>());
   WarpOptions options;

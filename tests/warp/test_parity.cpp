@@ -23,7 +23,7 @@ class Parity : public EachScene<40> {
     if (!status.usable) GTEST_SKIP() << status.reason;
   }
 };
-INSTANTIATE_TEST_SUITE_P(Scenes, Parity, ::testing::ValuesIn(scene_numbers()), numbered_scene_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, Parity, ::testing::ValuesIn(all_scene_names()), scene_name);
 
 TEST_P(Parity, OwnersAndClassesAreTheSame) {
   const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::int16);
@@ -78,24 +78,34 @@ TEST_P(Parity, IntegersDifferByRoundingOnlyAndFloat64By1e12) {
 }
 
 /// As above, with slopes of up to six differences of neighbors and 60 ulp for weights and sums.
-TEST_P(Parity, FiltersAreWithinAFewUlpAndLabelsTheSame) {
-  for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos, Filter::labels}) {
-    const bool is_labels = filter == Filter::labels;
-    const PixelType type = is_labels ? PixelType::uint8 : PixelType::float32;
-    const Volume source = scenes::wavy_volume(scene().source_grid, type);
+TEST_P(Parity, FiltersAreWithinAFewUlp) {
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::float32);
+  for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos}) {
     const WarpOptions options{.filter = filter, .overshoot = Overshoot::clamp};
 
     const auto cpu = numbers_of(run_warp(source, scene(), Backend::cpu, options).volume);
     const auto cuda = numbers_of(run_warp(source, scene(), Backend::cuda, options).volume);
 
     ASSERT_EQ(cpu.size(), cuda.size());
-    std::size_t different = 0;
     for (std::size_t s = 0; s < cpu.size(); ++s) {
-      different += cpu[s] != cuda[s];
-      ASSERT_NEAR(cpu[s], cuda[s], is_labels ? 255 : 0x1p-24 * (6 * 170 * 3.0 / 8 + 60)) << s;
+      ASSERT_NEAR(cpu[s], cuda[s], 0x1p-24 * (6 * 170 * 3.0 / 8 + 60)) << "sample " << s;
     }
-    EXPECT_LE(different, is_labels ? cpu.size() / 10000 : cpu.size());
   }
+}
+
+/// A label has no tolerance: where two weigh nearly the same, rounding may choose either, which
+/// happens for fewer than one voxel in 10,000.
+TEST_P(Parity, LabelsAreTheSameButForTies) {
+  const Volume source = scenes::wavy_volume(scene().source_grid, PixelType::uint8);
+  const WarpOptions options{.filter = Filter::labels};
+
+  const auto cpu = numbers_of(run_warp(source, scene(), Backend::cpu, options).volume);
+  const auto cuda = numbers_of(run_warp(source, scene(), Backend::cuda, options).volume);
+
+  ASSERT_EQ(cpu.size(), cuda.size());
+  std::size_t different = 0;
+  for (std::size_t s = 0; s < cpu.size(); ++s) different += cpu[s] != cuda[s];
+  EXPECT_LE(different, cpu.size() / 10000);
 }
 
 /// A step that needs more pairs than the one before runs again with more room.

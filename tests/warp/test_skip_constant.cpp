@@ -66,7 +66,7 @@ TEST(SkipConstant, GivesTheBitsOfSamplingOnEveryScene) {
 }
 
 TEST(SkipConstant, GivesTheBitsOfSamplingForEveryPixelType) {
-  const scenes::Scene scene = scenes::adversarial_scenes(56)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 56);
   for (const PixelType type : all_types) {
     for (const int components : {1, 3}) {
       EXPECT_GT(expect_same({airy_volume(scene.source_grid, type, components)}, scene), 0);
@@ -81,7 +81,7 @@ TEST(SkipConstant, GivesTheBitsOfSamplingForEveryPixelType) {
 
 /// Extremes of a type survive their detour through the arithmetic of sampling.
 TEST(SkipConstant, GivesTheBitsOfSamplingForExtremeValues) {
-  const scenes::Scene scene = scenes::adversarial_scenes(40)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 40);
   for (const PixelType type : all_types) {
     with_pixel_type(type, [&]<class T>(T) {
       using Limits = std::numeric_limits<T>;
@@ -96,7 +96,7 @@ TEST(SkipConstant, GivesTheBitsOfSamplingForExtremeValues) {
 
 /// What interpolation changes, and zeros of either sign, are not filled with.
 TEST(SkipConstant, LeavesNaNInfinitiesAndNegativeZerosToTheSampler) {
-  const scenes::Scene scene = scenes::adversarial_scenes(56)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 56);
   using Limits = std::numeric_limits<float>;
   for (const float odd : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), -0.0f}) {
     Volume all = make_volume(scene.source_grid, PixelType::float32), few = all;
@@ -112,21 +112,22 @@ TEST(SkipConstant, LeavesNaNInfinitiesAndNegativeZerosToTheSampler) {
 /// Wider filters see farther, and a spline's coefficients take some voxels to settle.
 TEST(SkipConstant, GivesTheBitsOfSamplingForEveryFilter) {
   for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos}) {
-    const scenes::Scene scene = scenes::adversarial_scenes(filter == Filter::bspline ? 128 : 64)[3];
+    const scenes::Scene scene =
+        scenes::adversarial_scene("waved", filter == Filter::bspline ? 128 : 64);
     for (const PixelType type : {PixelType::uint8, PixelType::float32}) {
       const WarpOptions options{.filter = filter, .overshoot = Overshoot::clamp};
       EXPECT_GT(expect_same({airy_volume(scene.source_grid, type)}, scene, options), 0)
           << name_of(type) << ' ' << static_cast<int>(filter);
     }
   }
-  const scenes::Scene scene = scenes::adversarial_scenes(64)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 64);
   const Volume labels = airy_volume(scene.source_grid, PixelType::int64);
   EXPECT_GT(expect_same({labels}, scene, {.filter = Filter::labels}), 0);
 }
 
 /// A source with air next to one without: each is looked at for itself, the first is counted.
 TEST(SkipConstant, JudgesEverySourceForItself) {
-  const scenes::Scene scene = scenes::adversarial_scenes(56)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 56);
   const Volume airy = airy_volume(scene.source_grid, PixelType::int16);
   const Volume wavy = scenes::wavy_volume(scene.source_grid, PixelType::float32);
 
@@ -135,7 +136,7 @@ TEST(SkipConstant, JudgesEverySourceForItself) {
 }
 
 TEST(SkipConstant, GivesTheBitsOfSamplingOnFinerAndCoarserGrids) {
-  scenes::Scene scene = scenes::adversarial_scenes(112)[3];
+  scenes::Scene scene = scenes::adversarial_scene("waved", 112);
   const Volume volume = airy_volume(scene.source_grid, PixelType::float32);
   for (const double spacing : {0.6, 0.9, 1.7, 2.6}) {
     scene.output_grid.spacing = {spacing, spacing, spacing};
@@ -149,7 +150,7 @@ TEST(SkipConstant, GivesTheBitsOfSamplingOnFinerAndCoarserGrids) {
 
 /// Kept cells, filled cells and sampled cells side by side.
 TEST(SkipConstant, WorksWithUpdates) {
-  const scenes::Scene scene = scenes::adversarial_scenes(56)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 56);
   const std::vector<Volume> sources = {airy_volume(scene.source_grid, PixelType::uint8)};
   for (const Filter filter : {Filter::linear, Filter::cubic, Filter::labels}) {
     WarpOptions options{.filter = filter, .backend = Backend::cpu};

@@ -57,13 +57,6 @@ StepReport step(StepQueue& far, const std::vector<Point3>& positions, const Warp
   return far.finish();
 }
 
-scenes::Scene scene_named(const std::string& name) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(40)) {
-    if (scene.name == name) return scene;
-  }
-  throw std::invalid_argument("no scene " + name);
-}
-
 class FarMemory : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          FarMemory,
@@ -71,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          [](const auto& info) { return std::string(info.param); });
 
 TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
-  const scenes::Scene scene = scene_named(GetParam());
+  const scenes::Scene scene = scenes::adversarial_scene(GetParam(), 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16, 2),
                                        scenes::wavy_volume(scene.source_grid, PixelType::float64)};
   for (const Region& region :
@@ -121,7 +114,7 @@ TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
 
 /// A mesh that grows needs more pairs than the buffers of the first step have room for.
 TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
-  const scenes::Scene scene = scene_named("waved");
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::float32)};
   WarpPlan plan;
   plan.sources = {sources.begin(), sources.end()};

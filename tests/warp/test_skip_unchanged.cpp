@@ -19,15 +19,15 @@
 namespace tetwarp::test {
 namespace {
 
-/// Back end and number of a scene.
-using UpdateCase = std::tuple<Backend, std::size_t>;
+/// Back end and name of a scene.
+using UpdateCase = std::tuple<Backend, std::string>;
 
 class SkipUnchanged : public ::testing::TestWithParam<UpdateCase> {
  protected:
   void SetUp() override {
     const BackendStatus status = cuda_status(0);
     if (backend() == Backend::cuda && !status.usable) GTEST_SKIP() << status.reason;
-    scene_ = scenes::adversarial_scenes(32).at(std::get<1>(GetParam()));
+    scene_ = scenes::adversarial_scene(std::get<1>(GetParam()), 32);
   }
   static Backend backend() { return std::get<0>(GetParam()); }
   const scenes::Scene& scene() const { return scene_; }
@@ -46,18 +46,16 @@ class SkipUnchanged : public ::testing::TestWithParam<UpdateCase> {
 };
 
 /// The meshes of tetrahedra small enough to move in part.
-const std::vector<std::size_t> moving_scenes =
-    scene_numbers({"identity", "aligned", "waved", "tiny", "outside", "oblique", "soup",
-                   "overlapping", "folded", "flat", "far", "other_grid"});
+const SceneNames moving_scenes = {"identity", "aligned", "waved", "tiny",
+                                  "outside",  "oblique", "soup",  "overlapping",
+                                  "folded",   "flat",    "far",   "other_grid"};
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          SkipUnchanged,
                          ::testing::Combine(::testing::Values(Backend::cpu, Backend::cuda),
                                             ::testing::ValuesIn(moving_scenes)),
                          [](const auto& info) {
-                           const std::size_t number = std::get<1>(info.param);
-                           return std::string(scenes::adversarial_names[number]) + "_" +
-                                  name_of(std::get<0>(info.param));
+                           return std::get<1>(info.param) + "_" + name_of(std::get<0>(info.param));
                          });
 
 std::vector<Volume> sources_of(const scenes::Scene& scene) {
@@ -174,7 +172,7 @@ TEST_P(SkipUnchanged, KeptCellsAreNotWritten) {
 
 /// A scene, its sources and a first step done.
 struct Started {
-  scenes::Scene scene = scenes::adversarial_scenes(32).at(moving_scenes[2]);
+  scenes::Scene scene = scenes::adversarial_scene("waved", 32);
   std::vector<Volume> sources = sources_of(scene);
   Series series;
   std::vector<std::vector<Point3>> steps = partial_motions(scene, 61);

@@ -33,7 +33,7 @@ class TetMoved : public EachExec<Exec> {
 TYPED_TEST_SUITE(TetMoved, Execs, ExecNames);
 
 StageInput waved_input() {
-  return input_of(scenes::adversarial_scenes(24)[3]);
+  return input_of(scenes::adversarial_scene("waved", 24));
 }
 
 bool has_node(const StageInput& input, std::size_t t, std::int32_t node) {
@@ -74,10 +74,7 @@ TYPED_TEST(TetMoved, MarksNothingWhereNothingMoves) {
 
 /// Flat and inverted tetrahedra are counted once, however often they move.
 TYPED_TEST(TetMoved, TakesMovedTetrahedraOutOfTheClassCounts) {
-  StageInput input;
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(24)) {
-    if (scene.name == "flat") input = input_of(scene);
-  }
+  const StageInput input = input_of(scenes::adversarial_scene("flat", 24));
   const Stages<TypeParam> before(this->arrays(), input);
   const auto classes = this->download(before.classes);
   StageInput now = input;

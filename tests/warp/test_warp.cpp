@@ -192,7 +192,7 @@ TEST(Warp, ASampleThatIsNotANumberReachesOnlyWhatBlendsIt) {
 
 /// 2^53 + 1 and its neighbors have no float64: a detour through one would show.
 TEST(Warp, NearestKeepsWideIntegersExact) {
-  const scenes::Scene scene = scenes::adversarial_scenes(24)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   Volume source = make_volume(scene.source_grid, PixelType::uint64);
   std::uint64_t value = (std::uint64_t{1} << 53) + 1;
   for (std::uint64_t& sample : source.samples<std::uint64_t>()) sample = value += 2;
@@ -259,7 +259,7 @@ TEST(Warp, TheSmallestSourcesAreSampledLikeOthers) {
 
 /// Ends of the range survive interpolation among themselves.
 TEST(Warp, IntegersSaturate) {
-  const scenes::Scene scene = scenes::adversarial_scenes(24)[3];
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint32}) {
     Volume source = make_volume(scene.source_grid, type);
     with_pixel_type(type, [&]<class T>(T) {

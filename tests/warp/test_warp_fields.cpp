@@ -49,13 +49,6 @@ class WarpFields : public EachBackend {
 };
 INSTANTIATE_TEST_SUITE_P(Backends, WarpFields, each_backend, name_of_backend);
 
-scenes::Scene scene_named(const std::string& name, std::int64_t n) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(n)) {
-    if (scene.name == name) return scene;
-  }
-  throw std::invalid_argument("no scene " + name);
-}
-
 Vector vector_of(const Point3& point) {
   return {point[0], point[1], point[2]};
 }
@@ -140,7 +133,7 @@ TEST_P(WarpFields, AreTheReference) {
   if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
   for (const char* name : {"waved", "oblique", "slivers", "folded", "flat", "far", "other_grid"}) {
     SCOPED_TRACE(name);
-    const scenes::Scene scene = scene_named(name, 18);
+    const scenes::Scene scene = scenes::adversarial_scene(name, 18);
     const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
     for (const bool whole : {true, false}) {
       WarpOptions options;
@@ -173,7 +166,7 @@ TEST_P(WarpFields, AreTheReference) {
 /// A source of its own positions shows where every voxel comes from: linear filters lose nothing
 /// of it. The forward field is the displacement when meshes are exchanged.
 TEST_P(WarpFields, DisplaceAsTheWarpDoesAndForwardIsTheInverse) {
-  const scenes::Scene scene = scene_named("waved", 18);
+  const scenes::Scene scene = scenes::adversarial_scene("waved", 18);
   Volume places = make_volume(scene.source_grid, PixelType::float64, 3);
   const auto samples = places.samples<double>();
   for (std::size_t v = 0; v < samples.size() / 3; ++v) {

@@ -15,7 +15,7 @@ namespace {
 
 class InFlight : public EachBackend {
  protected:
-  const scenes::Scene scene = scenes::adversarial_scenes(16).front();
+  const scenes::Scene scene = scenes::adversarial_scene("identity", 16);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16),
                                        scenes::wavy_volume(scene.source_grid, PixelType::float32)};
   const WarpOptions options = {.backend = GetParam()};

@@ -114,9 +114,9 @@ TEST(WarpQuantities, FollowAShear) {
 /// Waved meshes, some of them turned inside out; float32 and integers, footprints and densities.
 /// The judge's rotation is as good as the gap between singular values, which slivers lack.
 TEST(WarpQuantities, AreTheReference) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(14)) {
-    if (scene.name != "waved" && scene.name != "oblique" && scene.name != "other_grid") continue;
-    SCOPED_TRACE(scene.name);
+  for (const char* name : {"waved", "oblique", "other_grid"}) {
+    const scenes::Scene scene = scenes::adversarial_scene(name, 14);
+    SCOPED_TRACE(name);
     for (const bool is_tensor : {false, true}) {
       const Volume source =
           scenes::wavy_volume(scene.source_grid, PixelType::float64, is_tensor ? 6 : 3);

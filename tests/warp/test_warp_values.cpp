@@ -15,10 +15,7 @@ namespace tetwarp::test {
 namespace {
 
 class WarpValues : public EachScene<32> {};
-INSTANTIATE_TEST_SUITE_P(Scenes,
-                         WarpValues,
-                         ::testing::ValuesIn(scene_numbers()),
-                         numbered_scene_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, WarpValues, ::testing::ValuesIn(all_scene_names()), scene_name);
 
 /// Largest sample, and largest differences of neighbors summed over the axes.
 struct Extent {

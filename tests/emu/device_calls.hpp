@@ -1,0 +1,48 @@
+/// @file device_calls.hpp
+/// The calls that the host made to the emulated device, counted and located by name.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "kernels/exec/launch.hpp"
+
+namespace tetwarp::test {
+
+class DeviceCalls {
+ public:
+  explicit DeviceCalls(std::string calls) : calls_(std::move(calls)) {}
+
+  std::int64_t count(simt::ApiCall call) const {
+    return std::count(calls_.begin(), calls_.end(), static_cast<char>(call));
+  }
+
+  /// Position of the first such call; the number of all calls where there is none.
+  std::int64_t first(simt::ApiCall call) const {
+    return std::find(calls_.begin(), calls_.end(), static_cast<char>(call)) - calls_.begin();
+  }
+
+  /// Position of the last such call, -1 where there is none.
+  std::int64_t last(simt::ApiCall call) const {
+    return calls_.rend() - std::find(calls_.rbegin(), calls_.rend(), static_cast<char>(call)) - 1;
+  }
+
+  bool operator==(const DeviceCalls&) const = default;
+
+  /// One letter per call, as simt::ApiCall defines them.
+  friend std::ostream& operator<<(std::ostream& out, const DeviceCalls& calls) {
+    return out << calls.calls_;
+  }
+
+ private:
+  std::string calls_;
+};
+
+/// The calls since the last time this was called.
+inline DeviceCalls take_calls() {
+  return DeviceCalls(simt::Device::only().take_calls());
+}
+
+}  // namespace tetwarp::test
