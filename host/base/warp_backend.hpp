@@ -18,9 +18,10 @@ struct WarpPlan {
   std::vector<VolumeView> sources;
   Mesh mesh;  ///< of its tetrahedra the last are those that its hexahedra split into
   WarpOptions options;
-  Grid output_grid;  ///< the whole output grid
-  Region region;     ///< part of it to compute
-  Grid target_grid;  ///< grid of the region
+  Region source_region;  ///< of the source grid: voxels that the sources' data hold
+  Grid output_grid;      ///< the whole output grid
+  Region region;         ///< part of it to compute
+  Grid target_grid;      ///< grid of the region
 };
 
 /// One of cpu, cuda and reference. A step has five parts, called in this order and each once; a

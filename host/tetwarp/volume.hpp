@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -93,24 +92,18 @@ Volume make_volume(const Grid& grid,
 /// Where memory lives.
 enum class Memory { host, device };
 
-/// Samples owned by somebody else, possibly on the GPU: [k][j][i][component].
+/// Samples that the caller owns, in host memory or on a GPU: [k][j][i][component].
 struct VolumeView {
   Grid grid;
   PixelType type = PixelType::float32;
-  int components = 1;
-  const void* data = nullptr;
+  int components = 1;          ///< samples per voxel, 1 to 9
+  const void* data = nullptr;  ///< of the voxels of the grid, or of WarpOptions::source_window
   Memory memory = Memory::host;
-  /// What `data` holds of the grid; nothing: all of it. A warp of a region must find there
-  /// all that it reads (BlockPlanner tells).
-  std::optional<Region> window = {};
-  /// Least and largest sample per component of the whole grid, in turns; empty: not known.
-  std::vector<double> range = {};
-
-  /// The window, or all of the grid.
-  Region held() const { return window.value_or(Region{{0, 0, 0}, grid.dims}); }
 
   VolumeView() = default;
-  VolumeView(const Volume& volume);  // a volume is a view of itself
+  /// Implicit, so that a Volume can be passed wherever a view is expected.
+  /// @throws std::invalid_argument when the volume's data do not have the size that its grid needs
+  VolumeView(const Volume& volume);
   VolumeView(const Grid& grid, PixelType type, int components, const void* data, Memory memory);
 };
 

@@ -59,6 +59,15 @@ struct SkipOptions {
   bool background_chunks = true;  ///< chunks of a file that hold only background are not stored
 };
 
+/// The part of the sources' grid that memory holds, for a warp whose sources do not fit as a whole.
+/// The warp of a region reads a part of the sources only; BlockPlanner computes which.
+struct SourceWindow {
+  Region region;  ///< voxels that VolumeView::data of every source holds, in the source grid
+  /// Per source the least and the largest sample of component 0 over the whole grid, then of
+  /// component 1, and so on. Required with Overshoot::clamp, otherwise not used.
+  std::vector<std::vector<double>> ranges = {};
+};
+
 /// Choices of a warp. Defaults give what most people want.
 struct WarpOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
@@ -72,6 +81,9 @@ struct WarpOptions {
   double background = 0.0;               ///< rounded and saturated to the pixel type
   std::optional<Grid> output_grid = {};  ///< nothing: the source's grid
   std::optional<Region> region = {};     ///< part of the output grid to compute; nothing: all
+  /// Part of the source grid that is in memory; nothing: all. Not with Filter::bspline and
+  /// Intensity::conservative, which read whole sources.
+  std::optional<SourceWindow> source_window = {};
   Backend backend = Backend::automatic;
   int device = 0;             ///< CUDA device number
   int threads = 0;            ///< of the cpu back end; 0: all cores

@@ -240,7 +240,7 @@ class CellLine {
       const int cell = voxel / cell_edge * cell_edge;
       const int corner[3] = {first.corner[0] + cell, first.corner[1], first.corner[2]};
       if (has_outside_rule(row_job_)) {
-        write_outside_ruled(row_job_, corner, voxel - cell, j, k, voxel);
+        ScalarRows<T>::write_outside(row_job_, corner, voxel - cell, j, k, voxel);
       } else {
         store_outside<true>(row_job_, corner[0], corner[1], corner[2], voxel - cell, j, k, voxel);
       }
