@@ -80,8 +80,9 @@ struct ContactOptions {
   double recovery_speed = std::numeric_limits<double>::infinity();  ///< penetration is undone at
                                                                     ///< most this fast [m/s]
   ContactPrecision precision = ContactPrecision::float64;
-  Backend backend = Backend::automatic;
-  int device = 0;   ///< CUDA device number
+  Backend backend = Backend::automatic;  ///< automatic: cpu, until contact has been measured on a
+                                         ///< device
+  int device = 0;                        ///< CUDA device number
   int threads = 0;  ///< of the cpu back end; 0: all cores. Same bits for any number
   ContactSkipOptions skip = {};
 };

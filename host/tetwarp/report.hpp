@@ -67,19 +67,20 @@ struct Totals {
 
 /// One step of a series.
 struct StepReport {
-  std::int64_t step = 0;
+  std::int64_t step = 0;  ///< number of the step, from 0; in reports of the command its number in
+                          ///< the mesh file
   Timings timings;
   Counts counts;
   Totals totals;
 };
 
-/// A whole run.
+/// All steps of a Warper, or of a job of the command.
 struct Report {
   std::string version;
   Backend backend = Backend::cpu;
-  std::string backend_reason;  ///< why this back end, in one sentence
-  std::string device;
-  int threads = 1;
+  std::string backend_reason;   ///< why this back end, in one sentence
+  std::string device;           ///< name of the device or processor
+  int threads = 1;              ///< host threads that compute
   double position_quantum = 0;  ///< node positions are rounded to multiples of this [voxel]
   Timings timings;              ///< sums over steps
   Counts counts;                ///< sums over steps
