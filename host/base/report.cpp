@@ -2,86 +2,35 @@
 #include <nlohmann/json.hpp>
 #include <tetwarp/report.hpp>
 
+#include "host/base/report_fields.hpp"
+
 namespace tetwarp {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Timings& t) {
-  return {{"read", t.read},   {"upload", t.upload}, {"setup", t.setup},   {"mask", t.mask},
-          {"cull", t.cull},   {"raster", t.raster}, {"fields", t.fields}, {"download", t.download},
-          {"write", t.write}, {"total", t.total}};
+template <class Record, class Fields>
+Json json_of(const Record& record, const Fields& fields) {
+  Json json;
+  for (const auto& [name, member] : fields) json[name] = record.*member;
+  return json;
 }
 
-Json json_of(const Counts& c) {
-  return {{"voxels", c.voxels},
-          {"covered", c.covered},
-          {"outside", c.outside},
-          {"tetrahedra", c.tetrahedra},
-          {"inverted", c.inverted},
-          {"flat", c.flat},
-          {"folded", c.folded},
-          {"cells", c.cells},
-          {"candidate_pairs", c.candidate_pairs},
-          {"pairs_rejected", c.pairs_rejected},
-          {"pairs_accepted", c.pairs_accepted},
-          {"pairs_partial", c.pairs_partial},
-          {"inside_tests", c.inside_tests},
-          {"exact_tests", c.exact_tests},
-          {"steps_unchanged", c.steps_unchanged},
-          {"tets_unchanged", c.tets_unchanged},
-          {"cells_unchanged", c.cells_unchanged},
-          {"cells_constant", c.cells_constant},
-          {"voxels_copied", c.voxels_copied},
-          {"chunks_background", c.chunks_background},
-          {"tets_averaged", c.tets_averaged},
-          {"blocks", c.blocks},
-          {"bytes_read", c.bytes_read},
-          {"bytes_written", c.bytes_written}};
+template <class Record, class Fields>
+void add_to(Record& record, const Record& other, const Fields& fields) {
+  for (const auto& [name, member] : fields) record.*member += other.*member;
 }
 
 }  // namespace
 
 Timings& Timings::operator+=(const Timings& other) {
-  read += other.read;
-  upload += other.upload;
-  setup += other.setup;
-  mask += other.mask;
-  cull += other.cull;
-  raster += other.raster;
-  fields += other.fields;
-  download += other.download;
-  write += other.write;
-  total += other.total;
+  add_to(*this, other, timing_fields);
   return *this;
 }
 
 Counts& Counts::operator+=(const Counts& other) {
-  voxels += other.voxels;
-  covered += other.covered;
-  outside += other.outside;
-  tetrahedra += other.tetrahedra;
-  inverted += other.inverted;
-  flat += other.flat;
-  folded += other.folded;
-  cells += other.cells;
-  candidate_pairs += other.candidate_pairs;
-  pairs_rejected += other.pairs_rejected;
-  pairs_accepted += other.pairs_accepted;
-  pairs_partial += other.pairs_partial;
-  inside_tests += other.inside_tests;
-  exact_tests += other.exact_tests;
-  steps_unchanged += other.steps_unchanged;
-  tets_unchanged += other.tets_unchanged;
-  cells_unchanged += other.cells_unchanged;
-  cells_constant += other.cells_constant;
-  voxels_copied += other.voxels_copied;
-  chunks_background += other.chunks_background;
-  tets_averaged += other.tets_averaged;
-  blocks += other.blocks;
-  bytes_read += other.bytes_read;
-  bytes_written += other.bytes_written;
+  add_to(*this, other, count_fields);
   return *this;
 }
 
@@ -89,13 +38,11 @@ std::string to_json(const Report& report) {
   Json steps = Json::array();
   for (const StepReport& step : report.steps) {
     steps.push_back({{"step", step.step},
-                     {"timings", json_of(step.timings)},
-                     {"counts", json_of(step.counts)}});
-    const Totals& totals = step.totals;
-    for (std::size_t c = 0; c < totals.count; ++c) {
-      steps.back()["total_before"].push_back(totals.before[c]);
-      steps.back()["total_after"].push_back(totals.after[c]);
-    }
+                     {"timings", json_of(step.timings, timing_fields)},
+                     {"counts", json_of(step.counts, count_fields)}});
+    if (step.totals.before.empty()) continue;
+    steps.back()["total_before"] = step.totals.before;
+    steps.back()["total_after"] = step.totals.after;
   }
   const Json json = {{"version", report.version},
                      {"backend", name_of(report.backend)},
@@ -103,8 +50,8 @@ std::string to_json(const Report& report) {
                      {"device", report.device},
                      {"threads", report.threads},
                      {"position_quantum", report.position_quantum},
-                     {"timings", json_of(report.timings)},
-                     {"counts", json_of(report.counts)},
+                     {"timings", json_of(report.timings, timing_fields)},
+                     {"counts", json_of(report.counts, count_fields)},
                      {"steps", steps}};
   return json.dump(2);
 }

@@ -1,6 +1,5 @@
 /// @file warp_backend.hpp
-/// What Warper asks of a back end, and what it hands over: checked arguments, nothing to check
-/// again.
+/// The interface between Warper and the back ends. Arguments have been checked before.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,32 +15,33 @@ namespace tetwarp {
 /// Checked arguments of a Warper and the geometry that no step changes.
 struct WarpPlan {
   std::vector<VolumeView> sources;
-  Mesh mesh;  ///< of its tetrahedra the last are those that its hexahedra split into
+  Mesh mesh;  ///< its last tetrahedra are those that the hexahedra were split into
   WarpOptions options;
-  Grid output_grid;  ///< the whole output grid
-  Region region;     ///< part of it to compute
-  Grid target_grid;  ///< grid of the region
+  Region source_region;  ///< of the source grid: voxels that the sources' data hold
+  Grid output_grid;      ///< the whole output grid
+  Region region;         ///< part of it to compute
+  Grid target_grid;      ///< grid of the region
 };
 
-/// One of cpu, cuda and reference. A step has five parts, called in this order and each once; a
-/// part that throws ends its step. Two steps, numbers 0 and 1, may be in flight: of the later one
-/// only upload() comes before settle(), and only compute() before download() and finish() of the
-/// earlier.
+/// One of cpu, cuda and reference. A step has five parts, each called once and in the order of
+/// declaration; when a part throws, the step is over. Up to two steps, numbers 0 and 1, are in
+/// flight. Of the later step only upload() is called before settle() of the earlier one, and only
+/// compute() before the earlier one's last two parts.
 class WarpBackend {
  public:
   virtual ~WarpBackend() = default;
 
-  /// Takes the positions: host memory may change afterwards.
+  /// Copies the positions; host memory may change afterwards.
   virtual void upload(int flight, const PositionsView& deformed) = 0;
-  /// Has the step computed, or at least asked for. The target stays as it is until finish().
+  /// Computes the step, or queues it on the device. The target's memory stays valid until finish().
   virtual void compute(int flight, const WarpTarget& target, const Progress& progress) = 0;
-  /// Waits until it is computed; what is wrong with it is known then.
+  /// Waits until the step is computed. @throws its errors
   virtual void settle(int) {}
-  /// Asks for the result to be brought to the target.
+  /// Queues the copy of the result to the target.
   virtual void download(int) {}
-  /// Waits until it is there. The report lacks the total time.
+  /// Waits for that copy. @returns the report without the total time
   virtual StepReport finish(int flight) = 0;
-  /// Waits until nothing is under way.
+  /// Waits until all queued work has ended.
   virtual void drain() noexcept {}
 
   /// Device or processor name.
@@ -53,10 +53,10 @@ std::unique_ptr<WarpBackend> make_cpu_backend(const WarpPlan& plan);
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan);
 std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan);
 
-/// Name of CUDA device `device`, or why it does not answer.
+/// Name of CUDA device number `device`, or why it is not usable.
 BackendStatus cuda_status(int device);
 
-/// Bytes of CUDA device `device` that can be had; 0 when it does not answer.
+/// Free memory of CUDA device number `device` [byte]; 0 when it is not usable.
 double free_device_memory(int device);
 
 /// Page-locks host memory for CUDA devices. @returns whether it worked

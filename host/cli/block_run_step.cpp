@@ -96,9 +96,14 @@ BlockRun::Samples BlockRun::receive(const WarpBlock& block, int from) const {
 }
 
 void BlockRun::add_reports_of_others(StepReport& report) const {
-  const auto reports = ranks_.gather(std::as_bytes(std::span(&report, 1)));
+  struct Sums {
+    Timings timings;
+    Counts counts;
+  };
+  const Sums mine{report.timings, report.counts};
+  const auto reports = ranks_.gather(std::as_bytes(std::span(&mine, 1)));
   for (std::size_t r = 1; r < reports.size(); ++r) {
-    StepReport other;
+    Sums other;
     std::memcpy(&other, reports[r].data(), sizeof other);
     report.timings += other.timings;
     report.counts += other.counts;
@@ -130,19 +135,18 @@ BlockRun::Samples BlockRun::compute(const WarpBlock& block,
   std::vector<VolumeView> sources;
   for (std::size_t s = 0; s < windows.size(); ++s) {
     const ArrayHeader& array = volume_.arrays[s];
-    VolumeView& view = sources.emplace_back(volume_.source_grid, array.type, array.components,
-                                            windows[s].get(), Memory::host);
-    view.window = block.source;
-    view.range = ranges_[s];
+    sources.emplace_back(volume_.source_grid, array.type, array.components, windows[s].get(),
+                         Memory::host);
   }
   Samples outputs = make_outputs(block.output);
   std::vector<void*> volumes;
   for (std::size_t s = 0; s < windows.size(); ++s) volumes.push_back(outputs[s].get());
   std::size_t extra = windows.size();
   WarpTarget target{.volumes = volumes};
-  for (const std::size_t e : arguments_.extra) set_extra_output(target, e, outputs[extra++].get());
+  for (const std::size_t e : arguments_.extra) extra_outputs[e].set(target, outputs[extra++].get());
 
   options_.region = block.output;
+  options_.source_window = SourceWindow{block.source, ranges_};
   const BlockMesh part = block_mesh(plan_.mesh.mesh(), block);
   Warper warper(sources, part.mesh, options_);
   const auto steps_done = static_cast<double>(result_.report.steps.size());

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -30,8 +29,6 @@ VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   return volume;
 }
 
-static_assert(std::is_trivially_copyable_v<StepReport>, "ranks exchange its bytes");
-
 /// What a rank did but its steps.
 struct Sums {
   Timings timings;
@@ -39,6 +36,38 @@ struct Sums {
   std::int64_t written;
   std::int64_t skipped;
 };
+
+/// A step without its totals, which follow it: `total_count` of before, then as many of after.
+struct StepBytes {
+  std::int64_t step;
+  Timings timings;
+  Counts counts;
+  std::size_t total_count;
+};
+
+template <class T>
+void append(std::vector<std::byte>& bytes, std::span<const T> values) {
+  static_assert(std::is_trivially_copyable_v<T>, "ranks exchange its bytes");
+  const auto more = std::as_bytes(values);
+  bytes.insert(bytes.end(), more.begin(), more.end());
+}
+
+/// Copies `values` from the front of `bytes`, which then starts behind them.
+template <class T>
+void take(std::span<const std::byte>& bytes, std::span<T> values) {
+  const auto to = std::as_writable_bytes(values);
+  std::ranges::copy(bytes.first(to.size()), to.begin());
+  bytes = bytes.subspan(to.size());
+}
+
+StepReport take_step(std::span<const std::byte>& bytes) {
+  StepBytes step;
+  take(bytes, std::span(&step, 1));
+  Totals totals{std::vector<double>(step.total_count), std::vector<double>(step.total_count)};
+  take(bytes, std::span(totals.before));
+  take(bytes, std::span(totals.after));
+  return {step.step, step.timings, step.counts, std::move(totals)};
+}
 
 }  // namespace
 
@@ -86,22 +115,24 @@ void plan_only(const WarpArguments& arguments,
 void gather_results(const Ranks& ranks, JobResult& result) {
   Report& report = result.report;
   const Sums mine{report.timings, report.counts, result.written, result.skipped};
-  const auto steps = std::as_bytes(std::span(report.steps));
-  std::vector<std::byte> bytes(sizeof mine + steps.size());
-  std::memcpy(bytes.data(), &mine, sizeof mine);
-  std::ranges::copy(steps, bytes.begin() + sizeof mine);
+  std::vector<std::byte> bytes;
+  append(bytes, std::span(&mine, 1));
+  for (const StepReport& step : report.steps) {
+    const StepBytes part{step.step, step.timings, step.counts, step.totals.before.size()};
+    append(bytes, std::span(&part, 1));
+    append(bytes, std::span<const double>(step.totals.before));
+    append(bytes, std::span<const double>(step.totals.after));
+  }
   const std::vector<std::vector<std::byte>> all = ranks.gather(bytes);
   for (std::size_t r = 1; r < all.size(); ++r) {
+    std::span<const std::byte> left(all[r]);
     Sums other;
-    std::memcpy(&other, all[r].data(), sizeof other);
+    take(left, std::span(&other, 1));
     report.timings += other.timings;
     report.counts += other.counts;
     result.written += other.written;
     result.skipped += other.skipped;
-    std::vector<StepReport> more((all[r].size() - sizeof other) / sizeof(StepReport));
-    std::ranges::copy(std::span(all[r]).subspan(sizeof other),
-                      std::as_writable_bytes(std::span(more)).begin());
-    report.steps.insert(report.steps.end(), more.begin(), more.end());
+    while (!left.empty()) report.steps.push_back(take_step(left));
   }
   if (ranks.count() > 1) std::ranges::stable_sort(report.steps, {}, &StepReport::step);
 }

@@ -146,7 +146,7 @@ void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write 
   target.volumes = pointers;
   target.holds_previous = true;
   auto extra = outputs.extra.begin();
-  for (const std::size_t e : arguments_.extra) set_extra_output(target, e, (extra++)->data.data());
+  for (const std::size_t e : arguments_.extra) extra_outputs[e].set(target, (extra++)->data.data());
   const auto step_voxels = static_cast<double>(volume_.written_grid.voxel_count());
   const bool writes = writing_.valid();
   const auto steps_done = static_cast<double>(result_.report.steps.size() + (writes ? 1 : 0));

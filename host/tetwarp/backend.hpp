@@ -1,5 +1,5 @@
 /// @file backend.hpp
-/// The back ends, and which of them answer on this machine.
+/// The back ends, and which of them are usable on this machine.
 #pragma once
 #include <string>
 #include <utility>
@@ -10,23 +10,33 @@
 
 namespace tetwarp {
 
-/// Where a computation runs. `automatic` means, for a warp, cuda when a device is usable, else cpu
-/// (choose_backend()); for contact it means cpu (choose_contact_backend() in contact.hpp).
-enum class Backend { automatic, cuda, cpu, reference };
+/// Where a computation runs.
+enum class Backend {
+  automatic,  ///< warps: cuda when a device is usable, else cpu; contact: cpu, until contact has
+              ///< been measured on a device
+  cuda,       ///< a CUDA device
+  cpu,        ///< threads and vector instructions of the host
+  reference   ///< warps and contact straight from the definitions, float64, one thread: slow, for
+              ///< verification
+};
 
 /// One back end on this machine.
 struct BackendStatus {
   Backend backend = Backend::cpu;
   bool usable = false;
-  std::string device;  ///< device or processor name, empty when not usable
-  std::string reason;  ///< why it is not usable, in the runtime's own words
+  std::string device;  ///< name of the device or processor; empty when not usable
+  std::string reason;  ///< why it is not usable, as the CUDA runtime says it; empty when usable
 };
 
-/// Status of cuda (on device number `device`), cpu and reference, in that order. Never throws.
+/// Status of cuda, cpu and reference, in that order.
+/// @param device  CUDA device number
 TETWARP_EXPORT std::vector<BackendStatus> available_backends(int device = 0);
 
-/// The back end that a warp runs on that asks for this one, and why, in one sentence.
-/// @throws CudaError when cuda is asked for and does not answer
+/// The back end that a warp uses for a choice of WarpOptions::backend.
+/// @param asked   the choice
+/// @param device  CUDA device number
+/// @returns cuda, cpu or reference, and the reason in one sentence
+/// @throws CudaError when `asked` is cuda and the device is not usable
 TETWARP_EXPORT std::pair<Backend, std::string> choose_backend(Backend asked, int device = 0);
 
 }  // namespace tetwarp

@@ -1,10 +1,19 @@
 /// @file blocks.hpp
-/// A warp in blocks, for volumes larger than memory and for several machines: each block of the
-/// output needs a window of the source and a part of the mesh. Together the blocks have the bits of
-/// the whole.
+/// A warp in blocks, for volumes larger than memory and for several processes. Each block of the
+/// output needs a window of the source and a part of the mesh. The blocks together equal the warp
+/// of the whole bit for bit.
 ///
-/// Of each block make a Warper with `options.region` = block.output, sources whose
-/// VolumeView::window is block.source, and the mesh that block_mesh() cuts out.
+///     WarpOptions block_options = options;
+///     for (const WarpBlock& block : planner.plan(deformed, limits).blocks) {
+///       const BlockMesh part = block_mesh(mesh, block);
+///       block_options.region = block.output;
+///       block_options.source_window = SourceWindow{block.source};
+///       const VolumeView source(grid, type, components, samples_of(block.source), Memory::host);
+///       Warper warper(std::span(&source, 1), part.mesh, block_options);
+///       warper.step(part.of(deformed), target_of(block.output));
+///     }
+///
+/// samples_of() and target_of() stand for the caller's reading and writing.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,55 +28,57 @@
 
 namespace tetwarp {
 
-/// What a block may hold, and how large a voxel is [byte].
+/// Limits of memory per block, and the memory that a voxel takes [byte].
 struct BlockLimits {
-  /// Source and output twice, for one of each is read or written meanwhile.
+  /// Host memory of a block. Source window and output count twice: the caller may read the next
+  /// window and write the last output while a block is computed.
   double host = std::numeric_limits<double>::infinity();
-  /// Source and output once.
+  /// Device memory of a block. Source window and output count once.
   double device = std::numeric_limits<double>::infinity();
-  double source_voxel = 4;   ///< of all sources together
-  double output_voxel = 4;   ///< of all outputs together
-  double scratch_voxel = 0;  ///< that a back end needs beside an output voxel
-  /// Blocks are cut at multiples of it, from the region's begin on [voxel].
+  double source_voxel = 4;   ///< one voxel of all sources together
+  double output_voxel = 4;   ///< one voxel of all outputs together
+  double scratch_voxel = 0;  ///< further memory of the back end per output voxel
+  /// Blocks begin at multiples of this, counted from the beginning of the region [voxel].
   std::array<std::int64_t, 3> step{8, 8, 8};
-  /// Of the output; larger blocks are cut as long as steps allow.
+  /// Output voxels of a block. Blocks of one `step` may exceed it.
   std::int64_t max_voxels = std::numeric_limits<std::int64_t>::max();
 };
 
-/// A part of the output and all that it depends on.
+/// A part of the output, and the parts of source and mesh that it depends on.
 struct WarpBlock {
   Region output;                    ///< in the output grid
-  Region source;                    ///< in the source grid, one voxel at least
-  std::vector<std::int32_t> cells;  ///< of the mesh that may own voxels of it, ascending:
-                                    ///< tetrahedra first, then hexahedra
-  double host_bytes = 0;            ///< as the limits count them
-  double device_bytes = 0;
+  Region source;                    ///< in the source grid; at least one voxel
+  std::vector<std::int32_t> cells;  ///< numbers of the mesh's cells that may own voxels of the
+                                    ///< block, ascending: tetrahedra first, then hexahedra
+  double host_bytes = 0;            ///< estimate to compare with BlockLimits::host
+  double device_bytes = 0;          ///< estimate to compare with BlockLimits::device
 };
 
 /// The blocks of one step.
 struct BlockPlan {
-  std::vector<WarpBlock> blocks;  ///< neighbors follow each other; together the region, once
-  std::int64_t tetrahedra = 0;    ///< as in Counts
-  std::int64_t inverted = 0;
-  std::int64_t flat = 0;
+  std::vector<WarpBlock> blocks;  ///< disjoint, together the region; neighbors follow each other
+  std::int64_t tetrahedra = 0;    ///< of the whole mesh, as in Counts
+  std::int64_t inverted = 0;      ///< of the whole mesh, as in Counts
+  std::int64_t flat = 0;          ///< of the whole mesh, as in Counts
 };
 
-/// Cuts the steps of a series into blocks.
+/// Divides the steps of a series into blocks.
 class TETWARP_EXPORT BlockPlanner {
  public:
   /// @param source   grid of the sources
-  /// @param mesh     kept by the caller, unchanged
-  /// @param options  as for a Warper of the whole
-  /// @throws std::invalid_argument on a bad mesh
+  /// @param mesh     of the whole; copied
+  /// @param options  as for a Warper of the whole; `source_window` is ignored
+  /// @throws std::invalid_argument when the grid or the mesh is invalid
   BlockPlanner(const Grid& source, const Mesh& mesh, const WarpOptions& options);
   BlockPlanner(BlockPlanner&&) noexcept;
   ~BlockPlanner();
 
-  /// Halves the region, along the axis that lets its halves read least, until every block keeps to
-  /// the limits. Costs a few times the setup of a step; memory: 100 bytes per tetrahedron.
+  /// Halves the region recursively until every block is within the limits, each time along the axis
+  /// for which the two halves read the fewest source voxels. Takes a few times as long as the setup
+  /// of a step, and 100 bytes of memory per tetrahedron.
   /// @param deformed  world, host memory, as many nodes as the mesh
-  /// @throws std::invalid_argument  on positions too far away, or when the smallest block exceeds
-  ///                                the limits
+  /// @throws std::invalid_argument  when positions are not finite or too far from the grid, or a
+  ///                                block of one step exceeds the limits
   BlockPlan plan(const PositionsView& deformed, const BlockLimits& limits);
 
  private:
@@ -77,15 +88,16 @@ class TETWARP_EXPORT BlockPlanner {
 
 /// The part of a mesh that a block needs.
 struct TETWARP_EXPORT BlockMesh {
-  Mesh mesh;
-  std::vector<std::int32_t> nodes;  ///< of the whole mesh, one per node of the part
+  Mesh mesh;                        ///< cells and nodes numbered anew
+  std::vector<std::int32_t> nodes;  ///< number in the whole mesh of each node of the part
 
-  /// The positions of these nodes.
+  /// Of positions of the whole mesh those of the part's nodes.
   std::vector<Point3> of(const std::vector<Point3>& positions) const;
 };
 
-/// Cuts out a block's cells, or the first of all where it has none: a mesh has one at least. Nodes
-/// keep their order, so that hexahedra are split alike.
+/// The mesh of a block's cells. Where the block has none it holds the first cell of the mesh,
+/// because a Warper requires one. Cell c of the part is cell block.cells[c] of the mesh. Nodes keep
+/// their order, so that hexahedra are split into the same tetrahedra.
 TETWARP_EXPORT BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
 
 }  // namespace tetwarp

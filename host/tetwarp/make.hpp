@@ -1,5 +1,6 @@
 /// @file make.hpp
-/// Things to warp and to look at: embedding lattices, procedural deformations, a phantom, pictures.
+/// Input for warps, and pictures of results: lattice meshes, procedural deformations, a phantom
+/// volume, rendering.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,46 +18,56 @@ namespace tetwarp {
 /// Choices of make_lattice_mesh().
 struct LatticeOptions {
   int cells = 8;  ///< cubic cells along the longest side of the foreground's box, >= 1
-  std::optional<double> threshold =
-      {};                  ///< foreground: any component > threshold; nothing: every voxel
-  bool hexahedra = false;  ///< the cells themselves instead of tetrahedra
+  /// Foreground are voxels with any component above it; nothing: all voxels.
+  std::optional<double> threshold = {};
+  bool hexahedra = false;  ///< true: one hexahedron per cell; false: five tetrahedra
 };
 
-/// Lattice of cubic cells around the foreground's bounding box (half a voxel beyond its outermost
-/// centres), five tetrahedra per cell, mirrored on odd cells so that faces match, all with positive
-/// volume; tetrahedra whose cell holds no foreground voxel are dropped, and unused nodes with them.
-/// The lattice follows the grid's axes. Throws std::invalid_argument when there is no foreground.
+/// A mesh of cubic cells, along the axes of the grid, that covers the bounding box of the
+/// foreground (half a voxel beyond its outermost centres). Cells without a foreground voxel are
+/// left out. Each cell is divided into five tetrahedra of positive volume, mirrored from cell to
+/// cell so that the triangles of shared faces match.
+/// @throws std::invalid_argument when there is no foreground or `cells` is less than 1
 TETWARP_EXPORT Mesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options = {});
 
-/// Kinds of procedural deformation.
-enum class Deformation { twist, bend, swim, random, rotate, translate };
+/// Kinds of procedural deformation. The box is that of the rest positions.
+enum class Deformation {
+  twist,     ///< the ends of the axis turn in opposite directions, by half the angle each
+  bend,      ///< the axis becomes an arc
+  swim,      ///< a wave travels along the axis; cross-sections shift sideways
+  random,    ///< a smooth sum of sine waves that does not invert anything at amount 1
+  rotate,    ///< a rigid turn about the axis through the middle of the box
+  translate  ///< a rigid shift by DeformOptions::offset
+};
 
 /// Choices of deform_positions().
 struct DeformOptions {
   Deformation kind = Deformation::twist;
-  double amount =
-      1.0;       ///< strength: turns/4 for twist, bend, rotate; share of the box for the others
-  int axis = 2;  ///< 0, 1, 2: axis of twist, bend, swim and rotate, [world]
-  std::uint64_t seed = 1;  ///< of random
-  Point3 offset{0, 0, 0};  ///< of translate [world]
+  /// Strength: quarter turns for twist, bend and rotate; relative to the box for swim and random;
+  /// not used by translate.
+  double amount = 1.0;
+  int axis = 2;            ///< of twist, bend, swim and rotate: 0 x, 1 y, 2 z [world]
+  std::uint64_t seed = 1;  ///< for random
+  Point3 offset{0, 0, 0};  ///< for translate, at time 1 [world]
 };
 
-/// Node positions at phase `time` in [0, 1] of a smooth deformation about the box of the rest
-/// positions; time 0 is rest, time 1 the full amount. Deterministic.
+/// Node positions of a smooth deformation. The same numbers for the same arguments.
+/// @param time  0 to 1: at 0 the rest positions, at 1 the full amount
+/// @throws std::invalid_argument when the mesh, an option or the time is invalid
 TETWARP_EXPORT std::vector<Point3> deform_positions(const Mesh& mesh,
                                                     const DeformOptions& options,
                                                     double time);
 
-/// A torso with ribs, spine, lungs, heart and vessels: analytic, deterministic, float32 in [0, 1].
-/// x points to the left of the body, y to its back, z to its head; the box is 384 x 240 x 366 mm
-/// about the origin for every dims.
+/// A torso with ribs, spine, lungs, heart and vessels, made of analytic shapes: float32 from 0 to
+/// 1, the same for the same dims. x points to the left of the body, y to its back, z to its head;
+/// the grid covers 384 x 240 x 366 mm around the origin whatever the dims.
 /// @param dims  voxels
 TETWARP_EXPORT Volume make_phantom(const std::array<std::int64_t, 3>& dims = {256, 160, 122});
 
 /// An 8-bit RGB picture, rows from top to bottom.
 struct Image {
-  int width = 0;
-  int height = 0;
+  int width = 0;                  ///< [pixel]
+  int height = 0;                 ///< [pixel]
   std::vector<std::uint8_t> rgb;  ///< width * height * 3
 };
 
@@ -67,9 +78,11 @@ struct RenderOptions {
   int height = 360;                 ///< of each panel [pixel]
 };
 
-/// Three orthogonal middle slices and a maximum-intensity projection side by side, one row per
-/// volume, in true proportions (spacing respected), all with the first volume's window.
-/// Throws std::invalid_argument when there is no volume.
+/// Draws three orthogonal middle slices and a maximum-intensity projection of each volume side by
+/// side, one row per volume. Panels have the proportions of the volume in the world; all rows share
+/// the gray window of the first volume.
+/// @param volumes  on any grids; of several components the Euclidean norm is drawn
+/// @throws std::invalid_argument when there is no volume, or an option is out of range
 TETWARP_EXPORT Image render(std::span<const Volume* const> volumes,
                             const RenderOptions& options = {});
 

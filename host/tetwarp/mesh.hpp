@@ -12,26 +12,29 @@
 
 namespace tetwarp {
 
-/// Nodes at rest and the nodes of each cell. Cells are numbered tetrahedra first, then hexahedra.
+/// A mesh in its rest state: node positions, and the nodes of each cell. Cells are numbered
+/// tetrahedra first, then hexahedra.
 struct Mesh {
   std::vector<Point3> rest_positions;             ///< [node_count], world
-  std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], either orientation; indices
-                                                  ///< into rest_positions
-  /// [hex_count], in VTK's order: 0 to 3 around the bottom, 4 to 7 above them. Inside, positions go
-  /// by the trilinear map. A face between hexahedra is cut from its node of the lowest number; a
-  /// tetrahedron that joins it must be cut alike.
+  std::vector<std::array<std::int32_t, 4>> tets;  ///< [tet_count], indices into rest_positions, in
+                                                  ///< either orientation
+  /// [hex_count], indices in VTK's order: 0 to 3 around the bottom, 4 to 7 above them. Within a
+  /// hexahedron positions are interpolated trilinearly. Each of its faces is divided into two
+  /// triangles by the diagonal from the face's lowest node number; tetrahedra on the other side of
+  /// the face must have these two triangles.
   std::vector<std::array<std::int32_t, 8>> hexes = {};
 
+  /// Tetrahedra and hexahedra.
   std::size_t cell_count() const { return tets.size() + hexes.size(); }
 };
 
-/// Throws std::invalid_argument naming the first offender unless there is a cell, every
-/// index is in range and every position finite.
+/// Checks that there is a cell, that indices are in range and that positions are finite.
+/// @throws std::invalid_argument naming the first violation
 TETWARP_EXPORT void check_mesh(const Mesh& mesh);
 
-/// Node positions owned by somebody else, possibly on the GPU: x y z per node, float64, world.
+/// Node positions that the caller owns, in host memory or on a GPU: x y z per node, float64, world.
 struct PositionsView {
-  const double* xyz = nullptr;
+  const double* xyz = nullptr;  ///< [node_count][3]
   std::int64_t node_count = 0;
   Memory memory = Memory::host;
 

@@ -1,5 +1,5 @@
 /// @file page_lock.hpp
-/// Host memory that a device copies to and from directly.
+/// Page-locked host memory: a CUDA device copies to and from it directly.
 #pragma once
 #include <cstddef>
 
@@ -7,20 +7,22 @@
 
 namespace tetwarp {
 
-/// Locks host memory in place for as long as it lives: a CUDA device then copies to and from it at
-/// the speed of the bus, and beside kernels and other work of the host. Locking itself takes time:
-/// lock what many steps use, e.g. the buffers of WarpTarget.
+/// Locks the pages of host memory during its lifetime. Copies between them and a CUDA device run at
+/// the full speed of the bus, concurrently with kernels and with work of the host. Locking takes
+/// time: use it for memory of many steps, for example the arrays of WarpTarget.
 class TETWARP_EXPORT PageLock {
  public:
   PageLock() = default;
-  /// @param data   outlives the lock; steps in flight that use it must be finished before its end
-  /// @param bytes  its size
+  /// Does not throw when locking fails; see is_locked().
+  /// @param data   must outlive the lock; finish steps in flight that use it before the lock ends
+  /// @param bytes  size of `data`
   PageLock(void* data, std::size_t bytes);
   PageLock(PageLock&& other) noexcept;
   PageLock& operator=(PageLock&& other) noexcept;
   ~PageLock();
 
-  /// False where no CUDA device answers or the system refuses: all works as well, but slower.
+  /// False when there is no usable CUDA device or the system refuses. Results are the same, copies
+  /// slower.
   bool is_locked() const { return data_ != nullptr; }
 
  private:

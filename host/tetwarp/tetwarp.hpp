@@ -1,5 +1,5 @@
 /// @file tetwarp.hpp
-/// Everything of tetwarp::tetwarp.
+/// Includes all public headers of the library target tetwarp::tetwarp.
 #pragma once
 #include <tetwarp/backend.hpp>
 #include <tetwarp/blocks.hpp>

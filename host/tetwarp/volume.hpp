@@ -1,11 +1,9 @@
 /// @file volume.hpp
-/// Dense volumes: a regular grid of voxel centres in world space, and samples of any numeric type
-/// on it.
+/// Dense volumes: samples of a numeric type on a regular grid of voxel centres in world space.
 #pragma once
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +14,7 @@
 
 namespace tetwarp {
 
+/// A position or vector: x, y, z.
 using Point3 = std::array<double, 3>;
 
 /// Bytes of one sample.
@@ -24,8 +23,8 @@ TETWARP_EXPORT std::size_t size_of(PixelType type);
 /// True for the eight integer types.
 TETWARP_EXPORT bool is_integer(PixelType type);
 
-/// A regular grid. Voxel (i, j, k) is centred at origin + direction * (spacing o (i, j, k))
-/// [world].
+/// A regular grid. The centre of voxel (i, j, k) is at origin + direction * (spacing o (i, j, k))
+/// [world]; o multiplies component by component.
 struct TETWARP_EXPORT Grid {
   std::array<std::int64_t, 3> dims{0, 0, 0};  ///< voxels along i, j, k
   Point3 origin{0, 0, 0};                     ///< centre of voxel (0, 0, 0) [world]
@@ -41,15 +40,16 @@ struct TETWARP_EXPORT Grid {
   bool operator==(const Grid&) const = default;
 };
 
-/// Throws std::invalid_argument, naming `what`, unless dims are positive and at most 2^30 each,
-/// their product fits 64 bits, spacing is positive and finite, origin is finite and direction
-/// invertible.
+/// Checks a grid: dims 1 to 2^30 each and fewer than 2^59 voxels, spacing positive and finite,
+/// origin finite, direction finite and invertible.
+/// @param what  name of the grid in messages
+/// @throws std::invalid_argument naming the first violation
 TETWARP_EXPORT void check_grid(const Grid& grid, const std::string& what);
 
 /// Half-open range of voxels [begin, end) per axis, in the indices of a grid.
 struct Region {
-  std::array<std::int64_t, 3> begin{0, 0, 0};
-  std::array<std::int64_t, 3> end{0, 0, 0};
+  std::array<std::int64_t, 3> begin{0, 0, 0};  ///< first voxel along i, j, k
+  std::array<std::int64_t, 3> end{0, 0, 0};    ///< one past the last voxel along i, j, k
 
   std::int64_t voxel_count() const {
     return (end[0] - begin[0]) * (end[1] - begin[1]) * (end[2] - begin[2]);
@@ -58,18 +58,19 @@ struct Region {
   bool operator==(const Region&) const = default;
 };
 
-/// Samples of one array on a grid, stored [k][j][i][component].
+/// Samples of one array on a grid, stored [k][j][i][component], and their memory.
 struct TETWARP_EXPORT Volume {
   Grid grid;
-  std::string name = "values";  ///< array name; no '/' and no '.'
+  std::string name = "values";  ///< array name in files; without '/' and '.'
   PixelType type = PixelType::float32;
   int components = 1;           ///< samples per voxel, 1 to 9
   std::vector<std::byte> data;  ///< voxel_count * components * size_of(type) bytes
 
-  /// Bytes that `data` must hold.
+  /// Size that `data` must have for the grid, the components and the type [byte].
   std::size_t byte_count() const;
 
-  /// The samples as T. Throws std::invalid_argument when T is not this volume's type.
+  /// The samples as numbers of type T: voxel_count * components of them.
+  /// @throws std::invalid_argument when T is not the C++ type of `type`
   template <class T>
   std::span<T> samples() {
     check_type(pixel_type_of<T>());
@@ -85,33 +86,31 @@ struct TETWARP_EXPORT Volume {
   void check_type(PixelType asked) const;
 };
 
-/// A zero-filled volume. Throws std::invalid_argument on a bad grid or component count.
+/// A volume of zeros.
+/// @throws std::invalid_argument when check_grid() does, or unless there are 1 to 9 components
 TETWARP_EXPORT Volume make_volume(const Grid& grid,
                                   PixelType type,
                                   int components = 1,
                                   std::string name = "values");
 
-/// Where memory lives.
-enum class Memory { host, device };
+/// The memory that a pointer refers to.
+enum class Memory {
+  host,   ///< main memory
+  device  ///< memory of the CUDA device that WarpOptions::device names
+};
 
-/// Samples owned by somebody else, possibly on the GPU: [k][j][i][component].
+/// Samples that the caller owns, in host memory or on a GPU: [k][j][i][component].
 struct TETWARP_EXPORT VolumeView {
   Grid grid;
   PixelType type = PixelType::float32;
-  int components = 1;
-  const void* data = nullptr;
+  int components = 1;          ///< samples per voxel, 1 to 9
+  const void* data = nullptr;  ///< of the voxels of the grid, or of WarpOptions::source_window
   Memory memory = Memory::host;
-  /// What `data` holds of the grid; nothing: all of it. A warp of a region must find there
-  /// all that it reads (BlockPlanner tells).
-  std::optional<Region> window = {};
-  /// Least and largest sample per component of the whole grid, in turns; empty: not known.
-  std::vector<double> range = {};
-
-  /// The window, or all of the grid.
-  Region held() const { return window.value_or(Region{{0, 0, 0}, grid.dims}); }
 
   VolumeView() = default;
-  VolumeView(const Volume& volume);  // a volume is a view of itself
+  /// Implicit, so that a Volume can be passed wherever a view is expected.
+  /// @throws std::invalid_argument when the volume's data do not have the size that its grid needs
+  VolumeView(const Volume& volume);
   VolumeView(const Grid& grid, PixelType type, int components, const void* data, Memory memory);
 };
 

@@ -1,6 +1,6 @@
 /// @file warp.hpp
-/// Deform volumes by a tetrahedral mesh: every output voxel takes the sample of the source at the
-/// rest position of the material point that the deformed mesh has moved there.
+/// Deform volumes by a mesh: every output voxel gets the sample of the source at the rest position
+/// of the material point that the deformed mesh has moved to the voxel's centre.
 ///
 /// Source: J. Gascon et al., "Fast Deformation of Volume Data Using Tetrahedral Mesh
 /// Rasterization", SCA 2013.
@@ -23,172 +23,202 @@
 
 namespace tetwarp {
 
-/// What becomes of values beyond the range of the samples, as cubic, bspline and lanczos make them.
+/// Interpolated values beyond the range of the samples, which cubic, bspline and lanczos produce at
+/// edges.
 enum class Overshoot {
-  keep,
-  clamp  ///< to the least and largest sample of the source, component by component
+  keep,  ///< written as they are
+  clamp  ///< limited to the least and largest sample of the source, component by component
 };
 
-/// What a voxel gets of a value.
+/// The physical meaning of samples, which determines how they change where volume changes.
 enum class Intensity {
-  value,    ///< the value: what a material point shows
-  density,  ///< divided by |det F|: what a material point has per volume. The integral stays, as
-            ///< far as sampling goes; vectors are turned first
-  /// What tetrahedra bring into the voxel's box of the source, which is constant in the box of each
-  /// of its voxels, over the box's volume: the integral stays to rounding. Filters have no say.
+  value,    ///< a property of the material point: unchanged
+  density,  ///< an amount per volume: divided by |det F|, after vectors and tensors are reoriented.
+            ///< The integral is preserved up to the error of sampling
+  /// An amount per volume, averaged exactly. The source counts as constant in the box of each of
+  /// its voxels; an output voxel gets the amount that all tetrahedra carry into its box, over the
+  /// box's volume. The integral is preserved up to rounding; `filter` is not used
   conservative
 };
 
-/// What a voxel gets that no tetrahedron covers.
+/// The value of output voxels that no tetrahedron covers.
 enum class Outside {
-  background,  ///< the background value
+  background,  ///< WarpOptions::background
   identity     ///< the source at the same world position
 };
 
-/// Work left out because it cannot change the result. Each switch gives the same output bits (but
-/// for the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
+/// Work that is skipped because it cannot change the result. The output bits are the same with and
+/// without (except the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
 struct SkipOptions {
-  bool rejected_cells = true;   ///< cells certainly outside a tetrahedron are not tested against it
-  bool accepted_cells = true;   ///< cells certainly inside a tetrahedron are not tested against it
-  bool copied_voxels = true;    ///< tetrahedra moved by whole voxels are copied, not interpolated
-  bool unchanged_steps = true;  ///< a step equal to the one before is not computed again (series
-                                ///< of files; a single Warper::step() always computes)
-  bool unchanged_tets = true;   ///< what has not moved since the step before is not set up again,
-                                ///< and cells it alone touches are left as they are where the
-                                ///< target holds that step (WarpTarget::holds_previous)
-  bool constant_cells = true;   ///< cells that see one value of the source are filled, not sampled
-  bool background_chunks = true;  ///< chunks of a file that hold only background are not stored
+  bool rejected_cells = true;  ///< no voxel tests in cells that are certainly outside a tetrahedron
+  bool accepted_cells = true;  ///< no voxel tests in cells that are certainly inside a tetrahedron
+  bool copied_voxels = true;   ///< voxels of tetrahedra moved by whole voxels are copied, not
+                               ///< interpolated
+  bool unchanged_steps = true;  ///< the command computes a step equal to the one before only once;
+                                ///< Warper::step() always computes
+  bool unchanged_tets = true;  ///< tetrahedra whose nodes have not moved since the step before keep
+                               ///< their setup; where WarpTarget::holds_previous, cells without a
+                               ///< moved tetrahedron are not written again
+  bool constant_cells = true;  ///< cells whose samples all have one value are filled, not sampled
+  bool background_chunks = true;  ///< the command does not store chunks of files that hold only
+                                  ///< background
+};
+
+/// The part of the sources' grid that memory holds, for a warp whose sources do not fit as a whole.
+/// The warp of a region reads a part of the sources only; BlockPlanner computes which.
+struct SourceWindow {
+  Region region;  ///< voxels that VolumeView::data of every source holds, in the source grid
+  /// Per source the least and the largest sample of component 0 over the whole grid, then of
+  /// component 1, and so on. Required with Overshoot::clamp, otherwise not used.
+  std::vector<std::vector<double>> ranges = {};
 };
 
 /// Choices of a warp. Defaults give what most people want.
 struct WarpOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
   Overshoot overshoot = Overshoot::keep;
-  /// Where a tetrahedron maps a voxel's step to more than 1.5 voxels of the source, the mean of as
-  /// many samples as it has voxels, at most 16 per axis. Not of nearest and labels.
+  /// Where a tetrahedron maps the step from voxel to voxel to more than 1.5 voxels of the source:
+  /// the mean of several samples, one per source voxel of the step, at most 16 per axis. Not with
+  /// nearest and labels.
   bool antialias = false;
   Intensity intensity = Intensity::value;
   std::vector<Quantity> quantities = {};  ///< one per source; empty: components
   Outside outside = Outside::background;
-  double background = 0.0;               ///< rounded and saturated to the pixel type
-  std::optional<Grid> output_grid = {};  ///< nothing: the source's grid
+  double background = 0.0;               ///< rounded to the pixel type, saturated at its limits
+  std::optional<Grid> output_grid = {};  ///< nothing: the grid of the sources
   std::optional<Region> region = {};     ///< part of the output grid to compute; nothing: all
+  /// Part of the source grid that is in memory; nothing: all. Not with Filter::bspline and
+  /// Intensity::conservative, which read whole sources.
+  std::optional<SourceWindow> source_window = {};
   Backend backend = Backend::automatic;
   int device = 0;             ///< CUDA device number
   int threads = 0;            ///< of the cpu back end; 0: all cores
-  bool count_folded = false;  ///< also count voxels strictly inside several tetrahedra
+  bool count_folded = false;  ///< fill Counts::folded, which takes a further pass over all voxels
   SkipOptions skip = {};
 };
 
-/// Told between slabs of work with the finished fraction of the step, 0 to 1; false cancels.
-/// Called within step() or begin_step().
+/// Called from within step() or begin_step(), several times per step, with the finished fraction of
+/// the step from 0 to 1. Return false to cancel: the call then throws Cancelled.
 using Progress = std::function<bool(double fraction)>;
 
-/// Fields of the deformation, float32 in world axes, [k][j][i][component] over
-/// Warper::output_grid(). All are zero where no tetrahedron covers the voxel.
+/// Arrays for fields of the deformation, float32 in world axes, [k][j][i][component] over
+/// Warper::output_grid(). Null: not wanted. All are zero where no tetrahedron covers the voxel.
 struct FieldTarget {
-  /// 3: backward, what a voxel shows was at the voxel's position plus this at rest. The
-  /// displacement field that other programs resample by.
+  /// 3 components, backward: rest position of the material at the voxel minus the voxel's position.
+  /// The displacement field by which other programs resample.
   float* displacement = nullptr;
-  /// 1: det F, with F the gradient of the deformed position by the rest position; negative where
-  /// inverted.
+  /// 1 component: det F, with F the derivative of the deformed position by the rest position;
+  /// negative where inverted.
   float* jacobian = nullptr;
-  float* gradient = nullptr;  ///< 9: F, row major
-  float* strain = nullptr;    ///< 6: Green-Lagrange, (F^T F - I) / 2, as XX YY ZZ XY YZ XZ
-  /// 3: the inverse field, on the source grid, which the output grid must be: the voxel's position
-  /// plus this is where the step has moved what is at the voxel at rest.
+  float* gradient = nullptr;  ///< 9 components: F, row major
+  float* strain = nullptr;    ///< 6 components: (F^T F - I) / 2 (Green-Lagrange), XX YY ZZ XY YZ XZ
+  /// 3 components, forward: deformed position of the material that rests at the voxel minus the
+  /// voxel's position. It is on the source grid, which the output grid must equal.
   float* forward = nullptr;
 };
 
-/// Where a step writes. Null pointers are outputs nobody asked for. One pointer per source volume,
-/// each [k][j][i][component] over Warper::output_grid() in the source's pixel type.
+/// Arrays that a step writes.
 struct WarpTarget {
+  /// One array per source, each [k][j][i][component] over Warper::output_grid() in the pixel type
+  /// of the source.
   std::span<void* const> volumes;
-  std::uint8_t* mask = nullptr;   ///< 1 where a tetrahedron covers the voxel, else 0
-  std::int32_t* owner = nullptr;  ///< owning cell of the mesh, -1 outside
+  /// 1 where a tetrahedron covers the voxel, else 0; null: not wanted.
+  std::uint8_t* mask = nullptr;
+  /// Number of the mesh's cell that owns the voxel, -1 outside; null: not wanted.
+  std::int32_t* owner = nullptr;
   FieldTarget fields = {};
-  Memory memory = Memory::host;
-  /// The buffers hold what a step wrote to them last, untouched: a step then leaves alone what it
-  /// would write again. Has no effect on the first step, after one that threw, and on other buffers
-  /// than those of the two steps before.
+  Memory memory = Memory::host;  ///< of all arrays
+  /// The caller promises that the arrays still hold what the last step into them wrote. A step then
+  /// does not write values again that have not changed. Without effect on the first step, after a
+  /// step that threw, and for arrays other than those of the last two steps.
   bool holds_previous = false;
-  void* stream = nullptr;  ///< cudaStream_t that orders work on device memory; cuda only
+  /// cudaStream_t on which the step's kernels run, to order them with the caller's work on device
+  /// memory; null: a stream of the Warper. cuda only.
+  void* stream = nullptr;
 };
 
-/// Results of warp().
+/// Result of warp().
 struct WarpResult {
   Volume volume;
   Report report;
 };
 
-/// Warps volumes step by step, keeping every buffer between steps; on CUDA the sources stay
-/// resident.
+/// Warps volumes step by step. Memory is allocated once and reused; on cuda the sources stay on the
+/// device.
 ///
-/// The owner of a voxel is the lowest-indexed tetrahedron whose closed deformed shape contains its
-/// centre, decided in exact integers after node positions have been rounded once to 2^-20 voxel:
-/// the same on every back end and for every thread count. Not safe for concurrent calls.
+/// The owner of a voxel is the tetrahedron of the lowest number whose closed deformed shape
+/// contains the voxel's centre. Node positions are rounded once, to 2^-20 voxel; owners are then
+/// decided in exact integers, so that they are the same on every back end and for every number of
+/// threads. Concurrent calls on one Warper are not allowed.
 class TETWARP_EXPORT Warper {
  public:
-  /// @param sources  volumes on one common grid, host or (cuda) device memory, kept by the caller,
-  ///                 unchanged, for the life of the Warper; at least one
-  /// @param mesh     copied
+  /// @param sources  at least one volume, all on the same grid, in host memory or (cuda) device
+  ///                 memory; their samples must stay as they are for the lifetime of the Warper
+  /// @param mesh     rest state; copied
   /// @param options  see WarpOptions
   /// @throws std::invalid_argument  on any bad argument, naming it
-  /// @throws CudaError              when cuda was asked for and no device answers
+  /// @throws CudaError              when `backend` is cuda and the device is not usable
   Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
   Warper(const Volume& source, const Mesh& mesh, const WarpOptions& options = {});
   Warper(Warper&&) noexcept;
   Warper& operator=(Warper&&) noexcept;
   ~Warper();
 
-  /// Grid of what step() writes: the output grid cut to the region, its origin moved accordingly.
+  /// The grid of the arrays that a step writes: that of the region, or the whole output grid.
   const Grid& output_grid() const;
 
   /// Warps all sources by one set of node positions.
-  /// @param deformed  world, as many nodes as the mesh, finite
+  /// @param deformed  finite positions of as many nodes as the mesh has [world]
   /// @param target    see WarpTarget
   /// @param progress  may be empty
   /// @returns timings and counts of this step
-  /// @throws std::invalid_argument, CudaError, Cancelled; std::logic_error while others are in
-  /// flight
+  /// @throws std::invalid_argument  on bad arguments
+  /// @throws CudaError              when the device fails
+  /// @throws Cancelled              when `progress` returned false
+  /// @throws std::logic_error       when a step is in flight
   StepReport step(const PositionsView& deformed,
                   const WarpTarget& target,
                   const Progress& progress = {});
 
-  /// The first half of step(): asks for the step and comes back. On cuda the device then works on
-  /// its own: it brings one result home while it computes the next, and takes the positions of the
-  /// one after that. Other back ends compute here. A series in two buffers, the first step begun:
+  /// Begins a step; finish_step() ends it. On cuda the call returns once the work is queued: the
+  /// device downloads one result while it computes the next step and uploads the positions of the
+  /// one after. On other back ends the call computes the step. A series in two targets:
   ///
+  ///     warper.begin_step(steps[0], targets[0]);
   ///     for (std::size_t k = 1; k < steps.size(); ++k) {
   ///       warper.begin_step(steps[k], targets[k % 2]);
   ///       warper.finish_step();  // targets[(k - 1) % 2] holds step k - 1
   ///     }
   ///     warper.finish_step();
   ///
-  /// Results are those of step(), bit for bit. Host memory should be page-locked (PageLock): else
-  /// the copy home keeps the host waiting, though not the device.
+  /// Results equal those of step() bit for bit. The target's host memory should be page-locked
+  /// (PageLock); otherwise the download blocks the calling thread, though not the device.
   ///
-  /// @param deformed  as in step(); host memory may change as soon as this returns, device memory
-  ///                  not before finish_step()
-  /// @param target    as in step(); its buffers, but not the span, belong to the step until
+  /// @param deformed  as in step(); host memory may be changed after the call, device memory after
   ///                  finish_step()
-  /// @throws std::invalid_argument  on bad arguments; the step has not begun
+  /// @param target    as in step(); its arrays must not be used before finish_step(); the span may
+  /// @throws std::invalid_argument  on bad arguments; the step has then not begun
   /// @throws std::logic_error       when max_steps_in_flight steps are in flight
   void begin_step(const PositionsView& deformed,
                   const WarpTarget& target,
                   const Progress& progress = {});
 
-  /// The second half of the oldest step in flight: waits until its target holds the result.
-  /// @returns timings and counts of this step; `total` counts from its begin_step(), so that those
-  ///          of steps in flight at a time overlap
-  /// @throws std::logic_error when none is in flight; std::invalid_argument, CudaError, Cancelled:
-  ///         what went wrong with this step, told here once. The steps after it are not affected.
+  /// Ends the oldest step in flight: waits until its target holds the result.
+  /// @returns timings and counts of this step; `total` counts from its begin_step(), so that the
+  ///          times of two steps in flight overlap
+  /// @throws std::logic_error       when no step is in flight
+  /// @throws std::invalid_argument, CudaError, Cancelled  the error of this step; steps after it
+  /// are
+  ///                                not affected
   StepReport finish_step();
 
+  /// Steps begun and not finished.
   std::size_t steps_in_flight() const;
-  static constexpr std::size_t max_steps_in_flight = 2;
+  static constexpr std::size_t max_steps_in_flight = 2;  ///< how many may be
 
-  /// The same for a single source, into a new volume.
+  /// Warps a single source by one set of node positions.
+  /// @returns a new volume on output_grid()
+  /// @throws as the other step(); std::invalid_argument when there are several sources
   Volume step(const PositionsView& deformed);
 
   /// Sums over the finished steps.
@@ -199,7 +229,8 @@ class TETWARP_EXPORT Warper {
   std::unique_ptr<State> state_;
 };
 
-/// One volume, one step. For several steps keep a Warper.
+/// Warps one volume by one set of node positions. For several steps a Warper is faster.
+/// @throws as Warper and Warper::step()
 TETWARP_EXPORT WarpResult warp(const Volume& source,
                                const Mesh& mesh,
                                const std::vector<Point3>& deformed,

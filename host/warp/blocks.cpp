@@ -73,7 +73,14 @@ struct BlockPlanner::State {
   WarpGeometry geometry;
   std::vector<Footprint> footprints;  ///< of every cell in the step at hand
 
+  /// Tetrahedra that are not parts of hexahedra; they come first.
+  std::int64_t lone_tet_count() const {
+    return std::ssize(mesh.tets) - tets_per_hex * std::ssize(mesh.hexes);
+  }
   void set_footprints(const PositionsView& deformed, BlockPlan& plan);
+  /// Replaces the footprints of the tetrahedra that hexahedra were split into by those of the
+  /// hexahedra.
+  void merge_hexahedra();
   /// Appends the blocks of a box to a plan.
   void cut(const Box& box,
            std::vector<std::int32_t> cells,
@@ -118,11 +125,10 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   body.rest = rest;
   body.rest_orientation = {geometry.rest_orientation.data(), tet_count};
   body.frame = geometry.frame;
-  const std::int64_t hex_count = std::ssize(mesh.hexes);
-  if (hex_count > 0) {
-    body.hexes = {{mesh.hexes.front().data(), 8 * hex_count}, tet_count - tets_per_hex * hex_count};
+  if (!mesh.hexes.empty()) {
+    body.hexes = {{mesh.hexes.front().data(), 8 * std::ssize(mesh.hexes)}, lone_tet_count()};
   }
-  // A mean is of samples from half a voxel before to half a voxel behind.
+  // An average takes samples up to half an output voxel away on either side.
   const double spread = options.antialias ? 0.5 : 0;
   footprints.resize(mesh.tets.size());
   std::int64_t inverted = 0, flat = 0, bad = tet_count;
@@ -143,7 +149,15 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
     TetSetup setup = {};
     throw_on_bad_position(body.set_up(bad, setup), bad);
   }
-  const std::int64_t lone = tet_count - tets_per_hex * hex_count;
+  plan.tetrahedra = tet_count;
+  plan.inverted = inverted;
+  plan.flat = flat;
+  merge_hexahedra();
+}
+
+void BlockPlanner::State::merge_hexahedra() {
+  const View<const Node> rest{geometry.rest.data(), std::ssize(geometry.rest)};
+  const std::int64_t lone = lone_tet_count(), hex_count = std::ssize(mesh.hexes);
   constexpr std::int64_t from[3] = {0, 0, 0};
   for (std::int64_t h = 0; h < hex_count; ++h) {
     const HexCorners corners =
@@ -152,9 +166,6 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
         footprint_of(&footprints[static_cast<std::size_t>(lone + tets_per_hex * h)], corners);
   }
   footprints.resize(static_cast<std::size_t>(lone + hex_count));
-  plan.tetrahedra = tet_count;
-  plan.inverted = inverted;
-  plan.flat = flat;
 }
 
 Box BlockPlanner::State::source_of(const Box& box, const std::vector<std::int32_t>& cells) const {
@@ -207,8 +218,7 @@ WarpBlock BlockPlanner::State::make_block(const Box& box,
   // Setups, nodes and the mesh itself; lists of pairs and a copy to sort them; ranges, counts and
   // work of cells of 512 voxels; two bytes per block of the source that may be constant.
   constexpr double tet_bytes = 600, pair_bytes = 32, output_share = 0.1, source_share = 0.005;
-  const auto lone = std::ssize(mesh.tets) - tets_per_hex * std::ssize(mesh.hexes);
-  const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone);
+  const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone_tet_count());
   const auto tets = std::ssize(cells) + (tets_per_hex - 1) * hexes;
   double around = tet_bytes * static_cast<double>(tets) +
                   (output_share + limits.scratch_voxel) * output_voxels +

@@ -123,8 +123,6 @@ class WarpFields {
     samples.reserve(frame.voxel_count());
     rest_owners_.reserve(frame.voxel_count());
     exec_.zero("warp/fields", samples.view(1));
-    Grid voxel;
-    voxel.dims = {1, 1, 1};
     RasterJob<std::uint8_t> job{};
     job.setups = pairs.setups();
     job.tets = pairs.tets();
@@ -132,8 +130,7 @@ class WarpFields {
     job.pairs = pairs.list().pairs;
     job.ranges = {pairs.list().ranges.data, frame.cell_count()};
     job.frame = frame;
-    job.source = source_view<std::uint8_t>(
-        VolumeView(voxel, PixelType::uint8, 1, nullptr, Memory::host), samples.view(1).data);
+    job.source = source_view<std::uint8_t>(Region{{0, 0, 0}, {1, 1, 1}}, 1, samples.view(1).data);
     job.filter = Filter::nearest;
     job.volume = samples.view(frame.voxel_count()).data;
     job.tet = rest_owners_.view(frame.voxel_count()).data;

@@ -36,13 +36,14 @@ struct ProgressPart {
   bool is_wanted() const { return static_cast<bool>(progress); }
 };
 
-/// Samples of a volume as a kernel sees them.
+/// Samples of a source as a kernel sees them.
+/// @param held  voxels of the source grid that `data` holds
+/// @param data  in the kernel's memory
 template <class T>
-SourceView<T> source_view(const VolumeView& volume, const void* data) {
+SourceView<T> source_view(const Region& held, int components, const void* data) {
   SourceView<T> view;
   view.data = static_cast<const T*>(data);
-  view.components = volume.components;
-  const Region held = volume.held();
+  view.components = components;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     view.origin[axis] = static_cast<int>(held.begin[axis]);
     view.dims[axis] = static_cast<int>(held.end[axis] - held.begin[axis]);

@@ -54,31 +54,23 @@ class WarpOutputs {
   /// That memory has been brought home, or never will be.
   void release(int slot) { slots_[slot].is_leaving = false; }
 
-  /// Where an executor writes volume s, the mask and the fields; null where nobody asked.
+  /// Where an executor writes volume s.
   void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
-  std::uint8_t* mask(const WarpTarget& target) {
-    return static_cast<std::uint8_t*>(writable(place_of(Extra::mask), target));
-  }
-  FieldTarget fields(const WarpTarget& target) {
-    const auto field = [&](Extra extra) {
-      return static_cast<float*>(writable(place_of(extra), target));
-    };
-    return {.displacement = field(Extra::displacement),
-            .jacobian = field(Extra::jacobian),
-            .gradient = field(Extra::gradient),
-            .strain = field(Extra::strain),
-            .forward = field(Extra::forward)};
-  }
-  /// The same for the owners, which fields are made of: null where nobody asked for either.
-  std::int32_t* tet(const WarpTarget& target) {
-    const std::size_t place = place_of(Extra::tet);
-    if (target.owner != nullptr || !needs_owners(target.fields)) {
-      return static_cast<std::int32_t*>(writable(place, target));
+  /// Where it writes the other arrays; null: not wanted. Owners have memory also when only a field
+  /// that is computed from them is wanted.
+  WarpTarget extra(const WarpTarget& target) {
+    WarpTarget arrays;
+    for (std::size_t e = 0; e < extra_outputs.size(); ++e) {
+      extra_outputs[e].set(arrays, writable(volume_count_ + e, target));
     }
-    Buffer<std::byte>& own = slots_[now_].arrays[place];
-    const std::int64_t bytes = voxel_bytes_[place] * frame_.voxel_count();
-    own.reserve(bytes);
-    return reinterpret_cast<std::int32_t*>(own.view(bytes).data);
+    if (target.owner == nullptr && needs_owners(target.fields)) {
+      const std::size_t place = volume_count_ + owner_output;
+      const std::int64_t bytes = voxel_bytes_[place] * frame_.voxel_count();
+      Buffer<std::byte>& own = slots_[now_].arrays[place];
+      own.reserve(bytes);
+      arrays.owner = reinterpret_cast<std::int32_t*>(own.view(bytes).data);
+    }
+    return arrays;
   }
 
   /// What was written: the least window with all marked cells; size 0: all.
@@ -116,7 +108,7 @@ class WarpOutputs {
     for (std::size_t a = 0; a < arrays.size(); ++a) {
       if (arrays[a] == nullptr) continue;
       download(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
-               a == place_of(Extra::forward) ? window_of({}) : window);
+              a == volume_count_ + forward_output ? window_of({}) : window);
     }
   }
 
@@ -146,10 +138,6 @@ class WarpOutputs {
     std::optional<Held> held;
     bool is_leaving = false;  ///< a step in flight writes it or has it brought home
   };
-
-  std::size_t place_of(Extra extra) const {
-    return volume_count_ + static_cast<std::size_t>(extra);
-  }
 
   void* writable(std::size_t place, const WarpTarget& target) {
     void* const wanted = arrays_of(target)[place];

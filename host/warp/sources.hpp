@@ -40,7 +40,8 @@ class WarpSources {
   /// Samples of source s, of type T, and what the plan's filter needs beside them.
   template <class T>
   SourceView<T> view(std::size_t s) {
-    SourceView<T> view = source_view<T>(plan_.sources[s], sources_[s].data);
+    SourceView<T> view =
+        source_view<T>(plan_.source_region, plan_.sources[s].components, sources_[s].data);
     const Filter filter = plan_.options.filter;
     if constexpr (can_blend<T>) {
       if (!is_wide(filter) || filter == Filter::labels) return view;
@@ -98,7 +99,7 @@ class WarpSources {
   };
 
   std::int64_t entry_count(std::size_t s) const {
-    return plan_.sources[s].held().voxel_count() * plan_.sources[s].components;
+    return plan_.source_region.voxel_count() * plan_.sources[s].components;
   }
 
   template <class T>
@@ -133,13 +134,12 @@ class WarpSources {
   const ArithmeticOf<T>* range(std::size_t s, const SourceView<T>& view) {
     auto& found = std::get<Found<ArithmeticOf<T>>>(sources_[s].found);
     if (found.range_data == nullptr) {
-      const std::vector<double>& known = plan_.sources[s].range;
-      if (known.empty()) {
-        found.range = volume_range(exec_, view);
-      } else {
-        for (const double bound : known) {
+      if (plan_.options.source_window) {
+        for (const double bound : plan_.options.source_window->ranges[s]) {
           found.range.push_back(static_cast<ArithmeticOf<T>>(bound));
         }
+      } else {
+        found.range = volume_range(exec_, view);
       }
       found.range_data =
           exec_

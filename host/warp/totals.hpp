@@ -20,10 +20,7 @@ class WarpTotals {
   /// The arguments must outlive it.
   WarpTotals(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : exec_(exec), plan_(plan), geometry_(geometry) {
-    if (plan.options.intensity == Intensity::value) return;
-    for (const VolumeView& source : plan.sources) {
-      if (source.window) return;  // a part has no total
-    }
+    if (plan.options.intensity == Intensity::value || plan.options.source_window) return;
     firsts_.push_back(0);
     for (const VolumeView& source : plan.sources) {
       firsts_.push_back(firsts_.back() + source.components);

@@ -67,10 +67,6 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];
     check_quantity(sources[s], quantity);
-    if (options.intensity == Intensity::conservative && sources[s].window) {
-      throw std::invalid_argument(
-          "source: totals are kept of all of it, a window has a part; use density");
-    }
     const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
     const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
     if (computes && (is_wide || options.filter == Filter::labels)) {

@@ -146,10 +146,13 @@ class WarpPipeline : public WarpBackend {
     stale_ = {};
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
-    for (std::size_t s = 0; s < sources_.size(); ++s) raster(s, target, progress);
-    std::int32_t* const tet = outputs_.tet(target);
-    const View<std::int32_t> owners{tet, tet != nullptr ? geometry_.frame.voxel_count() : 0};
-    fields_.run(pairs_, owners, stale_, outputs_.fields(target));
+    const WarpTarget extra = outputs_.extra(target);
+    for (std::size_t s = 0; s < sources_.size(); ++s) {
+      raster(s, outputs_.volume(s, target), extra, progress);
+    }
+    const View<std::int32_t> owners{extra.owner,
+                                    extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
+    fields_.run(pairs_, owners, stale_, extra.fields);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
     if (stale_.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
@@ -175,7 +178,10 @@ class WarpPipeline : public WarpBackend {
     count(pairs_.nodes(), pairs_.list(), 1);
   }
 
-  void raster(std::size_t s, const WarpTarget& target, const Progress& progress) {
+  /// Owners and samples of source s.
+  /// @param volume  where the executor writes the samples
+  /// @param extra   where it writes mask and owners, with the first source
+  void raster(std::size_t s, void* volume, const WarpTarget& extra, const Progress& progress) {
     with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
       const OutputFrame& frame = geometry_.frame;
       RasterJob<T> job;
@@ -192,10 +198,10 @@ class WarpPipeline : public WarpBackend {
       job.outside = geometry_.outside;
       job.background = rounded_to<T>(plan_.options.background);
       job.copy_whole_shifts = plan_.options.skip.copied_voxels;
-      job.volume = static_cast<T*>(outputs_.volume(s, target));
+      job.volume = static_cast<T*>(volume);
       // The extra outputs and the counts come once, with the first source.
-      job.mask = s == 0 ? outputs_.mask(target) : nullptr;
-      job.tet = s == 0 ? outputs_.tet(target) : nullptr;
+      job.mask = s == 0 ? extra.mask : nullptr;
+      job.tet = s == 0 ? extra.owner : nullptr;
       job.counts = s == 0 ? &work_counters().raster : nullptr;
       if (s == 0) job.cell_covered = cell_covered_.view(frame.cell_count());
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
@@ -237,11 +243,9 @@ class WarpPipeline : public WarpBackend {
   void report_totals(Flight& flight) {
     if (!totals_.are_wanted()) return;
     const View<const double> sums = flight.totals.const_view(totals_.sums().size);
-    Totals& totals = flight.report.totals;
-    for (; totals.count < std::min(Totals::most, totals_.before().size()); ++totals.count) {
-      totals.before[totals.count] = totals_.before()[totals.count];
-      totals.after[totals.count] =
-          sums[static_cast<std::int64_t>(totals.count)] * totals_.output_voxel();
+    flight.report.totals.before = totals_.before();
+    for (std::int64_t c = 0; c < sums.size; ++c) {
+      flight.report.totals.after.push_back(sums[c] * totals_.output_voxel());
     }
   }
 

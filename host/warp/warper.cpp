@@ -39,29 +39,38 @@ void check_filter(const VolumeView& source, Filter filter) {
   }
 }
 
-/// Some things are only known of a whole volume.
-void check_window(const VolumeView& source, const WarpOptions& options) {
-  if (!source.range.empty() &&
-      source.range.size() != 2 * static_cast<std::size_t>(source.components)) {
-    throw std::invalid_argument("source: range has " + std::to_string(source.range.size()) +
-                                " entries, expected two per component");
+void check_ranges(const std::vector<VolumeView>& sources,
+                  const std::vector<std::vector<double>>& ranges) {
+  if (ranges.size() != sources.size()) {
+    throw std::invalid_argument("source window: ranges of " + std::to_string(ranges.size()) +
+                                " sources, expected " + std::to_string(sources.size()));
   }
-  if (!source.window) return;
-  const auto& [begin, end] = *source.window;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    if (ranges[s].size() != 2 * static_cast<std::size_t>(sources[s].components)) {
+      throw std::invalid_argument("source window: range has " + std::to_string(ranges[s].size()) +
+                                  " entries, expected two per component");
+    }
+  }
+}
+
+void check_window(const std::vector<VolumeView>& sources, const WarpOptions& options) {
+  if (!options.source_window) return;
+  const auto& [begin, end] = options.source_window->region;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (begin[axis] < 0 || begin[axis] >= end[axis] || end[axis] > source.grid.dims[axis]) {
-      throw std::invalid_argument("source: window is empty or not within the grid on axis " +
+    const std::int64_t count = sources.front().grid.dims[axis];
+    if (begin[axis] < 0 || begin[axis] >= end[axis] || end[axis] > count) {
+      throw std::invalid_argument("source window: empty or not within the grid on axis " +
                                   std::to_string(axis));
     }
   }
   if (options.filter == Filter::bspline) {
     throw std::invalid_argument(
-        "source: a spline passes through all samples, a window has some; use another filter");
+        "source window: a spline passes through all samples of a source; use another filter");
   }
-  if (options.overshoot == Overshoot::clamp && source.range.empty()) {
-    throw std::invalid_argument(
-        "source: clamping needs the range of all samples, a window has some; give the range");
+  if (options.intensity == Intensity::conservative) {
+    throw std::invalid_argument("source window: totals are of a whole source; use density");
   }
+  if (options.overshoot == Overshoot::clamp) check_ranges(sources, options.source_window->ranges);
 }
 
 void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& options) {
@@ -76,13 +85,13 @@ void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& op
                                   " components, expected 1 to 9");
     }
     if (source.data == nullptr) throw std::invalid_argument("source: no samples");
-    check_window(source, options);
     check_filter(source, options.filter);
     if (is_integer(source.type) && !std::isfinite(options.background)) {
       throw std::invalid_argument(std::string("background: not a finite number, which ") +
                                   name_of(source.type) + " cannot hold");
     }
   }
+  check_window(sources, options);
 }
 
 Region checked_region(const Grid& grid, const WarpOptions& options) {
@@ -122,7 +131,10 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   check_mesh(mesh);
   plan.mesh = with_split_hexes(mesh);
   if (options.threads < 0) throw std::invalid_argument("threads: negative");
-  plan.output_grid = options.output_grid.value_or(plan.sources.front().grid);
+  const Grid& source_grid = plan.sources.front().grid;
+  plan.source_region =
+      options.source_window ? options.source_window->region : Region{{0, 0, 0}, source_grid.dims};
+  plan.output_grid = options.output_grid.value_or(source_grid);
   check_grid(plan.output_grid, "output grid");
   plan.region = checked_region(plan.output_grid, options);
   plan.target_grid = grid_of_region(plan.output_grid, plan.region);

@@ -65,7 +65,8 @@ class RasterBench {
     job_.pairs = stages_.pairs;
     job_.ranges = stages_.ranges;
     job_.frame = input_.frame;
-    job_.source = source_view<T>(source_, source_.data.data());
+    job_.source = source_view<T>(Region{{0, 0, 0}, source_.grid.dims}, source_.components,
+                                 source_.data.data());
     job_.filter = what.filter;
     job_.outside = what.outside;
     if (what.filter == Filter::bspline) prefilter();

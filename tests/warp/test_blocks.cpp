@@ -62,9 +62,8 @@ InBlocks run_blocks(const Volume& source,
   const auto& n = scene.output_grid.dims;
   for (const WarpBlock& block : all.plan.blocks) {
     const std::vector<std::byte> window = cut_out(source, block.source);
-    VolumeView view(source.grid, source.type, source.components, window.data(), Memory::host);
-    view.window = block.source;
-    view.range = range;
+    const VolumeView view(source.grid, source.type, source.components, window.data(), Memory::host);
+    options.source_window = SourceWindow{block.source, {range}};
     all.window_voxels += block.source.voxel_count();
     options.region = block.output;
     const BlockMesh part = block_mesh(scene.mesh, block);
@@ -242,18 +241,31 @@ TEST(BlockPlanner, RefusesNodesThatCannotBePlaced) {
 TEST(BlockWindow, MustSufficeForTheFilterAndLieInTheGrid) {
   const Volume source = scenes::wavy_volume(scenes::unit_grid(8, 8, 8), PixelType::float32);
   const Mesh mesh = covering_mesh(source.grid);
-  VolumeView view(source);
-  view.window = Region{{0, 0, 0}, {8, 8, 4}};
-  EXPECT_NO_THROW(Warper(std::span(&view, 1), mesh));
-  EXPECT_THROW(Warper(std::span(&view, 1), mesh, {.filter = Filter::bspline}),
-               std::invalid_argument);
-  view.range = {0};
-  EXPECT_THROW(Warper(std::span(&view, 1), mesh), std::invalid_argument);
-  view.range.clear();
+  const VolumeView view(source);
+  const auto start = [&](const WarpOptions& options) {
+    Warper(std::span(&view, 1), mesh, options);
+  };
+  WarpOptions options;
+  options.source_window = SourceWindow{{{0, 0, 0}, {8, 8, 4}}};
+  EXPECT_NO_THROW(start(options));
+  options.filter = Filter::bspline;
+  EXPECT_THROW(start(options), std::invalid_argument);
+  options.filter = Filter::linear;
+  options.intensity = Intensity::conservative;
+  EXPECT_THROW(start(options), std::invalid_argument);
+  options.intensity = Intensity::value;
+  options.overshoot = Overshoot::clamp;
+  for (const std::vector<std::vector<double>>& bad :
+       {std::vector<std::vector<double>>{}, {{0}}, {{0, 1}, {0, 1}}}) {
+    options.source_window->ranges = bad;
+    EXPECT_THROW(start(options), std::invalid_argument);
+  }
+  options.source_window->ranges = {{0, 1}};
+  EXPECT_NO_THROW(start(options));
   for (const Region& bad : {Region{{0, 0, 0}, {8, 8, 9}}, Region{{0, 4, 0}, {8, 4, 8}},
                             Region{{-1, 0, 0}, {8, 8, 8}}}) {
-    view.window = bad;
-    EXPECT_THROW(Warper(std::span(&view, 1), mesh), std::invalid_argument);
+    options.source_window->region = bad;
+    EXPECT_THROW(start(options), std::invalid_argument);
   }
 }
 

@@ -25,13 +25,14 @@ class CellWork : public EachExec<Exec> {
             bool knows_source = true) {
     const Stages<Exec> stages(this->arrays(), input);
     const auto samples = volume.samples<float>();
+    const Region whole{{0, 0, 0}, volume.grid.dims};
     RasterJob<float> job = {};
     job.setups = stages.setups;
     job.pairs = stages.pairs;
     job.ranges = stages.ranges;
     job.frame = input.frame;
-    job.source =
-        source_view<float>(volume, this->upload(std::vector(samples.begin(), samples.end())).data);
+    job.source = source_view<float>(whole, 1,
+                                    this->upload(std::vector(samples.begin(), samples.end())).data);
     UniformMap map = make_uniform_map(job.source);
     const auto reach = this->template zeros<std::uint8_t>(map.block_count());
     volume_uniform(this->exec(), job.source, View<const std::int32_t>(stages.tets),
@@ -149,7 +150,8 @@ TYPED_TEST(CellWork, IsRightAboutEveryTap) {
     const auto setups = this->download(stages.setups);
     const auto pairs = this->download(stages.pairs);
     const auto ranges = this->download(stages.ranges);
-    const auto source = source_view<float>(volume, volume.data.data());
+    const auto source =
+        source_view<float>(Region{{0, 0, 0}, volume.grid.dims}, 1, volume.data.data());
     for (std::size_t cell = 0; cell < found.work.size(); ++cell) {
       if (found.work[cell] < 0) continue;
       ++filled;

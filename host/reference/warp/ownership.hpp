@@ -96,7 +96,8 @@ class Ownership {
   std::vector<std::uint8_t> strictly_inside;     ///< tetrahedra, up to two; empty: not wanted
 
  private:
-  /// Gives tetrahedron t every voxel of its closed shape that no lower one owns.
+  /// Assigns to tetrahedron t every voxel of its closed shape that no tetrahedron of a lower number
+  /// owns.
   void claim(std::int32_t t, const double* rest_positions, const double* deformed, Counts& counts) {
     const Corners now = corners_of(t, deformed, output);
     const Corners rest = corners_of(t, rest_positions, source);
@@ -111,23 +112,12 @@ class Ownership {
     const Integer rest_volume = mirrored ? -signed_volume(rest) : signed_volume(rest);
     counts.inverted += (volume > 0 && rest_volume < 0) || (volume < 0 && rest_volume > 0);
 
-    Quanta first, last;  // voxels of the box, within the region
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      std::int64_t low = now[0][axis], high = low;
-      for (const Quanta& node : now) {
-        low = std::min(low, node[axis]);
-        high = std::max(high, node[axis]);
-      }
-      const auto begin = static_cast<std::int64_t>(std::ceil(static_cast<double>(low) / one_voxel));
-      const auto end = static_cast<std::int64_t>(std::floor(static_cast<double>(high) / one_voxel));
-      first[axis] = std::max(begin, plan_.region.begin[axis]);
-      last[axis] = std::min(end, plan_.region.end[axis] - 1);
-    }
     const std::optional<Hexahedron> hex = hexahedron_of(t, rest_positions, deformed);
     const std::optional<Eigen::Vector3d> shift = hex ? hex->shift : whole_shift(rest, now);
-    for (std::int64_t k = first[2]; k <= last[2]; ++k) {
-      for (std::int64_t j = first[1]; j <= last[1]; ++j) {
-        for (std::int64_t i = first[0]; i <= last[0]; ++i) {
+    const Region box = box_of(now);
+    for (std::int64_t k = box.begin[2]; k < box.end[2]; ++k) {
+      for (std::int64_t j = box.begin[1]; j < box.end[1]; ++j) {
+        for (std::int64_t i = box.begin[0]; i < box.end[0]; ++i) {
           ++counts.inside_tests;
           const std::optional<Barycentric> b =
               barycentric_of(now, {i * one_voxel_int, j * one_voxel_int, k * one_voxel_int});
@@ -152,7 +142,25 @@ class Ownership {
     }
   }
 
-  /// Tetrahedra that are no parts of hexahedra; they come first.
+  /// Voxels of the region in the bounding box of a tetrahedron.
+  Region box_of(const Corners& now) const {
+    Region box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::int64_t low = now[0][axis], high = low;
+      for (const Quanta& node : now) {
+        low = std::min(low, node[axis]);
+        high = std::max(high, node[axis]);
+      }
+      const auto first = static_cast<std::int64_t>(std::ceil(static_cast<double>(low) / one_voxel));
+      const auto last =
+          static_cast<std::int64_t>(std::floor(static_cast<double>(high) / one_voxel));
+      box.begin[axis] = std::max(first, plan_.region.begin[axis]);
+      box.end[axis] = std::min(last + 1, plan_.region.end[axis]);
+    }
+    return box;
+  }
+
+  /// Tetrahedra that are not parts of hexahedra; they come first.
   std::int32_t lone_tets() const {
     return static_cast<std::int32_t>(plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size());
   }

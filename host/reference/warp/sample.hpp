@@ -52,10 +52,14 @@ T stored(double value) {
 template <class T>
 class Sampler {
  public:
-  Sampler(const VolumeView& source, const WarpOptions& options)
+  /// @param range  least and largest sample of each component in turn; null: of source.data
+  Sampler(const VolumeView& source,
+          const Region& held,
+          const WarpOptions& options,
+          const std::vector<double>* range)
       : data_(static_cast<const T*>(source.data)),
         n_(source.grid.dims),
-        held_(source.held()),
+        held_(held),
         components_(source.components),
         filter_(options.filter),
         background_(stored<T>(options.background)),
@@ -70,11 +74,11 @@ class Sampler {
     }
     const bool blends = filter_ != Filter::nearest && filter_ != Filter::labels;
     if (!blends || options.overshoot == Overshoot::keep) return;
-    for (std::size_t c = 0; c < source.range.size() / 2; ++c) {
-      low_[c] = source.range[2 * c];
-      high_[c] = source.range[2 * c + 1];
+    for (std::size_t c = 0; range != nullptr && c < low_.size(); ++c) {
+      low_[c] = (*range)[2 * c];
+      high_[c] = (*range)[2 * c + 1];
     }
-    if (!source.range.empty()) return;
+    if (range != nullptr) return;
     std::ranges::fill(low_, INFINITY);
     std::ranges::fill(high_, -INFINITY);
     for (std::size_t s = 0; s < count; ++s) {

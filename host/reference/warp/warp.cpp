@@ -52,7 +52,7 @@ class ReferenceBackend : public WarpBackend {
       with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
         T* const out = static_cast<T*>(target.volumes[s]);
         fill<T>(s, out);
-        if (plan_.options.intensity != Intensity::value) {
+        if (plan_.options.intensity != Intensity::value && !plan_.options.source_window) {
           conserve(s, rest, deformed, out, report);
         }
       });
@@ -112,16 +112,18 @@ class ReferenceBackend : public WarpBackend {
     for (std::size_t n = 0; n < owners_.owner.size() * components; ++n) {
       after[n % components] += static_cast<double>(out[n]);
     }
-    Totals& totals = report.totals;
-    for (std::size_t c = 0; c < components && totals.count < Totals::most; ++c, ++totals.count) {
-      totals.before[totals.count] = before[c] * source_voxel;
-      totals.after[totals.count] = after[c] * output_voxel;
+    for (std::size_t c = 0; c < components; ++c) {
+      report.totals.before.push_back(before[c] * source_voxel);
+      report.totals.after.push_back(after[c] * output_voxel);
     }
   }
 
   template <class T>
   void fill(std::size_t s, T* out) const {
-    const Sampler<T> sampler(plan_.sources[s], plan_.options);
+    const bool has_range =
+        plan_.options.source_window && plan_.options.overshoot == Overshoot::clamp;
+    const Sampler<T> sampler(plan_.sources[s], plan_.source_region, plan_.options,
+                             has_range ? &plan_.options.source_window->ranges[s] : nullptr);
     std::size_t v = 0;
     for (std::int64_t k = plan_.region.begin[2]; k < plan_.region.end[2]; ++k) {
       for (std::int64_t j = plan_.region.begin[1]; j < plan_.region.end[1]; ++j) {

@@ -240,7 +240,7 @@ class CellLine {
       const int cell = voxel / cell_edge * cell_edge;
       const int corner[3] = {first.corner[0] + cell, first.corner[1], first.corner[2]};
       if (has_outside_transform(row_job_)) {
-        write_outside_transformed(row_job_, corner, voxel - cell, j, k, voxel);
+        ScalarRows<T>::write_outside(row_job_, corner, voxel - cell, j, k, voxel);
       } else {
         store_outside<true>(row_job_, {corner, voxel - cell, j, k, voxel});
       }

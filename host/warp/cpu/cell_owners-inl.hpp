@@ -50,13 +50,13 @@ inline SliceBits rows_between(int begin, int end, unsigned row) {
 
 /// Adds to `mine` those of the voxels `unsure` that lie inside tetrahedron t.
 template <class T>
-inline void ask_each(const RasterJob<T>& job,
-                     const CellBox& box,
-                     int t,
-                     const CellPlanes& planes,
-                     const CellBits& unsure,
-                     CellBits& mine,
-                     RasterCounts& counts) {
+inline void test_each(const RasterJob<T>& job,
+                      const CellBox& box,
+                      int t,
+                      const CellPlanes& planes,
+                      const CellBits& unsure,
+                      CellBits& mine,
+                      RasterCounts& counts) {
   for (int k = 0; k < cell_edge; ++k) {
     for (SliceBits bits = unsure.slice[k]; bits != 0; bits &= bits - 1) {
       const int bit = std::countr_zero(bits);
@@ -82,7 +82,42 @@ inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
   }
 }
 
-/// Gives every voxel of a cell to its lowest tetrahedron.
+/// Sets `mine` to those of the voxels `open` of a cell that lie inside tetrahedron t.
+/// @returns whether there are any; if not, `mine` is undefined
+template <class T>
+inline bool find_inside(const RasterJob<T>& job,
+                        const CellBox& box,
+                        int t,
+                        const CellBits& open,
+                        CellBits& mine,
+                        RasterCounts& counts) {
+  const TetSetup& tet = job.setups[t];
+  int begin[3], end[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    begin[axis] = std::max(tet.begin[axis] - box.corner[axis], box.begin[axis]);
+    end[axis] = std::min(tet.end[axis] - box.corner[axis], box.end[axis]);
+  }
+  const SliceBits rows = rows_between(begin[1], end[1], 0xff);
+  CellBits tested;
+  for (int k = 0; k < cell_edge; ++k) {
+    tested.slice[k] = k >= begin[2] && k < end[2] ? open.slice[k] & rows : 0;
+  }
+  if (!any_of(tested)) return false;
+  counts.inside_tests += count_of(tested);
+  CellPlanes planes;
+  set_cell_planes(tet, box.corner, planes);
+  CellBits inside = {}, possible = {};
+  cell_sides(planes, {begin[1], end[1], begin[2], end[2]}, inside, possible);
+  CellBits unsure;
+  for (int k = 0; k < cell_edge; ++k) {
+    mine.slice[k] = inside.slice[k] & tested.slice[k];
+    unsure.slice[k] = possible.slice[k] & ~inside.slice[k] & tested.slice[k];
+  }
+  if (any_of(unsure)) test_each(job, box, t, planes, unsure, mine, counts);
+  return any_of(mine);
+}
+
+/// Assigns every voxel of a cell to the tetrahedron of the lowest number that contains it.
 /// @param job     planes, nodes and pairs
 /// @param box     the cell
 /// @param range   its pairs
@@ -103,31 +138,8 @@ inline void find_owners(const RasterJob<T>& job,
       open = {};
       return;
     }
-    const int t = tet_of(job.pairs[p]);
-    const TetSetup& tet = job.setups[t];
-    int begin[3], end[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      begin[axis] = std::max(tet.begin[axis] - box.corner[axis], box.begin[axis]);
-      end[axis] = std::min(tet.end[axis] - box.corner[axis], box.end[axis]);
-    }
-    const SliceBits rows = rows_between(begin[1], end[1], 0xff);
-    CellBits tested;
-    for (int k = 0; k < cell_edge; ++k) {
-      tested.slice[k] = k >= begin[2] && k < end[2] ? open.slice[k] & rows : 0;
-    }
-    if (!any_of(tested)) continue;
-    counts.inside_tests += count_of(tested);
-    CellPlanes planes;
-    set_cell_planes(tet, box.corner, planes);
-    CellBits inside = {}, possible = {};
-    cell_sides(planes, {begin[1], end[1], begin[2], end[2]}, inside, possible);
-    CellBits mine, unsure;
-    for (int k = 0; k < cell_edge; ++k) {
-      mine.slice[k] = inside.slice[k] & tested.slice[k];
-      unsure.slice[k] = possible.slice[k] & ~inside.slice[k] & tested.slice[k];
-    }
-    if (any_of(unsure)) ask_each(job, box, t, planes, unsure, mine, counts);
-    if (!any_of(mine)) continue;
+    CellBits mine;
+    if (!find_inside(job, box, tet_of(job.pairs[p]), open, mine, counts)) continue;
     own(p, mine);
     for (int k = 0; k < cell_edge; ++k) open.slice[k] &= ~mine.slice[k];
     if (!any_of(open)) return;

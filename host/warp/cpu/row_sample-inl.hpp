@@ -17,9 +17,8 @@
 #include <utility>
 
 #include "host/warp/cpu/row_components-inl.hpp"
-#include "host/warp/cpu/row_filtered.hpp"
+#include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
-#include "host/warp/cpu/row_transformed.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
 #include "host/warp/cpu/row_wide-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -67,8 +66,7 @@ class RowSampler {
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
       if (has_transform(job_, source.tet())) {
-        write_row_transformed(job_, source.tet(), source.corner(), runs[r].bits, j, k,
-                              cell_edge * runs[r].cell);
+        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_edge * runs[r].cell);
       } else {
         runs[plain_count++] = runs[r];
       }
@@ -107,12 +105,8 @@ class RowSampler {
       if (source.kind() == RowKind::copied) {
         copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
-      } else if (source.setup().kind == MapKind::trilinear) {
-        sample_row_hex(job_, source.tet(), source.corner(), run.bits, j, k, cell_row);
       } else {
-        const RowMap map = {source.setup(), source.corner(), source.base, source.axis,
-                            source.whole};
-        sample_row_filtered(job_, map, run.bits, j, k, cell_row);
+        ScalarRows<T>::write(job_, source.map(), run.bits, j, k, cell_row);
       }
     }
     copier_.flush();

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "host/warp/cpu/row_scalar.hpp"
 #include "kernels/warp/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -83,6 +84,7 @@ class RowSource {
   int tet() const { return number_; }
   const TetSetup& setup() const { return *setup_; }
   const int* corner() const { return corner_; }
+  RowMap map() const { return {number_, *setup_, corner_, base, axis, whole}; }
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }

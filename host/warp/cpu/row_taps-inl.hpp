@@ -96,7 +96,101 @@ inline RowPositions<Rim> row_positions(const RowSource& source,
   return positions;
 }
 
-/// Adds one unit: row (j, k) of one cell, served by `runs`, of which none is RowKind::alone.
+/// Positions of the voxels of row (j, k) of a cell from `lane` on, each by the map of its own run.
+/// Voxels of no run follow the map of the first: readable, their values are not used.
+template <bool Rim>
+HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
+                                            const RowRun* runs,
+                                            int run_count,
+                                            const RowStart& first_start,
+                                            int j,
+                                            int k,
+                                            std::size_t lane) {
+  RowPositions<Rim> x = row_positions<Rim>(sources[runs[0].source], first_start, lane);
+  for (int r = 1; r < run_count; ++r) {
+    const RowSource& source = sources[runs[r].source];
+    const RowPositions<Rim> more = row_positions<Rim>(source, RowStart(source, j, k), lane);
+    const auto mine = lanes_of(runs[r].bits, lane);
+    const auto mine_int = hn::RebindMask(RowIntTag(), mine);
+    for (int axis = 0; axis < 3; ++axis) {
+      x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
+    }
+    for (int part = 0; part < (Rim ? 3 : 1); ++part) {
+      x.whole[part] = hn::IfThenElse(mine_int, more.whole[part], x.whole[part]);
+    }
+  }
+  return x;
+}
+
+/// Where some voxels lie between samples along one axis.
+struct AxisTaps {
+  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without Rim less the whole part
+  hn::Vec<RowTag> fraction;    ///< from it to the upper one
+  hn::Vec<RowIntTag> step;     ///< to the upper one in memory [voxel]; Rim only
+  hn::Mask<RowTag> in_source;  ///< Rim only
+};
+
+/// @param near    local positions, for nearest plus one half
+/// @param stride  from a voxel to the next along the axis in memory [voxel]
+template <bool Rim>
+HWY_INLINE AxisTaps
+axis_taps(const RowPositions<Rim>& x, hn::Vec<RowTag> near, int axis, int dim, int stride) {
+  const RowTag d;
+  const RowIntTag di;
+  AxisTaps taps;
+  const auto floor = hn::Floor(near);
+  taps.fraction = hn::Sub(near, floor);
+  taps.voxel = hn::ConvertTo(di, floor);
+  if constexpr (Rim) {
+    taps.voxel = hn::Add(taps.voxel, x.whole[axis]);
+    const int last = dim - 1;
+    const auto whole = hn::ConvertTo(d, x.whole[axis]);
+    const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
+    const auto beyond = hn::ConvertTo(d, hn::Sub(hn::Set(di, last), x.whole[axis]));
+    const auto high = hn::Add(hn::Add(beyond, hn::Set(d, 0.5f)), hn::Set(d, rim_slack));
+    taps.in_source = hn::And(hn::Ge(x.local[axis], low), hn::Le(x.local[axis], high));
+    const auto blends =
+        hn::And(hn::Gt(taps.voxel, hn::Set(di, -1)), hn::Lt(taps.voxel, hn::Set(di, last)));
+    taps.fraction = hn::IfThenElseZero(hn::RebindMask(d, blends), taps.fraction);
+    taps.voxel = hn::Min(hn::Max(taps.voxel, hn::Zero(di)), hn::Set(di, last));
+    taps.step = hn::IfThenElseZero(blends, hn::Set(di, stride));
+  }
+  return taps;
+}
+
+/// Stores offsets and fractions of some voxels at place `to` of `taps`.
+/// @returns which of them lie inside the source; without Rim all
+template <bool Rim, class T>
+HWY_INLINE hn::Mask<RowTag> store_taps(const SourceView<T>& view,
+                                       bool nearest,
+                                       const RowPositions<Rim>& x,
+                                       std::size_t to,
+                                       RowTaps<Rim>& taps) {
+  const RowTag d;
+  const RowIntTag di;
+  const int stride[3] = {1, view.dims[0], view.dims[0] * view.dims[1]};
+  AxisTaps along[3];
+  auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
+    along[axis] = axis_taps<Rim>(x, near, axis, view.dims[axis], stride[axis]);
+    if constexpr (Rim) in_source = hn::And(in_source, along[axis].in_source);
+    hn::Store(along[axis].fraction, d, taps.fraction[axis] + to);
+  }
+  const auto row = hn::Add(hn::Mul(along[2].voxel, hn::Set(di, view.dims[1])), along[1].voxel);
+  auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), along[0].voxel);
+  if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
+  hn::Store(offset, di, taps.offset[0] + to);
+  if constexpr (Rim) {
+    const auto above = hn::Add(offset, along[2].step);
+    hn::Store(hn::Add(offset, along[1].step), di, taps.offset[1] + to);
+    hn::Store(above, di, taps.offset[2] + to);
+    hn::Store(hn::Add(above, along[1].step), di, taps.offset[3] + to);
+  }
+  return in_source;
+}
+
+/// Adds one unit: row (j, k) of one cell, which `runs` describe, none of them RowKind::alone.
 template <bool Rim, class T>
 inline void add_unit(const SourceView<T>& view,
                      bool nearest,
@@ -106,68 +200,18 @@ inline void add_unit(const SourceView<T>& view,
                      int j,
                      int k,
                      RowTaps<Rim>& taps) {
-  const RowTag d;
-  const RowIntTag di;
-  const int stride[3] = {1, view.dims[0], view.dims[0] * view.dims[1]};
-  const int at = cell_edge * taps.count;
-  unsigned bits = 0, inside = 0xff;
+  const auto at = static_cast<std::size_t>(cell_edge * taps.count);
+  unsigned bits = 0, inside = Rim ? 0 : 0xff;
   for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
-  if constexpr (Rim) inside = 0;
   const RowSource& first = sources[runs[0].source];
   const RowStart first_start(first, j, k);
-  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(d)) {
-    // Voxels that no run describes follow the first one: readable, their values are not used.
-    RowPositions<Rim> x = row_positions<Rim>(first, first_start, lane);
-    for (int r = 1; r < run_count; ++r) {
-      const RowSource& source = sources[runs[r].source];
-      const RowPositions<Rim> more = row_positions<Rim>(source, RowStart(source, j, k), lane);
-      const auto mine = lanes_of(runs[r].bits, lane);
-      const auto mine_int = hn::RebindMask(di, mine);
-      for (int axis = 0; axis < 3; ++axis) {
-        x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
-      }
-      for (int part = 0; part < (Rim ? 3 : 1); ++part) {
-        x.whole[part] = hn::IfThenElse(mine_int, more.whole[part], x.whole[part]);
-      }
-    }
-    hn::Vec<RowIntTag> voxel[3], step[3];
-    auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
-      const auto floor = hn::Floor(near);
-      auto fraction = hn::Sub(near, floor);
-      voxel[axis] = hn::ConvertTo(di, floor);
-      if constexpr (Rim) {
-        voxel[axis] = hn::Add(voxel[axis], x.whole[axis]);
-        const int last = view.dims[axis] - 1;
-        const auto whole = hn::ConvertTo(d, x.whole[axis]);
-        const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
-        const auto beyond = hn::ConvertTo(d, hn::Sub(hn::Set(di, last), x.whole[axis]));
-        const auto high = hn::Add(hn::Add(beyond, hn::Set(d, 0.5f)), hn::Set(d, rim_slack));
-        in_source =
-            hn::And(in_source, hn::And(hn::Ge(x.local[axis], low), hn::Le(x.local[axis], high)));
-        const auto blends =
-            hn::And(hn::Gt(voxel[axis], hn::Set(di, -1)), hn::Lt(voxel[axis], hn::Set(di, last)));
-        fraction = hn::IfThenElseZero(hn::RebindMask(d, blends), fraction);
-        voxel[axis] = hn::Min(hn::Max(voxel[axis], hn::Zero(di)), hn::Set(di, last));
-        step[axis] = hn::IfThenElseZero(blends, hn::Set(di, stride[axis]));
-      }
-      hn::Store(fraction, d, taps.fraction[axis] + at + lane);
-    }
-    const auto row = hn::Add(hn::Mul(voxel[2], hn::Set(di, view.dims[1])), voxel[1]);
-    auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), voxel[0]);
-    if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
-    hn::Store(offset, di, taps.offset[0] + at + lane);
-    if constexpr (Rim) {
-      const auto above = hn::Add(offset, step[2]);
-      hn::Store(hn::Add(offset, step[1]), di, taps.offset[1] + at + lane);
-      hn::Store(above, di, taps.offset[2] + at + lane);
-      hn::Store(hn::Add(above, step[1]), di, taps.offset[3] + at + lane);
-      inside |= bits_of(in_source, lane);
-    }
+  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(RowTag())) {
+    const auto x = unit_positions<Rim>(sources, runs, run_count, first_start, j, k, lane);
+    const auto in_source = store_taps(view, nearest, x, at + lane, taps);
+    if constexpr (Rim) inside |= bits_of(in_source, lane);
   }
-  // Rows to come: they jump too much for the hardware to guess.
-  for (const int voxel : {0, cell_edge / 2}) {
+  // The next rows start too far away for the processor's own prefetching.
+  for (const std::size_t voxel : {0, cell_edge / 2}) {
     const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
     hwy::Prefetch(from + first.ahead());
     hwy::Prefetch(from + first.ahead_too());

@@ -17,7 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "host/warp/cpu/row_hex.hpp"
+#include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_source-inl.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -179,7 +179,7 @@ inline void sample_alone(const RasterJob<T>& job,
                          int k,
                          std::int64_t row) {
   if (source.setup().kind == MapKind::trilinear) {
-    sample_row_hex(job, source.tet(), source.corner(), bits, j, k, row);
+    ScalarRows<T>::write(job, source.map(), bits, j, k, row);
   } else if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
     sample_narrow(job, source, bits, j, k, row);
   } else {

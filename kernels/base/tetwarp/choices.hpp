@@ -1,5 +1,6 @@
 /// @file choices.hpp
-/// Enums that callers choose by and that kernels obey.
+/// Enums of options that the kernels read too. <tetwarp/volume.hpp> and <tetwarp/contact.hpp>
+/// include this header.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,19 +10,19 @@ namespace tetwarp {
 
 /// Type of one sample.
 enum class PixelType : std::uint8_t {
-  uint8,
-  int8,
-  uint16,
-  int16,
-  uint32,
-  int32,
-  uint64,
-  int64,
-  float32,
-  float64
+  uint8,    ///< std::uint8_t
+  int8,     ///< std::int8_t
+  uint16,   ///< std::uint16_t
+  int16,    ///< std::int16_t
+  uint32,   ///< std::uint32_t
+  int32,    ///< std::int32_t
+  uint64,   ///< std::uint64_t
+  int64,    ///< std::int64_t
+  float32,  ///< float
+  float64   ///< double
 };
 
-/// The enumerator of a C++ type.
+/// The enumerator of an arithmetic C++ type of 1 to 8 bytes; bool and long double do not compile.
 template <class T>
 constexpr PixelType pixel_type_of() {
   static_assert(std::is_arithmetic_v<T> && !std::is_same_v<T, bool>, "a numeric pixel type");
@@ -34,46 +35,49 @@ constexpr PixelType pixel_type_of() {
   }
 }
 
-/// How the source is sampled between voxel centres. At a centre every one gives its sample. The
-/// order is that of the error as voxels get smaller.
+/// How the source is interpolated between voxel centres. At a voxel centre every filter returns the
+/// sample itself. Order p: for smooth images the error falls with the p-th power of the voxel size.
 enum class Filter {
-  nearest,  ///< order 1
-  linear,   ///< order 2
-  cubic,    ///< Catmull-Rom, 4x4x4 samples: order 3
-  bspline,  ///< cubic spline through the samples, mirrored at the source's rim: order 4
-  lanczos,  ///< windowed sinc, 6x6x6 samples: the sharpest for coarse images, but of no high order
-  labels    ///< the label with the most linear weight, of several the lowest; integers only
+  nearest,  ///< the nearest sample; order 1
+  linear,   ///< trilinear, 2x2x2 samples; order 2
+  cubic,    ///< Catmull-Rom, 4x4x4 samples; order 3
+  bspline,  ///< cubic spline through the samples, mirrored at the boundary of the source; order 4
+  lanczos,  ///< sinc with a window of three lobes, 6x6x6 samples; sharp, but only of order 1
+  labels  ///< the label with the largest sum of linear weights, the lowest of several; one integer
+          ///< component
 };
 
-/// What the components of a source are, and how they follow the deformation: F is its gradient in
-/// world axes, constant in a tetrahedron, R the rotation nearest to F. Components are along world
-/// axes, on oblique grids too, as VTK has them. Of tetrahedra that are inverted R is the nearest
-/// proper rotation, without the reflection.
+/// What the components of a source mean, and how the deformation changes them.
+///
+/// F is the deformation gradient in world axes, constant in a tetrahedron; R is the rotation
+/// nearest to F, for inverted tetrahedra too (det R = +1). Components are along world axes, as in
+/// VTK, also on oblique grids.
 enum class Quantity {
-  components,            ///< numbers that stay what they are
+  components,            ///< independent numbers, any count: unchanged
   vector,                ///< 3 components: R v
-  covariant_vector,      ///< F^-T v, as gradients go
-  contravariant_vector,  ///< F v, as material lines go
+  covariant_vector,      ///< 3 components, for example gradients: F^-T v
+  contravariant_vector,  ///< 3 components, for example material line elements: F v
   tensor,                ///< symmetric, 6 components XX YY ZZ XY YZ XZ: R D R^T
-  principal_tensor  ///< the same: eigenvalues stay, the first eigenvector follows F, the second
-                    ///< stays in the plane of both (D. C. Alexander et al., 2001)
+  principal_tensor       ///< as `tensor`, with the rotation that takes the first eigenvector e1 to
+                         ///< the direction of F e1 and e2 into the plane of F e1 and F e2
+                         ///< (D. C. Alexander et al., 2001); eigenvalues unchanged
 };
 
-/// How contacts are solved. `automatic` is the one to use; the others are for experts who compare
-/// solvers.
+/// How contacts are solved. Use `automatic`. All others are expert choices, for comparing solvers:
+/// each runs one method to the end, even where it converges slowly or not at all.
 enum class ContactMethod {
-  automatic,       ///< accelerated sweeps, and others in turn when the residual stops dropping
-  gauss_seidel,    ///< projected Gauss-Seidel over colors
-  nonlinear_cg,    ///< nonsmooth nonlinear conjugate gradients over sweeps
-  anderson,        ///< Anderson acceleration of sweeps, window 8
-  mass_splitting,  ///< no colors: split masses, Nesterov with restart
-  newton           ///< sweeps, then semismooth Newton on the natural map (host, per island)
+  automatic,       ///< Anderson-accelerated sweeps; other methods when the residual stagnates
+  gauss_seidel,    ///< expert: projected Gauss-Seidel, color by color
+  nonlinear_cg,    ///< expert: nonsmooth nonlinear conjugate gradients over sweeps
+  anderson,        ///< expert: Anderson acceleration of sweeps, window 8
+  mass_splitting,  ///< expert: split masses, no colors; Nesterov acceleration with restart
+  newton           ///< expert: sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
-/// What `tolerance` bounds.
+/// The residual that ContactOptions::tolerance bounds. Both are relative numbers without unit.
 enum class ContactMeasure {
-  eta,   ///< energy-weighted natural residual, relative, with the true A; free of units
-  fclib  ///< FCLIB's natural-map error: |u~ - P(u~ - r)| accumulated, relative to |q|
+  eta,   ///< natural-map residual weighted by energy, with the matrix A of the problem
+  fclib  ///< error of the FCLIB benchmarks: norm of u~ - P(u~ - r) over all contacts, over |q|
 };
 
 }  // namespace tetwarp

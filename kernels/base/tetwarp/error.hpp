@@ -1,5 +1,6 @@
 /// @file error.hpp
-/// Error classes of the library. Bad arguments are std::invalid_argument; nothing prints or exits.
+/// Error classes of the library. Bad arguments throw std::invalid_argument; the library never
+/// prints and never exits.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -8,12 +9,13 @@
 
 namespace tetwarp {
 
-/// A file could not be read or written. `what()` is one line naming file, dataset and remedy.
+/// A file could not be read or written. `what()` is one line that names the file, the dataset and
+/// what to change.
 class TETWARP_EXPORT IoError : public std::runtime_error {
  public:
   /// @param file     path as the caller gave it
-  /// @param dataset  path inside the file, empty when the file as a whole is meant
-  /// @param problem  what is wrong and what would mend it
+  /// @param dataset  path inside the file; empty: the error concerns the file as a whole
+  /// @param problem  what is wrong and how to correct it
   IoError(std::string file, std::string dataset, const std::string& problem);
 
   const std::string& file() const { return file_; }
@@ -24,13 +26,14 @@ class TETWARP_EXPORT IoError : public std::runtime_error {
   std::string dataset_;
 };
 
-/// A CUDA call failed, or no device answers. `what()` carries the call and the runtime's reason.
+/// A CUDA call failed, or no usable device was found. `what()` names the call and the reason that
+/// the CUDA runtime gives.
 class TETWARP_EXPORT CudaError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The progress callback asked to stop. Nothing of the interrupted step is valid.
+/// The progress callback returned false. The outputs of the interrupted step are undefined.
 class TETWARP_EXPORT Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}

@@ -1,13 +1,15 @@
-/// @file row_filtered.cpp
-/// Voxel by voxel, in vectors of four: one lane per axis for positions and weights, then one per
-/// tap along x. Such vectors every processor has.
-#include "host/warp/cpu/row_filtered.hpp"
+/// @file row_scalar.cpp
+/// Filters work in vectors of four float32 lanes, which every supported processor has: one lane per
+/// axis for positions and weights, then one per tap along x.
+#include "host/warp/cpu/row_scalar.hpp"
 
 #include <hwy/highway.h>
 
 #include <bit>
 #include <cstddef>
 #include <type_traits>
+
+#include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
 
@@ -168,52 +170,72 @@ void sample_one(
   store_wide_sample(job, job.filter, map.whole, x, job.volume + (row + i) * job.source.components);
 }
 
-}  // namespace
+/// Calls store(i) for the voxels `bits`.
+template <class Store>
+void for_voxels(unsigned bits, const Store& store) {
+  for (; bits != 0; bits &= bits - 1) store(std::countr_zero(bits));
+}
 
+/// The voxels `bits` of row (j, k) with the bits of store_wide_sample().
 template <class T>
-void sample_row_filtered(
+void write_filtered(
     const RasterJob<T>& job, const RowMap& row_map, unsigned bits, int j, int k, std::int64_t row) {
   double start[3], linear[3][3];
-  const auto set_start = [&] { map_start(row_map.tet, row_map.corner, start, linear); };
+  const auto set_start = [&] { map_start(row_map.setup, row_map.corner, start, linear); };
   if constexpr (sizeof(ArithmeticOf<T>) == 4) {
-    if (row_map.tet.kind == MapKind::affine) {
+    if (row_map.setup.kind == MapKind::affine) {
       RowWalk walk(job.source, row_map, reach_of(job.filter), j, k);
-      for (; bits != 0; bits &= bits - 1) {
-        const int i = std::countr_zero(bits);
+      for_voxels(bits, [&](int i) {
         if (job.source.components == 1 && walk.move_to(i)) {
           job.volume[row + i] = sample_lanes(job.source, job.filter, walk);
         } else {
           set_start();
           sample_one(job, make_source_map<float>(job.source, start, linear), i, j, k, row);
         }
-      }
+      });
       return;
     }
   }
   set_start();
   const auto map = make_source_map<double>(job.source, start, linear);
-  for (; bits != 0; bits &= bits - 1) sample_one(job, map, std::countr_zero(bits), j, k, row);
+  for_voxels(bits, [&](int i) { sample_one(job, map, i, j, k, row); });
 }
 
-template void sample_row_filtered(
-    const RasterJob<std::uint8_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::int8_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::uint16_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::int16_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::uint32_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::int32_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::uint64_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<std::int64_t>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<float>&, const RowMap&, unsigned, int, int, std::int64_t);
-template void sample_row_filtered(
-    const RasterJob<double>&, const RowMap&, unsigned, int, int, std::int64_t);
+}  // namespace
+
+template <class T>
+void ScalarRows<T>::write(
+    const RasterJob<T>& job, const RowMap& map, unsigned bits, int j, int k, std::int64_t row) {
+  if (has_transform(job, map.tet)) {
+    for_voxels(bits, [&](int i) {
+      store_transformed_voxel(job, map.tet, {map.corner, i, j, k, row + i});
+    });
+  } else if (map.setup.kind == MapKind::trilinear) {
+    const HexMap hex = hex_map_of(job, map.tet);
+    for_voxels(bits, [&](int i) {
+      const int x[3] = {map.corner[0] + i, map.corner[1] + j, map.corner[2] + k};
+      store_hex_voxel<true>(job, map.setup, hex, x, row + i);
+    });
+  } else {
+    write_filtered(job, map, bits, j, k, row);
+  }
+}
+
+template <class T>
+void ScalarRows<T>::write_outside(
+    const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
+  store_transformed_outside(job, {corner, i, j, k, voxel});
+}
+
+template struct ScalarRows<std::uint8_t>;
+template struct ScalarRows<std::int8_t>;
+template struct ScalarRows<std::uint16_t>;
+template struct ScalarRows<std::int16_t>;
+template struct ScalarRows<std::uint32_t>;
+template struct ScalarRows<std::int32_t>;
+template struct ScalarRows<std::uint64_t>;
+template struct ScalarRows<std::int64_t>;
+template struct ScalarRows<float>;
+template struct ScalarRows<double>;
 
 }  // namespace tetwarp
