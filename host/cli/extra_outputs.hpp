@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <set>
 
-#include "host/warp/extra_outputs.hpp"
+#include "host/base/extra_outputs.hpp"
 
 namespace tetwarp::cli {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/base/extra_outputs.hpp"
 #include "host/base/warp_backend.hpp"
-#include "host/warp/extra_outputs.hpp"
 
 namespace tetwarp {
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <tetwarp/contact_problem.hpp>
 
-#include "host/contact/vectors.hpp"
+#include "host/contact/problem/vectors.hpp"
 #include "kernels/contact/contact_fill.hpp"
 
 namespace tetwarp {

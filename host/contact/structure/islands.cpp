@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "host/contact/vectors.hpp"
+#include "host/contact/problem/vectors.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"

@@ -7,8 +7,8 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/problem/vectors.hpp"
 #include "host/contact/structure/islands.hpp"
-#include "host/contact/vectors.hpp"
 #include "kernels/contact/contact_indices.hpp"
 #include "kernels/contact/contact_numbers.hpp"
 
