@@ -13,8 +13,19 @@
 namespace tetwarp {
 
 constexpr int raster_threads = 128;
-constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
-constexpr int raster_general_blocks = 2;  ///< the same of the kernel that knows the wide filters
+
+/// Blocks per multiprocessor that share its registers: five leave 96 to a thread. sm_120 needs
+/// more for float64 arithmetic, the general kernel everywhere: fewer blocks, no spills.
+template <class T, bool General>
+constexpr int raster_blocks() {
+  if (General) return 2;
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 1200
+  return sizeof(ArithmeticOf<T>) == 8 ? 4 : 5;
+#else
+  return 5;
+#endif
+}
+
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
@@ -170,7 +181,7 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
 /// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
 /// @tparam General  whether the job may have wide filters, transforms or hexahedra
 template <class T, bool General>
-__global__ void __launch_bounds__(raster_threads, General ? raster_general_blocks : raster_blocks)
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, General>())
     cell_raster_kernel(RasterJob<T> job) {
   __shared__ RasterChunk<ArithmeticOf<T>> chunk;
   __shared__ int block_counts[4];

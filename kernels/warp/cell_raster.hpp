@@ -221,7 +221,7 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
 
 /// The map of the hexahedron that tetrahedron t of a job belongs to.
 template <class T>
-TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
+TETWARP_HD_RARE HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
   return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
 }
 

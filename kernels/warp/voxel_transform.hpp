@@ -211,7 +211,7 @@ TETWARP_HD_RARE void store_transformed(TransformSampler<T> job,
 
 /// Stores a voxel that tetrahedron t owns, by the transform of t.
 template <class T>
-TETWARP_HD void store_transformed_voxel(const RasterJob<T>& job,
+TETWARP_HD_RARE void store_transformed_voxel(const RasterJob<T>& job,
                                         std::int64_t t,
                                         const CellVoxel& voxel) {
   double start[3], linear[3][3], x[3];
