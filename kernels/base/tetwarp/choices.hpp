@@ -1,5 +1,5 @@
 /// @file choices.hpp
-/// Enums that callers choose by and that kernels obey.
+/// Enums of public options that kernels read too.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -34,29 +34,29 @@ constexpr PixelType pixel_type_of() {
   }
 }
 
-/// How the source is sampled between voxel centres. At a centre every one gives its sample. The
-/// order is that of the error as voxels get smaller.
+/// How the source is sampled between voxel centres. At a centre every filter gives the voxel's own
+/// sample. Order n: the error falls with the n-th power of the voxel size.
 enum class Filter {
   nearest,  ///< order 1
   linear,   ///< order 2
   cubic,    ///< Catmull-Rom, 4x4x4 samples: order 3
-  bspline,  ///< cubic spline through the samples, mirrored at the source's rim: order 4
+  bspline,  ///< cubic spline through the samples, mirrored at the source's border: order 4
   lanczos,  ///< windowed sinc, 6x6x6 samples: the sharpest for coarse images, but of no high order
-  labels    ///< the label with the most linear weight, of several the lowest; integers only
+  labels    ///< the label with the largest linear weight, the lowest if tied; integers only
 };
 
-/// What the components of a source are, and how they follow the deformation: F is its gradient in
-/// world axes, constant in a tetrahedron, R the rotation nearest to F. Components are along world
-/// axes, on oblique grids too, as VTK has them. Of tetrahedra that are inverted R is the nearest
-/// proper rotation, without the reflection.
+/// What the components of a source are, and how the deformation reorients them. F is the
+/// deformation gradient in world axes, constant in a tetrahedron; R the proper rotation nearest to
+/// F, also in inverted tetrahedra. Components are along world axes, on oblique grids too, as in
+/// VTK.
 enum class Quantity {
-  components,            ///< numbers that stay what they are
+  components,            ///< independent numbers, not reoriented
   vector,                ///< 3 components: R v
-  covariant_vector,      ///< F^-T v, as gradients go
-  contravariant_vector,  ///< F v, as material lines go
+  covariant_vector,      ///< F^-T v, as gradients transform
+  contravariant_vector,  ///< F v, as material lines transform
   tensor,                ///< symmetric, 6 components XX YY ZZ XY YZ XZ: R D R^T
-  principal_tensor  ///< the same: eigenvalues stay, the first eigenvector follows F, the second
-                    ///< stays in the plane of both (D. C. Alexander et al., 2001)
+  principal_tensor  ///< a tensor whose eigenvalues stay; the first eigenvector e1 becomes F e1, the
+                    ///< second lies in the plane of F e1 and F e2 (D. C. Alexander et al., 2001)
 };
 
 /// How contacts are solved. `automatic` is the one to use; the others are for experts who compare
@@ -70,7 +70,7 @@ enum class ContactMethod {
   newton           ///< sweeps, then semismooth Newton on the natural map (host, per island)
 };
 
-/// What `tolerance` bounds.
+/// The error measure that ContactOptions::tolerance bounds.
 enum class ContactMeasure {
   eta,   ///< energy-weighted natural residual, relative, with the true A; free of units
   fclib  ///< FCLIB's natural-map error: |u~ - P(u~ - r)| accumulated, relative to |q|
