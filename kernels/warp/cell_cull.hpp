@@ -65,8 +65,9 @@ struct CellCullBody {
 /// @param switches        which verdicts are used
 /// @param frame           the output
 /// @param pairs           out, one per candidate pair, `rejected_pair` where no voxel is inside
+/// @pre pairs.size is at least the number of candidate pairs, or the step is repeated with more
 ///
-/// Determinism: as corner_mask. Cost: 16 bytes read, 8 written per pair.
+/// Determinism: as corner_mask(). Cost: 16 bytes read, 8 written per pair.
 /// Source: Gascon et al. 2013, section 4 (rejection); acceptance is ours.
 template <class Exec>
 void cell_cull(Exec& exec,

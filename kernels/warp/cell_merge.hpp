@@ -100,6 +100,7 @@ struct CellMergeBody {
 /// @param ranges         out, shape [cell_count + 1]
 /// @param touched        out, 1 for touched cells, see CellTouchBody, shape [cell_count]
 /// @param touched_count  the number of touched cells is added to it, shape [1]
+/// @pre both lists are sorted by cell, then tetrahedron; `before` has the pairs of all tetrahedra
 ///
 /// Determinism: same bits for the same lists. Cost: 3 times 8 bytes per pair.
 /// Source: ours; Gascon et al. 2013 rasterize everything in every frame.

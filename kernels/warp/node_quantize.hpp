@@ -62,6 +62,7 @@ struct NodeQuantizeBody {
 ///                   reports by class
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes and 15 operations per node.
+/// Source: ours.
 template <class Exec>
 void node_quantize(Exec& exec,
                    const IndexFromWorld& map,

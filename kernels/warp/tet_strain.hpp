@@ -59,6 +59,7 @@ struct TetStrainBody {
 ///
 /// Determinism: within 2^-23 relative of the gradient between back ends. Cost: 64 bytes written and
 /// about 150 operations per tetrahedron.
+/// Source: the definitions of continuum mechanics.
 template <class Exec>
 void tet_strain(Exec& exec,
                 View<const TetSetup> setups,

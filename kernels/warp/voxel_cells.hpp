@@ -33,7 +33,8 @@ struct VoxelCellBody {
 /// @param touched  output cells that this step wrote; empty: all
 /// @param owners   in: tetrahedra, out: mesh elements, shape [voxel_count]; empty: not wanted
 ///
-/// Determinism: exact. Cost: 8 bytes per voxel.
+/// Determinism: same bits on every back end. Cost: 8 bytes per voxel.
+/// Source: ours.
 template <class Exec>
 void voxel_cells(Exec& exec,
                  const HexView& hexes,

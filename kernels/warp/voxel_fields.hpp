@@ -247,6 +247,7 @@ struct HexFieldsBody {
 /// Determinism: a displacement is computed in float64 and rounded once, to within an ulp between
 /// back ends; the rest is copied. Cost: 4 bytes read and those of the fields written per voxel; 80
 /// operations per run of voxels with one owner, and 6 more per voxel, for displacements.
+/// Source: ours.
 template <class Exec>
 void voxel_fields(Exec& exec, VoxelFieldsJob job) {
   job.stretch = Exec::reads_are_free ? job.frame.end[0] - job.frame.begin[0] : 1;
