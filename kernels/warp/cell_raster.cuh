@@ -38,7 +38,7 @@ struct RasterChunk {
   std::uint16_t rows[raster_chunk];  ///< extent of the box in the cell: bits j, and bits 8 + k
   bool accepted[raster_chunk];
   bool copied[raster_chunk];
-  bool alone[raster_chunk];  ///< steep or trilinear: sampled by store_owned() instead of `maps`
+  bool own_map[raster_chunk];  ///< steep or trilinear: sampled by store_owned() instead of `maps`
 };
 
 /// Bit b for each voxel corner + b, b in 0..7, that lies in [begin, end).
@@ -72,8 +72,8 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
                                    bits_within(tet.begin[2], tet.end[2], corner[2]) << cell_edge);
     chunk.accepted[slot] = is_accepted(pair);
     chunk.copied[slot] = is_copied(job, tet);
-    chunk.alone[slot] = tet.kind == MapKind::trilinear ||
-                        (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
+    chunk.own_map[slot] = tet.kind == MapKind::trilinear ||
+                          (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
   }
 }
 
@@ -133,7 +133,7 @@ __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
     store_filled(job, work, voxel.offset);
   } else if (transformed) {
     store_transformed_voxel(job, t, voxel);
-  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.alone[slot]) {
+  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.own_map[slot]) {
     store_owned<General, T, double>(job, t, voxel);
   } else {
     store_sample<General>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],

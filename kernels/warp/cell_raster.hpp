@@ -241,7 +241,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      std::int64_t voxel) {
   int whole[3];
   double at[3];
-  place_in_hex(tet, map, x, whole, at);
+  hex_source_position(tet, map, x, whole, at);
   for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
   store_position<General>(job, job.filter, whole, at, voxel);
 }

@@ -175,7 +175,7 @@ TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradie
 
 /// Source position of frame voxel x, as an integer voxel `whole` plus a local part `at`; other
 /// parameters as hex_local().
-TETWARP_HD void place_in_hex(
+TETWARP_HD void hex_source_position(
     const TetSetup& tet, const HexMap& map, const int* x, int* whole, double* at) {
   double u[3];
   Matrix3 gradient;

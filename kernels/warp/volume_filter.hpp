@@ -30,8 +30,8 @@ struct FilterTaps {
   int count;  ///< per axis: 4 or 6
   std::int64_t offset[3][max_taps];
   Real weight[3][max_taps];
-  std::int64_t near;  ///< offset of the sample of largest weight
-  bool is_streak;     ///< taps along x follow each other in memory
+  std::int64_t near;   ///< offset of the sample of largest weight
+  bool is_contiguous;  ///< taps along x follow each other in memory
 };
 
 /// Catmull-Rom: the cubic convolution of R. Keys (1981) with a = -1/2; reproduces quadratics.
@@ -120,7 +120,7 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
   FilterTaps<Real> taps;
   taps.count = tap_count(filter);
   taps.near = 0;
-  taps.is_streak = false;
+  taps.is_contiguous = false;
   std::int64_t stride = source.components;
   for (int axis = 0; axis < 3; ++axis) {
     const Real t = at.fraction[axis];
@@ -137,7 +137,7 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
       is_plain = is_plain && there == first + i;
       taps.offset[axis][i] = there * stride;
     }
-    if (axis == 0) taps.is_streak = is_plain && source.components == 1;
+    if (axis == 0) taps.is_contiguous = is_plain && source.components == 1;
     taps.near += taps.offset[axis][nearest];
     stride *= source.dims[axis];
   }
@@ -145,8 +145,8 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
 }
 
 /// near + sum of weight (sample - near) over Taps^3 samples, summed along y, then z, then x.
-/// @tparam Streak  whether taps along x are adjacent in memory
-template <bool Streak, int Taps, class Real, class Sample>
+/// @tparam Contiguous  whether taps along x are adjacent in memory
+template <bool Contiguous, int Taps, class Real, class Sample>
 TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
   const Real near = static_cast<Real>(samples[taps.near]);
   Real column[Taps] = {};
@@ -154,9 +154,9 @@ TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
     Real part[Taps] = {};
     for (int y = 0; y < Taps; ++y) {
       const Sample* line = samples + (taps.offset[2][z] + taps.offset[1][y]);
-      if constexpr (Streak) line += taps.offset[0][0];
+      if constexpr (Contiguous) line += taps.offset[0][0];
       for (int x = 0; x < Taps; ++x) {
-        const Sample sample = line[Streak ? x : taps.offset[0][x]];
+        const Sample sample = line[Contiguous ? x : taps.offset[0][x]];
         part[x] += taps.weight[1][y] * (static_cast<Real>(sample) - near);
       }
     }
@@ -170,7 +170,8 @@ TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
 /// blended() of one component, out of line.
 template <int Taps, class Real, class Sample>
 TETWARP_HD_RARE Real filtered(const FilterTaps<Real>& taps, const Sample* samples) {
-  return taps.is_streak ? blended<true, Taps>(taps, samples) : blended<false, Taps>(taps, samples);
+  return taps.is_contiguous ? blended<true, Taps>(taps, samples)
+                            : blended<false, Taps>(taps, samples);
 }
 
 /// A component's value as stored: clamped to source.range if there is one, rounded to T.

@@ -185,12 +185,12 @@ struct BlockReachBody {
 
   TETWARP_HD void operator()(std::int64_t block) const {
     reach[block] = before[block];
-    if (before[block] < n || !goes_on(block)) return;
+    if (before[block] < n || !can_extend(block)) return;
     reach[block] = static_cast<std::uint8_t>(n + 1);
     if (n == 1) atomic_add(&extended_count[0], 1);
   }
 
-  TETWARP_HD bool goes_on(std::int64_t block) const {
+  TETWARP_HD bool can_extend(std::int64_t block) const {
     int at[3];
     map.set_position(block, at);
     const T* mine = samples_of(at[0], at[1], at[2]);

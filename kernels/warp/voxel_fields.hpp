@@ -30,7 +30,7 @@ struct VoxelFields {
 };
 
 /// Source position of a voxel [frame] under a tetrahedron's map, in float64. For voxels of
-/// hexahedra see place_in_hex().
+/// hexahedra see hex_source_position().
 TETWARP_HD void source_position(const TetSetup& tet, const int* voxel, double* position) {
   double from[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -195,7 +195,7 @@ struct VoxelFieldsJob {
       if (fields.displacement != nullptr) {
         int whole[3];
         double position[3], displacement[3];
-        place_in_hex(tet, hex, voxel, whole, position);
+        hex_source_position(tet, hex, voxel, whole, position);
         for (int axis = 0; axis < 3; ++axis) position[axis] += whole[axis];
         displacement_of(map, voxel, position, displacement);
         for (int r = 0; r < 3; ++r) {
