@@ -1,6 +1,6 @@
 /// @file any_number.hpp
-/// Samples whose type is known at run time only, as float64: for stages that compute far more than
-/// they read.
+/// Arrays whose number type is known at run time only, read and written as float64. Each access has
+/// a switch: for stages that compute much more than they read.
 #pragma once
 #include <cstdint>
 #include <tetwarp/choices.hpp>
@@ -11,8 +11,8 @@
 
 namespace tetwarp {
 
-/// Calls work(T*) with the data as numbers of their type; not for 64-bit integers, which float64
-/// does not hold.
+/// Calls work(T*) with `data` as a pointer to numbers of type `kind`. Does nothing for 64-bit
+/// integers, which float64 cannot represent.
 template <class Work>
 TETWARP_HD void with_numbers(void* data, PixelType kind, Work&& work) {
   switch (kind) {
@@ -38,7 +38,7 @@ TETWARP_HD void with_numbers(void* data, PixelType kind, Work&& work) {
   }
 }
 
-/// Samples of a kind.
+/// An array of numbers of type `kind`.
 struct NumberView {
   void* data;
   PixelType kind;
@@ -49,7 +49,7 @@ struct NumberView {
                  [&](const auto* numbers) { number = static_cast<double>(numbers[i]); });
     return number;
   }
-  /// Rounds once, saturates.
+  /// Converts to `kind`; integers are rounded half to even and saturate.
   TETWARP_HD_RARE void set(std::int64_t i, double number) const {
     with_numbers(data, kind, [&](auto* numbers) {
       numbers[i] = rounded_to<std::remove_reference_t<decltype(*numbers)>>(number);
@@ -57,7 +57,8 @@ struct NumberView {
   }
 };
 
-/// Numbers of type T, to read or, where the caller may, to write.
+/// A view of numbers of type T.
+/// @pre set() is called only on views of arrays that are not const
 template <class T>
 NumberView number_view(const T* numbers) {
   return {const_cast<T*>(numbers), pixel_type_of<T>()};

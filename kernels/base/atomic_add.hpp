@@ -1,5 +1,5 @@
 /// @file atomic_add.hpp
-/// Integer counters that any number of threads may add to: the sum does not depend on their order.
+/// Atomic addition to integer counters: the sum does not depend on the order of threads.
 #pragma once
 #include <cstdint>
 

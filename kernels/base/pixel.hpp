@@ -1,5 +1,5 @@
 /// @file pixel.hpp
-/// Arithmetic on samples: which precision serves a pixel type, and the rounding back to it.
+/// Precision of the arithmetic on samples of a pixel type, and rounding of results to the type.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -9,13 +9,12 @@
 
 namespace tetwarp {
 
-/// The arithmetic that serves a pixel type: float32 for 8- and 16-bit integers and float32, else
-/// float64.
+/// Arithmetic for a pixel type: float32 for 8- and 16-bit integers and float32, else float64.
 template <class T>
 using ArithmeticOf =
     std::conditional_t<(sizeof(T) <= 2 || std::is_same_v<T, float>), float, double>;
 
-/// Whether values of a pixel type may be computed: float64 does not hold 64-bit integers.
+/// Whether samples may be interpolated: not for 64-bit integers, which float64 cannot represent.
 template <class T>
 constexpr bool can_blend = std::is_floating_point_v<T> || sizeof(T) <= 4;
 
@@ -26,7 +25,7 @@ struct IntegerRange {
   static constexpr T high = std::numeric_limits<T>::max();
 };
 
-/// Rounds half to even and saturates; floats are converted.
+/// Converts a computed value to a pixel type: integers are rounded half to even and saturate.
 template <class T, class Real>
 TETWARP_HD T rounded_to(Real value) {
   if constexpr (std::is_floating_point_v<T>) {

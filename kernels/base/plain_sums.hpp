@@ -1,11 +1,11 @@
 /// @file plain_sums.hpp
-/// Sums of one pass over a vector.
+/// Several sums accumulated in one reduction.
 #pragma once
 #include "kernels/base/hd.hpp"
 
 namespace tetwarp {
 
-/// Plain numbers, added in the executor's fixed tree.
+/// Sums that an executor's reduction adds component by component, in its fixed tree.
 template <int count>
 struct PlainSums {
   double value[count] = {};

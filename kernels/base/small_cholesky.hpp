@@ -1,14 +1,15 @@
 /// @file small_cholesky.hpp
-/// Symmetric positive definite systems of a few unknowns, in place.
+/// Solves symmetric positive definite systems of a few unknowns in place.
 #pragma once
 #include "kernels/base/hd.hpp"
 
 namespace tetwarp {
 
-/// Solves G x = p by Cholesky's factors.
-/// @param gram  [most][most], the upper left `size` rows and columns; out: overwritten
+/// Solves G x = p by Cholesky factorization.
+/// @param gram  G in the upper left `size` rows and columns; overwritten
+/// @param size  number of unknowns, at most `most`
 /// @param x     in: p; out: the solution
-/// @return whether G is positive definite; if not, x is of no use
+/// @returns whether G is positive definite; if not, x is undefined
 template <int most>
 TETWARP_HD_RARE bool solve_small_spd(double (&gram)[most][most], int size, double (&x)[most]) {
   for (int j = 0; j < size; ++j) {

@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 
-/// Sums by label; the labels are string literals of the stages.
+/// Sum of seconds by label. Labels are string literals of the stages: they are not copied.
 class StageTimes {
  public:
   void add(std::string_view label, double seconds) {

@@ -5,10 +5,10 @@
 
 namespace tetwarp {
 
-/// Diagonalizes a symmetric matrix by Jacobi's rotations, row by row: eigenvectors are orthonormal
-/// to rounding, whatever the eigenvalues. Ends after ten sweeps, also on NaN.
-/// @param a        in: both halves; out: eigenvalues on the diagonal, in no order
-/// @param vectors  out: column k belongs to a[k][k]
+/// Diagonalizes a symmetric matrix by cyclic Jacobi rotations. Eigenvectors are orthonormal to
+/// rounding for any eigenvalues. Stops after ten sweeps at most, also on NaN.
+/// @param a        in: the matrix, both triangles; out: eigenvalues on the diagonal, unsorted
+/// @param vectors  out: column k is the eigenvector of a[k][k]
 /// Source: C. G. J. Jacobi, 1846.
 template <int Size>
 TETWARP_HD_RARE void symmetric_eigen(double (*a)[Size], double (*vectors)[Size]) {

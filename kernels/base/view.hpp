@@ -1,5 +1,5 @@
 /// @file view.hpp
-/// What a body may hold: pointers with sizes, and the integer geometry of the output grid.
+/// Arrays without ownership, and the integer geometry of the output grid: what stage bodies hold.
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// A pointer and a size; owns nothing.
+/// A pointer and a number of elements; owns nothing.
 template <class T>
 struct View {
   T* data = nullptr;
@@ -24,8 +24,8 @@ struct View {
 constexpr int cell_edge = 8;  ///< voxels along the edge of a cell
 constexpr int cell_shift = 3;
 
-/// The output in frame coordinates. The frame is the output grid's index space moved by whole
-/// cells, so that a region computes the very cells, and the very bits, of the full grid.
+/// The output in frame coordinates. The frame is the output grid's index space shifted by whole
+/// cells: a region of the grid has the same cells, and gets the same bits, as in the full grid.
 struct OutputFrame {
   std::int64_t origin[3];  ///< grid index of frame voxel (0, 0, 0): a multiple of 8
   int begin[3];            ///< first voxel to compute, in 0..7 [frame]

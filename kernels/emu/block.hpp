@@ -1,6 +1,6 @@
 /// @file block.hpp
-/// One thread block on one OS thread: a fiber per CUDA thread, barriers and warp exchanges between
-/// them, and reports of those that cannot complete.
+/// Emulation of one thread block on one OS thread: a fiber per CUDA thread, barriers and warp
+/// exchanges between them; those that can never complete are reported as Fault.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,13 +23,13 @@ namespace tetwarp::simt {
 
 constexpr unsigned warp_size = 32;
 
-/// A kernel did what a GPU leaves undefined, or what would hang it.
+/// A kernel did something that is undefined on a GPU or would hang it.
 class Fault : public std::runtime_error {
  public:
   explicit Fault(const std::string& problem) : std::runtime_error("simt: " + problem) {}
 };
 
-/// Which thread runs first where CUDA leaves it open.
+/// Order in which threads run where CUDA does not define one.
 enum class ThreadOrder { forward, reverse, shuffled };
 
 /// Order of threads, and the seed of the shuffled one.
@@ -38,21 +38,21 @@ struct Schedule {
   unsigned seed = 1;
 };
 
-/// A block runs warp by warp, each as far as it gets alone; a warp runs lane by lane, each as far
-/// as its next synchronization. Two schedules that give different results are a race.
+/// Runs a block warp by warp, each up to its next barrier; a warp lane by lane, each up to its next
+/// synchronization. If two schedules give different results, the kernel has a race.
 ///
-/// Stricter than a GPU: a thread that has left the kernel is missed at barriers and in masks.
+/// Stricter than a GPU: a barrier or mask that includes a thread which has returned is a Fault.
 class Block {
  public:
-  /// The block that this OS thread runs.
+  /// The block of the calling OS thread.
   static Block& current() {
     static thread_local Block block;
     return block;
   }
 
   /// Runs `kernel` once per thread.
-  /// @param on_resume  told the thread's number each time before it runs
-  /// @throws Fault, or what the kernel throws
+  /// @param on_resume  called with the thread's number each time before it runs
+  /// @throws Fault, and any exception of the kernel
   void run(unsigned thread_count,
            std::size_t shared_bytes,
            const Schedule& schedule,
@@ -63,7 +63,7 @@ class Block {
     order_ = schedule.order;
     random_.seed(schedule.seed);
     shared_.assign(shared_bytes, std::byte{0xcd});
-    shared_.shrink_to_fit();  // so that an overrun is one for the address sanitizer, too
+    shared_.shrink_to_fit();  // so that the address sanitizer detects an overrun
     fault_ = nullptr;
     for (unsigned t = 0; t < thread_count; ++t) {
       threads_[t]->state = State::ready;
@@ -76,16 +76,16 @@ class Block {
     }
   }
 
-  /// Dynamic shared memory; every block finds it filled with 0xcd.
+  /// Dynamic shared memory, filled with 0xcd when the block starts.
   void* shared() { return shared_.data(); }
 
-  /// __syncthreads of the running thread.
+  /// __syncthreads() of the running thread, called in source line `line`.
   void wait_at_barrier(int line) { wait(State::at_barrier, line); }
 
   /// Lane of the running thread.
   unsigned lane() const { return running_ % warp_size; }
 
-  /// Waits for the lanes of `mask`. @returns the lanes of them that gave a true predicate
+  /// Waits for the lanes of `mask`. @returns those of them whose predicate is true
   unsigned ballot(unsigned mask, bool predicate, int line) {
     Thread& self = *threads_[running_];
     self.predicate = predicate;
@@ -94,7 +94,7 @@ class Block {
     return self.ballot;
   }
 
-  /// Waits for the lanes of `mask`. @returns the value that `source_lane` gave
+  /// Waits for the lanes of `mask`. @returns the value of `source_lane`
   template <class T>
   T shuffle(unsigned mask, T value, unsigned source_lane, int line) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(Value));
@@ -113,9 +113,9 @@ class Block {
   struct Thread {
     Fiber fiber;
     State state = State::ready;
-    int line = 0;              ///< source line of the synchronization it waits at
-    unsigned mask = 0;         ///< of an exchange
-    unsigned source_lane = 0;  ///< whose value it asks for
+    int line = 0;              ///< source line of the synchronization that it waits in
+    unsigned mask = 0;         ///< of the exchange that it waits in
+    unsigned source_lane = 0;  ///< lane whose value it reads
     bool predicate = false;
     Value sent{};
     unsigned ballot = 0;  ///< results of the exchange
@@ -126,7 +126,7 @@ class Block {
     try {
       kernel();
     } catch (...) {
-      fault_ = std::current_exception();  // leaves the fiber on the scheduler's stack
+      fault_ = std::current_exception();  // rethrown by run_warp(), on the scheduler's stack
     }
     threads_[t]->state = State::done;
   }
@@ -166,7 +166,7 @@ class Block {
     wait(State::at_exchange, line);
   }
 
-  /// Completes one exchange whose lanes have all come. @returns whether there was one
+  /// Completes one exchange that all its lanes have reached. @returns whether there was one
   bool complete_exchange(unsigned first, unsigned lane_count) {
     for (unsigned lane = 0; lane < lane_count; ++lane) {
       const Thread& asking = *threads_[first + lane];
@@ -188,7 +188,7 @@ class Block {
     return false;
   }
 
-  /// First lane that the waiting `lane` of the warp still misses; warp_size when none.
+  /// First lane that has not reached the exchange in which `lane` waits; warp_size if none.
   unsigned missing_lane(unsigned first, unsigned lane) const {
     const Thread& asking = *threads_[first + lane];
     for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
@@ -200,7 +200,8 @@ class Block {
     return warp_size;
   }
 
-  /// Lets all threads pass the barrier they wait at, or tells why they never will.
+  /// Releases all threads from the barrier that they wait at.
+  /// @throws Fault if some thread cannot reach it
   void release_barrier() {
     if (is_done()) return;
     const Thread& first = *threads_[0];

@@ -1,5 +1,5 @@
 /// @file device.hpp
-/// A CUDA device on the CPU: memory, and streams whose work runs as late, or as early, as CUDA
+/// The emulated CUDA device: memory, and streams whose work runs as late or as early as CUDA
 /// allows.
 #pragma once
 #include <algorithm>
@@ -22,28 +22,28 @@ namespace tetwarp::simt {
 
 struct Stream;
 
-/// What was put on a stream while it was captured.
+/// Work captured from a stream, in order.
 using Recording = std::vector<std::function<void()>>;
 
-/// A place in a stream.
+/// A point in a stream: before its item number `item`.
 struct Event {
-  Stream* stream = nullptr;  ///< null: never recorded, nothing to wait for
+  Stream* stream = nullptr;  ///< null: never recorded, counts as passed
   std::uint64_t item = 0;
 
   bool is_passed() const;
-  void pass() const;
+  void pass() const;  ///< runs the work before it
 };
 
-/// Work in its order; `done` of `queued` items have run.
+/// A queue of work; `done` of the `queued` items have run.
 struct Stream {
   struct Item {
-    Event after;  ///< has to be passed first
+    Event after;  ///< must be passed before the item runs
     std::function<void()> run;
   };
   std::deque<Item> work;
   std::uint64_t queued = 0;
   std::uint64_t done = 0;
-  std::optional<Recording> recording;  ///< takes what is put on the stream, which does not run
+  std::optional<Recording> recording;  ///< set while capturing: work goes here and does not run
 
   void enqueue(std::function<void()> run, const Event& after = {}) {
     if (recording) return recording->push_back(std::move(run));
@@ -53,7 +53,7 @@ struct Stream {
   void run_until(std::uint64_t item) {
     while (done < item) run_one();
   }
-  /// As far as it gets without what other streams have not done yet.
+  /// Runs items until the next one depends on unfinished work of another stream.
   void run_ready() {
     while (!work.empty() && work.front().after.is_passed()) run_one();
   }
@@ -75,28 +75,29 @@ inline void Event::pass() const {
   if (stream != nullptr) stream->run_until(item);
 }
 
-/// What the host asked for, in order.
+/// Calls of the runtime that are recorded, one letter each.
 enum class ApiCall : char {
   launch = 'L',
   allocate = 'A',
   release = 'F',
-  wait = 'W',            ///< for a stream or an event
-  copy_to_device = 'U',  ///< from the host
+  wait = 'W',  ///< of the host for a stream or an event
+  copy_to_device = 'U',
   copy_to_host = 'D',
-  copy_within = 'C',
+  copy_within = 'C',  ///< from device to device
   fill = 'Z'
 };
 
-/// The one device.
+/// The one emulated device: memory, streams and the record of calls.
 class Device {
  public:
   std::recursive_mutex lock;
 
   static constexpr int none = -1;
-  /// Number of the stream, in their order of making, that runs as soon as events let it; the others
-  /// run when somebody waits for them.
+  /// Index, in order of creation, of the stream whose work runs as early as events allow; `none`
+  /// for no stream. Work of other streams runs when it is waited for.
   int eager_stream = none;
-  /// Number of the cudaStreamWaitEvent from now on that does nothing, to see that it is missed.
+  /// How many calls of cudaStreamWaitEvent still work before one is ignored; `none` ignores none.
+  /// Lets a test show that each wait is needed.
   int skipped_wait = none;
 
   static Device& only() {
@@ -104,13 +105,14 @@ class Device {
     return device;
   }
 
-  /// The calls since the last time it was asked, one letter each.
+  /// Letters of the calls since the last take_calls(), see ApiCall.
   std::string take_calls() {
     const std::lock_guard guard(lock);
     return std::exchange(calls_, {});
   }
   void note(ApiCall call) { calls_ += static_cast<char>(call); }
 
+  /// @returns memory filled with 0xcd
   void* allocate(std::size_t size, bool is_pinned) {
     auto memory = std::make_unique<std::byte[]>(std::max<std::size_t>(size, 1));
     std::memset(memory.get(), 0xcd, size);
@@ -118,7 +120,7 @@ class Device {
     memory_[data] = {std::move(memory), size, is_pinned};
     return data;
   }
-  /// @returns whether there was such memory
+  /// Runs all pending work, then frees the memory. @returns false if it was not allocated here
   bool release(const void* data) {
     run_all();
     return memory_.erase(static_cast<const std::byte*>(data)) == 1;
@@ -128,7 +130,7 @@ class Device {
   }
   bool is_pinned(const void* data, std::size_t size) const { return is_within(data, size, true); }
 
-  /// Host memory of others becomes pinned.
+  /// Registers memory that the caller owns as pinned.
   void pin(void* data, std::size_t size) {
     memory_[static_cast<const std::byte*>(data)] = {nullptr, size, true};
   }
@@ -141,7 +143,8 @@ class Device {
   void run_all() {
     for (const auto& stream : streams_) stream->run_until(stream->queued);
   }
-  /// To be called after everything that may let the stream eager_stream go on.
+  /// Runs the work of eager_stream that is ready; called after each change that may make some
+  /// ready.
   void run_eager() {
     const auto number = static_cast<std::size_t>(eager_stream);
     if (eager_stream != none && number < streams_.size()) streams_[number]->run_ready();
@@ -167,7 +170,7 @@ class Device {
   std::string calls_;
 };
 
-/// Runs a kernel on a stream; without one at once.
+/// Enqueues a kernel on a stream; with a null stream runs it immediately.
 template <class Kernel, class... Args>
 void launch_on(cudaStream_t stream,
                Kernel kernel,

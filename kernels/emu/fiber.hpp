@@ -1,5 +1,5 @@
 /// @file fiber.hpp
-/// A function that stops in the middle and goes on later, on a stack of its own.
+/// A coroutine with a stack of its own: a call that can be suspended and resumed.
 #pragma once
 #include <ucontext.h>
 
@@ -28,7 +28,7 @@ class Fiber {
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;
 
-  /// Prepares a call of `entry`, which must not throw; a call suspended before is forgotten.
+  /// Prepares a call of `entry`, which must not throw. A call that is still suspended is abandoned.
   void start(std::function<void()> entry) {
     entry_ = std::move(entry);
 #if defined(__SANITIZE_ADDRESS__)
@@ -49,7 +49,7 @@ class Fiber {
     to_fiber.came_back();
   }
 
-  /// From inside the call: goes back to the owner; returns at the next resume().
+  /// To be called from inside the call: returns control to the caller of resume().
   void suspend() {
     const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
     swapcontext(&own_, &owner_);
@@ -64,7 +64,7 @@ class Fiber {
     std::size_t size = 0;
   };
 
-  /// Tells the address sanitizer, where there is one, which stack comes next.
+  /// Announces a switch of stacks to the address sanitizer; does nothing without one.
   class Switch {
    public:
 #if defined(__SANITIZE_ADDRESS__)
@@ -92,10 +92,11 @@ class Fiber {
     Fiber& self = *resumed;
     Switch::arrived(nullptr, &self.owner_stack_);
     self.entry_();
-    self.suspend();  // for good: start() makes a fresh call
+    self.suspend();  // never resumed: start() prepares a new call
   }
 
-  static inline thread_local Fiber* resumed = nullptr;  ///< hands `this` to run()
+  static inline thread_local Fiber* resumed =
+      nullptr;  ///< argument of run(), which makecontext() cannot pass
 
   std::unique_ptr<std::byte[]> stack_;
   std::function<void()> entry_;

@@ -1,6 +1,5 @@
 /// @file graph.hpp
-/// CUDA's graphs on the emulated device: what was put on a stream while it was captured, to run
-/// again.
+/// CUDA graphs on the emulated device: a graph is the list of work captured from a stream.
 #pragma once
 #include <functional>
 #include <mutex>

@@ -1,10 +1,11 @@
 /// @file runtime.hpp
-/// CUDA's runtime calls on the emulated device, to test what drives it.
+/// CUDA's runtime functions on the emulated device, to test host code that calls them.
 ///
-/// Work on a stream runs as late as CUDA allows: when somebody waits for it; that of one stream, if
-/// a test wants, as early as events allow. What reads a result without waiting, or overwrites what
-/// a copy still needs, gets wrong results in tests. Copies must go the way they say, and every call
-/// of interest is written down. Any number of threads may call.
+/// Work on a stream runs as late as CUDA allows: when it is waited for. A test can choose one
+/// stream whose work runs as early as events allow. Code that reads a result without waiting for
+/// it, or overwrites memory that a pending copy still reads, therefore gets wrong results. Copies
+/// whose direction contradicts their addresses fail. Calls are recorded, see Device::take_calls().
+/// All functions may be called from any thread.
 #pragma once
 #include <cstddef>
 #include <cstring>
@@ -137,13 +138,14 @@ inline cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, u
   }
   return cudaSuccess;
 }
-/// A millisecond each: the emulation has no clock.
+/// Always one millisecond: the emulation has no clock.
 inline cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t, cudaEvent_t) {
   *milliseconds = 1;
   return cudaSuccess;
 }
 
-/// Copies from pageable memory are staged at once, those to it wait, as CUDA's do.
+/// As in CUDA, a copy from pageable memory reads it before the call returns, and a copy to pageable
+/// memory is complete when the call returns.
 inline cudaError_t cudaMemcpyAsync(
     void* to, const void* from, std::size_t size, cudaMemcpyKind kind, cudaStream_t stream) {
   using tetwarp::simt::ApiCall;
@@ -184,4 +186,4 @@ inline cudaError_t cudaMemsetAsync(void* data, int value, std::size_t size, cuda
 }
 // NOLINTEND(readability-identifier-naming)
 
-#include "kernels/emu/graph.hpp"  // IWYU pragma: export: reads the names above
+#include "kernels/emu/graph.hpp"  // IWYU pragma: export: uses the names above

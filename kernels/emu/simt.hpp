@@ -1,10 +1,11 @@
 /// @file simt.hpp
-/// Runs CUDA kernels on the CPU, unchanged, to test them where there is no GPU.
+/// Runs unchanged CUDA kernels on the CPU, to test them without a GPU.
 ///
-/// Gives a C++ compiler the CUDA names that kernels here use: indices, shared memory, barriers,
-/// shuffles, votes and integer atomics. Finds wrong results under three thread orders, barriers
-/// that not all threads reach, warp operations that miss a lane and, with the address sanitizer,
-/// accesses out of bounds, shared memory included. Kernels may not spin on other threads.
+/// Defines for a C++ compiler the CUDA names that kernels here use: indices, shared memory,
+/// barriers, shuffles, votes and integer atomics. Detects results that depend on the order of
+/// threads, barriers that not all threads reach, warp operations that miss a lane and, with the
+/// address sanitizer, accesses out of bounds, also in shared memory. Kernels must not spin on other
+/// threads.
 #pragma once
 #include <algorithm>
 #include <concepts>
@@ -19,11 +20,11 @@
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): CUDA's own names
 #define __host__
 #define __device__
-#define __global__ [[maybe_unused]] static  // inline functions' statics have no redzones
+#define __global__ [[maybe_unused]] static  // the sanitizer guards no statics of inline functions
 #define __forceinline__ inline
 #define __launch_bounds__(...)
 #if defined(__SANITIZE_ADDRESS__)
-#define __shared__ static  // thread-local storage has no redzones; blocks run one after another
+#define __shared__ static  // the sanitizer guards no thread-local storage; blocks run one by one
 #else
 #define __shared__ static thread_local  // an OS thread runs one block at a time
 #endif
@@ -131,7 +132,7 @@ T atomicMax(T* address, std::type_identity_t<T> value) {
 
 namespace tetwarp::simt {
 
-/// The schedule of the launches that follow.
+/// The schedule of later launches; may be assigned.
 inline Schedule& schedule() {
   static Schedule current;
   return current;
@@ -150,7 +151,7 @@ void for_each_schedule(Check check) {
   schedule() = Schedule{};
 }
 
-/// Throws Fault on a configuration that no GPU takes without being asked specially.
+/// @throws Fault if a launch exceeds limits that hold on every GPU by default
 inline void check_launch(dim3 grid, dim3 block, std::size_t shared_bytes) {
   const std::uint64_t threads = std::uint64_t{block.x} * block.y * block.z;
   if (threads == 0 || threads > 1024 || block.z > 64) throw Fault("block size");
@@ -161,12 +162,11 @@ inline void check_launch(dim3 grid, dim3 block, std::size_t shared_bytes) {
   if (shared_bytes > std::size_t{48} * 1024) throw Fault("shared memory");
 }
 
-/// Grids of fewer blocks run on one OS thread: to wake others takes longer, by far on a machine
-/// that has other work.
+/// Grids of fewer blocks run on one OS thread: waking other threads would take longer.
 constexpr std::int64_t fewest_parallel_blocks = 64;
 
-/// Runs a kernel to its end: blocks in parallel, the threads of a block as schedule() says.
-/// @throws Fault on the first block that breaks a rule
+/// Runs a kernel to its end: blocks in parallel on OS threads, threads of a block by schedule().
+/// @throws Fault if a block has one
 template <class Kernel, class... Args>
 void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, const Args&... args) {
   check_launch(grid, block, shared_bytes);

@@ -10,7 +10,7 @@ namespace tetwarp {
 constexpr int sum_threads = 128;
 constexpr int sum_warps = sum_threads / 32;
 
-/// The value of the lane `step` above, word by word.
+/// The value `mine` of the lane `step` above. @pre all lanes of the warp call it
 template <class Sum>
 __device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
   constexpr int words = sizeof(Sum) / sizeof(double);
@@ -23,13 +23,14 @@ __device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
   return other;
 }
 
-/// The sum over the threads of a block, told to all of them. A fixed tree.
-/// @param of_warp  shared, [sum_warps]
+/// Sum over the threads of a block by a fixed tree; every thread gets it.
+/// @param of_warp  scratch in shared memory, shape [sum_warps]
+/// @pre blockDim.x is sum_threads, and all threads of the block call it
 template <class Sum>
 __device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
   const int thread = static_cast<int>(threadIdx.x);
   for (unsigned step = 16; step > 0; step /= 2) mine += shuffled_down(mine, step);
-  __syncthreads();  // the sums before have been read
+  __syncthreads();  // all threads have read the sums of the previous call
   if (thread % 32 == 0) of_warp[thread / 32] = mine;
   __syncthreads();
   Sum total = of_warp[0];

@@ -1,5 +1,5 @@
 /// @file exec_buffer.cuh
-/// Memory of a device, and host memory that a device copies to and from without staging.
+/// Device memory and page-locked host memory.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tetwarp {
 
-/// Throws CudaError naming the call when it failed.
+/// @throws CudaError naming `call` if `error` is one
 inline void check_cuda(cudaError_t error, const char* call) {
   if (error != cudaSuccess) {
     throw CudaError(std::string(call) + ": " + cudaGetErrorString(error));
@@ -35,7 +35,7 @@ struct PinnedMemory {
   static cudaError_t release(void* data) { return cudaFreeHost(data); }
 };
 
-/// Owns memory that only grows; contents are undefined after growth.
+/// Owns an array whose capacity never shrinks; contents are undefined after reserve() grew it.
 template <class T, class Kind>
 class GrowingBuffer {
  public:

@@ -1,6 +1,6 @@
 /// @file exec_cuda.cuh
-/// CudaExec: the operations a pipeline is made of, on one device: kernels on one stream, copies to
-/// it and back on two others, so that those of one step run beside the kernels of another.
+/// CudaExec: the executor of stages and pipelines on one device. Kernels run on one stream, uploads
+/// and downloads on two others, so that copies of one step overlap with kernels of another.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,13 +10,14 @@
 
 #include "kernels/base/cell_pair.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/exec/each_kernel.cuh"
 #include "kernels/exec/exec_buffer.cuh"
 #include "kernels/exec/exec_stream.cuh"
 #include "kernels/exec/launch.hpp"
 
 namespace tetwarp {
 
-// primitives_cuda.cu: CUB behind plain functions; `scratch` grows on first use.
+// Defined in primitives_cuda.cu by CUB; `scratch` grows as needed.
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count);
 void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
@@ -32,40 +33,8 @@ void cuda_sort_pairs(cudaStream_t stream,
                      View<CellPair> other,
                      int cell_bits);
 
-constexpr int each_threads = 256;  ///< of the kernels below: one index per thread
-
-/// Blocks per multiprocessor to share registers among, where ptxas would spill; 0: its own choice.
-template <class Body>
-constexpr int resident_blocks = [] {
-  if constexpr (requires { Body::resident_blocks; }) return Body::resident_blocks;
-  return 0;
-}();
-
-template <class Body>
-__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
-    each_kernel(std::int64_t count, Body body) {
-  const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
-  if (i < count) body(i);
-}
-
-/// The segment of an item by bisection of the offsets.
-template <class Body>
-__global__ void __launch_bounds__(each_threads)
-    each_item_kernel(View<const std::int64_t> offsets, std::int64_t capacity, Body body) {
-  const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
-  std::int64_t low = 0, high = offsets.size - 1;
-  if (item >= min_of(offsets[high], capacity)) return;
-  while (low + 1 < high) {
-    const std::int64_t middle = (low + high) / 2;
-    if (offsets[middle] <= item) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  body(low, item - offsets[low], item);
-}
-
+/// Runs stages on one device. All work is enqueued and returns before it has run, unless stated.
+/// Two steps may be in flight: each has its own events and times; select() chooses the current one.
 class CudaExec {
  public:
   template <class T>
@@ -78,7 +47,8 @@ class CudaExec {
     Buffer<T> device;
   };
 
-  /// Reading a size waits for the device: pipelines do it once, then trust their buffers.
+  /// Whether the host can read executor memory without waiting. Here it cannot: pipelines read
+  /// sizes once, then launch over the capacities of their buffers.
   static constexpr bool reads_are_free = false;
 
   explicit CudaExec(int device) : state_(std::make_unique<State>(device)) {}
@@ -91,13 +61,14 @@ class CudaExec {
   }
   int threads() const { return 1; }
 
-  /// What follows belongs to one of two steps in flight, 0 or 1; at first to 0.
+  /// Makes `flight`, 0 or 1, the current step: all calls after it belong to that step. Initially 0.
   void select(int flight) {
     check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
     state_->flight = &state_->flights[flight];
   }
 
-  /// Runs what follows on the caller's stream; null: on this executor's own.
+  /// Later kernels run on the caller's stream; null: on this executor's own. Waits for the kernels
+  /// of the previous stream if it changes.
   void use_stream(void* stream) {
     check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
     const cudaStream_t wanted =
@@ -107,20 +78,21 @@ class CudaExec {
     state_->stream = wanted;
   }
 
-  /// The kernels of the selected step come now; they wait for its upload().
+  /// To be called before the first kernel of the current step: its kernels wait for its upload().
   void begin_compute(void* stream) {
     use_stream(stream);
     flight().uploaded.make_wait(this->stream());
   }
-  /// There are no more of them: what download() brings home is there when they have run.
+  /// To be called after the last kernel of the current step: records the event that download() and
+  /// wait_computed() wait for.
   void end_compute() { flight().computed.record(stream()); }
-  /// From then on the caller may end his stream.
+  /// Waits for the kernels of the current step. Afterwards the caller may destroy its stream.
   void wait_computed() {
     flight().computed.wait();
     state_->stream = state_->own_stream;
   }
 
-  /// Waits for all that was asked for, whatever became of it.
+  /// Waits for all enqueued work and ignores its errors.
   void drain() noexcept {
     for (cudaStream_t stream :
          {cudaStream_t{state_->upload}, state_->stream, cudaStream_t{state_->download}}) {
@@ -129,9 +101,12 @@ class CudaExec {
     state_->stream = state_->own_stream;
   }
 
-  /// Seconds per label of the selected step since the last clear(); waits for all it was charged.
+  /// Seconds per label of the current step since the last clear() of the result; waits for its
+  /// work.
   StageTimes& times() { return flight().times(); }
 
+  /// Copies a host array to the device, into `buffer`, on the stream of kernels.
+  /// @param size  number of elements, here and below
   template <class T>
   View<const T> resident(const char* label, const T* host, std::int64_t size, Buffer<T>& buffer) {
     buffer.reserve(size);
@@ -142,7 +117,8 @@ class CudaExec {
     });
     return buffer.const_view(size);
   }
-  /// Numbers for the selected step, taken as they are now, that travel beside earlier kernels.
+  /// Copies `host` to pinned memory before it returns, and from there to the device on the upload
+  /// stream, concurrently with kernels of earlier steps.
   template <class T>
   View<const T> upload(const char* label, const T* host, std::int64_t size, Staged<T>& staged) {
     staged.host.reserve(size);
@@ -156,13 +132,14 @@ class CudaExec {
     flight().uploaded.record(state_->upload);
     return staged.device.const_view(size);
   }
+  /// Memory of `size` elements that stages write to; the CPU's executor returns the first argument.
   template <class T>
   T* writable(T*, std::int64_t size, Buffer<T>& buffer) {
     buffer.reserve(size);
     return buffer.view(size).data;
   }
-  /// Brings home what the selected step has computed, beside the kernels of the next. Returns
-  /// before it is there if downloads_async().
+  /// Copies results of the current step to the host after end_compute(), concurrently with kernels
+  /// of the next step. Returns before the copy is done if downloads_async(to).
   template <class T>
   void download(const char* label, View<const T> from, T* to) {
     flight().computed.make_wait(state_->download);
@@ -172,19 +149,20 @@ class CudaExec {
                  "cudaMemcpyAsync to host");
     });
   }
-  /// True for page-locked memory. Copies to other memory wait on the host.
+  /// Whether download() to this address returns at once: true for page-locked memory.
   bool downloads_async(const void* to) const {
     cudaPointerAttributes attributes;
     check_cuda(cudaPointerGetAttributes(&attributes, to), "cudaPointerGetAttributes");
     return attributes.type == cudaMemoryTypeHost;
   }
-  /// As read(), but they are there after wait_computed().
+  /// As read(), but without waiting: `to` is valid after wait_computed().
   template <class T>
   void fetch(View<const T> from, PinnedBuffer<T>& to) {
     check_cuda(cudaMemcpyAsync(to.view(from.size).data, from.data, bytes_of<T>(from.size),
                                cudaMemcpyDeviceToHost, stream()),
                "cudaMemcpyAsync to host");
   }
+  /// Copies device memory to the host and waits for it.
   template <class T>
   void read(View<const T> from, T* to) {
     check_cuda(
@@ -200,6 +178,7 @@ class CudaExec {
     });
   }
 
+  /// Calls body(i) for i in [0, count), in any order.
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     if (count == 0) return;
@@ -207,6 +186,8 @@ class CudaExec {
       launch(stream(), each_kernel<Body>, blocks_for(count), each_threads, 0, count, body);
     });
   }
+  /// Calls body(s, item - offsets[s], item) for every item of segments s, which are the ranges
+  /// [offsets[s], offsets[s + 1]), in any order. Items from `capacity` on are left out.
   template <class Body>
   void for_each_item(const char* label,
                      View<const std::int64_t> offsets,
@@ -222,16 +203,18 @@ class CudaExec {
     timed(label, [&] { cuda_exclusive_scan(stream(), state_->scratch, values); });
   }
 
-  /// Makes room for scans of so many values, so that a later one does not allocate.
+  /// Allocates the scratch memory for scans of up to `count` values.
   void reserve_scan(std::int64_t count) { cuda_reserve_scan(state_->scratch, count); }
 
-  /// All pairs become rejected ones: later stages run over the capacity, not the count.
+  /// Sets all pairs to rejected_pair, as later stages run over the capacity and not the count.
   void reject_all(const char* label, View<CellPair> pairs) {
     timed(label, [&] {
       check_cuda(cudaMemsetAsync(pairs.data, 0xff, bytes_of<CellPair>(pairs.size), stream()),
                  "cudaMemsetAsync");
     });
   }
+  /// Copies the candidates that are not rejected_pair to the front of `pairs`, in order, and their
+  /// number to pair_count[0]; the rest of `pairs` becomes rejected_pair.
   void select_valid(const char* label,
                     View<const CellPair> candidates,
                     View<const std::int64_t>,
@@ -243,6 +226,7 @@ class CudaExec {
       cuda_select_valid(stream(), state_->scratch, candidates, pairs, pair_count.data);
     });
   }
+  /// Sorts by cell, of which the lowest `cell_bits` bits count; stable.
   void sort_pairs(const char* label,
                   View<CellPair> pairs,
                   View<const std::int64_t>,
@@ -255,7 +239,7 @@ class CudaExec {
     });
   }
 
-  /// Runs work between two events that are charged to a label.
+  /// Calls work(), which enqueues on stream(), and charges its time on the device to `label`.
   template <class Work>
   void timed(const char* label, Work&& work) {
     flight().timed(label, stream(), std::forward<Work>(work));

@@ -1,5 +1,5 @@
 /// @file exec_stream.cuh
-/// Streams and events of a device: what waits for what, and how long it took.
+/// Streams and events of a device, for dependencies between streams and for timing.
 #pragma once
 #include <cstddef>
 #include <utility>
@@ -27,7 +27,7 @@ class DeviceStream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// A place in a stream that other streams and the host can wait for.
+/// A point in a stream that other streams and the host can wait for.
 class DeviceEvent {
  public:
   enum class Clock { off, on };
@@ -45,13 +45,13 @@ class DeviceEvent {
   void record(cudaStream_t stream) const {
     check_cuda(cudaEventRecord(event_, stream), "cudaEventRecord");
   }
-  /// What is put on the stream from now on waits. Of an event never recorded: for nothing.
+  /// Work enqueued on `stream` from now on waits for the event; not if it was never recorded.
   void make_wait(cudaStream_t stream) const {
     check_cuda(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
   }
   void wait() const { check_cuda(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
 
-  /// Between two events that have been passed.
+  /// Time between two events [s]. @pre both have completed
   double seconds_since(const DeviceEvent& begin) const {
     float milliseconds = 0;
     check_cuda(cudaEventElapsedTime(&milliseconds, begin.event_, event_), "cudaEventElapsedTime");
@@ -62,13 +62,14 @@ class DeviceEvent {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Where the parts of one step are on their streams, and how long they took.
+/// Events and stage times of one step in flight.
 class DeviceFlight {
  public:
-  DeviceEvent uploaded;
-  DeviceEvent computed;
+  DeviceEvent uploaded;  ///< the step's input is on the device
+  DeviceEvent computed;  ///< the step's kernels have run
 
-  /// Runs work that puts something on a stream, between two events that are charged to a label.
+  /// Calls work(), which enqueues on `stream`, and charges the time that this takes on the device
+  /// to `label`.
   template <class Work>
   void timed(const char* label, cudaStream_t stream, Work&& work) {
     if (used_ == spans_.size()) spans_.emplace_back();
@@ -77,10 +78,10 @@ class DeviceFlight {
     span.begin.record(stream);
     work();
     span.end.record(stream);
-    ++used_;  // not if work throws: there is no end then
+    ++used_;  // after work(): if it throws, the span has no end
   }
 
-  /// Seconds per label since the last clear(); waits for all that was charged.
+  /// Seconds per label since the last clear() of the result; waits until all timed work is done.
   StageTimes& times() {
     for (std::size_t i = 0; i < used_; ++i) {
       const Span& span = spans_[i];

@@ -1,6 +1,6 @@
 /// @file launch.hpp
-/// Launches hand-mapped kernels: on a GPU when nvcc compiles, else on the CPU by emulation. What a
-/// `.cuh` file includes, and all it needs of CUDA.
+/// Launches kernels: on a GPU if compiled by nvcc, else on the CPU by the emulation. `.cuh` files
+/// include this instead of CUDA's headers.
 #pragma once
 #include <cstddef>
 
@@ -28,11 +28,11 @@ __device__ __forceinline__ T* dynamic_shared() {
 
 /// Launches `kernel(args...)`.
 ///
-/// @param stream        orders the work; the emulation takes none, too, and then runs at once
-/// @param grid          blocks, none of its extents zero
-/// @param block         threads of a block
+/// @param stream        stream to enqueue on; null in the emulation runs the kernel immediately
+/// @param grid          number of blocks, no extent zero
+/// @param block         threads per block
 /// @param shared_bytes  dynamic shared memory of a block, at most 48 KiB
-/// @throws CudaError if the launch fails, simt::Fault where the emulation finds a broken rule
+/// @throws CudaError if the launch fails, simt::Fault if the emulation finds an error in the kernel
 template <class... Parameters, class... Args>
 void launch(cudaStream_t stream,
             void (*kernel)(Parameters...),

@@ -1,5 +1,6 @@
 /// @file primitives_cuda.cu
-/// Scan, selection and sort by CUB: the one file that includes it (it costs 12 s per architecture).
+/// Scan, selection and sort by CUB. The only file that includes CUB, which takes 12 s to compile
+/// per architecture.
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
@@ -10,7 +11,8 @@ namespace tetwarp {
 
 namespace {
 
-/// CUB's two calls: how much scratch, then the work.
+/// Makes the two calls that CUB needs: call(null, bytes) asks for the scratch size, the second
+/// works.
 template <class Call>
 void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& call) {
   std::size_t bytes = 0;

@@ -1,6 +1,6 @@
 /// @file cell_cull.hpp
-/// Stage "cull" of the warp: reject, accept or keep each (tetrahedron, cell) pair by the masks of
-/// the cell's eight corners.
+/// Stage "cull" of the warp: rejects, accepts or keeps each (tetrahedron, cell) pair by the masks
+/// of the cell's eight corners.
 #pragma once
 #include <cstdint>
 
@@ -11,13 +11,14 @@
 
 namespace tetwarp {
 
-/// Which verdicts may be given; switched off, a pair is kept and its voxels are tested.
+/// Which verdicts are used. A pair whose verdict is switched off is kept, and its voxels are
+/// tested.
 struct CullSwitches {
   bool reject = true;
   bool accept = true;
 };
 
-/// One item = one candidate pair; any order. Cells of a tetrahedron run i fastest.
+/// One item = one candidate pair; any order. Cells of a tetrahedron are numbered i fastest.
 struct CellCullBody {
   View<const TetSetup> setups;
   View<const std::int64_t> corner_offsets;
@@ -35,7 +36,8 @@ struct CellCullBody {
     const std::int64_t slice = line * (ny + 1);
     const std::int64_t first =
         corner_offsets[t] + local % nx + (row % ny) * line + (row / ny) * slice;
-    // Nothing is known of small tetrahedra, nor where capacity ran out: the step is then repeated.
+    // Small tetrahedra have no masks. Where the capacity of masks was too small, the step is
+    // repeated, and the verdict here does not matter. Both are kept.
     unsigned all = 0;
     const bool has_masks = corner_offsets[t] < corner_offsets[t + 1];
     if (has_masks && first + slice + line + 1 < masks.size) {
@@ -60,11 +62,12 @@ struct CellCullBody {
 /// @param corner_offsets  first corner of each tetrahedron, shape [tet_count + 1]
 /// @param masks           from corner_mask
 /// @param pair_offsets    first candidate pair of each tetrahedron, shape [tet_count + 1]
-/// @param switches        verdicts that may be given
+/// @param switches        which verdicts are used
 /// @param frame           the output
 /// @param pairs           out, one per candidate pair, `rejected_pair` where no voxel is inside
+/// @pre pairs.size is at least the number of candidate pairs, or the step is repeated with more
 ///
-/// Determinism: as corner_mask. Cost: 16 bytes read, 8 written per pair.
+/// Determinism: as corner_mask(). Cost: 16 bytes read, 8 written per pair.
 /// Source: Gascon et al. 2013, section 4 (rejection); acceptance is ours.
 template <class Exec>
 void cell_cull(Exec& exec,
@@ -80,8 +83,8 @@ void cell_cull(Exec& exec,
                      CellCullBody{setups, corner_offsets, masks, switches, frame, pairs});
 }
 
-/// Stages mask and cull in one, for an executor that has no shorter way
-/// (host/warp/cpu/cell_cull_cpu.hpp).
+/// Stages "mask" and "cull" together; parameters as cell_cull(). The CPU's executor has a faster
+/// overload (host/warp/cpu/cell_cull_cpu.hpp).
 /// @param masks  scratch, as many as there are corners
 template <class Exec>
 void cell_verdicts(Exec& exec,

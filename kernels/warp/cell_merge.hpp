@@ -1,6 +1,6 @@
 /// @file cell_merge.hpp
-/// Stage "cull" of a step that updates the one before: the pairs that have stayed and the fresh
-/// ones, and which cells they change.
+/// Stage "cull" of a step that updates the previous one: merges the pairs of tetrahedra that have
+/// not moved with the new pairs of those that have, and marks the cells that this changes.
 #pragma once
 #include <cstdint>
 
@@ -10,8 +10,8 @@
 
 namespace tetwarp {
 
-/// One index = one cell; any order. A cell is touched when a tetrahedron that has moved was or is
-/// there.
+/// One index = one cell; any order. A cell is touched if a moved tetrahedron has a pair with it in
+/// the previous step or in this one.
 struct CellTouchBody {
   PairList before;
   PairList fresh;
@@ -35,7 +35,7 @@ struct CellTouchBody {
   }
 };
 
-/// One index = one cell; any order. Touched in either of two steps.
+/// One index = one cell; any order. Marks cells that are touched in at least one of two steps.
 struct CellEverTouchedBody {
   View<const std::uint8_t> now;
   View<const std::uint8_t> before;
@@ -44,8 +44,8 @@ struct CellEverTouchedBody {
   TETWARP_HD void operator()(std::int64_t cell) const { touched[cell] = now[cell] | before[cell]; }
 };
 
-/// One index = one cell or the end behind the last; any order. Merges two runs that ascend by
-/// tetrahedron.
+/// One index = one cell, or one past the last; any order. Merges the cell's pairs of two lists,
+/// which are sorted by tetrahedron.
 struct CellMergeBody {
   PairList before;
   PairList fresh;
@@ -63,11 +63,11 @@ struct CellMergeBody {
       return;
     }
     const std::int64_t old_end = end_of_cell(before, cell), new_end = end_of_cell(fresh, cell);
-    std::int64_t next = fresh.ranges[cell].begin, at = begin, settled = -1;
+    std::int64_t next = fresh.ranges[cell].begin, at = begin, accepted_end = -1;
     const auto append = [&](CellPair pair) {
       if (at < pairs.size) pairs[at] = pair;
       ++at;
-      if (settled < 0 && is_accepted(pair)) settled = at;
+      if (accepted_end < 0 && is_accepted(pair)) accepted_end = at;
     };
     for (std::int64_t p = before.ranges[cell].begin; p < old_end; ++p) {
       const CellPair pair = before.pairs[p];
@@ -78,7 +78,7 @@ struct CellMergeBody {
       append(pair);
     }
     for (; next < new_end; ++next) append(fresh.pairs[next]);
-    ranges[cell] = range_of(begin, settled < 0 ? at : settled);
+    ranges[cell] = range_of(begin, accepted_end < 0 ? at : accepted_end);
   }
 
   TETWARP_HD CellRange range_of(std::int64_t begin, std::int64_t end) const {
@@ -87,20 +87,20 @@ struct CellMergeBody {
   }
 };
 
-/// Replaces the pairs of moved tetrahedra by fresh ones: the list that cell_pairs() would make of
-/// all.
+/// Replaces the pairs of moved tetrahedra by their new ones. The result is the list that
+/// cell_pairs() would make from all tetrahedra.
 ///
 /// @param exec           where to run
-/// @param before         of the step before
-/// @param fresh          of the moved tetrahedra in this step
+/// @param before         pairs of the previous step
+/// @param fresh          pairs of the moved tetrahedra in this step
 /// @param moved          from tet_moved, shape [tet_count]
-/// @param pairs          out; pairs that it has no room for are left out
-/// @param pair_count     out, how many there are, those left out included, shape [1]
+/// @param pairs          out; pairs beyond its size are dropped
+/// @param pair_count     out, number of pairs including dropped ones, shape [1]
 /// @param pair_offsets   scratch, shape [cell_count + 1]
 /// @param ranges         out, shape [cell_count + 1]
-/// @param touched        out, 1 where the pairs of a cell had or have a moved tetrahedron, shape
-///                       [cell_count]
-/// @param touched_count  such cells are added to it, shape [1]
+/// @param touched        out, 1 for touched cells, see CellTouchBody, shape [cell_count]
+/// @param touched_count  the number of touched cells is added to it, shape [1]
+/// @pre both lists are sorted by cell, then tetrahedron; `before` has the pairs of all tetrahedra
 ///
 /// Determinism: same bits for the same lists. Cost: 3 times 8 bytes per pair.
 /// Source: ours; Gascon et al. 2013 rasterize everything in every frame.

@@ -1,5 +1,6 @@
 /// @file cell_pairs.hpp
-/// Stage "cull" of the warp, second half: surviving pairs in the order of cells, then tetrahedra.
+/// Stage "cull" of the warp, second half: sorts the pairs that were not rejected by cell, then
+/// tetrahedron.
 #pragma once
 #include <cstdint>
 
@@ -9,26 +10,26 @@
 
 namespace tetwarp {
 
-/// The pairs of one cell: [begin, end) of the sorted list, cut after the first accepted one, which
-/// settles the cell against all higher tetrahedra.
+/// The pairs of one cell that the raster needs: [begin, end) of the sorted list. It ends after the
+/// first accepted pair, whose tetrahedron owns all voxels that no lower one does.
 struct CellRange {
   std::uint32_t begin;
   std::uint32_t end;
 };
 
-/// Sorted pairs with the range of every cell and, behind the last cell, the empty one that starts
-/// at the end.
+/// Sorted pairs and the range of every cell; after the last cell's an empty range at the end of the
+/// list.
 struct PairList {
   View<const CellPair> pairs;
   View<const CellRange> ranges;  ///< shape [cell_count + 1]
 };
 
-/// One past the last pair of a cell, those behind an accepted one included.
+/// One past the last pair of a cell, including those after the first accepted one.
 TETWARP_HD std::int64_t end_of_cell(const PairList& list, std::int64_t cell) {
   return list.ranges[cell + 1].begin;
 }
 
-/// First position in the first `count` sorted pairs whose cell is not below `cell`.
+/// Position, among the first `count` sorted pairs, of the first whose cell is not below `cell`.
 TETWARP_HD std::int64_t lower_bound_of_cell(View<const CellPair> pairs,
                                             std::int64_t count,
                                             std::int64_t cell) {
@@ -58,23 +59,23 @@ struct CellRangeBody {
   TETWARP_HD std::int64_t count() const { return min_of(pair_count[0], pairs.size); }
 
   /// Sets the range of a cell whose pairs start at `begin`.
-  /// @returns where those of the next cell start
+  /// @returns start of the next cell's pairs
   TETWARP_HD std::int64_t set_range(std::int64_t cell, std::int64_t begin) const {
     const std::int64_t past = count();
-    std::int64_t end = begin, accepted = 0, settled = -1;
+    std::int64_t end = begin, accepted = 0, accepted_end = -1;
     for (; end < past && cell_of(pairs[end]) == cell; ++end) {
       if (!is_accepted(pairs[end])) continue;
       ++accepted;
-      if (settled < 0) settled = end + 1;
+      if (accepted_end < 0) accepted_end = end + 1;
     }
     ranges[cell] = {static_cast<std::uint32_t>(begin),
-                    static_cast<std::uint32_t>(settled < 0 ? end : settled)};
+                    static_cast<std::uint32_t>(accepted_end < 0 ? end : accepted_end)};
     if (accepted > 0) atomic_add(&accepted_count[0], accepted);
     return end;
   }
 };
 
-/// The range of every cell, for an executor that has no shorter way
+/// Sets the range of every cell. The CPU's executor has a faster overload
 /// (host/warp/cpu/cell_cull_cpu.hpp).
 template <class Exec>
 void cell_ranges(Exec& exec, const CellRangeBody& body) {
@@ -87,10 +88,10 @@ void cell_ranges(Exec& exec, const CellRangeBody& body) {
 /// @param candidates      from cell_cull
 /// @param candidate_count number of candidates, shape [1], may exceed the capacity of `candidates`
 /// @param frame           the output
-/// @param pairs           out, surviving pairs sorted by cell then tetrahedron
-/// @param pair_count      out, how many there are, shape [1]
-/// @param ranges          out, shape [cell_count], or one more for a PairList
-/// @param accepted_count  accepted pairs are added to it, shape [1]
+/// @param pairs           out, pairs that are not rejected, sorted by cell, then tetrahedron
+/// @param pair_count      out, number of these pairs, shape [1]
+/// @param ranges          out, shape [cell_count], or [cell_count + 1] for a PairList
+/// @param accepted_count  the number of accepted pairs is added to it, shape [1]
 ///
 /// Determinism: same bits for the same candidates. Cost: a stable radix sort of 8-byte words.
 /// Source: cell-centric order is ours; Gascon et al. 2013 rasterize tetrahedron by tetrahedron.

@@ -1,10 +1,10 @@
 /// @file cell_raster.cuh
-/// Stage "raster" of the warp, mapped by hand: one block owns one output cell and writes each of
-/// its voxels once, background included. No race on shared faces, no separate clear.
+/// Stage "raster" of the warp as a CUDA kernel: one block writes each voxel of one output cell
+/// once, background included. No races on shared faces, no separate clear.
 ///
-/// 128 threads, two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
-/// float32), four voxels along k per thread. The planes, rows and maps of `raster_chunk` tetrahedra
-/// at a time are made once per cell by the first threads and read by all from shared memory.
+/// 128 threads in two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
+/// float32), four voxels along k per thread. Planes, rows and maps of `raster_chunk` tetrahedra at
+/// a time are computed by the first threads into shared memory, from which all threads read them.
 #pragma once
 #include "kernels/exec/launch.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -13,30 +13,42 @@
 namespace tetwarp {
 
 constexpr int raster_threads = 128;
-constexpr int raster_blocks = 5;  ///< resident per multiprocessor: leaves 96 registers, no spills
-constexpr int raster_general_blocks = 2;  ///< the same of the kernel that knows the wide filters
+
+/// Minimum blocks per multiprocessor: five leave 96 registers to a thread. The general kernel needs
+/// more on every architecture, float64 arithmetic on sm_120: with fewer blocks none spills.
+template <class T, bool General>
+constexpr int raster_blocks() {
+  if (General) return 2;
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 1200
+  return sizeof(ArithmeticOf<T>) == 8 ? 4 : 5;
+#else
+  return 5;
+#endif
+}
+
 constexpr int raster_chunk = 16;
 constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
 
-/// What a block knows of `raster_chunk` tetrahedra.
+/// Data of up to `raster_chunk` tetrahedra in shared memory, one slot each.
 template <class Real>
 struct RasterChunk {
   CellPlanes planes[raster_chunk];
   SourceMap<Real> maps[raster_chunk];
   int tet[raster_chunk];
-  std::uint16_t rows[raster_chunk];  ///< of the box in the cell: bit j, and bit 8 + k
+  std::uint16_t rows[raster_chunk];  ///< extent of the box in the cell: bits j, and bits 8 + k
   bool accepted[raster_chunk];
   bool copied[raster_chunk];
-  bool alone[raster_chunk];  ///< not by `maps`: steep or trilinear
+  bool own_map[raster_chunk];  ///< steep or trilinear: sampled by store_owned() instead of `maps`
 };
 
-/// Voxels [begin, end) that lie within the eight from `corner` on, one bit each.
+/// Bit b for each voxel corner + b, b in 0..7, that lies in [begin, end).
 __device__ __forceinline__ unsigned bits_within(int begin, int end, int corner) {
   const int first = min_of(max_of(begin - corner, 0), cell_edge);
   const int past = min_of(max_of(end - corner, 0), cell_edge);
   return ((1u << past) - 1) & ~((1u << first) - 1);
 }
 
+/// Fills the chunk with the tetrahedra of pairs [first, first + count).
 template <class T>
 __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
                                            std::uint32_t first,
@@ -60,12 +72,12 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
                                    bits_within(tet.begin[2], tet.end[2], corner[2]) << cell_edge);
     chunk.accepted[slot] = is_accepted(pair);
     chunk.copied[slot] = is_copied(job, tet);
-    chunk.alone[slot] = tet.kind == MapKind::trilinear ||
-                        (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
+    chunk.own_map[slot] = tet.kind == MapKind::trilinear ||
+                          (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
   }
 }
 
-/// Slot of the voxel's owner in the chunk, or -1.
+/// Slot of the tetrahedron in the chunk that owns voxel (i, j, k) of the cell; -1 if none does.
 template <class T>
 __device__ __forceinline__ int find_owner(const RasterJob<T>& job,
                                           const RasterChunk<ArithmeticOf<T>>& chunk,
@@ -121,11 +133,11 @@ __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
     store_filled(job, work, voxel.offset);
   } else if (transformed) {
     store_transformed_voxel(job, t, voxel);
-  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.alone[slot]) {
+  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.own_map[slot]) {
     store_owned<General, T, double>(job, t, voxel);
   } else {
     store_sample<General>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],
-                          voxel.i, voxel.j, voxel.k, voxel.offset);
+                          voxel);
   }
   if (job.mask != nullptr) job.mask[voxel.offset] = 1;
   if (job.tet != nullptr) job.tet[voxel.offset] = t;
@@ -167,10 +179,10 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
 /// Finds the owner of every voxel of a cell and stores its samples.
 ///
 /// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
-/// 2.5 KiB with float32, 4 KiB with float64 arithmetic.
+/// 2.1 KiB with float32, 2.9 KiB with float64 arithmetic.
 /// @tparam General  whether the job may have wide filters, transforms or hexahedra
 template <class T, bool General>
-__global__ void __launch_bounds__(raster_threads, General ? raster_general_blocks : raster_blocks)
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, General>())
     cell_raster_kernel(RasterJob<T> job) {
   __shared__ RasterChunk<ArithmeticOf<T>> chunk;
   __shared__ int block_counts[4];
@@ -215,8 +227,8 @@ __global__ void __launch_bounds__(raster_threads, General ? raster_general_block
   add_counts(job, cell, mine, block_counts);
 }
 
-/// The kernel for a job: wide filters, transforms and hexahedra have their own, whose registers the
-/// others need not pay for.
+/// The kernel for a job. Jobs with wide filters, transforms or hexahedra use the general kernel,
+/// which needs more than twice the registers.
 template <class T>
 auto raster_kernel(const RasterJob<T>& job) {
   const bool is_plain =

@@ -1,8 +1,9 @@
 /// @file cell_raster.hpp
-/// Stage "raster" of the warp, the body: who owns a voxel of a cell, and what it gets.
+/// Stage "raster" of the warp, common functions: finding the tetrahedron that owns a voxel of a
+/// cell, and storing the voxel's samples.
 ///
-/// Two mappings call these functions: cell_raster.cuh (one block owns a cell) and
-/// host/warp/cpu/cell_raster_cpu.cpp (one thread owns a line of cells, row after row).
+/// Called by cell_raster.cuh (one block per cell) and by host/warp/cpu/cell_raster_cpu.cpp (one
+/// thread per line of cells, row by row).
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -19,28 +20,28 @@
 
 namespace tetwarp {
 
-/// What the raster stage counts.
+/// Counters of the raster stage.
 struct RasterCounts {
   std::int64_t covered;
   std::int64_t inside_tests;  ///< (voxel, tetrahedron) tests against four planes
-  std::int64_t exact_tests;   ///< of these, left open by float32
-  std::int64_t copied;        ///< voxels that were moved, not interpolated
+  std::int64_t exact_tests;   ///< of these, undecided by float32 and repeated in integers
+  std::int64_t copied;        ///< voxels that copy one sample instead of interpolating
 };
 
-/// Source index of frame voxel (i, j, k) where nothing covers it: linear * (origin + (i, j, k)) +
-/// offset.
+/// What uncovered voxels get. Source index of an uncovered frame voxel (i, j, k): linear * (origin
+/// + (i, j, k)) + offset.
 struct OutsideMap {
   bool use_source;  ///< false: the background
   bool is_copy;     ///< the grids differ by whole voxels
   double linear[3][3];
   double offset[3];
-  double origin[3] = {0, 0, 0};  ///< of the frame: regions have the bits of the whole
+  double origin[3] = {0, 0, 0};  ///< of the frame, so that regions get the bits of the full grid
 };
 
-constexpr std::int64_t keep_cell = -2;    ///< the output holds this cell already
+constexpr std::int64_t keep_cell = -2;    ///< the output already holds this cell's result
 constexpr std::int64_t sample_cell = -1;  ///< every covered voxel is sampled
 
-/// Everything the raster stage reads and writes, for one source.
+/// Input and output of the raster stage for one source.
 template <class T>
 struct RasterJob {
   View<const TetSetup> setups;
@@ -62,15 +63,15 @@ struct RasterJob {
   RasterCounts* counts;
 
   /// Per cell: keep_cell, sample_cell, or the source voxel whose samples every covered voxel gets.
-  /// Size 0: sample_cell.
+  /// Size 0: sample_cell for all.
   View<const std::int64_t> cell_work;
-  /// Out, per cell that is not kept: how many of its voxels are covered. Size 0: not wanted.
+  /// Out, per cell that is not kept: number of covered voxels. Size 0: not wanted.
   View<std::uint16_t> cell_covered;
 
-  /// Per tetrahedron: what its voxels get, see voxel_transform.hpp. Size 0: all are plain.
+  /// Per tetrahedron: how its voxels are sampled, see voxel_transform.hpp. Size 0: all are plain.
   View<const VoxelTransform> transforms;
   VoxelTransform outside_transform;  ///< of voxels that no tetrahedron covers
-  Quantity reorientation;            ///< that the matrices of transforms are made for
+  Quantity reorientation;            ///< for which the matrices of transforms were computed
 };
 
 /// Whether voxels of tetrahedron t get more than a plain sample.
@@ -85,13 +86,14 @@ TETWARP_HD bool has_outside_transform(const RasterJob<T>& job) {
   return job.transforms.size > 0 && job.outside.use_source && !job.outside_transform.is_plain;
 }
 
+/// What to do with a cell, see RasterJob::cell_work.
 template <class T>
 TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {
   return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
 }
 
-/// The four planes of a tetrahedron seen from one cell, scaled so that a value above 1 is inside
-/// for certain and one below -1 outside for certain.
+/// The four planes of a tetrahedron relative to one cell in float32. Scaled so that a value above 1
+/// is certainly inside, and one below -1 certainly outside, despite rounding.
 struct CellPlanes {
   float value[4];    ///< at the cell's corner voxel
   float step[3][4];  ///< per voxel along i, j, k
@@ -117,7 +119,7 @@ TETWARP_HD void set_cell_plane(const TetSetup& tet,
   }
 }
 
-/// +1 inside for certain, -1 outside for certain, 0 too close to a face for float32.
+/// +1: certainly inside; -1: certainly outside; 0: too close to a face for float32 to decide.
 TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
   float least = 2.0f;
   for (int face = 0; face < 4; ++face) {
@@ -128,7 +130,9 @@ TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
   return least > 1.0f ? 1 : least < -1.0f ? -1 : 0;
 }
 
-/// Source position of a cell's corner under a tetrahedron's map, in float64.
+/// Source position of a cell's first voxel under a tetrahedron's map, in float64.
+/// @param start   out [source voxel]
+/// @param linear  out, linear[row][a]: change of the position per voxel along axis a
 TETWARP_HD void map_start(const TetSetup& tet,
                           const int* corner,
                           double* start,
@@ -143,7 +147,7 @@ TETWARP_HD void map_start(const TetSetup& tet,
   }
 }
 
-/// The same under the map of uncovered voxels.
+/// Source position of a cell's first voxel under the map of uncovered voxels.
 TETWARP_HD void outside_start(const OutsideMap& map, const int* corner, double* start) {
   const double x = map.origin[0] + corner[0], y = map.origin[1] + corner[1],
                z = map.origin[2] + corner[2];
@@ -153,8 +157,8 @@ TETWARP_HD void outside_start(const OutsideMap& map, const int* corner, double* 
   }
 }
 
-/// Samples a source by a filter of volume_filter.hpp or volume_label.hpp. Which of them a pixel
-/// type may have is checked by the public calls.
+/// Samples a source by a filter of volume_filter.hpp or volume_label.hpp.
+/// @pre the filter can serve pixel type T; public calls check it
 template <class T>
 TETWARP_HD_RARE void sample_wide(SourceView<T> source,
                                  Filter filter,
@@ -169,7 +173,7 @@ TETWARP_HD_RARE void sample_wide(SourceView<T> source,
   if constexpr (can_blend<T>) sample_filtered(source, filter, at, out);
 }
 
-/// store_position() for these filters.
+/// store_position() for wide filters.
 template <class T, class Real>
 TETWARP_HD void store_wide_sample(
     const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, T* out) {
@@ -188,10 +192,15 @@ TETWARP_HD void store_wide_sample(
   }
 }
 
-/// Stores one voxel's samples at a position x of the source relative to `whole`, or the background.
-///
-/// @tparam General  whether the filter may be a wide one: device code that knows better keeps its
-///               registers
+/// A voxel of a cell.
+struct CellVoxel {
+  const int* corner;    ///< first voxel of the cell [frame]
+  int i, j, k;          ///< from there on, 0 to 7
+  std::int64_t offset;  ///< position in the output array [voxel]
+};
+
+/// Stores one voxel: the source's samples at position whole + x, or the background outside it.
+/// @tparam General  whether the filter may be wide; false saves registers
 template <bool General, class T, class Real>
 TETWARP_HD void store_position(
     const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, std::int64_t voxel) {
@@ -205,27 +214,25 @@ TETWARP_HD void store_position(
   }
 }
 
-/// The same for voxel (i, j, k) of a cell under a map.
+/// The same for a voxel of a cell at the position that `map` gives.
 template <bool General, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Filter filter,
                              const SourceMap<Real>& map,
-                             int i,
-                             int j,
-                             int k,
-                             std::int64_t voxel) {
+                             const CellVoxel& voxel) {
   Real x[3];
-  local_position(map, i, j, k, x);
-  store_position<General>(job, filter, map.whole, x, voxel);
+  local_position(map, voxel.i, voxel.j, voxel.k, x);
+  store_position<General>(job, filter, map.whole, x, voxel.offset);
 }
 
-/// The map of the hexahedron that tetrahedron t of a job belongs to.
+/// The map of the hexahedron that tetrahedron t belongs to. Out of line: inlined, it makes the
+/// general raster kernel spill registers on sm_120.
 template <class T>
-TETWARP_HD HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
+TETWARP_HD_RARE HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
   return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
 }
 
-/// Stores frame voxel x, which `tet` owns and `map` is of.
+/// Stores frame voxel x, which tetrahedron `tet` owns, a part of the hexahedron that `map` is for.
 template <bool General, class T>
 TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      const TetSetup& tet,
@@ -234,23 +241,16 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      std::int64_t voxel) {
   int whole[3];
   double at[3];
-  place_in_hex(tet, map, x, whole, at);
+  hex_source_position(tet, map, x, whole, at);
   for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
   store_position<General>(job, job.filter, whole, at, voxel);
 }
 
-/// A voxel that moved by whole voxels needs one sample, whatever the filter.
+/// Whether voxels of a tetrahedron copy one sample, for any filter: it moved by whole voxels.
 template <class T>
 TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;
 }
-
-/// A voxel of a cell.
-struct CellVoxel {
-  const int* corner;    ///< first voxel of the cell [frame]
-  int i, j, k;          ///< from there on, 0 to 7
-  std::int64_t offset;  ///< position in the output array [voxel]
-};
 
 /// Stores a voxel that tetrahedron t owns. Computes the map anew: for the few voxels whose map is
 /// not shared by the cell.
@@ -268,11 +268,10 @@ TETWARP_HD void store_owned(const RasterJob<T>& job, std::int64_t t, const CellV
   double start[3], linear[3][3];
   map_start(tet, voxel.corner, start, linear);
   store_sample<General>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
-                        make_source_map<Real>(job.source, start, linear), voxel.i, voxel.j, voxel.k,
-                        voxel.offset);
+                        make_source_map<Real>(job.source, start, linear), voxel);
 }
 
-/// Stores a voxel that gets the samples of voxel `from` of the source.
+/// Stores the value around voxel `from`, where the source is constant.
 template <class T>
 TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::int64_t voxel) {
   const int components = job.source.components;
@@ -289,8 +288,7 @@ TETWARP_HD void store_outside(const RasterJob<T>& job, const CellVoxel& voxel) {
     outside_start(job.outside, voxel.corner, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
     store_sample<General>(job, copies ? Filter::nearest : job.filter,
-                          make_source_map<double>(job.source, start, job.outside.linear), voxel.i,
-                          voxel.j, voxel.k, voxel.offset);
+                          make_source_map<double>(job.source, start, job.outside.linear), voxel);
     return;
   }
   T* out = job.volume + voxel.offset * job.source.components;

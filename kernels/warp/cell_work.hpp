@@ -1,6 +1,6 @@
 /// @file cell_work.hpp
-/// Stage "raster" of the warp, before it starts: which cells need no work, and which only one
-/// value.
+/// Stage "raster" of the warp, first part: finds cells that keep their result, and cells whose
+/// covered voxels all get one value.
 #pragma once
 #include <cstdint>
 
@@ -10,9 +10,10 @@
 
 namespace tetwarp {
 
-/// A voxel of the source whose samples are those of all that the job's filter reads around every
-/// position that a tetrahedron maps the voxels of a cell to; -1 where there are several values, or
-/// the source ends.
+/// Finds out whether the source is constant wherever the job's filter reads it for voxels of one
+/// cell in one tetrahedron.
+/// @returns a source voxel that has this constant; -1 if it is not constant there or the source
+/// ends
 template <class T>
 TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
                                       const RasterJob<T>& job,
@@ -48,7 +49,7 @@ TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
                   block[2] << block_shift);
 }
 
-/// Whether constants around two voxels are one.
+/// Whether two voxels have equal samples, or equal spline coefficients where the source has them.
 template <class T>
 TETWARP_HD bool has_constant_of(const SourceView<T>& source, std::int64_t a, std::int64_t b) {
   const int count = source.components;
@@ -77,7 +78,7 @@ struct CellWorkBody {
     if (voxel >= 0 && constant_count.size > 0) atomic_add(&constant_count[0], 1);
   }
 
-  /// The voxel whose samples all covered voxels of a cell get, or -1.
+  /// The source voxel whose samples all covered voxels of a cell get, or -1.
   TETWARP_HD std::int64_t value_of(std::int64_t cell) const {
     int corner[3];
     job.frame.set_corner(cell, corner);
@@ -94,18 +95,18 @@ struct CellWorkBody {
   }
 };
 
-/// Tells the raster what to do with each cell: `keep_cell`, `sample_cell` or the voxel of the
-/// source that holds its value.
+/// Sets the work of each cell: `keep_cell`, `sample_cell`, or the source voxel that has the value
+/// of all its covered voxels.
 ///
-/// Proved, not guessed: a cell is filled when every position it could be sampled at lies where the
-/// source holds one value.
+/// Conservative: a cell is filled only if the source is constant at every position at which the
+/// cell could be sampled, so the output is the same as if it were sampled.
 /// @param exec            where to run
 /// @param job             all but cell_work
-/// @param uniform         of the job's source, or of its coefficients where it has some; empty:
-///                        cells are not filled
-/// @param touched         from cell_merge, shape [cell_count]; empty: every cell is
+/// @param uniform         map of the job's source, or of its coefficients where it has some; empty:
+///                        no cell is filled
+/// @param touched         from cell_merge, shape [cell_count]; empty: all cells are touched
 /// @param work            out, shape [cell_count]
-/// @param constant_count  filled cells are added to it, shape [1]; empty: they are not counted
+/// @param constant_count  the number of filled cells is added to it, shape [1]; empty: not wanted
 ///
 /// Determinism: which cells are filled may differ between back ends by the rounding of a position;
 /// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.

@@ -1,9 +1,9 @@
 /// @file convex_part.hpp
 /// The part of a voxel's box within half-spaces, and its volume.
 ///
-/// A part is a bag of directed edges, each of which knows its face; where a plane cuts a face, one
-/// edge closes what is left of it, and the same edge reversed belongs to the face that the plane
-/// adds. No order is kept and none is needed: the volume is a sum over edges.
+/// A part is an unordered list of directed edges, each with the face that it bounds. Where a plane
+/// cuts a face, one new edge closes what is left of it, and the reversed edge belongs to the face
+/// that the plane adds. The volume is a sum over edges, so their order does not matter.
 #pragma once
 #include <cstdint>
 
@@ -12,8 +12,8 @@
 
 namespace tetwarp {
 
-// A box, cut by a tetrahedron and between two planes along each axis of the source, has 16 faces:
-// at most 28 corners and 84 directed edges, for in a cut body three edges meet in a corner.
+// A box cut by the four planes of a tetrahedron and two planes per axis of the source has at most
+// 16 faces; as three edges meet in a corner, at most 28 corners and 84 directed edges.
 constexpr int max_faces = 16;
 constexpr int max_corners = 32;
 constexpr int max_edges = 96;
@@ -56,20 +56,21 @@ TETWARP_HD void set_box_part(ConvexPart& part) {
   }
 }
 
-/// Adds a corner of a face to a list.
-TETWARP_HD void note(std::uint8_t (*list)[2], int& count, int corner, int face) {
+/// Appends (corner, face) to a list of at most max_corners.
+TETWARP_HD void append_corner(std::uint8_t (*list)[2], int& count, int corner, int face) {
   if (count == max_corners) return;
   list[count][0] = static_cast<std::uint8_t>(corner);
   list[count++][1] = static_cast<std::uint8_t>(face);
 }
 
-/// normal . x + offset, the same wherever it is asked.
+/// normal . x + offset. One function, so that all comparisons use the same rounding.
 TETWARP_HD double height_over(const double* normal, double offset, const double* x) {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] + offset;
 }
 
-/// The part of a body where normal . x + offset >= 0.
-/// @returns false where nothing, or only a piece of a plane, is left
+/// Cuts a body to the half-space normal . x + offset >= 0.
+/// @param to  out, the part
+/// @returns false if the part is empty or flat
 TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
                                const double* normal,
                                double offset,
@@ -86,7 +87,7 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
   }
   if (!has_above) return false;
   const int kept = to.corner_count;
-  std::uint8_t cut_edge[max_corners][2];  // of corners from `kept` on: from above to below
+  std::uint8_t cut_edge[max_corners][2];  // of corners from `kept` on: ends above and below
   const auto cut_between = [&](int above, int below) {
     for (int c = kept; c < to.corner_count; ++c) {
       if (cut_edge[c][0] == above && cut_edge[c][1] == below) return c;
@@ -102,8 +103,9 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
     cut_edge[c][1] = static_cast<std::uint8_t>(below);
     return c;
   };
-  // Corners where faces go below, and where they come back: once each, but for rounding where a
-  // face lies in the plane. Any pairs close a face; what they differ by is as thin as the rounding.
+  // Cut corners where the boundary of a face leaves the half-space and where it enters it again:
+  // one of each per face, or several where rounding decides because the face lies in the plane.
+  // Then any pairing closes the face; the difference in volume is of the order of rounding.
   std::uint8_t leaves[max_corners][2], enters[max_corners][2];  // corner, face
   int leave_count = 0, enter_count = 0;
   for (int e = 0; e < from.edge_count; ++e) {
@@ -113,11 +115,11 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
     } else if (height[a] >= 0) {
       const int cut = cut_between(a, b);
       add_edge(to, place[a], cut, face);
-      note(leaves, leave_count, cut, face);
+      append_corner(leaves, leave_count, cut, face);
     } else if (height[b] >= 0) {
       const int cut = cut_between(b, a);
       add_edge(to, cut, place[b], face);
-      note(enters, enter_count, cut, face);
+      append_corner(enters, enter_count, cut, face);
     }
   }
   for (int l = 0; l < leave_count; ++l) {
@@ -132,8 +134,8 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
   return true;
 }
 
-/// Volume [voxel]: a sum of tetrahedra over the edges, from a corner of the body and one of each
-/// face.
+/// Volume [voxel^3]: the sum, over edges, of tetrahedra of the edge, the body's first corner and
+/// one corner of the edge's face.
 TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
   const double* const apex = part.corner[0];
   int base[max_faces];
@@ -156,9 +158,8 @@ TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
 }
 
 /// The part of the box of voxel (i, j, k) that lies in a tetrahedron.
-/// @param part   out
-/// @param other  scratch
-/// @returns the one of them that holds it; null where there is none
+/// @param part, other  memory for the result and scratch
+/// @returns the one of them that holds the result; null if the part is empty
 TETWARP_HD_RARE const ConvexPart* part_in_tet(
     const TetSetup& tet, int i, int j, int k, ConvexPart& part, ConvexPart& other) {
   const double from[3] = {static_cast<double>(i - tet.anchor[0]),
@@ -187,7 +188,8 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(
   return now;
 }
 
-/// Widens a tetrahedron's box to all voxels of a frame that it touches with more than their centre.
+/// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box() takes
+/// only those whose centres may lie inside.
 TETWARP_HD void widen_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
   constexpr std::int64_t half = quanta_per_voxel / 2;
   for (int axis = 0; axis < 3; ++axis) {

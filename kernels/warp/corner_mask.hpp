@@ -1,5 +1,6 @@
 /// @file corner_mask.hpp
-/// Stage "mask" of the warp: on which sides of a tetrahedron each coarse corner certainly lies.
+/// Stage "mask" of the warp: in which half-spaces of a tetrahedron each corner of a cell certainly
+/// lies.
 #pragma once
 #include <cstdint>
 
@@ -8,8 +9,10 @@
 
 namespace tetwarp {
 
-constexpr unsigned outside_bits = 0x0ff;  ///< bit 2f: b_f < 0 for certain, bit 2f+1: b_f > 1
-constexpr unsigned inside_bits = 0xf00;   ///< bit 8+f: b_f > 0 for certain
+// With b_f the barycentric coordinate of node f:
+constexpr unsigned outside_bits =
+    0x0ff;                               ///< bit 2f: certainly b_f < 0, bit 2f+1: certainly b_f > 1
+constexpr unsigned inside_bits = 0xf00;  ///< bit 8+f: certainly b_f > 0
 
 /// Mask of one corner at voxel (x, y, z) [frame].
 TETWARP_HD std::uint16_t corner_mask_of(const TetSetup& tet,
@@ -50,10 +53,10 @@ struct CornerMaskBody {
   }
 };
 
-/// Marks the half-spaces each coarse corner certainly lies in. Eight masks sharing an outside bit
-/// reject their cell; eight masks with all inside bits accept it.
+/// Marks the half-spaces in which each corner of a cell certainly lies. A cell is rejected if all
+/// its eight masks share an outside bit, and accepted if all have all inside bits.
 ///
-/// Conservative both ways: rounding cannot set a bit, so culling never changes the output.
+/// Conservative both ways: rounding never sets a bit, so culling never changes the output.
 /// @param exec            where to run
 /// @param setups          from tet_setup, shape [tet_count]
 /// @param corner_offsets  first corner of each tetrahedron, shape [tet_count + 1]

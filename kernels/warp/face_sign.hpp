@@ -1,6 +1,6 @@
 /// @file face_sign.hpp
-/// The exact side of a face on which a voxel centre lies: 128-bit integers on quantized nodes.
-/// Zero is inside: tetrahedra are closed.
+/// Exact test on which side of a face a voxel centre lies, by 128-bit integers on quantized nodes.
+/// On the face counts as inside: tetrahedra are closed.
 ///
 /// Bounds: with nodes of a tetrahedron at most 2^40 quanta (2^20 voxels) apart, a normal component
 /// is below 2 * 2^80, and a plane value within 16 voxels of the box below 3 * 2^81 * 2^41 < 2^124.
@@ -28,8 +28,8 @@ TETWARP_HD TetNodes tet_nodes(View<const Node> nodes, const std::int32_t* tet) {
   return result;
 }
 
-/// Normal of the face opposite node `face` and one node on it; not yet turned inward. `Integer`
-/// must hold twice the square of the tetrahedron's extent.
+/// The plane of the face opposite a node: its normal and one node on it. The normal may point in or
+/// out, see turn_inward(). `Integer` must hold twice the square of the tetrahedron's extent.
 template <class Integer = Int128>
 struct ExactPlane {
   Integer normal[3];
@@ -66,8 +66,8 @@ TETWARP_HD Int128 plane_value(const ExactPlane<Integer>& plane, const std::int64
   return value;
 }
 
-/// Turns the plane's normal towards the opposite node.
-/// @returns six times the tetrahedron's volume [quantum^3]; zero: flat
+/// Makes the normal of the plane opposite node `face` point to that node.
+/// @returns six times the tetrahedron's volume [quantum^3]; zero if it is flat
 TETWARP_HD Int128 turn_inward(ExactPlane<>& plane, const TetNodes& tet, int face) {
   const Int128 value = plane_value(plane, tet.x[face]);
   if (value >= 0) return value;
@@ -76,11 +76,12 @@ TETWARP_HD Int128 turn_inward(ExactPlane<>& plane, const TetNodes& tet, int face
 }
 
 /// True when voxel centre (i, j, k) [frame] is on or inside every face; false for flat tetrahedra.
-/// With `strictly`, on a face does not count.
+/// With `strictly`, a voxel on a face is not inside.
 TETWARP_HD_RARE bool is_inside_exact(
     const TetNodes& tet, int i, int j, int k, bool strictly = false) {
   const std::int64_t point[3] = {i * quanta_per_voxel, j * quanta_per_voxel, k * quanta_per_voxel};
-  for (int axis = 0; axis < 3; ++axis) {  // cheap, and enough for most of a cell's tiny tetrahedra
+  for (int axis = 0; axis < 3;
+       ++axis) {  // box test first: cheap, and enough for most tiny tetrahedra
     const std::int64_t x[4] = {tet.x[0][axis], tet.x[1][axis], tet.x[2][axis], tet.x[3][axis]};
     if (point[axis] < min_of(min_of(x[0], x[1]), min_of(x[2], x[3]))) return false;
     if (point[axis] > max_of(max_of(x[0], x[1]), max_of(x[2], x[3]))) return false;

@@ -1,5 +1,5 @@
 /// @file hex_kind.hpp
-/// Hexahedra whose trilinear map is a simpler one.
+/// Tests whether the trilinear map of a hexahedron is a whole-voxel shift or affine.
 #pragma once
 #include <cstdint>
 
@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// Whether all nodes of a hexahedron move by a whole-voxel shift, to within a quantum.
+/// Whether all nodes of a hexahedron move by the whole-voxel shift `shift`, to within a quantum.
 TETWARP_HD bool has_whole_shift(const std::int32_t* hex,
                                 View<const Node> output,
                                 View<const Node> source,
@@ -24,8 +24,8 @@ TETWARP_HD bool has_whole_shift(const std::int32_t* hex,
   return whole;
 }
 
-/// Whether a tetrahedron's map takes all nodes of its hexahedron to their places at rest, to within
-/// what the rounding of nodes may do: the trilinear map is that map, then.
+/// Whether a tetrahedron's map takes all nodes of its hexahedron to their rest positions, to within
+/// the rounding of nodes. Then the trilinear map is this affine map.
 /// @param map, anchor  as in TetSetup
 TETWARP_HD bool maps_all(const double (*map)[4],
                          const std::int64_t* anchor,

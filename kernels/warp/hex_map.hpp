@@ -1,8 +1,9 @@
 /// @file hex_map.hpp
-/// Where a hexahedron's voxels come from: the inverse of its trilinear map.
+/// Source positions of voxels in hexahedra, by inverting the trilinear map.
 ///
-/// Hexahedra are split into tetrahedra, which decide who owns a voxel. Its place within the
-/// hexahedron is that of the trilinear map all the same, found by Newton's method.
+/// A hexahedron is split into tetrahedra, and the one that contains a voxel owns it. The voxel's
+/// source position comes from the trilinear map of the whole hexahedron, inverted by Newton's
+/// method.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +14,7 @@
 
 namespace tetwarp {
 
-/// Corner a of the unit cube in VTK's order, 0 or 1 along `axis`.
+/// Coordinate along `axis`, 0 or 1, of corner a of the unit cube in VTK's order.
 TETWARP_HD int unit_corner(int a, int axis) {
   constexpr int bits[3] = {0b01100110, 0b11001100, 0b11110000};
   return bits[axis] >> a & 1;
@@ -37,7 +38,7 @@ TETWARP_HD HexCorners hex_corners(View<const Node> nodes,
   return corners;
 }
 
-/// The trilinear map at local coordinates u, each 0 to 1, and its gradient by them.
+/// The trilinear map x(u) at local coordinates u, each 0 to 1, and its gradient dx/du.
 TETWARP_HD void map_hex(const HexCorners& hex, const double* u, double* x, Matrix3& gradient) {
   for (int row = 0; row < 3; ++row) {
     x[row] = 0;
@@ -58,12 +59,14 @@ TETWARP_HD void map_hex(const HexCorners& hex, const double* u, double* x, Matri
   }
 }
 
-/// A face bends away from the triangles that decide who owns a voxel: some lie a little outside of
-/// the hexahedron, and are found there up to this share of its edges.
+/// How far outside of [0, 1] local coordinates may lie. A curved face differs from the two
+/// triangles that ownership is decided by, so some owned voxels lie a little outside of the
+/// hexahedron.
 constexpr double hex_margin = 0.25;
 
-/// Local coordinates of `target`, by Newton's method from `u` on: no step leaves the cube and its
-/// margin, or takes x further from the target.
+/// Finds the local coordinates u of position `target` by damped Newton iteration from the given u.
+/// Steps are clamped to [-hex_margin, 1 + hex_margin] and halved until the distance decreases;
+/// stops where no step decreases it.
 TETWARP_HD_RARE void invert_hex(const HexCorners& hex, const double* target, double* u) {
   constexpr int max_steps = 30, max_halvings = 6;
   constexpr double exact = 0x1p-32;  // [voxel]: far below the quantum
@@ -107,15 +110,15 @@ TETWARP_HD_RARE void invert_hex(const HexCorners& hex, const double* target, dou
   }
 }
 
-/// A hexahedron at rest and deformed, seen from one of its tetrahedra.
+/// The deformed and the rest shape of a hexahedron, relative to points near one of its tetrahedra.
 struct HexMap {
   HexCorners output;      ///< relative to the tetrahedron's anchor
   HexCorners source;      ///< relative to `whole`
-  std::int64_t whole[3];  ///< a voxel of the source
+  std::int64_t whole[3];  ///< a voxel of the source near the hexahedron
   double start[4][3];     ///< local coordinates of the tetrahedron's nodes
 };
 
-/// What the maps of a mesh's hexahedra are made of.
+/// The mesh data that maps of hexahedra are computed from.
 struct HexMesh {
   HexView hexes;
   View<const std::int32_t> tets;  ///< [4 * tet_count]
@@ -123,7 +126,9 @@ struct HexMesh {
   View<const Node> rest;          ///< in the source's index space [quantum]
 };
 
-/// @pre tetrahedron t, which `tet` is the setup of, belongs to a hexahedron
+/// The map of the hexahedron that tetrahedron t is part of.
+/// @param tet  setup of t
+/// @pre mesh.hexes.has(t)
 TETWARP_HD HexMap make_hex_map(const HexMesh& mesh, std::int64_t t, const TetSetup& tet) {
   const std::int32_t* const hex = mesh.hexes.nodes_of(t);
   HexMap map;
@@ -138,7 +143,9 @@ TETWARP_HD HexMap make_hex_map(const HexMesh& mesh, std::int64_t t, const TetSet
   return map;
 }
 
-/// Local coordinates of frame voxel x, which `tet` owns and `map` is of.
+/// Local coordinates u of frame voxel x.
+/// @param map  of the hexahedron
+/// @param tet  the tetrahedron of it that owns the voxel
 TETWARP_HD_RARE void hex_local(const HexMap& map, const TetSetup& tet, const int* x, double* u) {
   double target[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -154,8 +161,8 @@ TETWARP_HD_RARE void hex_local(const HexMap& map, const TetSetup& tet, const int
   invert_hex(map.output, target, u);
 }
 
-/// Gradient of the source position by the voxel there, both in index space. False where there is
-/// none.
+/// Gradient of the source position by the output position at u, both in index space.
+/// @returns false where the trilinear map is singular
 TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradient) {
   double x[3];
   Matrix3 output, source;
@@ -166,8 +173,9 @@ TETWARP_HD bool hex_gradient(const HexMap& map, const double* u, Matrix3& gradie
   return true;
 }
 
-/// Its source position, in two parts.
-TETWARP_HD void place_in_hex(
+/// Source position of frame voxel x, as an integer voxel `whole` plus a local part `at`; other
+/// parameters as hex_local().
+TETWARP_HD void hex_source_position(
     const TetSetup& tet, const HexMap& map, const int* x, int* whole, double* at) {
   double u[3];
   Matrix3 gradient;

@@ -1,5 +1,5 @@
 /// @file tet_gradient.hpp
-/// The deformation gradient of a tetrahedron in world axes, and small 3x3 matrices.
+/// The deformation gradient of a tetrahedron in world axes, and operations on 3x3 matrices.
 #pragma once
 #include "kernels/base/hd.hpp"
 #include "kernels/warp/tet_setup.hpp"
@@ -33,7 +33,7 @@ TETWARP_HD Matrix3 transposed(const Matrix3& a) {
   return result;
 }
 
-/// Transposed, the matrix whose product with `a` is det(a) times the identity.
+/// The cofactor matrix: a * transposed(cofactors(a)) is det(a) times the identity.
 TETWARP_HD Matrix3 cofactors(const Matrix3& a) {
   Matrix3 result;
   for (int row = 0; row < 3; ++row) {
@@ -61,16 +61,16 @@ TETWARP_HD Matrix3 inverse(const Matrix3& a) {
   return result;
 }
 
-/// How index spaces stand in the world.
+/// Axes of the source and output grids in the world.
 struct GridAxes {
   Matrix3 source;  ///< column a: the step from voxel to voxel along axis a of the source [world]
   Matrix3 output_index;  ///< world to index space of the output grid
   bool are_same;         ///< both grids have the same axes
 };
 
-/// Gradient of the rest position by the deformed one, the inverse of the deformation gradient, of a
-/// tetrahedron that is neither flat nor bad. A whole-voxel shift between grids of the same axes has
-/// exactly the identity.
+/// Gradient of the rest position by the deformed one: the inverse of the deformation gradient.
+/// Exactly the identity for a whole-voxel shift between grids of the same axes.
+/// @pre the tetrahedron is regular or inverted
 TETWARP_HD Matrix3 backward_gradient(const TetSetup& tet, const GridAxes& axes) {
   if (tet.kind == MapKind::copy && axes.are_same) return identity3();
   Matrix3 map;

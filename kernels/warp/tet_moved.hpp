@@ -1,6 +1,6 @@
 /// @file tet_moved.hpp
-/// Stage "setup" of a step that updates the one before: which tetrahedra have moved, and the setup
-/// of those alone.
+/// Stage "setup" of a step that updates the previous one: finds the tetrahedra that have moved, and
+/// computes the setup of these only.
 #pragma once
 #include <cstdint>
 
@@ -22,7 +22,8 @@ struct NodeMovedBody {
   }
 };
 
-/// One index = one tetrahedron; any order. Takes moved ones out of the class counts.
+/// One index = one tetrahedron; any order. Subtracts moved tetrahedra from the class counts, to
+/// which moved_tet_setup() adds their new classes.
 struct TetMovedBody {
   View<const std::int32_t> tets;
   View<const std::uint8_t> node_moved;
@@ -45,21 +46,23 @@ struct TetMovedBody {
   }
 };
 
-/// Finds the tetrahedra of which a quantized node differs from the step before.
+/// Finds the tetrahedra with a quantized node that differs from the previous step.
 ///
-/// Exact: what has not moved by a quantum has the same setup, pairs and samples, bit for bit.
+/// Exact: a tetrahedron whose quantized nodes are equal has the same setup, pairs and samples, bit
+/// for bit.
 /// @param exec          where to run
 /// @param tets          node indices, shape [4 * tet_count]
-/// @param before        nodes of the step before [quantum], shape [node_count]
+/// @param before        nodes of the previous step [quantum], shape [node_count]
 /// @param now           nodes of this step, shape [node_count]
-/// @param setups        from the step before, shape [tet_count]
+/// @param setups        of the previous step, shape [tet_count]
 /// @param node_moved    scratch, shape [node_count]
 /// @param moved         out, 1 where a tetrahedron has moved, shape [tet_count]
-/// @param moved_counts  out, the same to be summed, shape [tet_count + 1]
-/// @param class_counts  in and out: moved irregular tetrahedra are taken out of it
-/// @param hexes         those that the last tetrahedra are parts of, and move with
+/// @param moved_counts  out, the same as int64 for a scan, shape [tet_count + 1]
+/// @param class_counts  in and out: moved irregular tetrahedra are subtracted from it
+/// @param hexes         hexahedra; all tetrahedra of one move if any of its nodes does
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes read per node, 20 per tetrahedron.
+/// Source: ours.
 template <class Exec>
 void tet_moved(Exec& exec,
                View<const std::int32_t> tets,
@@ -83,12 +86,12 @@ struct MovedTetSetupBody {
   TETWARP_HD void operator()(std::int64_t t, std::int64_t, std::int64_t) const { setup(t); }
 };
 
-/// tet_setup() of the moved tetrahedra. Entries of others are left as they are.
+/// tet_setup() of the moved tetrahedra. Entries of others do not change.
 ///
 /// @param exec           where to run
-/// @param moved_offsets  sums of moved_counts from tet_moved(), shape [tet_count + 1]
-/// @param moved_count    how many have moved
-/// @param setup          as tet_setup() makes it
+/// @param moved_offsets  exclusive scan of moved_counts from tet_moved(), shape [tet_count + 1]
+/// @param moved_count    number of moved tetrahedra
+/// @param setup          as for tet_setup()
 ///
 /// Determinism and cost per moved tetrahedron: as tet_setup().
 template <class Exec>

@@ -1,5 +1,5 @@
 /// @file tet_setup.hpp
-/// Stage "setup" of the warp: what later stages need to know of one tetrahedron, once per step.
+/// Stage "setup" of the warp: planes, box and map of each tetrahedron, once per step.
 #pragma once
 #include <cstdint>
 
@@ -12,17 +12,17 @@ namespace tetwarp {
 
 /// How the map of a tetrahedron must be evaluated.
 enum class MapKind : std::int32_t {
-  affine,     ///< float32 relative to a cell's corner is exact enough
-  steep,      ///< stretches an axis more than fourfold: float64
-  trilinear,  ///< that of the hexahedron that it belongs to: hex_map.hpp
-  copy        ///< moves by whole voxels
+  affine,     ///< in float32, relative to a cell's corner
+  steep,      ///< has an entry above steep_threshold: in float64
+  trilinear,  ///< the map of the hexahedron that it is part of: hex_map.hpp
+  copy        ///< a shift by whole voxels: no interpolation
 };
 
 /// Class of a tetrahedron in one step.
 enum class TetClass : std::int32_t { regular, inverted, flat, bad_position, too_large };
 constexpr int tet_class_count = 5;
 
-/// One tetrahedron. Distances in voxels, positions relative to `anchor`.
+/// Data of one tetrahedron. Distances in voxels, positions relative to `anchor`.
 struct TetSetup {
   std::int64_t anchor[3];  ///< integer voxel at the low corner of the box [frame]
   double plane[4][4];      ///< unit inward normal (3) and value at the anchor, each for four faces
@@ -35,11 +35,11 @@ struct TetSetup {
   TetClass tet_class;
 };
 
-/// Tetrahedra whose box touches fewer cells go without masks: most of their cells would
-/// be kept anyway, and testing the few others costs less than masks for all.
+/// Tetrahedra whose box touches fewer cells get no corner masks: most of their cells would be kept
+/// anyway, and testing voxels of the few others costs less than masks for all.
 constexpr std::int64_t fewest_masked_cells = 27;
 
-/// Up to here 64 bits hold the normals of a tetrahedron's faces [quantum].
+/// Largest extent of a tetrahedron whose face normals fit in 64 bits [quantum].
 constexpr std::int64_t short_extent = std::int64_t{1} << 30;
 
 constexpr double steep_threshold = 4.0;  ///< largest map entry that float32 may evaluate
@@ -76,7 +76,8 @@ TETWARP_HD std::int64_t set_box(const TetNodes& tet, const OutputFrame& frame, T
   return extent;
 }
 
-/// Whole-voxel shift from output to source, when every node moves by it to within a quantum.
+/// Whether every node moves by the same whole-voxel shift to within a quantum.
+/// @param shift  out, from output to source [voxel]
 TETWARP_HD bool is_whole_shift(const TetNodes& output,
                                const TetNodes& source,
                                std::int64_t* shift) {
@@ -92,8 +93,8 @@ TETWARP_HD bool is_whole_shift(const TetNodes& output,
   return whole;
 }
 
-/// Within an ulp of an integer below 2^124; no branch, and a tenth of the compiler's own
-/// conversion.
+/// Converts an integer below 2^124 within an ulp. Branch-free; takes a tenth of the time of the
+/// compiler's conversion.
 TETWARP_HD double as_double(Int128 value) {
   const Int128 all = value >> 127;
   const Int128 size = (value ^ all) - all;
@@ -113,9 +114,10 @@ TETWARP_HD int orientation(const TetNodes& tet) {
   return (value > 0) - (value < 0);
 }
 
-/// Planes of the four faces and gradients of the barycentric coordinates [1/voxel]; barycentric
-/// coordinates at the anchor. From exact integers: no cancellation, however thin the tetrahedron.
-/// @returns orientation(); 0, and nothing set, when flat
+/// Computes the planes of the four faces, from exact integers: no cancellation in thin tetrahedra.
+/// @param gradient   out, gradients of the barycentric coordinates [1/voxel]
+/// @param at_anchor  out, barycentric coordinates of the anchor
+/// @returns orientation(); 0, and nothing is set, if the tetrahedron is flat
 template <class Integer>
 TETWARP_HD int set_planes(const TetNodes& tet,
                           TetSetup& setup,
@@ -147,7 +149,8 @@ TETWARP_HD int set_planes(const TetNodes& tet,
   return sign;
 }
 
-/// Map of the deformed onto the rest tetrahedron: x0 = R0 + sum_f (R_f - R0) b_f(x).
+/// Sets the map from the deformed to the rest tetrahedron, R_f the rest position of node f and b_f
+/// its barycentric coordinate: x0 = R0 + sum_f (R_f - R0) b_f(x).
 TETWARP_HD void set_map(const TetNodes& source,
                         const double (*gradient)[3],
                         const double* at_anchor,
@@ -182,7 +185,8 @@ struct TetSetupBody {
   View<std::int64_t> class_counts;  ///< irregular ones are added to it, shape [tet_class_count]
   HexView hexes = {};               ///< hexahedra that the last tetrahedra are parts of
 
-  /// Sets everything but the class, which is returned; nothing that counts when flat or worse.
+  /// Sets everything but the class, which is returned. For other classes than regular and inverted
+  /// `setup` is left incomplete.
   TETWARP_HD TetClass set_up(std::int64_t t, TetSetup& setup) const {
     for (int a = 0; a < 4; ++a) {
       if (deformed[tets[4 * t + a]].x[0] == bad_node) return TetClass::bad_position;
@@ -218,7 +222,7 @@ struct TetSetupBody {
   }
 
   TETWARP_HD void operator()(std::int64_t t) const {
-    TetSetup& setup = setups[t];  // in place: it is too large to pass around
+    TetSetup& setup = setups[t];  // in place: too large for registers
     const TetClass tet_class = set_up(t, setup);
     if (tet_class != TetClass::regular && tet_class != TetClass::inverted) setup = {};
     setup.tet_class = tet_class;
@@ -242,8 +246,8 @@ struct TetSetupBody {
 
 /// Planes, box, map and class of every tetrahedron.
 ///
-/// The planes come from exact integer normals, so that thin tetrahedra lose nothing; a map that
-/// moves all nodes by the same whole voxels, to within a quantum, becomes a copy.
+/// Planes come from exact integer normals, so they are accurate for thin tetrahedra. A map that
+/// moves all nodes by the same whole voxels, to within a quantum, is replaced by that shift.
 /// @param exec  where to run
 /// @param body  input and output, see TetSetupBody
 /// @pre  indices in body.tets are in range; the pipeline checks them

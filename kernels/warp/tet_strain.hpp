@@ -1,5 +1,5 @@
 /// @file tet_strain.hpp
-/// Stage "fields" of the warp, per tetrahedron: how the deformation stretches it, once per step.
+/// Stage "fields" of the warp, per tetrahedron: deformation gradient and strain, once per step.
 #pragma once
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace tetwarp {
 
-/// The deformation gradient F = d deformed / d rest of one tetrahedron in world axes, and what
-/// follows from it.
+/// The deformation gradient F = d deformed / d rest of one tetrahedron in world axes, its
+/// determinant and the Green-Lagrange strain.
 struct TetStrain {
   float jacobian;     ///< det F: negative when inverted
   float gradient[9];  ///< F, row major
@@ -34,7 +34,7 @@ TETWARP_HD TetStrain strain_of(const Matrix3& backward) {
   return strain;
 }
 
-/// One index = one tetrahedron; any order. What owns nothing gets zeros.
+/// One index = one tetrahedron; any order. Tetrahedra that are flat or bad get zeros.
 struct TetStrainBody {
   View<const TetSetup> setups;
   GridAxes axes;
@@ -59,6 +59,7 @@ struct TetStrainBody {
 ///
 /// Determinism: within 2^-23 relative of the gradient between back ends. Cost: 64 bytes written and
 /// about 150 operations per tetrahedron.
+/// Source: the definitions of continuum mechanics.
 template <class Exec>
 void tet_strain(Exec& exec,
                 View<const TetSetup> setups,

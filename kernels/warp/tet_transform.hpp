@@ -1,7 +1,7 @@
 /// @file tet_transform.hpp
-/// Stage "setup" of a warp whose voxels get more than a plain sample: what each tetrahedron does to
-/// the samples it brings.
-/// @see voxel_transform.hpp for how a voxel follows its transform
+/// Stage "setup" of a warp that averages, reorients or rescales samples: the transform that each
+/// tetrahedron applies to the samples of its voxels.
+/// @see voxel_transform.hpp for the application to a voxel
 #pragma once
 #include <cstdint>
 #include <tetwarp/choices.hpp>
@@ -14,16 +14,17 @@
 
 namespace tetwarp {
 
-constexpr int max_parts = 16;           ///< of a voxel, along an axis
-constexpr double averaged_step = 1.5;   ///< source voxels per output voxel: more is averaged
-constexpr double step_slack = 0x1p-20;  ///< far more than the rounding of a map's step
+constexpr int max_parts = 16;           ///< most samples averaged per voxel and axis
+constexpr double averaged_step = 1.5;   ///< larger steps in the source are averaged [source voxel]
+constexpr double step_slack = 0x1p-20;  ///< far larger than the rounding error of a map's step
 
-/// What a voxel gets: the mean of samples at the midpoints of its parts, reoriented, scaled.
+/// How samples become a voxel's value: their mean over the midpoints of the voxel's parts,
+/// multiplied by a matrix, then by a number.
 struct VoxelTransform {
   double scale;
   Matrix3 matrix;  ///< see matrix_of()
-  int parts[3];    ///< along each axis of the output
-  bool is_plain;   ///< one sample as it is
+  int parts[3];    ///< number of parts along each axis of the output
+  bool is_plain;   ///< one sample, unchanged
 };
 
 TETWARP_HD VoxelTransform plain_transform() {
@@ -34,27 +35,27 @@ TETWARP_HD bool is_averaging(const VoxelTransform& transform) {
   return transform.parts[0] > 1 || transform.parts[1] > 1 || transform.parts[2] > 1;
 }
 
-/// What a job asks of its transforms.
+/// Which transforms a job wants, and what they are computed from.
 struct TransformChoice {
-  bool averages;  ///< where the source is compressed
-  bool divides;   ///< by the determinant of F, inverted or not
+  bool averages;  ///< average samples where the source is compressed
+  bool divides;   ///< divide by |det F|, F the deformation gradient
   Quantity reorientation;
   GridAxes axes;
   double voxel_ratio;  ///< volume of a source voxel over that of an output voxel
 };
 
-/// How many samples a step along an axis of the output asks for.
-/// @param step  [source voxel]
+/// Number of samples to average along an axis of the output.
+/// @param step  change of the source position per output voxel [source voxel]
 TETWARP_HD int parts_of(const double* step) {
   const double length = sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
   if (!(length > averaged_step + step_slack)) return 1;
   return static_cast<int>(min_of(ceil(length - step_slack), static_cast<double>(max_parts)));
 }
 
-/// The proper rotation nearest to `a` in the sense of squared differences; where several are, one
-/// of them; of zero the identity. The eigenvector of a symmetric matrix is the quaternion: a turned
-/// inside out or flattened costs nothing special.
-/// Source: P. Davenport, 1968; B. K. P. Horn, 1987.
+/// The proper rotation nearest to `a` in the Frobenius norm; one of them if several are; the
+/// identity for a zero matrix. Its quaternion is an eigenvector of a symmetric 4x4 matrix, so
+/// inverted and singular matrices need no special case. Source: P. Davenport, 1968; B. K. P. Horn,
+/// 1987.
 TETWARP_HD_RARE Matrix3 nearest_rotation(const Matrix3& a) {
   const auto& s = a.at;
   double key[4][4] = {
@@ -76,7 +77,7 @@ TETWARP_HD_RARE Matrix3 nearest_rotation(const Matrix3& a) {
            {2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z}}};
 }
 
-/// F times a positive number, from its inverse: finite, however flat the tetrahedron.
+/// F times a positive number, from the inverse of F: finite also if that is singular.
 TETWARP_HD Matrix3 forward_direction(const Matrix3& backward) {
   Matrix3 forward = transposed(cofactors(backward));
   if (determinant(backward) < 0) {
@@ -87,8 +88,8 @@ TETWARP_HD Matrix3 forward_direction(const Matrix3& backward) {
   return forward;
 }
 
-/// The matrix that a reorientation multiplies components by; of `principal` the inverse of F.
-/// @pre `backward` is not singular
+/// The matrix of a reorientation, see reorient(); for principal_tensor the inverse of F.
+/// @param backward  the inverse of F, not singular
 TETWARP_HD Matrix3 matrix_of(Quantity reorientation, const Matrix3& backward) {
   switch (reorientation) {
     case Quantity::vector:
@@ -113,15 +114,16 @@ TETWARP_HD Int128 volume6_of(const TetNodes& tet) {
 
 /// One index = one tetrahedron; any order.
 struct TetTransformBody {
-  static constexpr int resident_blocks = 2;  ///< of 128 registers a thread: no spills
+  static constexpr int resident_blocks = 2;  ///< leaves 128 registers per thread: no spills
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
   View<const Node> nodes;
   View<const Node> rest;
-  View<const std::uint8_t> moved;  ///< others keep their transforms; size 0: all are made
+  View<const std::uint8_t> moved;  ///< transforms of others are kept; size 0: all are computed
   TransformChoice choice;
   View<VoxelTransform> transforms;
-  View<std::int64_t> averaged_count;  ///< kept up to date; size 0: not wanted
+  View<std::int64_t>
+      averaged_count;  ///< changed by the number of averaging ones; size 0: not wanted
 
   TETWARP_HD void operator()(std::int64_t t) const {
     if (moved.size > 0 && moved[t] == 0) return;
@@ -141,7 +143,7 @@ struct TetTransformBody {
     if (choice.averages) {
       for (int axis = 0; axis < 3; ++axis) transform.parts[axis] = parts_of(tet.map[axis]);
     }
-    // Exact integers: a ratio of volumes loses nothing where the tetrahedron is thin.
+    // Volumes as exact integers: their ratio is accurate for thin tetrahedra too.
     const Int128 rest_volume6 = volume6_of(tet_nodes(rest, tets.data + 4 * t));
     if (choice.divides) {
       const Int128 volume6 = volume6_of(tet_nodes(nodes, tets.data + 4 * t));
@@ -155,22 +157,23 @@ struct TetTransformBody {
   }
 };
 
-/// Makes the transform of every tetrahedron, or of those that have moved.
+/// Computes the transform of every tetrahedron, or of those that have moved.
 ///
 /// A tetrahedron that moves by whole voxels between grids of the same axes is plain, so that its
-/// samples are copies; one that is flat at rest reorients nothing.
+/// voxels are copies; one that is flat at rest does not reorient.
 /// @param exec            where to run
 /// @param setups          from tet_setup, shape [tet_count]
 /// @param tets            node indices, shape [4 * tet_count]
 /// @param nodes           deformed, in the frame [quantum]
 /// @param rest            in the source's index space [quantum]
-/// @param moved           from tet_moved; empty: all have
+/// @param moved           from tet_moved; empty: all have moved
 /// @param choice          see TransformChoice
 /// @param transforms           in and out, shape [tet_count]
-/// @param averaged_count  in and out: tetrahedra that average, shape [1]; empty: not wanted
+/// @param averaged_count  in and out: number of tetrahedra that average, shape [1]; empty: not
+/// wanted
 ///
-/// Determinism: how many samples make a mean is the same on every back end; matrices within 2^-48
-/// relative times the condition of F. Cost: a rotation takes about 1500 operations.
+/// Determinism: numbers of parts are the same on every back end; matrices agree within 2^-48
+/// relative times the condition number of F. Cost: about 1500 operations per rotation.
 /// Source: R of finite strain and F: D. C. Alexander et al., 2001.
 template <class Exec>
 void tet_transform(Exec& exec,

@@ -1,10 +1,10 @@
 /// @file volume_filter.hpp
 /// Filters wider than linear: cubic convolution, cubic B-spline, windowed sinc.
 ///
-/// A value is written as near + sum over taps of weight (sample - near), with the sample `near`
-/// that weighs most: weights sum to one, so this is the weighted sum, and a constant is kept bit
-/// for bit.
-/// @see volume_prefilter.hpp for the coefficients that take the place of samples in a spline
+/// A value is computed as near + sum over taps of weight (sample - near), `near` being the sample
+/// of largest weight. As weights sum to one this is the weighted sum, and a constant source gives
+/// the constant bit for bit.
+/// @see volume_prefilter.hpp for the coefficients that a spline has in place of samples
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -16,27 +16,27 @@ namespace tetwarp {
 
 constexpr int max_taps = 6;  ///< per axis
 
-/// A position where the source is defined: its lower neighbour, which may lie beyond the rim, and
-/// the way from there to the upper one.
+/// A position where the source is defined: the voxel below it, which may be index -1, and the
+/// fraction of the way from there to the next voxel.
 template <class Real>
 struct SourcePosition {
   int voxel[3];
   Real fraction[3];  ///< 0 to 1
 };
 
-/// What a filter reads around a position, per axis: `first` is the tap of the lower neighbour.
+/// The samples that a filter reads around a position, as offsets and weights per axis.
 template <class Real>
 struct FilterTaps {
   int count;  ///< per axis: 4 or 6
   std::int64_t offset[3][max_taps];
   Real weight[3][max_taps];
-  std::int64_t near;  ///< offset of the sample that weighs most
-  bool is_streak;     ///< taps along x follow each other in memory
+  std::int64_t near;   ///< offset of the sample of largest weight
+  bool is_contiguous;  ///< taps along x follow each other in memory
 };
 
 /// Catmull-Rom: the cubic convolution of R. Keys (1981) with a = -1/2; reproduces quadratics.
 /// @param t  fraction; Real may be a vector of numbers
-/// @param w  out, of the samples -1, 0, 1, 2 from the lower neighbour on
+/// @param w  out, weights of the samples at offsets -1, 0, 1, 2 from the voxel below
 template <class Real>
 TETWARP_HD void cubic_weights(Real t, Real* w) {
   w[0] = ((Real(-0.5) * t + Real(1.0)) * t - Real(0.5)) * t;
@@ -45,7 +45,7 @@ TETWARP_HD void cubic_weights(Real t, Real* w) {
   w[3] = (Real(0.5) * t - Real(0.5)) * (t * t);
 }
 
-/// Cubic B-spline; with prefiltered samples it reproduces cubics. Arguments as above.
+/// Cubic B-spline; on coefficients it reproduces cubic polynomials. Arguments as cubic_weights().
 template <class Real>
 TETWARP_HD void bspline_weights(Real t, Real* w) {
   const Real sixth = Real(1.0 / 6.0), u = Real(1.0) - t;
@@ -68,12 +68,12 @@ TETWARP_HD Real third_sine(Real x) {
   return Real(third) * series;
 }
 
-/// Sinc under the window of Lanczos, three lobes: sinc(x) sinc(x / 3), made to sum to one.
+/// Lanczos-windowed sinc of three lobes: sinc(x) sinc(x / 3), normalized to sum one.
 ///
 /// With s(x) = sin(pi x / 3), all six numerators follow from s(t) and s(1 - t), for s(1 + t) =
 /// s(t) + s(1 - t) and s(x) = s(3 - x); sin(pi t), common to all, cancels. Multiplied by t (1 - t),
 /// nothing is divided by zero.
-/// @param w  out, of the samples -2 to 3 from the lower neighbour on
+/// @param w  out, weights of the samples at offsets -2 to 3 from the voxel below
 template <class Real>
 TETWARP_HD void lanczos_weights(Real t, Real* w) {
   const Real u = Real(1.0) - t, both = t * u;
@@ -89,7 +89,7 @@ TETWARP_HD void lanczos_weights(Real t, Real* w) {
   for (int i = 0; i < 6; ++i) w[i] = w[i] * scale;
 }
 
-/// Weights by any of the three.
+/// Weights of cubic, bspline or lanczos.
 template <class Real>
 TETWARP_HD void filter_weights(Filter filter, Real t, Real* w) {
   if (filter == Filter::cubic) {
@@ -105,7 +105,7 @@ TETWARP_HD int tap_count(Filter filter) {
   return filter == Filter::lanczos ? 6 : 4;
 }
 
-/// Index of the sample that stands at i, which may lie beyond the samples 0 to last.
+/// Index of the sample used at i when samples 0 to `last` are continued by mirroring at both ends.
 TETWARP_HD int mirrored(int i, int last) {
   if (last == 0) return 0;
   const int within = (i < 0 ? -i : i) % (2 * last);
@@ -120,7 +120,7 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
   FilterTaps<Real> taps;
   taps.count = tap_count(filter);
   taps.near = 0;
-  taps.is_streak = false;
+  taps.is_contiguous = false;
   std::int64_t stride = source.components;
   for (int axis = 0; axis < 3; ++axis) {
     const Real t = at.fraction[axis];
@@ -130,22 +130,23 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
     const int nearest = taps.count / 2 - (t < Real(0.5) ? 1 : 0);
     bool is_plain = true;
     for (int i = 0; i < taps.count; ++i) {
-      // A tap without weight reads the nearest sample: a NaN reaches only what it has weight in.
+      // A tap of zero weight reads the nearest sample, so that NaN there does not spread.
       const int voxel = first + (taps.weight[axis][i] == Real(0) ? nearest : i);
       const int there =
           filter == Filter::bspline ? mirrored(voxel, last) : min_of(max_of(voxel, 0), last);
       is_plain = is_plain && there == first + i;
       taps.offset[axis][i] = there * stride;
     }
-    if (axis == 0) taps.is_streak = is_plain && source.components == 1;
+    if (axis == 0) taps.is_contiguous = is_plain && source.components == 1;
     taps.near += taps.offset[axis][nearest];
     stride *= source.dims[axis];
   }
   return taps;
 }
 
-/// near + sum of weight (sample - near) over Taps^3 samples, along y, then z, then x.
-template <bool Streak, int Taps, class Real, class Sample>
+/// near + sum of weight (sample - near) over Taps^3 samples, summed along y, then z, then x.
+/// @tparam Contiguous  whether taps along x are adjacent in memory
+template <bool Contiguous, int Taps, class Real, class Sample>
 TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
   const Real near = static_cast<Real>(samples[taps.near]);
   Real column[Taps] = {};
@@ -153,9 +154,9 @@ TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
     Real part[Taps] = {};
     for (int y = 0; y < Taps; ++y) {
       const Sample* line = samples + (taps.offset[2][z] + taps.offset[1][y]);
-      if constexpr (Streak) line += taps.offset[0][0];
+      if constexpr (Contiguous) line += taps.offset[0][0];
       for (int x = 0; x < Taps; ++x) {
-        const Sample sample = line[Streak ? x : taps.offset[0][x]];
+        const Sample sample = line[Contiguous ? x : taps.offset[0][x]];
         part[x] += taps.weight[1][y] * (static_cast<Real>(sample) - near);
       }
     }
@@ -166,13 +167,14 @@ TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
   return near + sum;
 }
 
-/// The same, one component.
+/// blended() of one component, out of line.
 template <int Taps, class Real, class Sample>
 TETWARP_HD_RARE Real filtered(const FilterTaps<Real>& taps, const Sample* samples) {
-  return taps.is_streak ? blended<true, Taps>(taps, samples) : blended<false, Taps>(taps, samples);
+  return taps.is_contiguous ? blended<true, Taps>(taps, samples)
+                            : blended<false, Taps>(taps, samples);
 }
 
-/// A component's value as it is stored: clamped where that is wanted, rounded.
+/// A component's value as stored: clamped to source.range if there is one, rounded to T.
 template <class T>
 TETWARP_HD T finished(const SourceView<T>& source, ArithmeticOf<T> value, int component) {
   if (source.range != nullptr) {
@@ -182,7 +184,7 @@ TETWARP_HD T finished(const SourceView<T>& source, ArithmeticOf<T> value, int co
   return rounded_to<T>(value);
 }
 
-/// Component c of the voxel number `voxel`, where the source is constant around it.
+/// Value of component c at voxel `voxel`, around which the source is constant.
 template <class T>
 TETWARP_HD T constant_value(const SourceView<T>& source, std::int64_t voxel, int c) {
   const std::int64_t sample = voxel * source.components + c;
@@ -190,9 +192,9 @@ TETWARP_HD T constant_value(const SourceView<T>& source, std::int64_t voxel, int
   return finished(source, source.coefficients[sample], c);
 }
 
-/// Samples the source by cubic, bspline or lanczos. At a voxel's centre every filter gives the
-/// sample itself, bit for bit.
-/// @param out  one per component
+/// Samples the source by cubic, bspline or lanczos. At a voxel's centre the result is that voxel's
+/// sample, bit for bit.
+/// @param out  shape [components]
 template <class T>
 TETWARP_HD void sample_filtered(const SourceView<T>& source,
                                 Filter filter,

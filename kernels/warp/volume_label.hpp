@@ -1,5 +1,6 @@
 /// @file volume_label.hpp
-/// The filter for labels: the label with the most weight among the eight neighbours of linear.
+/// The filter for labels: the label of largest total weight among the eight neighbours that linear
+/// interpolation would read.
 #pragma once
 #include <cstdint>
 
@@ -9,13 +10,13 @@
 
 namespace tetwarp {
 
-/// Fractions are rounded to it [1/voxel], so that trilinear weights are integers, which sum to its
-/// cube: sums are exact and ties are ties, whatever the processor.
+/// Fractions are rounded to multiples of its inverse [voxel]. Trilinear weights are then integers
+/// whose sum is its cube, so sums and ties are exact on every processor.
 constexpr double label_steps = 0x1p20;
 
-/// The label with the largest sum of trilinear weights; of several, the lowest.
-/// @param label     of the eight neighbours, x changing first
-/// @param fraction  of the way from the lower ones to the upper ones
+/// The label with the largest sum of trilinear weights; the lowest of several.
+/// @param label     labels of the eight neighbours, x fastest
+/// @param fraction  of the way from the lower to the upper neighbours, per axis
 template <class T, class Real>
 TETWARP_HD T heaviest_label(const T* label, const Real* fraction) {
   std::int64_t weight[3][2], share[8];
@@ -26,7 +27,7 @@ TETWARP_HD T heaviest_label(const T* label, const Real* fraction) {
   for (int corner = 0; corner < 8; ++corner) {
     share[corner] = weight[0][corner & 1] * weight[1][corner >> 1 & 1] * weight[2][corner >> 2];
   }
-  constexpr std::int64_t half = std::int64_t{1} << 59;  // of all weights
+  constexpr std::int64_t half = std::int64_t{1} << 59;  // half of the sum of all weights
   std::int64_t most = 0;
   T winner = label[0];
   for (int corner = 0; corner < 8 && most <= half; ++corner) {
@@ -42,9 +43,9 @@ TETWARP_HD T heaviest_label(const T* label, const Real* fraction) {
   return winner;
 }
 
-/// The label for a position: what linear interpolation of one volume per label, and the largest of
-/// their values, would give. No label that is not there, and none of these volumes.
-/// @pre  one component
+/// The label at a position. Equals interpolating the indicator function of each label linearly and
+/// taking the label of the largest value, but makes no such volumes.
+/// @pre the source has one component
 template <class T>
 TETWARP_HD T label_at(const SourceView<T>& source, const SourcePosition<ArithmeticOf<T>>& at) {
   std::int64_t offset[3][2], stride = 1;

@@ -1,6 +1,6 @@
 /// @file volume_prefilter.hpp
-/// Coefficients of the cubic B-spline that passes through the samples of a source, mirrored at its
-/// rim: once per source.
+/// Coefficients of the cubic B-spline that interpolates the samples of a source, mirrored at its
+/// border; once per source.
 #pragma once
 #include <cstdint>
 
@@ -12,22 +12,22 @@
 namespace tetwarp {
 
 constexpr double spline_pole = -0.26794919243112270647;  ///< sqrt(3) - 2
-constexpr int spline_memory = 32;  ///< the pole's powers from here on are below 2^-60
-constexpr int spline_bundle = 8;   ///< neighbouring lines that go together: a cache line of them
+constexpr int spline_memory = 32;                        ///< the pole to this power is below 2^-60
+constexpr int spline_bundle = 8;  ///< adjacent lines filtered together: one cache line of samples
 
-/// Solves (c[i-1] + 4 c[i] + c[i+1]) / 6 = s[i] along lines, in place, by one recursion up and one
-/// down: with the pole z, p[i] = 6 s[i] + z p[i-1], then c[i] = z (c[i+1] - p[i]).
-/// @param line   sample 0 of the first of `width` lines that stand side by side
-/// @param step   from one sample of a line to the next
+/// Solves (c[i-1] + 4 c[i] + c[i+1]) / 6 = s[i] along lines in place, by a forward and a backward
+/// recursion: with the pole z, p[i] = 6 s[i] + z p[i-1], then c[i] = z (c[i+1] - p[i]).
+/// @param line   sample 0 of the first of `width` lines that are adjacent in memory
+/// @param step   distance in memory of consecutive samples of a line
 /// @param count  samples per line
-/// @param width  at most spline_bundle
+/// @param width  number of lines, at most spline_bundle
 TETWARP_HD void prefilter_lines(double* line, std::int64_t step, int count, int width) {
   constexpr double z = spline_pole;
   if (count == 1) return;
   double state[spline_bundle];
   double power = 1;
   for (int l = 0; l < width; ++l) state[l] = 0;
-  for (int i = 0; i < spline_memory; ++i, power *= z) {  // of the mirrored samples before the first
+  for (int i = 0; i < spline_memory; ++i, power *= z) {  // mirrored samples before the first
     const double* const at = line + mirrored(i, count - 1) * step;
     for (int l = 0; l < width; ++l) state[l] = add_rn(state[l], mul_rn(6 * power, at[l]));
   }
@@ -53,10 +53,11 @@ TETWARP_HD void prefilter_lines(double* line, std::int64_t step, int count, int 
   }
 }
 
-/// One index = one component of one row of samples; any order. Reads the row and filters it.
+/// One index = one component of one row of samples; any order. Copies the row to `work` and filters
+/// it.
 ///
-/// In place of a sample that is not finite stands the one before it in the row, or else the next:
-/// what is finite stays so, and is smooth.
+/// A sample that is not finite is replaced by the previous finite one of the row, or else the next,
+/// so that coefficients of its neighbours stay finite.
 template <class T>
 struct SplineRowBody {
   SourceView<T> source;
@@ -68,7 +69,7 @@ struct SplineRowBody {
     const T* const from = source.data + first;
     double* const to = work.data + first;
     double before = 0;
-    for (int i = count - 1; i >= 0; --i) {  // ends with the first finite one
+    for (int i = count - 1; i >= 0; --i) {  // afterwards `before` is the first finite one
       const double sample = static_cast<double>(from[std::int64_t{i} * components]);
       if (is_finite(sample)) before = sample;
     }
@@ -83,10 +84,10 @@ struct SplineRowBody {
   TETWARP_HD static bool is_finite(double sample) { return sample - sample == 0; }
 };
 
-/// One index = a bundle of neighbouring lines along y or z; any order.
+/// One index = a bundle of adjacent lines along y or z; any order.
 struct SplineLinesBody {
   View<double> work;
-  std::int64_t step;  ///< samples from one of a line to the next; so many lines stand side by side
+  std::int64_t step;  ///< distance of a line's samples; also the number of adjacent lines
   int count;          ///< samples per line
 
   TETWARP_HD void operator()(std::int64_t bundle) const {
@@ -102,8 +103,8 @@ struct SplineLinesBody {
   }
 };
 
-/// One index = one sample; any order. Coefficients as they are read; in place of those close to
-/// their samples, and of those of samples that are not finite, the samples.
+/// One index = one sample; any order. Converts a coefficient to Real. A coefficient close to its
+/// sample is replaced by the sample, as is that of a sample that is not finite.
 template <class T>
 struct SplineStoreBody {
   using Real = ArithmeticOf<T>;
@@ -114,20 +115,20 @@ struct SplineStoreBody {
 
   TETWARP_HD void operator()(std::int64_t s) const {
     const double sample = static_cast<double>(samples[s]);
-    const bool is_close = !(fabs(work[s] - sample) > tolerance);  // NaN is
+    const bool is_close = !(fabs(work[s] - sample) > tolerance);  // true for NaN
     const bool is_finite = SplineRowBody<T>::is_finite(sample);
     coefficients[s] = static_cast<Real>(is_finite && !is_close ? work[s] : sample);
   }
 };
 
-/// Finds the coefficients.
+/// Computes the coefficients in float64, rounded once at the end.
 ///
-/// All in float64, rounded once at the end. Where the samples are even the coefficients approach
-/// them, but for a tolerance without end.
+/// In constant regions coefficients converge to the samples but never reach them; with a tolerance
+/// they become equal, so that such regions are found to be constant (volume_uniform.hpp).
 /// @param exec          where to run
 /// @param source        the samples
-/// @param tolerance     coefficients as close to their samples are these [sample]
-/// @param work          scratch, one per sample; with float64 arithmetic it may be `coefficients`
+/// @param tolerance     coefficients this close to their samples are replaced by them [sample]
+/// @param work          scratch, one per sample; may be `coefficients` if these are float64
 /// @param coefficients  out, one per sample, in the same order
 ///
 /// Determinism: same bits on every back end. Cost: three reads and writes of `work`, one of the

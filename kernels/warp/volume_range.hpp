@@ -1,5 +1,5 @@
 /// @file volume_range.hpp
-/// The least and largest sample of each component: what overshoot is clamped to.
+/// The smallest and largest sample of each component, to which overshooting filters are clamped.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// One index = one part of the source; any order.
+/// One index = part_voxels consecutive voxels of the source; any order.
 template <class T>
 struct VolumeRangeBody {
   using Real = ArithmeticOf<T>;
@@ -19,7 +19,7 @@ struct VolumeRangeBody {
   static constexpr Real beyond = std::numeric_limits<Real>::infinity();
   SourceView<T> source;
   std::int64_t voxel_count;
-  View<Real> ranges;  ///< least and largest per component, of each part; no NaN
+  View<Real> ranges;  ///< smallest and largest per part and component, NaN ignored
 
   TETWARP_HD void operator()(std::int64_t part) const {
     const std::int64_t end = min_of((part + 1) * part_voxels, voxel_count);
@@ -36,14 +36,14 @@ struct VolumeRangeBody {
   }
 };
 
-/// Finds the range of a source.
+/// Finds the range of a source. Waits for the result.
 ///
 /// @param exec    where to run
 /// @param source  the samples
-/// @returns least and largest sample per component, NaN left out; infinite and crossed where there
-///          is nothing else
+/// @returns smallest and largest sample per component, NaN ignored; +inf and -inf for a component
+///          that is NaN everywhere
 ///
-/// Determinism: same bits on every back end. Cost: one read of the source; waits for the result.
+/// Determinism: same bits on every back end. Cost: one read of the source.
 /// Source: ours.
 template <class Exec, class T>
 std::vector<ArithmeticOf<T>> volume_range(Exec& exec, const SourceView<T>& source) {

@@ -1,9 +1,10 @@
 /// @file volume_sample.hpp
-/// The source at an index-space position: nearest and linear, clamp and background rules. Wider
+/// Samples the source at a position of its index space, by the nearest voxel or linearly. Wider
 /// filters: volume_filter.hpp; labels: volume_label.hpp.
 ///
-/// A position is an integer voxel `whole` plus a local part near it, so that float32 loses nothing
-/// in large volumes. The source is defined on [-0.5, N - 0.5] per axis; neighbours are clamped.
+/// A position is an integer voxel `whole` plus a small local part, so that float32 is as accurate
+/// in large volumes as in small ones. The source is defined on [-0.5, N - 0.5] per axis; indices of
+/// neighbours are clamped to the source.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -16,34 +17,34 @@
 
 namespace tetwarp {
 
-/// Filters that tap_of() and sample() do not know.
+/// Whether a filter is not served by tap_of() and sample(): all but nearest and linear.
 TETWARP_HD bool is_wide(Filter filter) {
   return filter > Filter::linear;
 }
 
-/// How many samples on either side of a position a filter may read; mirrored ones are up to one
-/// further in.
+/// Most samples that a filter reads on either side of a position; near the border of the source
+/// mirrored ones may be one further inside.
 TETWARP_HD int reach_of(Filter filter) {
   if (filter == Filter::cubic) return 2;
   return filter == Filter::bspline || filter == Filter::lanczos ? 3 : 1;
 }
 
-/// How far beyond the source's rim the rounding of nodes and of float32 positions may carry a
-/// position that lies on it [voxel].
+/// Largest distance by which rounding of nodes and of float32 positions may move a position from
+/// the source's border to its outside [voxel]. Such positions count as inside.
 constexpr float rim_slack = 0x1p-19f;
 
-/// Samples [k][j][i][component], and what some filters must know of them.
+/// The source's samples [k][j][i][component], and data that some filters need with them.
 ///
-/// They may be a window of the source: where it ends, the source ends, or nobody samples beyond.
-/// Positions then count from its first voxel, moved by whole voxels so that no bit of them changes.
+/// May be a window of the source. Then no position is sampled beyond the window unless the source
+/// ends there too; positions are relative to its first voxel, a whole-voxel shift without rounding.
 template <class T>
 struct SourceView {
   const T* data;
   int dims[3];
   int components;
-  /// Of the spline through the samples, as many; null: not wanted.
+  /// Coefficients of the spline through the samples, in their order; null unless the filter is one.
   const ArithmeticOf<T>* coefficients = nullptr;
-  /// Least and largest sample per component, which values are clamped to; null: they are not.
+  /// Smallest and largest sample per component, to which values are clamped; null: no clamping.
   const ArithmeticOf<T>* range = nullptr;
   int origin[3] = {0, 0, 0};  ///< index in the source of the first voxel of the samples
 };
@@ -57,9 +58,9 @@ struct SourceMap {
   int whole[3];
 };
 
-constexpr double max_whole = 0x1p30;  ///< no source reaches there
+constexpr double max_whole = 0x1p30;  ///< larger indices are clamped to it; no source is as large
 
-/// The map that takes (i, j, k) to start + linear (i, j, k), in two parts.
+/// The map from (i, j, k) to start + linear (i, j, k), split into whole voxels and a local part.
 template <class Real>
 TETWARP_HD SourceMap<Real> make_source_map(const double* start, const double (*linear)[3]) {
   SourceMap<Real> map;
@@ -72,7 +73,7 @@ TETWARP_HD SourceMap<Real> make_source_map(const double* start, const double (*l
   return map;
 }
 
-/// The same to positions in what a view holds of the source.
+/// The same, with positions relative to the first voxel of the view's window.
 template <class Real, class T>
 TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
                                            const double* start,
@@ -82,7 +83,8 @@ TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
   return map;
 }
 
-/// Local position of voxel (i, j, k); the order of operations is part of the promise of equal bits.
+/// Local position x of voxel (i, j, k). Other code repeats this order of operations to get equal
+/// bits.
 template <class Real>
 TETWARP_HD void local_position(const SourceMap<Real>& map, int i, int j, int k, Real* x) {
   for (int row = 0; row < 3; ++row) {
@@ -91,24 +93,24 @@ TETWARP_HD void local_position(const SourceMap<Real>& map, int i, int j, int k, 
   }
 }
 
-/// Neighbours and weights of one position. Not `inside`: the background.
+/// Neighbours and weights of one position for nearest and linear.
 template <class Real>
 struct Tap {
-  bool inside;
+  bool inside;                ///< the source is defined there; else the voxel gets the background
   std::int64_t offset[3][2];  ///< of the lower and upper neighbour per axis [sample]
   Real fraction[3];
 };
 
-/// Whether the source is defined along an axis at whole + x.
+/// Whether coordinate whole + x lies within the source along an axis.
 template <class T, class Real>
 TETWARP_HD bool is_defined(const SourceView<T>& source, int axis, int whole, Real x) {
-  // Compared in units of the local part: exact, however far the voxel is from index zero.
+  // Bounds are shifted to the local part, where the comparison is exact for any `whole`.
   const Real low = Real(-0.5) - Real(whole) - Real(rim_slack);
   const Real high = Real(source.dims[axis] - 1 - whole) + Real(0.5) + Real(rim_slack);
   return x >= low && x <= high;
 }
 
-/// For nearest and linear.
+/// Neighbours and weights for filters nearest and linear at position whole + x.
 template <class T, class Real>
 TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
                             Filter filter,
@@ -123,7 +125,7 @@ TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
     const Real near = filter == Filter::nearest ? x[axis] + Real(0.5) : x[axis];
     const Real lower = tap.inside ? floor(near) : Real(0);
     const int voxel = whole[axis] + static_cast<int>(lower);
-    // Beyond the outermost centres there is one neighbour: nothing to blend.
+    // Beyond the outermost voxel centres there is only one neighbour.
     const bool blends = filter == Filter::linear && voxel >= 0 && voxel < last;
     tap.fraction[axis] = blends ? near - lower : Real(0);
     tap.offset[axis][0] = min_of(max_of(voxel, 0), last) * stride;
@@ -133,17 +135,17 @@ TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
   return tap;
 }
 
-/// a + f (b - a); a alone when f is zero, so that a NaN reaches only voxels that interpolate it.
+/// a + f (b - a); a if f is zero, so that a NaN in b does not spread.
 template <class Real>
 TETWARP_HD Real lerp_of(Real f, Real a, Real b) {
   return f > Real(0) ? a + f * (b - a) : a;
 }
 
-/// A component between the neighbours of a tap, not rounded.
-/// @param s  of voxel 0
+/// Linear interpolation of one component, not rounded.
+/// @param s  the component at voxel 0
 template <class T, class Real>
 TETWARP_HD Real linear_value(const T* s, const Tap<Real>& tap) {
-  Real column[2];  // blended along y, then z; x comes last, where two columns meet
+  Real column[2];  // interpolated along y, then z; along x last
   for (int x = 0; x < 2; ++x) {
     const T* at = s + tap.offset[0][x];
     Real slice[2];
@@ -157,7 +159,7 @@ TETWARP_HD Real linear_value(const T* s, const Tap<Real>& tap) {
   return lerp_of(tap.fraction[0], column[0], column[1]);
 }
 
-/// One component of the source at a tap that is inside.
+/// One component of the source at a tap. @pre tap.inside
 template <class T, class Real>
 TETWARP_HD T
 sample(const SourceView<T>& source, Filter filter, const Tap<Real>& tap, int component) {

@@ -1,5 +1,5 @@
 /// @file volume_total.hpp
-/// Totals of volumes: of all samples, and of what a mesh holds of a source.
+/// Sum of all samples of a volume, and integral of a source over a mesh.
 #pragma once
 #include <cstdint>
 
@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// One index = one component of one part of a volume; any order.
+/// One index = one component of part_voxels consecutive voxels; any order.
 struct VolumeSumBody {
   static constexpr std::int64_t part_voxels = 4096;
   NumberView volume;
@@ -26,17 +26,19 @@ struct VolumeSumBody {
   }
 };
 
-/// How many sums a volume of so many voxels is first made into, per component.
+/// Number of partial sums per component of a volume.
 TETWARP_HD std::int64_t volume_part_count(std::int64_t voxel_count) {
   return (voxel_count + VolumeSumBody::part_voxels - 1) / VolumeSumBody::part_voxels;
 }
 
-/// Sums all samples of each component, by a tree that depends on nothing but the size.
+/// Sums all samples of each component by a tree that depends only on the number of voxels.
 ///
-/// @param exec     where to run
-/// @param volume   [voxel][component]
-/// @param scratch  two of volume_part_count() sums per component
-/// @param totals   out, shape [components]
+/// @param exec         where to run
+/// @param volume       samples, shape [voxel_count][components]
+/// @param voxel_count  number of voxels
+/// @param components   per voxel
+/// @param scratch      shape [2 * volume_part_count(voxel_count) * components]
+/// @param totals       out, shape [components]
 ///
 /// Determinism: same bits on every back end. Cost: one read of the volume.
 /// Source: ours.
@@ -62,7 +64,7 @@ void volume_total(Exec& exec,
   }
 }
 
-/// A tetrahedron at rest among the voxels of the source; empty where it is flat.
+/// Planes and box of a tetrahedron at rest in the grid of the source; an empty box if it is flat.
 TETWARP_HD TetSetup rest_setup(const TetNodes& tet, const OutputFrame& frame) {
   TetSetup setup = {};
   double gradient[4][3], at_anchor[4];
@@ -72,7 +74,8 @@ TETWARP_HD TetSetup rest_setup(const TetNodes& tet, const OutputFrame& frame) {
   return setup;
 }
 
-/// One index = one tetrahedron; any order.
+/// One index = one tetrahedron; any order. Counts the slices of the source that its box intersects:
+/// the items of TetSliceMassBody.
 struct TetSliceCountBody {
   View<const std::int32_t> tets;
   View<const Node> rest;
@@ -85,7 +88,8 @@ struct TetSliceCountBody {
   }
 };
 
-/// One item = one slice of the source in the box of one tetrahedron; any order.
+/// One item = one slice of the source in the box of one tetrahedron; any order. Sums sample times
+/// volume of the voxel within the tetrahedron, per component.
 struct TetSliceMassBody {
   View<const std::int32_t> tets;
   View<const Node> rest;

@@ -1,6 +1,6 @@
 /// @file volume_uniform.hpp
-/// Where the source holds one value: blocks of 8x8x8 samples and how far on from each it goes.
-/// Positions there need no interpolation.
+/// Constant regions of the source, in blocks of 8x8x8 samples. Positions in them need no
+/// interpolation.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -13,14 +13,15 @@
 
 namespace tetwarp {
 
-constexpr int block_shift = 3;  ///< blocks of 8 samples along an axis
-constexpr int longest_reach = 5;
+constexpr int block_shift = 3;    ///< blocks of 8 samples along an axis
+constexpr int longest_reach = 5;  ///< edge of the largest constant cube that is searched [block]
 
-/// The source in blocks.
+/// Constant cubes of blocks of the source.
 struct UniformMap {
-  /// Per block: the edge of a cube of blocks from this one on, towards higher i, j and k, that
-  /// holds one value; 0 where the block holds several, or one that must not be filled in. Blocks
-  /// behind the end of the source have any value. Size 0: nothing is known.
+  /// Per block: edge [block] of a cube of blocks, from this one towards higher i, j and k, in which
+  /// the source is constant; 0 if it is not constant in the block, or its value cannot be filled
+  /// in, see can_fill(). Parts of the cube beyond the end of the source do not count. Size 0:
+  /// unknown.
   View<const std::uint8_t> reach;
   int blocks[3];
 
@@ -30,7 +31,7 @@ struct UniformMap {
   TETWARP_HD std::int64_t block_index(int bi, int bj, int bk) const {
     return (std::int64_t{bk} * blocks[1] + bj) * blocks[0] + bi;
   }
-  /// The inverse: bi, bj, bk.
+  /// The inverse of block_index(): sets bi, bj, bk.
   TETWARP_HD void set_position(std::int64_t block, int* at) const {
     const std::int64_t line = block / blocks[0], layer = line / blocks[1];
     at[0] = static_cast<int>(block - line * blocks[0]);
@@ -39,7 +40,7 @@ struct UniformMap {
   }
 };
 
-/// The blocks of a source, nothing known of them.
+/// A map with the blocks of a source and an empty `reach`.
 template <class T>
 TETWARP_HD UniformMap make_uniform_map(const SourceView<T>& source) {
   UniformMap map = {};
@@ -49,14 +50,14 @@ TETWARP_HD UniformMap make_uniform_map(const SourceView<T>& source) {
   return map;
 }
 
-/// Position of a voxel among the voxels of the source.
+/// Number of voxel (i, j, k) among the voxels of the source.
 template <class T>
 TETWARP_HD std::int64_t voxel_of(const SourceView<T>& source, int i, int j, int k) {
   return (std::int64_t{k} * source.dims[1] + j) * source.dims[0] + i;
 }
 
-/// Interpolating between equal values gives that value, bit for bit, but for NaN, infinities (whose
-/// difference is NaN) and -0.0 (which a zero is added to).
+/// Whether interpolation between samples that equal `value` gives `value` bit for bit. True but for
+/// NaN, infinities, whose difference is NaN, and -0.0, which becomes 0.0.
 template <class T>
 TETWARP_HD bool can_fill(T value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -66,7 +67,7 @@ TETWARP_HD bool can_fill(T value) {
   }
 }
 
-/// Equal as bits: 0.0 is not -0.0, and a NaN may equal itself.
+/// Whether arrays have equal bits: 0.0 differs from -0.0, and a NaN equals itself.
 template <class T>
 TETWARP_HD bool has_bits_of(const T* a, const T* b, int count) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -86,7 +87,7 @@ TETWARP_HD bool has_bits_of(const T* a, const T* b, int count) {
   }
 }
 
-/// Sets a mark that any number of threads may set.
+/// Sets a mark to 1; several threads may set the same mark.
 TETWARP_HD void set_mark(std::uint8_t* mark) {
 #if defined(__CUDA_ARCH__)
   *mark = 1;
@@ -95,13 +96,13 @@ TETWARP_HD void set_mark(std::uint8_t* mark) {
 #endif
 }
 
-/// One index = one tetrahedron; any order. Marks the blocks that it may sample, and their
+/// One index = one tetrahedron; any order. Marks the blocks that its voxels may sample, and their
 /// neighbors.
 struct BlockNeedBody {
   View<const std::int32_t> tets;
   View<const Node> rest;
   UniformMap map;
-  int origin[3];  ///< of the samples, in the source
+  int origin[3];  ///< index in the source of the first sample
   View<std::uint8_t> needed;
 
   TETWARP_HD void operator()(std::int64_t t) const {
@@ -130,7 +131,8 @@ struct BlockNeedBody {
   }
 };
 
-/// One index = one block; any order. A needed block that holds one value reaches 1, others 0.
+/// One index = one block; any order. Sets reach to 1 for marked blocks in which the source is
+/// constant, to 0 for others.
 template <class T>
 struct BlockUniformBody {
   static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
@@ -156,7 +158,7 @@ struct BlockUniformBody {
     }
     for (int k = begin[2]; k < end[2]; ++k) {
       for (int j = begin[1]; j < end[1]; ++j) {
-        // All of a row is `first` when its first voxel is, and each equals the one before.
+        // A row is constant if its first voxel equals `first`, and each other one its predecessor.
         const T* row = source.data + voxel_of(source, begin[0], j, k) * source.components;
         const int rest = (end[0] - begin[0] - 1) * source.components;
         if (!has_bits_of(row, first, source.components) ||
@@ -169,8 +171,8 @@ struct BlockUniformBody {
   }
 };
 
-/// One index = one block; any order. A block reaches n + 1 when it and the seven next to it towards
-/// higher i, j and k reach n, with one value.
+/// One index = one block; any order. Sets reach to n + 1 if the block and its seven neighbors
+/// towards higher i, j and k have reach n and the same value.
 template <class T>
 struct BlockReachBody {
   static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
@@ -183,12 +185,12 @@ struct BlockReachBody {
 
   TETWARP_HD void operator()(std::int64_t block) const {
     reach[block] = before[block];
-    if (before[block] < n || !goes_on(block)) return;
+    if (before[block] < n || !can_extend(block)) return;
     reach[block] = static_cast<std::uint8_t>(n + 1);
     if (n == 1) atomic_add(&extended_count[0], 1);
   }
 
-  TETWARP_HD bool goes_on(std::int64_t block) const {
+  TETWARP_HD bool can_extend(std::int64_t block) const {
     int at[3];
     map.set_position(block, at);
     const T* mine = samples_of(at[0], at[1], at[2]);
@@ -209,14 +211,14 @@ struct BlockReachBody {
   }
 };
 
-/// Finds where the source holds one value, as far as the mesh may sample it.
+/// Finds constant regions of the source where the mesh may sample it.
 ///
 /// @param exec        where to run
 /// @param source      the samples
 /// @param tets        node indices, shape [4 * tet_count]
 /// @param rest        nodes in the source's index space [quantum], shape [node_count]
 /// @param reach       out, see UniformMap, one per block
-/// @param scratch     as many
+/// @param scratch     one per block
 /// @param extended_count  blocks that reach 2 or more are added to it, shape [1]: where there is
 /// none,
 ///                    hardly a cell can be filled

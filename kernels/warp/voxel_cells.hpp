@@ -1,5 +1,5 @@
 /// @file voxel_cells.hpp
-/// Stage "fields" of the warp, last: owners by the numbers of the mesh's own cells.
+/// Stage "fields" of the warp, last part: converts owners from tetrahedra to elements of the mesh.
 #pragma once
 #include <cstdint>
 
@@ -12,8 +12,8 @@ namespace tetwarp {
 struct VoxelCellBody {
   HexView hexes;
   OutputFrame frame;
-  View<const std::uint8_t> touched;  ///< cells that the raster wrote; size 0: all
-  View<std::int32_t> owners;         ///< in: tetrahedra, out: cells
+  View<const std::uint8_t> touched;  ///< output cells that the raster wrote; size 0: all
+  View<std::int32_t> owners;         ///< in: tetrahedra, out: mesh elements
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
     int x[3];
@@ -24,15 +24,17 @@ struct VoxelCellBody {
   }
 };
 
-/// Replaces the tetrahedra that hexahedra were split into by these.
+/// Replaces owners that are parts of hexahedra by the index of the mesh element, see
+/// HexView::cell_of().
 ///
 /// @param exec     where to run
-/// @param hexes    of the mesh; without any nothing is done
+/// @param hexes    of the mesh; if there are none, nothing is done
 /// @param frame    the output
-/// @param touched  cells that this step wrote; empty: all
-/// @param owners   in and out, shape [voxel_count]; empty: not wanted
+/// @param touched  output cells that this step wrote; empty: all
+/// @param owners   in: tetrahedra, out: mesh elements, shape [voxel_count]; empty: not wanted
 ///
-/// Determinism: exact. Cost: 8 bytes per voxel.
+/// Determinism: same bits on every back end. Cost: 8 bytes per voxel.
+/// Source: ours.
 template <class Exec>
 void voxel_cells(Exec& exec,
                  const HexView& hexes,

@@ -1,5 +1,5 @@
 /// @file voxel_count.hpp
-/// Stage "raster" of the warp, what is counted beside it: folded and covered voxels.
+/// Stage "raster" of the warp: counts folded and covered voxels.
 #pragma once
 #include <cstdint>
 
@@ -10,15 +10,16 @@
 
 namespace tetwarp {
 
-/// One index = one voxel of the output: is it strictly inside two or more tetrahedra?
+/// One index = one voxel of the output; any order. Counts voxels strictly inside two or more
+/// tetrahedra.
 struct VoxelFoldBody {
   View<const std::int32_t> tets;
   View<const Node> nodes;
   PairList list;
-  View<const std::uint8_t> touched;  ///< cells to look at; size 0: all
+  View<const std::uint8_t> touched;  ///< cells to count in; size 0: all
   OutputFrame frame;
   View<std::int64_t> folded;
-  std::int64_t weight;  ///< of a folded voxel: 1 counts it, -1 takes it back
+  std::int64_t weight;  ///< added per folded voxel: 1, or -1 to subtract an earlier count
 
   TETWARP_HD void operator()(std::int64_t voxel) const {
     int x[3];
@@ -35,7 +36,7 @@ struct VoxelFoldBody {
   }
 };
 
-/// One index = a thousand cells: their covered voxels, summed.
+/// One index = 1024 cells; any order. Sums their covered voxels.
 struct CoveredSumBody {
   static constexpr std::int64_t cells = 1024;
   View<const std::uint16_t> cell_covered;

@@ -1,6 +1,6 @@
 /// @file voxel_fields.hpp
-/// Stage "fields" of the warp, per voxel, after the raster: what the owner of a voxel says of the
-/// deformation there.
+/// Stage "fields" of the warp, per voxel, after the raster: displacement, Jacobian determinant,
+/// gradient and strain at each voxel, from its owner.
 #pragma once
 #include <cstdint>
 
@@ -12,16 +12,16 @@
 
 namespace tetwarp {
 
-/// From a voxel and its source position, both in index space, to how far apart they are in the
-/// world: offset + source (x_source - x) + apart x. Exact where nothing moves.
+/// World displacement of a voxel x with source position x_source, both in index space: offset +
+/// source (x_source - x) + apart x. Exact where nothing moves.
 struct DisplacementMap {
   Matrix3 source;         ///< axes of the source [world per voxel]
-  Matrix3 apart;          ///< these less those of the output grid
-  double offset[3];       ///< origin of the source less that of the output grid [world]
+  Matrix3 apart;          ///< axes of the source minus those of the output grid
+  double offset[3];       ///< origin of the source minus that of the output grid [world]
   std::int64_t frame[3];  ///< index of frame voxel (0, 0, 0) in the output grid
 };
 
-/// Where the fields of a step go, [voxel][component]; null: not wanted.
+/// Output arrays of fields, [voxel][component]; null: not wanted.
 struct VoxelFields {
   float* displacement = nullptr;  ///< 3
   float* jacobian = nullptr;      ///< 1
@@ -29,8 +29,8 @@ struct VoxelFields {
   float* strain = nullptr;        ///< 6
 };
 
-/// Source position of a voxel [frame] that a tetrahedron owns: its map, in float64. Within a
-/// hexahedron place_in_hex() has it.
+/// Source position of a voxel [frame] under a tetrahedron's map, in float64. For voxels of
+/// hexahedra see hex_source_position().
 TETWARP_HD void source_position(const TetSetup& tet, const int* voxel, double* position) {
   double from[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +42,8 @@ TETWARP_HD void source_position(const TetSetup& tet, const int* voxel, double* p
   }
 }
 
-/// Rest less deformed position [world] of what a voxel shows whose source position is known.
+/// Displacement at a voxel: rest minus deformed position [world].
+/// @param position  source position of the voxel
 TETWARP_HD void displacement_of(const DisplacementMap& map,
                                 const int* voxel,
                                 const double* position,
@@ -61,8 +62,8 @@ TETWARP_HD void displacement_of(const DisplacementMap& map,
   }
 }
 
-/// Strain at a voxel of a hexahedron. Out of line, or registers would not do.
-/// @param strain  in and out: that of the tetrahedron stays where there is no gradient
+/// Strain at a voxel of a hexahedron. Out of line to limit registers.
+/// @param strain  in: strain of the owning tetrahedron, kept where the trilinear map is singular
 TETWARP_HD_RARE void set_hex_strain(const HexMap& hex,
                                     const TetSetup& tet,
                                     const GridAxes& axes,
@@ -76,14 +77,15 @@ TETWARP_HD_RARE void set_hex_strain(const HexMap& hex,
   }
 }
 
-/// Displacements along a row of voxels of one tetrahedron: base + (i - first) step. They begin at
-/// its anchor, so that no other voxel of the row has a say in them.
+/// Displacements along a row of voxels of one tetrahedron: base + (i - first) step. `first` is the
+/// tetrahedron's anchor, so the result does not depend on which voxels of the row are computed.
 struct RowDisplacement {
   double base[3];
   double step[3];
   std::int64_t first;
 };
 
+/// @param voxel  any voxel of the row [frame]
 TETWARP_HD RowDisplacement row_displacement(const DisplacementMap& map,
                                             const TetSetup& tet,
                                             const int* voxel) {
@@ -103,7 +105,7 @@ TETWARP_HD RowDisplacement row_displacement(const DisplacementMap& map,
   return row;
 }
 
-/// What the bodies below read and write, and how.
+/// Input and output of the bodies below.
 struct VoxelFieldsJob {
   View<const TetSetup> setups;
   HexMesh mesh;
@@ -123,7 +125,7 @@ struct VoxelFieldsJob {
     return stretches_per_row() * (frame.end[1] - frame.begin[1]) * (frame.end[2] - frame.begin[2]);
   }
 
-  /// Writes a stretch: voxels within hexahedra, or all others.
+  /// Writes one stretch: its voxels in hexahedra, or all others.
   template <bool in_hexes>
   TETWARP_HD void write_stretch(std::int64_t index) const {
     int voxel[3];
@@ -146,7 +148,8 @@ struct VoxelFieldsJob {
     }
   }
 
-  /// Voxels from i on with one owner, where cells matter within one.
+  /// Number of voxels from i on with the same owner; if only touched cells are written, they end
+  /// with the cell.
   TETWARP_HD int run_length(int i, int past, std::int64_t at) const {
     const int limit = touched.size == 0 ? past : min_of(past, (i | (cell_edge - 1)) + 1);
     int count = 1;
@@ -180,7 +183,7 @@ struct VoxelFieldsJob {
     if (strains.size > 0) repeat(strains[owner], at, count);
   }
 
-  /// Within a hexahedron the gradient changes from voxel to voxel.
+  /// As write() for voxels of a hexahedron, in which the gradient is not constant.
   TETWARP_HD void write_in_hex(std::int32_t owner,
                                const int* first,
                                std::int64_t at,
@@ -192,7 +195,7 @@ struct VoxelFieldsJob {
       if (fields.displacement != nullptr) {
         int whole[3];
         double position[3], displacement[3];
-        place_in_hex(tet, hex, voxel, whole, position);
+        hex_source_position(tet, hex, voxel, whole, position);
         for (int axis = 0; axis < 3; ++axis) position[axis] += whole[axis];
         displacement_of(map, voxel, position, displacement);
         for (int r = 0; r < 3; ++r) {
@@ -227,22 +230,24 @@ struct VoxelFieldsBody {
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
 };
 
-/// The same for voxels within hexahedra, whose maps take many registers: apart from the others.
+/// The same for voxels in hexahedra. A kernel of its own, as it needs many registers.
 struct HexFieldsBody {
   VoxelFieldsJob job;
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }
 };
 
-/// Writes the wanted fields of every voxel of the cells to write; zeros where nothing covers.
+/// Writes the wanted fields at every voxel of the touched cells; zeros at uncovered voxels.
 ///
 /// @param exec  where to run
-/// @param job   what to write; its stretch is chosen here: whole rows for a thread that runs
-///              through memory, single voxels where neighbouring threads share it
-/// @pre   `owners` holds what the raster found, also of cells that are not written
+/// @param job   input and output; its stretch is set here: whole rows on the CPU, single voxels on
+/// a
+///              device, where adjacent threads then access adjacent memory
+/// @pre   job.owners has the owners of all voxels, also in cells that are not written
 ///
 /// Determinism: a displacement is computed in float64 and rounded once, to within an ulp between
 /// back ends; the rest is copied. Cost: 4 bytes read and those of the fields written per voxel; 80
 /// operations per run of voxels with one owner, and 6 more per voxel, for displacements.
+/// Source: ours.
 template <class Exec>
 void voxel_fields(Exec& exec, VoxelFieldsJob job) {
   job.stretch = Exec::reads_are_free ? job.frame.end[0] - job.frame.begin[0] : 1;

@@ -1,6 +1,6 @@
 /// @file voxel_transform.hpp
-/// Stage "raster" of the warp, the body for voxels that get more than a plain sample: the mean over
-/// a footprint, reoriented and scaled; in float64, rounded once.
+/// Stage "raster" of the warp, voxels whose samples are averaged, reoriented or scaled: computed in
+/// float64, rounded once.
 #pragma once
 #include <cstdint>
 
@@ -14,7 +14,7 @@ namespace tetwarp {
 
 constexpr int max_transform_components = 9;
 
-/// filter_taps() for any pixel type: of the source only its shape counts.
+/// filter_taps() for any pixel type, out of line. It reads only the dimensions of the source.
 TETWARP_HD_RARE void set_transform_taps(const SourceView<double>& shape,
                                         Filter filter,
                                         const SourcePosition<double>& at,
@@ -22,7 +22,7 @@ TETWARP_HD_RARE void set_transform_taps(const SourceView<double>& shape,
   taps = filter_taps(shape, filter, at);
 }
 
-/// blended() in loops: small.
+/// blended() in plain loops: slower, but little code.
 template <class Sample>
 TETWARP_HD double looped_blend(const FilterTaps<double>& taps, const Sample* samples) {
   const double near = static_cast<double>(samples[taps.near]);
@@ -75,7 +75,7 @@ TETWARP_HD bool add_values(
   return true;
 }
 
-/// v becomes m v.
+/// Replaces v by m v.
 TETWARP_HD void transform_vector(const Matrix3& m, double* v) {
   const double x = v[0], y = v[1], z = v[2];
   for (int row = 0; row < 3; ++row) v[row] = m.at[row][0] * x + m.at[row][1] * y + m.at[row][2] * z;
@@ -99,8 +99,9 @@ TETWARP_HD bool normalize(double* v) {
   return length > 0;
 }
 
-/// Preservation of the principal direction: the eigenvalues stay, the first eigenvector e1 goes to
-/// F e1, the second into the plane of F e1 and F e2, whose normal is along F^-T e3.
+/// Reorients a tensor by preservation of the principal direction: eigenvalues do not change, the
+/// first eigenvector e1 becomes F e1, the second lies in the plane of F e1 and F e2, whose normal
+/// is along F^-T e3; all normalized.
 /// @param backward  the inverse of F
 /// Source: D. C. Alexander et al., "Spatial transformations of diffusion tensor magnetic resonance
 /// images", 2001.
@@ -138,7 +139,8 @@ TETWARP_HD_RARE void preserve_principal(const Matrix3& backward, double* d) {
   set_tensor(turned, d);
 }
 
-/// Components as a tetrahedron's transform turns them.
+/// Reorients the components of one sample in place.
+/// @param matrix  from matrix_of()
 TETWARP_HD void reorient(Quantity reorientation, const Matrix3& matrix, double* values) {
   switch (reorientation) {
     case Quantity::components:
@@ -154,7 +156,7 @@ TETWARP_HD void reorient(Quantity reorientation, const Matrix3& matrix, double* 
   }
 }
 
-/// What the transforms of a job need of it.
+/// The members of a job that store_transformed() reads.
 template <class T>
 struct TransformSampler {
   SourceView<T> source;
@@ -169,10 +171,10 @@ struct TransformSampler {
         background(job.background) {}
 };
 
-/// Stores the samples around a position of the source by a transform. Of the voxel's parts those
-/// that lie beyond the source do not count; where none is left, the background.
-/// @param map  how the position changes from voxel to voxel, and the whole voxel that x counts from
-/// @param out  one per component
+/// Stores the transformed samples of a voxel at source position map.whole + x. Parts of the voxel
+/// outside the source are ignored; if all are, the voxel gets the background.
+/// @param map  gives the size of the voxel in the source
+/// @param out  shape [components]
 template <class T>
 TETWARP_HD_RARE void store_transformed(TransformSampler<T> job,
                                        const VoxelTransform& transform,
@@ -211,9 +213,9 @@ TETWARP_HD_RARE void store_transformed(TransformSampler<T> job,
 
 /// Stores a voxel that tetrahedron t owns, by the transform of t.
 template <class T>
-TETWARP_HD void store_transformed_voxel(const RasterJob<T>& job,
-                                        std::int64_t t,
-                                        const CellVoxel& voxel) {
+TETWARP_HD_RARE void store_transformed_voxel(const RasterJob<T>& job,
+                                             std::int64_t t,
+                                             const CellVoxel& voxel) {
   double start[3], linear[3][3], x[3];
   map_start(job.setups[t], voxel.corner, start, linear);
   auto map = make_source_map<double>(job.source, start, linear);
@@ -221,7 +223,7 @@ TETWARP_HD void store_transformed_voxel(const RasterJob<T>& job,
   if (job.setups[t].kind == MapKind::trilinear) {
     const int frame_voxel[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
                                 voxel.corner[2] + voxel.k};
-    place_in_hex(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
+    hex_source_position(job.setups[t], hex_map_of(job, t), frame_voxel, map.whole, x);
     for (int row = 0; row < 3; ++row) map.whole[row] -= job.source.origin[row];
   }
   T* const out = job.volume + voxel.offset * job.source.components;

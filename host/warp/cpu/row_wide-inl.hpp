@@ -166,7 +166,7 @@ inline void sample_narrow(const RasterJob<T>& job,
   const auto map = make_source_map<float>(job.source, start, linear);
   for (; bits != 0; bits &= bits - 1) {
     const int i = std::countr_zero(bits);
-    store_sample<false>(job, job.filter, map, i, j, k, row + i);
+    store_sample<false>(job, job.filter, map, {source.corner(), i, j, k, row + i});
   }
 }
 

@@ -1,0 +1,46 @@
+/// @file each_kernel.cuh
+/// The kernels of CudaExec::for_each() and for_each_item(): one index per thread.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/exec/launch.hpp"
+
+namespace tetwarp {
+
+constexpr int each_threads = 256;  ///< threads per block
+
+/// Minimum blocks per multiprocessor, which bounds registers per thread: Body::resident_blocks
+/// where ptxas' own choice would spill, else 0, which leaves it to ptxas.
+template <class Body>
+constexpr int resident_blocks = [] {
+  if constexpr (requires { Body::resident_blocks; }) return Body::resident_blocks;
+  return 0;
+}();
+
+template <class Body>
+__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
+    each_kernel(std::int64_t count, Body body) {
+  const std::int64_t i = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
+  if (i < count) body(i);
+}
+
+/// Calls body(segment, index in the segment, item), the segment found by bisection of `offsets`.
+template <class Body>
+__global__ void __launch_bounds__(each_threads)
+    each_item_kernel(View<const std::int64_t> offsets, std::int64_t capacity, Body body) {
+  const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
+  std::int64_t low = 0, high = offsets.size - 1;
+  if (item >= min_of(offsets[high], capacity)) return;
+  while (low + 1 < high) {
+    const std::int64_t middle = (low + high) / 2;
+    if (offsets[middle] <= item) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  body(low, item - offsets[low], item);
+}
+
+}  // namespace tetwarp
