@@ -5,7 +5,7 @@ namespace tetwarp {
 
 namespace {
 
-/// What run() starts with for each method.
+/// Report name of the method that ContactMethods::run() starts with.
 const char* first_method(ContactMethod method) {
   switch (method) {
     case ContactMethod::gauss_seidel:
