@@ -32,10 +32,10 @@ struct BodyVelocityBody {
     for (int k = 0; k < size; ++k) body_velocity[first + k] = free[first + k];
     for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
       const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
-      const T* answer = response.data + contacts.value[p];
+      const T* own_response = response.data + contacts.value[p];
       for (int k = 0; k < size; ++k) {
-        body_velocity[first + k] +=
-            answer[3 * k] * r[0] + answer[3 * k + 1] * r[1] + answer[3 * k + 2] * r[2];
+        body_velocity[first + k] += own_response[3 * k] * r[0] + own_response[3 * k + 1] * r[1] +
+                                    own_response[3 * k + 2] * r[2];
       }
     }
   }

@@ -55,7 +55,7 @@ template <class Exec, class T, class Log>
 class ContactMethods {
  public:
   /// One index = one entry: product of gradient and last step; a positive sum means uphill.
-  struct UphillBody {
+  struct SlopeBody {
     View<const double> weights;
     View<const T> before, x, last;
     TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
@@ -126,7 +126,7 @@ class ContactMethods {
       const double uphill =
           exec()
               .template sum<PlainSums<1>>("contact/mix", 0, x.size,
-                                          UphillBody{work_.weights, work_.before, x, last})
+                                          SlopeBody{work_.weights, work_.before, x, last})
               .value[0];
       if (uphill > 0) momentum = 1;
       const double next = (1 + sqrt(1 + 4 * momentum * momentum)) / 2;
@@ -219,8 +219,8 @@ class ContactMethods {
 /// Why and when the solve of an island ended.
 struct IslandEnd {
   StopReason reason = StopReason::exhausted;
-  std::int64_t sweeps = 0;  ///< those of earlier solves included
-  bool has_turned = false;  ///< from accelerated sweeps to conjugate directions
+  std::int64_t sweeps = 0;    ///< those of earlier solves included
+  bool has_switched = false;  ///< from accelerated sweeps to conjugate directions
 };
 
 /// Method and budget of every island.
@@ -243,14 +243,14 @@ TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
                                         Log& log) {
   ConvergenceTest<Log> convergence(criterion, sweeps_done, plan.sweep_budget, log);
   ContactMethods<Exec, T, Log> methods(pipeline, convergence, work);
-  bool has_turned = false;
+  bool has_switched = false;
   if (!methods.is_done_at_start()) {
     const ContactState<T>& state = pipeline.state();
-    has_turned = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
-                                           static_cast<T>(plan.freeze_share)});
+    has_switched = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
+                                             static_cast<T>(plan.freeze_share)});
     methods.restore_best();
   }
-  return {convergence.reason(), convergence.sweeps(), has_turned};
+  return {convergence.reason(), convergence.sweeps(), has_switched};
 }
 
 /// Residual of an island and the scale of its free velocities.

@@ -69,17 +69,18 @@ struct ContactResponseBody {
       const int size = static_cast<int>(pairs.dof_start[b + 1] - pairs.dof_start[b]);
       const T* j = jacobian.data + pairs.value_start[p];
       const T* inverse_block = inverse.data + inverse_start[b];
-      T* answer = response.data + pairs.value_start[p];
+      T* own_response = response.data + pairs.value_start[p];
       for (int row = 0; row < size; ++row) {
         for (int a = 0; a < 3; ++a) {
           T sum = 0;
           for (int k = 0; k < size; ++k) sum += inverse_block[row * size + k] * j[a * size + k];
-          answer[3 * row + a] = relaxation * sum;
+          own_response[3 * row + a] = relaxation * sum;
         }
       }
       for (int a = 0; a < 3; ++a) {
         for (int e = 0; e < 3; ++e) {
-          for (int k = 0; k < size; ++k) own[3 * a + e] += j[a * size + k] * answer[3 * k + e];
+          for (int k = 0; k < size; ++k)
+            own[3 * a + e] += j[a * size + k] * own_response[3 * k + e];
         }
       }
     }

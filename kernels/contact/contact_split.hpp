@@ -26,11 +26,11 @@ struct BodySplitMetricBody {
       const int size = static_cast<int>(bodies.pairs.dof_start[b + 1] - bodies.pairs.dof_start[b]);
       const T share = static_cast<T>(block_start[b + 1] - block_start[b]);
       const T* j = bodies.jacobian.data + bodies.pairs.value_start[p];
-      const T* answer = bodies.response.data + bodies.pairs.value_start[p];
+      const T* own_response = bodies.response.data + bodies.pairs.value_start[p];
       for (int a = 0; a < 3; ++a) {
         for (int e = 0; e < 3; ++e) {
           for (int k = 0; k < size; ++k)
-            own[3 * a + e] += share * j[a * size + k] * answer[3 * k + e];
+            own[3 * a + e] += share * j[a * size + k] * own_response[3 * k + e];
         }
       }
     }

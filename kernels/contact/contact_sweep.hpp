@@ -91,11 +91,11 @@ struct BodiesView {
       const std::int32_t b = pairs.block[p];
       const std::int64_t first = pairs.dof_start[b];
       const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
-      const T* answer = response.data + pairs.value_start[p];
+      const T* own_response = response.data + pairs.value_start[p];
       T* v = body_velocity + first;
       for (int k = 0; k < size; ++k) {
-        v[k] += answer[3 * k] * change[0] + answer[3 * k + 1] * change[1] +
-                answer[3 * k + 2] * change[2];
+        v[k] += own_response[3 * k] * change[0] + own_response[3 * k + 1] * change[1] +
+                own_response[3 * k + 2] * change[2];
       }
     }
   }
@@ -105,8 +105,8 @@ struct BodiesView {
       const std::int32_t b = pairs.block[p];
       const std::int64_t first = pairs.dof_start[b];
       const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
-      const T* answer = response.data + pairs.value_start[p];
-      for (int k = 0; k < size; ++k) body_velocity[first + k] += answer[3 * k] * change;
+      const T* own_response = response.data + pairs.value_start[p];
+      for (int k = 0; k < size; ++k) body_velocity[first + k] += own_response[3 * k] * change;
     }
   }
 };
@@ -155,7 +155,7 @@ struct FrozenContacts {
 /// @param change      out: r after minus r before, [3]
 /// @return  false if the contact has a normal row only, so that change[1] and change[2] are 0
 template <class Velocities, class T>
-TETWARP_HD bool answer_contact(const ContactConstants<T>& contact,
+TETWARP_HD bool update_contact(const ContactConstants<T>& contact,
                                ContactSwitches switches,
                                const Velocities& velocities,
                                std::int64_t c,
@@ -188,7 +188,7 @@ struct DelassusSweepBody {
     if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
-    answer_contact(constants[c], switches, delassus, c, impulse.data, r, change);
+    update_contact(constants[c], switches, delassus, c, impulse.data, r, change);
     frozen.note(c, change, r);
   }
 };
@@ -207,7 +207,7 @@ struct BodySweepBody {
     if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
-    if (answer_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
+    if (update_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
       bodies.push(c, change, body_velocity.data);
     } else {
       bodies.push_normal(c, change[0], body_velocity.data);

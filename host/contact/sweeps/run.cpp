@@ -28,7 +28,7 @@ void IslandOutcome::take(const IslandEnd& end, ContactMethod method, std::int64_
   reason = end.reason;
   contact_updates += (end.sweeps - sweeps) * contacts;
   if (end.sweeps > sweeps) methods.push_back(first_method(method));
-  if (end.has_turned) methods.push_back("nonlinear_cg");
+  if (end.has_switched) methods.push_back("nonlinear_cg");
   sweeps = end.sweeps;
 }
 
