@@ -206,7 +206,7 @@ class ContactMethods {
   /// @return  whether to stop
   TETWARP_ANY_EXEC bool measure(double defect) {
     bool is_best = false;
-    const bool is_done = convergence_.take(pipeline_.measure(), defect, is_best);
+    const bool is_done = convergence_.record(pipeline_.measure(), defect, is_best);
     if (is_best) exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
     return is_done;
   }

@@ -117,8 +117,8 @@ template <class T>
 struct FrozenContacts {
   /// Consecutive visits without a change that freeze a contact.
   static constexpr int visits_to_freeze = 10;
-  static constexpr int revisit_interval =
-      8;  ///< sweeps from one visit of frozen contacts to the next
+  /// Sweeps from one visit of frozen contacts to the next.
+  static constexpr int revisit_interval = 8;
 
   View<std::uint8_t> unchanged_visits;  ///< consecutive visits without a change, [contacts]
   View<std::int32_t> skipped_visits;    ///< visits skipped so far, [contacts]

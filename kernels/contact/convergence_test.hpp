@@ -94,7 +94,7 @@ class ConvergenceTest {
   /// @param defect   as in is_due()
   /// @param is_best  out: it is the smallest so far
   /// @return  whether to stop; reason() tells why
-  TETWARP_HD bool take(const ContactSums& sums, double defect, bool& is_best) {
+  TETWARP_HD bool record(const ContactSums& sums, double defect, bool& is_best) {
     const double excess = criterion_.excess_of(sums);
     log_.note({sweeps_, criterion_.error_of(sums)});
     measured_sweep_ = sweeps_;

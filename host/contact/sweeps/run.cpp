@@ -24,7 +24,7 @@ const char* first_method(ContactMethod method) {
 
 }  // namespace
 
-void IslandOutcome::take(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {
+void IslandOutcome::add(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {
   reason = end.reason;
   contact_updates += (end.sweeps - sweeps) * contacts;
   if (end.sweeps > sweeps) methods.push_back(first_method(method));

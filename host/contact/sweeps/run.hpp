@@ -29,7 +29,7 @@ struct IslandOutcome {
 
   /// Adds the result of solve_island().
   /// @param contacts  of the island
-  void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
+  void add(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
 };
 
 /// Keeps every measured residual.
@@ -171,7 +171,7 @@ class ContactRun {
     plan.method = method;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
                                        outcome.sweeps, work_, log);
-    outcome.take(end, method, island(i).contact_count());
+    outcome.add(end, method, island(i).contact_count());
     outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
   }
 
