@@ -1,6 +1,7 @@
 /// @file contact_exec_cpu.hpp
-/// CpuContactExec: what the contact pipeline asks of an executor, on host threads. Sums have one
-/// fixed tree, so nothing depends on how many threads there are.
+/// CpuContactExec: the executor of the contact pipeline on host threads. Sums have one fixed tree,
+/// so results do not depend on the number of threads. Labels name the stage; they are not used
+/// here.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -24,15 +25,17 @@ class CpuContactExec {
 
   int threads() const { return threads_; }
 
-  /// All become zeros.
+  /// Sets the size; all entries become zero.
   template <class T>
   void resize(std::vector<T>& values, std::int64_t size) const {
     values.assign(static_cast<std::size_t>(size), T{});
   }
+  /// Copies from the host to memory of the executor.
   template <class T>
   void put(const T* host, std::int64_t size, std::vector<T>& values) const {
     values.assign(host, host + size);
   }
+  /// Copies from memory of the executor to the host.
   template <class T>
   void get(View<const T> values, T* host) const {
     std::copy_n(values.data, values.size, host);
@@ -68,36 +71,41 @@ class CpuContactExec {
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (std::int64_t i = 0; i < runs; ++i) run(i);
   }
+  /// body(0), by a single thread.
   template <class Body>
   void once(const char*, const Body& body) const {
     body(0);
   }
 
-  /// Memory for one thing at a time, made anew.
+  /// A default State in memory of the executor; the state of the call before is gone.
   template <class State>
   State* state() {
     static_assert(sizeof(State) <= sizeof(state_) && alignof(State) <= 16);
     return new (state_) State{};
   }
-  /// What those who decide may read, and when. Here all, always.
+  /// Reads one value of executor memory; on a device this synchronizes.
   template <class T>
   T load(const T* value) const {
     return *value;
   }
+  /// The value, or the second argument where reading it would synchronize.
   template <class T>
   T load_without_sync(const T* value, T) const {
     return *value;
   }
+  /// Whether the host may read results after this step. A device answers true only now and then.
   bool is_sync_point(std::int64_t) const {
     return true;
   }
   static constexpr bool reads_need_sync = false;
 
+  /// As sum(), into executor memory.
   template <class Sum, class Body>
   void sum_to(
       const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
     *out = sum<Sum>(stage, first, last, body);
   }
+  /// As sum_runs(), into executor memory.
   template <class Sum, class Body>
   void sum_runs_to(
       const char* stage, std::int64_t first, std::int64_t last, const Body& body, Sum* out) const {
@@ -124,7 +132,7 @@ class CpuContactExec {
 
  private:
   static constexpr int run_length = 64;
-  static constexpr std::int64_t serial_below = 1024;  ///< waking threads costs more than that
+  static constexpr std::int64_t serial_below = 1024;  ///< below, starting threads costs more
 
   template <class Sum, class Run>
   Sum add_runs(std::int64_t first, std::int64_t last, const Run& body) const {

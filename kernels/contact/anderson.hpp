@@ -11,28 +11,28 @@ namespace tetwarp {
 
 constexpr int anderson_window = 8;
 
-/// What is known of the last steps, and what the next one does.
+/// Scalars of the last steps, and what the next step does with them.
 struct AndersonState {
   static constexpr int window = anderson_window;
   enum class Action { keep, reject, combine };
 
-  /// Products with the new change, then with the defect; the square of the defect.
+  /// Products of the columns of changes with the newest one, then with the defect; |defect|^2.
   PlainSums<2 * window + 1> sums;
-  double gram[window][window] = {};
-  double factor[window] = {};  ///< of the changes of images
-  double last_square = 0;      ///< of the defect
-  int now = 0;                 ///< which of the two iterates is written next
-  int depth = 0;
-  int newest = -1;  ///< column of the next look; -1: there is no last iterate yet
+  double gram[window][window] = {};  ///< products of the changes of defects
+  double factor[window] = {};        ///< of the changes of images, in the next x
+  double last_square = 0;            ///< |defect|^2 of the last accepted step
+  int now = 0;                       ///< which of the two stored iterates is written next
+  int depth = 0;                     ///< columns in use
+  int newest = -1;                   ///< column of the next change; -1: no last iterate yet
   bool has_last = false;
   Action action = Action::keep;
 
   TETWARP_HD double square() const { return sums.value[2 * window]; }
 
-  /// After a look: what becomes of the image.
+  /// Decides after observe() whether the image is kept, rejected, or combined with the columns.
   TETWARP_HD_RARE void decide() {
     if (has_last && square() > 4 * last_square) {
-      action = Action::reject;  // the good one stays where it is, the next look overwrites the bad
+      action = Action::reject;  // the last iterate stays; the next one overwrites the rejected
       restart();
       return;
     }
@@ -54,9 +54,9 @@ struct AndersonState {
     depth = min_of(depth + 1, window);
     for (int k = 0; k < depth; ++k) gram[k][newest] = gram[newest][k] = sums.value[k];
   }
-  /// Least squares. False, and a restart: no numbers came out.
+  /// Solves the least squares problem. False, after a restart, if the result is not finite.
   TETWARP_HD bool find_factors() {
-    // Old and new changes differ in size by many orders: scale first, then regularize.
+    // The changes differ in size by many orders of magnitude: scale first, then regularize.
     double scaled[window][window], solution[window], scale[window];
     for (int i = 0; i < depth; ++i) {
       scale[i] = 1 / sqrt(max_of(gram[i][i], 1e-300));
@@ -75,8 +75,8 @@ struct AndersonState {
 };
 
 /// Anderson acceleration, type II, window 8 (Walker and Ni 2011), the least squares in a diagonal
-/// metric. An image whose defect g(x) - x has grown to more than twice the last one is rejected:
-/// the iteration restarts from the last good image.
+/// metric. An image whose defect g(x) - x is more than twice the last one is rejected, and the
+/// iteration restarts from the image before.
 template <class Exec, class T>
 class AndersonMixer {
  public:
@@ -84,7 +84,8 @@ class AndersonMixer {
   static constexpr int columns = 4 + 2 * window;
   using GramSums = PlainSums<2 * window + 1>;
 
-  /// Where the columns are: defect and image, twice; changes of defects; changes of images.
+  /// Layout of the work vectors: defect and image of two iterates; changes of defects; changes of
+  /// images.
   struct Columns {
     T* first;
     std::int64_t size;
@@ -95,22 +96,22 @@ class AndersonMixer {
     TETWARP_HD T* image_changes() const { return first + (4 + window) * size; }
   };
 
-  /// All columns of changes take part, those not yet written with a factor of zero.
+  /// Clears the columns of changes: columns not yet written enter sums with a factor of zero.
   struct ZeroBody {
     T* values;
     TETWARP_HD void operator()(std::int64_t i) const { values[i] = 0; }
   };
 
-  /// One run of entries: stores the iterate and its changes in column `newest`, multiplies them
-  /// with all columns.
+  /// One run of entries: stores defect and image, their changes in column `newest`, and returns
+  /// the products of the new change and the defect with all columns.
   struct ObserveBody {
     const AndersonState* state;
     const double* weights;
     View<const T> x, image;
     Columns columns;
 
-    /// @tparam most  entries of a run: scratch numbers
-    template <int most>
+    /// @tparam max_count  upper bound of last - first
+    template <int max_count>
     TETWARP_HD GramSums run(std::int64_t first, std::int64_t last) const {
       const int newest = state->newest, now = state->now;
       const auto count = static_cast<int>(last - first);
@@ -121,7 +122,7 @@ class AndersonMixer {
       T* const now_image = columns.image(now) + first;
       const T* const last_defect = columns.defect(1 - now) + first;
       const T* const last_image = columns.image(1 - now) + first;
-      double change[most] = {}, weighted[most];
+      double change[max_count] = {}, weighted[max_count];
       GramSums sums;
       for (int i = 0; i < count; ++i) {
         const T defect = image[first + i] - x[first + i];
@@ -143,7 +144,7 @@ class AndersonMixer {
       return sums;
     }
 
-    /// In four lanes, which compilers turn into vectors.
+    /// In four partial sums, which compilers vectorize.
     TETWARP_HD static double product(const double* a, const T* b, int count) {
       double lanes[4] = {};
       for (int i = 0; i + 4 <= count; i += 4) {
@@ -164,7 +165,7 @@ class AndersonMixer {
     Columns columns;
     View<T> image;
 
-    template <int most>
+    template <int max_count>
     TETWARP_HD void run(std::int64_t first, std::int64_t last) const {
       if (state->action == AndersonState::Action::keep) return;
       if (state->action == AndersonState::Action::reject) {
@@ -202,6 +203,7 @@ class AndersonMixer {
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
     exec_.once("contact/mix", DecideBody{state_});
     exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
+    // Without a read the image counts as replaced, which is always correct.
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=
            AndersonState::Action::keep;
   }

@@ -1,6 +1,6 @@
 /// @file body_relax.hpp
-/// Stage "relax" of the contact solver: velocities of bodies from the impulses on them, and the
-/// block-Jacobi step of A v = b + J^T r for bodies that A couples.
+/// Stage "relax" of the contact solver: body velocities from impulses, and the block-Jacobi step of
+/// A v = b + J^T r for bodies that A couples.
 #pragma once
 #include <cstdint>
 
@@ -9,14 +9,14 @@
 
 namespace tetwarp {
 
-/// The contacts of each block, rising.
+/// The contacts of each block, in rising order.
 struct BlockContacts {
   View<const std::int64_t> start;    ///< [blocks + 1]
-  View<const std::int32_t> contact;  ///< a contact that pushes the block
+  View<const std::int32_t> contact;  ///< contacts that act on the block
   View<const std::int64_t> value;    ///< where the Jacobian and the response of that pair start
 };
 
-/// One index = one block: v = v_free + A^-1 J^T r, contacts in order.
+/// One index = one block: v = v_free + A^-1 J^T r, added in the order of the contacts.
 template <class T>
 struct BodyVelocityBody {
   BlockContacts contacts;
@@ -32,16 +32,16 @@ struct BodyVelocityBody {
     for (int k = 0; k < size; ++k) body_velocity[first + k] = free[first + k];
     for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
       const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
-      const T* answer = response.data + contacts.value[p];
+      const T* own_response = response.data + contacts.value[p];
       for (int k = 0; k < size; ++k) {
-        body_velocity[first + k] +=
-            answer[3 * k] * r[0] + answer[3 * k + 1] * r[1] + answer[3 * k + 2] * r[2];
+        body_velocity[first + k] += own_response[3 * k] * r[0] + own_response[3 * k + 1] * r[1] +
+                                    own_response[3 * k + 2] * r[2];
       }
     }
   }
 };
 
-/// A by rows of dense blocks.
+/// A in rows of dense blocks.
 template <class T>
 struct SystemView {
   View<const std::int64_t> row_start;    ///< [blocks + 1], first block of each row
@@ -60,8 +60,8 @@ TETWARP_HD void add_node_product(const T* m, const T* y, T* sum) {
   sum[2] += m[6] * y[0] + m[7] * y[1] + m[8] * y[2];
 }
 
-/// out = A x, one block row. Rows of 3 x 3 blocks, nodes among nodes, are summed in registers.
-/// Among nodes alone no sizes are looked up: two thirds of the time.
+/// out = A x in one block row. Products of 3 x 3 blocks are summed in registers. If all blocks are
+/// 3 x 3, no sizes are read, which takes two thirds of the time.
 template <class T>
 TETWARP_HD void multiply_block_row(const SystemView<T>& a, std::int64_t b, const T* x, T* out) {
   if (a.has_only_nodes) {
@@ -118,7 +118,8 @@ struct BodyDefectBody {
   }
 };
 
-/// out = keep out + factor M x for one dense block; nodes, the many, without inner loops.
+/// out = keep out + factor M x for one dense block; size 3, by far the most frequent, without
+/// loops.
 template <class T>
 TETWARP_HD void update_block(const T* m, int size, T keep, T factor, const T* x, T* out) {
   if (size == 3) {
@@ -153,7 +154,7 @@ struct BodyRelaxBody {
   }
 };
 
-/// One index = one block: v = x + omega D^-1 (b + J^T r - A x), x other than v.
+/// One index = one block: v = x + omega D^-1 (b + J^T r - A x). x and v are different memory.
 template <class T>
 struct BodyStepBody {
   BodyDefectBody<T> defect;  ///< of x
@@ -172,13 +173,13 @@ struct BodyStepBody {
   }
 };
 
-/// One index = one block: the diagonal of A in its dofs.
+/// One index = one block: copies the diagonal of A in its dofs.
 template <class T>
 struct DiagonalBody {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
   View<const T> system;
-  std::int64_t first_dof;  ///< whose entry comes first
+  std::int64_t first_dof;  ///< dof of diagonal[0]
   View<double> diagonal;
 
   TETWARP_HD void operator()(std::int64_t b) const {
@@ -189,7 +190,7 @@ struct DiagonalBody {
   }
 };
 
-/// A run of blocks, shifted: index 0 is block `first`.
+/// Shifts indices: index 0 of the stage is block `first` of the body.
 template <class Body>
 struct FromBlock {
   Body body;
@@ -198,7 +199,8 @@ struct FromBlock {
   TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
 };
 
-/// Any of the bodies above for blocks [first, last).
+/// Runs one of the bodies above for blocks [first, last).
+///
 /// Determinism: same bits on every back end with contraction off; contacts are gathered in order.
 template <class Exec, class Body>
 TETWARP_ANY_EXEC void body_relax(Exec& exec,

@@ -1,5 +1,6 @@
 /// @file conjugate_gradients.hpp
-/// The steps of preconditioned conjugate gradients on A x = g, block by block.
+/// Bodies of preconditioned conjugate gradients on A x = g, one index per block of dofs; see
+/// host/contact/block_jacobi/coupled_system.hpp.
 #pragma once
 #include <cstdint>
 
@@ -9,13 +10,13 @@
 
 namespace tetwarp {
 
-/// D^-1 by blocks.
+/// D^-1: the inverses of the diagonal blocks of A.
 struct InverseBlocks {
   View<const std::int64_t> dof_start;
-  View<const std::int64_t> start;
+  View<const std::int64_t> start;  ///< first number of each block
   View<const double> values;
 
-  /// z = D^-1 g and g . z of one block.
+  /// Sets z = D^-1 g in one block and returns its part of g . z.
   TETWARP_HD double multiply(std::int64_t b, const double* g, double* z) const {
     const std::int64_t first = dof_start[b];
     const int size = static_cast<int>(dof_start[b + 1] - first);
@@ -26,8 +27,7 @@ struct InverseBlocks {
   }
 };
 
-/// One index = one block, in all four: z = p = D^-1 g; q = A p; x += a p, g -= a q, z = D^-1 g;
-/// p = z + c p.
+/// z = p = D^-1 g; returns g . z.
 struct GradientStartBody {
   InverseBlocks inverse;
   const double* g;
@@ -38,6 +38,7 @@ struct GradientStartBody {
     return {{product}};
   }
 };
+/// q = A p; returns p . q.
 struct GradientProductBody {
   SystemView<double> system;
   const double* p;
@@ -51,6 +52,7 @@ struct GradientProductBody {
     return {{product}};
   }
 };
+/// x += a p, g -= a q, z = D^-1 g; returns g . z.
 struct GradientStepBody {
   InverseBlocks inverse;
   const double* a;
@@ -65,6 +67,7 @@ struct GradientStepBody {
     return {{inverse.multiply(b, g, z)}};
   }
 };
+/// p = z + c p.
 struct GradientTurnBody {
   View<const std::int64_t> dof_start;
   const double* c;
@@ -76,7 +79,7 @@ struct GradientTurnBody {
   }
 };
 
-/// One index: the quotient of two numbers; zero where it would be none.
+/// A single index: the quotient of two numbers, or zero if one of them is not positive.
 struct GradientQuotientBody {
   const PlainSums<1>*above, *below;
   double* quotient;

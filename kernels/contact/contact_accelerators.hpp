@@ -1,14 +1,13 @@
 /// @file contact_accelerators.hpp
-/// Accelerators of a fixed-point iteration x -> g(x), for any executor. They see vectors and a
-/// diagonal metric and know nothing of contacts. All have
+/// Accelerators of a fixed-point iteration x -> g(x), for any executor. They work on vectors with a
+/// diagonal metric and do not depend on contacts. All have
 ///
-///     columns            vectors of the size of x that they need to work with
-///     observe(x, image)  looks at image = g(x)
-///     defect()           size of image - x of the last look, told to whoever decides: on a device
-///                        that takes waiting
-///     advance(x, image)  may replace image by the next x; whether it may have
+///     columns            work vectors of the size of x that they need
+///     observe(x, image)  records image = g(x)
+///     defect()           norm of image - x at the last observe(); on a device this synchronizes
+///     advance(x, image)  may replace image by an accelerated x; returns false if it did not
 ///
-/// What they decide by themselves is decided where the vectors are.
+/// Their own decisions are made by the executor in its memory, without synchronizing.
 #pragma once
 #include <cstdint>
 
@@ -29,7 +28,7 @@ struct DefectBody {
   }
 };
 
-/// The iteration as it is.
+/// No acceleration: the next x is g(x).
 template <class Exec, class T>
 class PlainSteps {
  public:
@@ -58,13 +57,13 @@ class ConjugateDirection {
   static constexpr int columns = 1;
 
   struct State {
-    PlainSums<1> square;  ///< of the defect
-    double last = 0;      ///< square before
-    double ratio = 0;
+    PlainSums<1> square;  ///< |g(x) - x|^2
+    double last = 0;      ///< its value at the step before
+    double ratio = 0;     ///< of the two: the factor of the old direction
     bool is_restart = true;
   };
 
-  /// One index: what the next step does.
+  /// A single index: the factor of the next step, or a restart.
   struct DecideBody {
     State* state;
     TETWARP_HD void operator()(std::int64_t) const {
@@ -81,7 +80,7 @@ class ConjugateDirection {
     View<T> image;
     T* direction;
 
-    template <int most>
+    template <int max_count>
     TETWARP_HD void run(std::int64_t first, std::int64_t last) const {
       const bool is_restart = state->is_restart;
       const T ratio = static_cast<T>(state->ratio);

@@ -1,13 +1,13 @@
 /// @file contact_adhesion.hpp
 /// Stage "adhesion" of the contact solver: one step of the adhesion intensity beta, after the solve
-/// in which it was frozen.
+/// of the same step, which uses the old beta.
 ///
-/// With p the pressure of compression [Pa] and C g^2 the strain of the springs [J/m^2],
+/// With p the contact pressure [Pa] and C g^2 twice the energy of the springs at beta = 1 [J/m^2],
 ///
 ///     beta' = r max(p - beta p0, 0) + min(W - C g^2 beta, 0) / eta
 ///
-/// g holds all three gaps in traction and the tangential ones in compression; friction debonds
-/// nothing.
+/// g holds all three gaps in traction, the tangential ones only in compression. Friction does not
+/// change beta.
 #pragma once
 #include <cstdint>
 
@@ -32,20 +32,20 @@ TETWARP_HD double debonding_rate_of(const IntensityLaw& law, double beta) {
   return min_of(law.cohesion - law.strain * beta, 0.0);
 }
 
-/// beta after `time` under beta' = rate - decay (beta - start), from `start`.
+/// beta after `time` [s] of beta' = rate - decay (beta - start), from `start`.
 TETWARP_HD double relaxed_intensity(double start, double rate, double decay, double time) {
   const double x = decay * time;
   return start + (x > 0 ? rate * (-expm1(-x) / decay) : rate * time);
 }
 
-/// Rounding may leave the range by a last place.
+/// Clamps to [0, 1], which rounding may leave by a last place.
 TETWARP_HD double cut_intensity(double beta) {
   return min_of(max_of(beta, 0.0), 1.0);
 }
 
-/// Exact solution after `time` [s], cut at 1. The law is linear on pieces and never grows with
-/// beta: from a piece where bonding or debonding acts alone beta may reach, once, the piece where
-/// both do.
+/// Exact solution after `time` [s], clamped to [0, 1]. The rate is piecewise linear and does not
+/// grow with beta: from a piece where only bonding or only debonding acts, beta can enter the piece
+/// where both act, once.
 TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double time) {
   const double bonding = bonding_rate_of(law, beta);
   const double debonding = debonding_rate_of(law, beta);
@@ -61,27 +61,27 @@ TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double t
   } else {
     return cut_intensity(end);
   }
-  const double share = (corner - beta) / rate;  // time to the corner if the rate stayed
+  const double share = (corner - beta) / rate;  // time to the corner at a constant rate
   const double passed = decay > 0 ? -log1p(-decay * share) / decay : share;
   const double both =
       (law.bonding - law.bonding_decay * corner) + (law.cohesion - law.strain * corner);
-  const double left = time - passed > 0 ? time - passed : 0;  // also where rounding makes it NaN
+  const double left = time - passed > 0 ? time - passed : 0;  // 0 also if `passed` is NaN
   return cut_intensity(relaxed_intensity(corner, both, law.bonding_decay + law.strain, left));
 }
 
-/// One explicit Euler step, clamped to [0, 1]. For comparison: where a rate times `time` exceeds 1
-/// it ends below the rest point, and debonding does not mend that.
+/// One explicit Euler step, clamped to [0, 1]; for comparison. If a decay rate times `time` exceeds
+/// 1, it overshoots the equilibrium.
 TETWARP_HD double euler_intensity(const IntensityLaw& law, double beta, double time) {
   const double rate = bonding_rate_of(law, beta) + debonding_rate_of(law, beta);
   return cut_intensity(beta + time * rate);
 }
 
-/// Entry of a vector that may be left out.
+/// values[i], or `otherwise` if the vector is empty.
 TETWARP_HD double value_or(View<const double> values, std::int64_t i, double otherwise) {
   return values.size > 0 ? values[i] : otherwise;
 }
 
-/// What the stage reads, as in AdhesionState; views of size 0 stand for vectors left out.
+/// Input of the stage, as in AdhesionState; a view of size 0 is a vector that was not given.
 struct AdhesionViews {
   double time_step;  ///< [s], > 0
   View<const double> area;
@@ -117,7 +117,7 @@ struct ContactAdhesionBody {
     const double gap_2 = value_or(in.gap, 3 * c + 2, 0) + dt * in.velocity[3 * c + 2];
     const double push = in.impulse[3 * c];
 
-    // Stored energy per area at beta = 1, doubled: W at onset.
+    // Twice the energy per area at beta = 1; debonding starts when it reaches W.
     double strain =
         value_or(in.tangential_stiffness, c, stiffness) * (gap_1 * gap_1 + gap_2 * gap_2);
     if (!(push > 0)) strain += stiffness * normal_gap * normal_gap;
@@ -135,26 +135,26 @@ struct ContactAdhesionBody {
 
     double next = euler ? euler_intensity(law, beta, dt) : exact_intensity(law, beta, dt);
     const bool torn = strain > debond_gap_factor * debond_gap_factor * energy;
-    const bool lets_go =
+    const bool debonds =
         beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
-    if (lets_go) next = 0;
-    // Bonds that form on a stretched contact form unstretched: the force is continuous, and the
-    // stored energy falls by the factor that the gap shrinks by.
+    if (debonds) next = 0;
+    // New bonds form unstretched: the gap shrinks so that the force beta^2 C g stays continuous;
+    // the stored energy falls by the same factor.
     double keep = next > 0 ? 1 : 0;
     if (next > beta) keep = (beta / next) * (beta / next);
     next_intensity[c] = next;
     next_gap[3 * c] = normal_gap;
     next_gap[3 * c + 1] = keep * gap_1;
     next_gap[3 * c + 2] = keep * gap_2;
-    debonded[c] = lets_go;
+    debonded[c] = debonds;
   }
 };
 
-/// Steps the intensity of every contact and moves its tangential anchors.
+/// Advances the intensity of every contact by one time step and moves its tangential anchors.
 ///
-/// A contact lets go, to beta = 0, where debonding is on (an energy and a viscosity > 0) and its
-/// strain passes `debond_gap_factor`^2 W, or its intensity falls below `debond_intensity` in
-/// traction; the law alone only tends to W / (C g^2) > 0.
+/// A contact debonds, beta = 0, if debonding is on (energy and viscosity > 0) and C g^2 exceeds
+/// `debond_gap_factor`^2 W, or if in traction its intensity falls below `debond_intensity`. The law
+/// alone would only tend to W / (C g^2) > 0.
 /// @param exec  where to run
 /// @param body  inputs and outputs, shapes as in AdhesionState and AdhesionStep
 ///

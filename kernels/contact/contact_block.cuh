@@ -1,10 +1,10 @@
 /// @file contact_block.cuh
-/// The contact solver of an island by one block of a device, from its first sweep to its last,
-/// measuring and acceleration included, in a single launch.
+/// Solves an island with one block of a device: all sweeps, measurements and the acceleration in a
+/// single launch.
 ///
-/// 128 threads share what a stage does, a barrier parts the stages. Impulses and velocities of
-/// bodies live in shared memory where they fit, else in place. The order of updates is that of the
-/// host; sums have another tree.
+/// 128 threads share the indices of a stage; a barrier ends each stage. Impulses and body
+/// velocities are in shared memory if they fit, else in global memory. The order of updates is that
+/// of the host; sums have another tree.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace tetwarp {
 
 constexpr int island_threads = sum_threads;
 constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
-constexpr std::int64_t block_contacts = 2048;  ///< larger islands are worth a whole device
+constexpr std::int64_t block_contacts = 2048;  ///< larger islands use the whole device
 
-/// What the contact pipeline asks of an executor, by the threads of one block. All of them have to
-/// ask, and all get the same answers.
+/// The executor of the contact pipeline within one block. Every thread makes every call; all get
+/// the same results.
 class BlockContactExec {
  public:
   using LargestSum = PlainSums<2 * anderson_window + 1>;
@@ -50,7 +50,7 @@ class BlockContactExec {
     __syncthreads();
   }
 
-  /// Shared memory for one thing at a time, made anew.
+  /// A default State in shared memory; the state of the call before is gone.
   template <class State>
   __device__ __forceinline__ State* state() const {
     static_assert(sizeof(State) <= state_bytes && alignof(State) <= 16);
@@ -118,10 +118,11 @@ class BlockContactExec {
   void* shared_;
 };
 
-/// Measured residuals: the last one and, evenly thinned out, those before. One thread writes.
+/// Keeps the last measured residual and, thinned out evenly, those before. One thread writes.
 class ThinnedEventLog {
  public:
-  /// @param events  two or more
+  /// @param events  room for two or more
+  /// @param writes  whether this thread is the one that writes
   __device__ ThinnedEventLog(View<ContactEvent> events, bool writes)
       : events_(events), writes_(writes) {}
 
@@ -139,7 +140,8 @@ class ThinnedEventLog {
     if (writes_) events_[count_] = event;
     ++count_;
   }
-  /// @return how many are kept
+  /// Ends the log.
+  /// @return  how many residuals are kept
   __device__ std::int64_t end() {
     if (seen_ > 0 && !is_last_kept_) {
       count_ = min_of(count_ + 1, events_.size);
@@ -156,35 +158,35 @@ class ThinnedEventLog {
   bool is_last_kept_ = true;
 };
 
-/// An island to solve.
+/// An island to solve, and its stop criterion.
 struct IslandTask {
   ContactIsland island;
   StopCriterion criterion;
 };
 
-/// What became of it.
+/// How its solve ended.
 struct IslandResult {
   IslandEnd end;
-  std::int64_t events = 0;
+  std::int64_t events = 0;  ///< residuals kept in the log
 };
 
 /// All islands that are solved by one block each.
 template <class T>
 struct IslandJob {
   ContactNumbers<T> numbers;
-  ContactState<T> state;  ///< impulses: in: to start from; out: the best
+  ContactState<T> state;  ///< impulse in: to start from; out: the best found
   MethodWork<T> work;
   View<const std::int64_t> color_start;
   ContactSwitches switches;
   MethodPlan plan;
   View<const IslandTask> tasks;
-  std::int64_t shared_values;  ///< islands of more numbers are solved in place
+  std::int64_t shared_values;  ///< islands of more numbers stay in global memory
   View<IslandResult> results;  ///< out, [tasks]
   View<ContactEvent> events;   ///< out, [tasks][events_per_island]
   std::int64_t events_per_island;
 };
 
-/// Has `view` find numbers [first, last) at `place` under their old indices.
+/// Moves a view so that index `first` is at `place`.
 template <class T>
 __device__ __forceinline__ void move_view(View<T>& view, std::int64_t first, T* place) {
   view.data = place - first;
@@ -201,11 +203,11 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   BlockContactExec exec(shared);
   ContactState<T> state = job.state;
   const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
-  const View<T> home = {state.impulse.data + first, size};
+  const View<T> global = {state.impulse.data + first, size};
   const bool is_shared = island.value_count() <= job.shared_values;
   if (is_shared) {
     T* const place = reinterpret_cast<T*>(shared + BlockContactExec::shared_bytes);
-    exec.copy("contact/sweep", View<const T>(home), View<T>{place, size});
+    exec.copy("contact/sweep", View<const T>(global), View<T>{place, size});
     move_view(state.impulse, first, place);
     if (!job.numbers.is_local) move_view(state.body_velocity, island.dof_begin, place + size);
   }
@@ -217,7 +219,7 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   result.end = solve_island(pipeline, job.tasks[which].criterion, job.plan, 0, job.work, log);
   result.events = log.end();
   if (is_shared) {
-    exec.copy("contact/sweep", View<const T>(pipeline.impulse()), home);
+    exec.copy("contact/sweep", View<const T>(pipeline.impulse()), global);
     exec.copy("contact/sweep", View<const T>(pipeline.body_velocity()),
               View<T>{job.state.body_velocity.data + island.dof_begin,
                       island.dof_end - island.dof_begin});
@@ -225,26 +227,29 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   if (threadIdx.x == 0) job.results[which] = result;
 }
 
-/// Most numbers of an island that the 48 KiB of a block hold.
+/// How many numbers of an island fit the 48 KiB of shared memory of a block.
 template <class T>
 constexpr std::int64_t shared_capacity = static_cast<std::int64_t>(
     (std::size_t{48} * 1024 - BlockContactExec::shared_bytes) / sizeof(T));
 
-/// The room that islands need in shared memory, those left out that do not fit.
-/// @param tasks  on the host
+/// The largest count of numbers among islands that fit shared memory.
+/// @param tasks  in memory of the host
 template <class T>
 std::int64_t shared_values_for(View<const IslandTask> tasks) {
-  std::int64_t most = 0;
+  std::int64_t largest = 0;
   for (std::int64_t i = 0; i < tasks.size; ++i) {
     const std::int64_t count = tasks[i].island.value_count();
-    if (count <= shared_capacity<T>) most = std::max(most, count);
+    if (count <= shared_capacity<T>) largest = std::max(largest, count);
   }
-  return most;
+  return largest;
 }
 
-/// Solves every island of the job, at least one.
-/// Determinism: islands do not meet, contacts of a color do not meet, sums are fixed trees.
-/// Cost: per stage one barrier, besides what the stages cost.
+/// Solves every island of the job.
+/// @param stream  where to run
+/// @pre  at least one task
+///
+/// Determinism: same bits in every run; islands share no data, contacts of a color neither, sums
+/// are fixed trees. Cost: per stage one barrier, besides what the stages cost.
 template <class T>
 void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
   launch(stream, contact_island_kernel<T>, dim3(static_cast<unsigned>(job.tasks.size)),
@@ -253,11 +258,11 @@ void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
          job);
 }
 
-/// Islands to look at.
+/// Islands to measure.
 template <class T>
 struct MeasureJob {
   ContactNumbers<T> numbers;
-  ContactState<T> state;  ///< velocities follow the impulses
+  ContactState<T> state;  ///< its velocities are set to what the impulses cause
   View<const std::int64_t> color_start;
   ContactSwitches switches;
   View<const ContactIsland> islands;
@@ -275,8 +280,10 @@ __global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(Meas
   if (threadIdx.x == 0) job.sums[which] = sums;
 }
 
-/// Sums of every island of the job, at least one.
-/// Determinism: fixed trees.
+/// Measures every island of the job.
+/// @pre  at least one island
+///
+/// Determinism: same bits in every run; sums are fixed trees.
 template <class T>
 void contact_measure_islands(cudaStream_t stream, const MeasureJob<T>& job) {
   launch(stream, contact_measure_kernel<T>, dim3(static_cast<unsigned>(job.islands.size)),

@@ -1,7 +1,7 @@
 /// @file contact_bound.hpp
-/// Bounds of eta for contacts whose blocks B of J A^-1 J^T are only known to be at least some B'.
+/// Bounds of eta where the blocks B of J A^-1 J^T are unknown but have lower bounds B'.
 ///
-/// With rho(B) = 1 / B + kappa the true weights lie between kappa and rho(B').
+/// The weights of eta are rho(B) = 1 / B + kappa, so they lie between kappa and rho(B').
 #pragma once
 #include <cstdint>
 
@@ -9,16 +9,18 @@
 
 namespace tetwarp {
 
-/// One index = one contact: at most its share in the eta of no impulses, whatever B is.
+/// One index = one contact: a lower bound of its share in the eta of zero impulses, for any B >=
+/// B'.
 ///
-/// Each term of the natural map rises with its weight, then falls, so that it is least at an end;
-/// under tangential offsets nearly so: the least sum over the ends was then seen to be up to 2.2 %
-/// too high, and a fifth is taken off for that. This part is measured, not proven.
+/// Each term of the natural map rises with its weight, then falls, so its minimum is at an end of
+/// the interval of weights. With tangential offsets this holds approximately: the smallest sum over
+/// the ends was measured to be up to 2.2 % too high, so 20 % are subtracted. That margin is
+/// measured, not proven.
 struct FreeResidualBoundBody {
   ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
 
   TETWARP_HD ContactSums operator()(std::int64_t i) const {
-    constexpr double tiny = 1e-150, taken_off = 0.8;
+    constexpr double tiny = 1e-150, margin = 0.8;
     ContactSums sums = natural(i);
     const ContactConstants<double>& c = natural.constants[i];
     const double* r = natural.impulse.data + 3 * i;
@@ -28,23 +30,23 @@ struct FreeResidualBoundBody {
     const auto energy = [&](double rho_n, double rho_t) {
       return natural_square(c, natural.switches, rho_n, rho_t, r, u);
     };
-    sums.eta = taken_off * min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
-                                  min_of(energy(high_n, low_t), energy(high_n, high_t)));
+    sums.eta = margin * min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
+                               min_of(energy(high_n, low_t), energy(high_n, high_t)));
     sums.largest = sums.eta;
     return sums;
   }
 };
 
-/// One index = one contact: at most its share in eta, whatever B is.
+/// One index = one contact: an upper bound of its share in eta, for any B >= B'.
 ///
-/// Let u' be velocities with which the impulses obey the law, d = u - u'. The natural map is zero
-/// there, and its slope in u_n is at most rho_n, in u_t at most rho_t, once more kappa_t where the
-/// spring lowers the radius of friction, and mu kappa_n from u_n through that radius:
+/// Let u' be velocities with which the impulses satisfy the law, and d = u - u'. The natural map is
+/// zero at u'. Its slope in u_n is at most rho_n. In u_t it is at most rho_t, plus kappa_t where
+/// the spring lowers the radius of friction, plus mu kappa_n from u_n through that radius:
 ///
 ///     e_n^2 / rho_n <= rho_n d_n^2,  |e_t| <= (rho_t + kappa_t) |d_t| + mu kappa_n |d_n|
 ///
-/// What the law leaves over at u' (bodies with several contacts, swept in turn) is added, weighed
-/// by rho(B'): there it is an estimate.
+/// If the law does not hold exactly at u' (bodies with several contacts, swept one after the
+/// other), the residual there is added, in the weights rho(B'): then the result is an estimate.
 struct ResidualBoundBody {
   ContactResidualBody<double> natural;     ///< with blocks B' and the velocities u
   View<const double> consistent_velocity;  ///< u'

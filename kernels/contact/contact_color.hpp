@@ -1,6 +1,6 @@
 /// @file contact_color.hpp
-/// Stage "color" of the contact solver: contacts of one color touch no common group (a moving body,
-/// or a coupling in a Delassus matrix), so they can be solved side by side.
+/// Stage "color" of the contact solver: contacts of one color share no group (a moving body, or a
+/// coupling in a Delassus matrix), so they can be updated in parallel.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@ namespace tetwarp {
 
 constexpr std::int32_t uncolored = -1;
 
-/// Contacts and the groups they share, in both directions (contacts of a group rising).
+/// The groups of each contact and the contacts of each group, these in rising order.
 struct ContactGroups {
   View<const std::int64_t> group_start;    ///< [contacts + 1]
   View<const std::int32_t> group;          ///< groups of each contact
@@ -19,15 +19,15 @@ struct ContactGroups {
   View<const std::int32_t> contact;        ///< contacts of each group
 };
 
-/// One index = one contact: the lowest color that no neighbor of lower index has, once all of these
-/// are colored; until then it waits. Any order of visits ends at the same colors.
+/// One index = one contact: takes the lowest color that no neighbor of lower index has, if all of
+/// these are colored; else it is left for the next round. The result does not depend on the order.
 struct ContactColorBody {
   ContactGroups groups;
   View<std::int32_t> colors;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (colors[c] != uncolored) return;
-    // Colors are tried 64 at a time.
+    // 64 colors at a time, one bit each.
     for (std::int32_t base = 0;; base += 64) {
       std::uint64_t taken = 0;
       for (std::int64_t k = groups.group_start[c]; k < groups.group_start[c + 1]; ++k) {
@@ -49,7 +49,7 @@ struct ContactColorBody {
   }
 };
 
-/// One index = 1 for a contact that waits for its color.
+/// One index = one contact: 1 if it has no color yet.
 struct UncoloredBody {
   View<const std::int32_t> colors;
   TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
@@ -57,8 +57,10 @@ struct UncoloredBody {
   }
 };
 
-/// Colors all contacts, in rounds: in sequence from the first contact, one is enough.
-/// @param colors  out: from 0
+/// Colors all contacts greedily, in rounds; a serial executor needs one.
+/// @param exec    where to run
+/// @param groups  groups shared by contacts
+/// @param colors  out: colors from 0, [contacts]
 ///
 /// Determinism: greedy in order of index, the same on every back end. Cost: per round and contact
 /// the lower contacts of its groups.

@@ -1,5 +1,6 @@
 /// @file contact_components.hpp
-/// Stage "components" of the contact solver: items that stand in a common list belong together.
+/// Stage "components" of the contact solver: connected components of items that share lists, by
+/// union-find.
 #pragma once
 #include <cstdint>
 
@@ -8,7 +9,7 @@
 
 namespace tetwarp {
 
-/// Reads what other threads may lower meanwhile.
+/// Reads a value that other threads may lower at the same time.
 TETWARP_HD std::int32_t load_relaxed(const std::int32_t* value) {
 #if defined(__CUDA_ARCH__)
   return *static_cast<const volatile std::int32_t*>(value);
@@ -17,7 +18,7 @@ TETWARP_HD std::int32_t load_relaxed(const std::int32_t* value) {
 #endif
 }
 
-/// Lowers a number that any number of threads may lower: the end does not depend on their order.
+/// Atomic minimum; the final value does not depend on the order of threads.
 TETWARP_HD void lower_to(std::int32_t* value, std::int32_t other) {
 #if defined(__CUDA_ARCH__)
   atomicMin(value, other);
@@ -29,7 +30,7 @@ TETWARP_HD void lower_to(std::int32_t* value, std::int32_t other) {
 #endif
 }
 
-/// A forest: the parent of an item is itself or a lower one.
+/// The union-find forest: the parent of an item is itself (a root) or a lower item.
 struct Forest {
   View<std::int32_t> parent;
 
@@ -42,14 +43,15 @@ struct Forest {
   }
 };
 
-/// One index = one item, in a tree of its own.
-struct PlantBody {
+/// One index = one item: makes it a tree of its own.
+struct MakeTreeBody {
   View<std::int32_t> parent;
   TETWARP_HD void operator()(std::int64_t i) const { parent[i] = static_cast<std::int32_t>(i); }
 };
 
-/// One index = one list: the trees of its items go under their lowest root. Returns how many did.
-struct JoinBody {
+/// One index = one list: puts the trees of its items under their lowest root. Returns how many
+/// trees were moved.
+struct UniteBody {
   View<const std::int64_t> start;
   View<const std::int32_t> item;
   Forest forest;
@@ -71,32 +73,34 @@ struct JoinBody {
   }
 };
 
-/// One index = one item, put right under its root.
-struct FlattenBody {
+/// One index = one item: puts it directly under its root.
+struct CompressBody {
   Forest forest;
   TETWARP_HD void operator()(std::int64_t i) const {
     lower_to(&forest.parent[i], forest.root_of(static_cast<std::int32_t>(i)));
   }
 };
 
-/// The lowest item of the connected component of each item.
-/// @param start, item  lists, one after the other
-/// @param lowest       out, [items]
+/// Finds the lowest item of the connected component of each item.
+/// @param exec    where to run
+/// @param start   first entry of each list, and the end, [lists + 1]
+/// @param item    entries of all lists
+/// @param lowest  out, [items]
 ///
-/// Determinism: lowest items do not depend on any order. Cost: two passes over the lists, more
-/// where long chains are joined by many at once.
+/// Determinism: the result does not depend on the order of execution. Cost: two passes over the
+/// lists; more if threads join long chains at the same time.
 template <class Exec>
 void contact_components(Exec& exec,
                         View<const std::int64_t> start,
                         View<const std::int32_t> item,
                         View<std::int32_t> lowest) {
   constexpr const char* label = "contact/components";
-  exec.for_each(label, lowest.size, PlantBody{lowest});
-  const JoinBody join = {start, item, {lowest}};
+  exec.for_each(label, lowest.size, MakeTreeBody{lowest});
+  const UniteBody join = {start, item, {lowest}};
   double joined = 0;
   do {
     joined = exec.template sum<PlainSums<1>>(label, 0, start.size - 1, join).value[0];
-    exec.for_each(label, lowest.size, FlattenBody{{lowest}});
+    exec.for_each(label, lowest.size, CompressBody{{lowest}});
   } while (joined > 0);
 }
 

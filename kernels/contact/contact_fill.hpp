@@ -1,6 +1,6 @@
 /// @file contact_fill.hpp
-/// Stage "setup" of the contact solver: from the numbers of a problem, in its own order, to those
-/// the other stages read.
+/// Stage "setup" of the contact solver: from the numbers of a problem in its own order to those in
+/// the order of the structure, which the other stages read.
 #pragma once
 #include <cstdint>
 
@@ -24,22 +24,22 @@ struct ContactInput {
   View<const double> area, stiffness, tangential_stiffness, intensity, gap;  ///< or empty
 };
 
-/// What to make of them.
+/// Options of the stage.
 struct ContactChoices {
   double relaxation = 0.5;    ///< omega, of coupled islands
-  bool skips_springs = true;  ///< of contacts with beta = 0
-  bool skips_rows = true;     ///< of contacts with mu = 0 and kappa_t = 0
+  bool skips_springs = true;  ///< leaves out the springs of contacts with beta = 0
+  bool skips_rows = true;     ///< leaves out the tangents of contacts with mu = 0 and kappa_t = 0
 };
 
-/// Where they go. Matrices are zero before.
+/// Output of the stage; see SystemMemory. Matrices are zero before.
 template <class T>
 struct SystemViews {
   View<ContactConstants<T>> constants;
   View<T> free_velocity, offset, load, jacobian, response, inverse, system, body_free, delassus;
 };
 
-/// One index = one stored number, added where it belongs; where several belong to one place, one
-/// index = all of them.
+/// One index = `run` stored numbers, each added at its target. If two numbers have the same target,
+/// a single index adds all of them.
 struct ScatterBody {
   View<const double> values;
   View<const std::int64_t> target;
@@ -53,8 +53,8 @@ struct ScatterBody {
   }
 };
 
-/// One index = one slot: friction and springs of its contact, kappa = dt^2 area C beta^2; its block
-/// comes later. Returns the rows and the springs left out.
+/// One index = one slot: friction and springs of its contact, kappa = dt^2 area C beta^2; another
+/// body sets its block. Returns how many rows and springs are left out.
 struct ContactConstantsBody {
   ContactInput in;
   View<const std::int32_t> contact_of_slot;
@@ -100,7 +100,7 @@ struct ContactConstantsBody {
   }
 };
 
-/// One index = one place that takes `width` numbers of an item.
+/// One index = one place: copies the `width` numbers of its item.
 template <int width>
 struct GatherBody {
   View<const std::int32_t> item;
@@ -112,7 +112,7 @@ struct GatherBody {
   }
 };
 
-/// One index = one contact of a Delassus matrix: its own block and the metric of its tangents.
+/// One index = one contact of a Delassus matrix: its diagonal block and tangential metric.
 struct DelassusDiagonalBody {
   View<const double> delassus;
   View<const std::int64_t> diagonal;
@@ -124,7 +124,7 @@ struct DelassusDiagonalBody {
   }
 };
 
-/// One index = one block of A: its inverse; v_free = A^-1 b where A couples it to no other.
+/// One index = one block of A: its inverse, and v_free = A^-1 b if A couples it to no other block.
 struct BlockSetupBody {
   View<const std::int64_t> dof_start;
   View<const std::int64_t> diagonal_value;
@@ -146,9 +146,9 @@ struct BlockSetupBody {
   }
 };
 
-/// One index = one contact between bodies: responses, its own block, q = J v_free + w.
+/// One index = one contact between bodies: its responses, its own block, q = J v_free + w.
 struct ContactSetupBody {
-  ContactResponseBody<double> response;  ///< its relaxation is that of coupled islands
+  ContactResponseBody<double> response;  ///< with the relaxation of coupled islands
   View<const std::uint8_t> is_coupled;   ///< [blocks]
   BodiesView<double> bodies;
   View<const double> body_free;
@@ -157,7 +157,7 @@ struct ContactSetupBody {
   TETWARP_HD void operator()(std::int64_t c) const {
     const PairView& pairs = response.pairs;
     ContactResponseBody<double> own = response;
-    // A contact moves blocks of one island only.
+    // All blocks of a contact are in one island, so the first one decides.
     if (is_coupled[pairs.block[pairs.pair_start[c]]] == 0) own.relaxation = 1;
     own(c);
     ContactMetricBody<double>{response.constants}(c);
@@ -165,14 +165,21 @@ struct ContactSetupBody {
   }
 };
 
-/// What was left out of a system because it cannot matter.
+/// Counts of what was left out of a system because it cannot change the result.
 struct ContactSavings {
-  std::int64_t rows = 0;
-  std::int64_t springs = 0;
+  std::int64_t rows = 0;     ///< tangential rows
+  std::int64_t springs = 0;  ///< contacts whose springs are left out
 };
 
 /// Fills a system in float64.
-/// @pre blocks are positive definite
+/// @param exec     where to run
+/// @param in       numbers of the problem, in memory of the executor
+/// @param indices  of the structure of the problem, in memory of the executor
+/// @param choices  options
+/// @param out      numbers in the order of the structure; zero before
+/// @return  what was left out
+/// @pre  diagonal blocks of A are positive definite
+///
 /// Determinism: same bits on every back end with contraction off. Cost: every number once, blocks
 /// size^3.
 template <class Exec>
@@ -218,7 +225,7 @@ ContactSavings fill_numbers(Exec& exec,
           static_cast<std::int64_t>(left_out.value[1])};
 }
 
-/// One index = the constants of one contact in another precision.
+/// One index = one contact: its constants in another precision.
 template <class To, class From>
 struct ConvertConstantsBody {
   View<const ContactConstants<From>> in;

@@ -1,7 +1,7 @@
 /// @file contact_grid.cuh
-/// What the contact pipeline asks of an executor, by a whole device: for islands too large for a
-/// block and for those that A couples. Decisions are made on the host, which reads one sum for
-/// each.
+/// GridContactExec: the executor of the contact pipeline on a whole device, for islands too large
+/// for one block and for those whose blocks A couples. The host controls the iteration; each of its
+/// decisions reads one sum from the device.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -32,7 +32,7 @@ __global__ void __launch_bounds__(sum_threads, 4) sums_kernel(
   if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
 }
 
-/// One index = one sum made before.
+/// One index = one partial sum.
 template <class Sum>
 struct ReadySums {
   View<const Sum> sums;
@@ -40,7 +40,7 @@ struct ReadySums {
   TETWARP_HD Sum operator()(std::int64_t i) const { return sums[i]; }
 };
 
-/// One index = a run of one entry.
+/// One index = one run of one entry.
 template <class Body>
 struct SingleRuns {
   Body body;
@@ -48,7 +48,7 @@ struct SingleRuns {
   TETWARP_HD auto operator()(std::int64_t i) const { return body.template run<1>(i, i + 1); }
 };
 
-/// Numbers on a device.
+/// A vector in memory of a device.
 template <class T>
 class DeviceVector {
  public:
@@ -73,6 +73,7 @@ View<const T> view_of(const DeviceVector<T>& values) {
   return values.view();
 }
 
+/// Calls enqueue work on the stream of a CudaExec; see CpuContactExec for what each does.
 class GridContactExec {
  public:
   template <class T>
@@ -83,7 +84,7 @@ class GridContactExec {
   /// @param exec  kept by the caller
   explicit GridContactExec(CudaExec& exec) : exec_(&exec) {}
 
-  /// All become zeros.
+  /// Sets the size; all entries become zero.
   template <class T>
   void resize(Vector<T>& values, std::int64_t size) const {
     values.resize(size);
@@ -92,7 +93,7 @@ class GridContactExec {
                                exec_->stream()),
                "cudaMemsetAsync");
   }
-  /// Numbers of the host.
+  /// Copies from the host.
   template <class T>
   void put(const T* host, std::int64_t size, Vector<T>& values) const {
     values.resize(size);
@@ -101,6 +102,7 @@ class GridContactExec {
                                cudaMemcpyHostToDevice, exec_->stream()),
                "cudaMemcpyAsync to device");
   }
+  /// Copies to the host; synchronizes.
   template <class T>
   void get(View<const T> values, T* host) const {
     if (values.size > 0) exec_->read(values, host);
@@ -112,7 +114,7 @@ class GridContactExec {
                                cudaMemcpyDeviceToDevice, exec_->stream()),
                "cudaMemcpyAsync on device");
   }
-  /// Without a clock: events would cost as much as the launches.
+  /// Stages are not timed: events would cost as much as the launches.
   template <class Body>
   void for_each(const char*, std::int64_t count, const Body& body) const {
     if (count == 0) return;
@@ -130,7 +132,7 @@ class GridContactExec {
     for_each(label, 1, body);
   }
 
-  /// Memory of the device for one thing at a time, made anew.
+  /// A default State in memory of the device; the state of the call before is gone.
   template <class State>
   State* state() {
     static_assert(sizeof(State) <= state_bytes);
@@ -141,19 +143,19 @@ class GridContactExec {
                "cudaMemcpyAsync to device");
     return reinterpret_cast<State*>(state_.view().data);
   }
-  /// Waits for the device.
+  /// Reads one value of device memory; synchronizes.
   template <class T>
   T load(const T* value) {
-    home_.reserve(sizeof(T));
-    T* const home = reinterpret_cast<T*>(home_.view(0).data);
-    exec_->read(View<const T>{value, 1}, home);
-    return *home;
+    pinned_.reserve(sizeof(T));
+    T* const pinned = reinterpret_cast<T*>(pinned_.view(0).data);
+    exec_->read(View<const T>{value, 1}, pinned);
+    return *pinned;
   }
   template <class T>
   T load_without_sync(const T*, T otherwise) const {
     return otherwise;
   }
-  /// The device would stand still at every look.
+  /// Every eighth step: the device idles while the host reads.
   bool is_sync_point(std::int64_t step) const { return step % 8 == 0; }
   static constexpr bool reads_need_sync = true;
 
@@ -165,7 +167,7 @@ class GridContactExec {
     sum_to(label, first, last, body, total);
     return load(total);
   }
-  /// @param out  on the device
+  /// @param out  in memory of the device
   template <class Sum, class Body>
   void sum_to(const char*, std::int64_t first, std::int64_t last, const Body& body, Sum* out) {
     const std::int64_t runs = (last - first + sum_run - 1) / sum_run;
@@ -180,13 +182,13 @@ class GridContactExec {
     sum_to(label, first, last, SingleRuns<Body>{body}, out);
   }
 
-  /// A pass over colors, recorded once and launched again and again.
+  /// One sweep over colors as a CUDA graph, recorded at the first call and launched again after it.
   template <class Body>
   void sweep(View<const std::int64_t> color_start, const Body& body) {
     graphs_.launch(exec_->stream(), color_start, body);
   }
 
-  /// What was recorded reads memory that may be gone.
+  /// Drops the recorded graphs; to be called when the arrays they read have moved.
   void forget_sweeps() { graphs_.clear(); }
 
  private:
@@ -204,11 +206,11 @@ class GridContactExec {
 
   CudaExec* exec_;
   DeviceVector<std::byte> state_, sums_, total_;
-  PinnedBuffer<std::byte> home_;
+  PinnedBuffer<std::byte> pinned_;
   SweepGraphs graphs_;
 };
 
-/// As for any executor, but recorded.
+/// The stage "sweep" as a recorded graph.
 template <class Body>
 void contact_sweep(GridContactExec& exec, View<const std::int64_t> color_start, const Body& body) {
   exec.sweep(color_start, body);

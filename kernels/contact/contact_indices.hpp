@@ -1,6 +1,6 @@
 /// @file contact_indices.hpp
-/// The index arrays of a contact problem as views, wherever the memory is; see
-/// host/contact/structure/structure.hpp for what makes them.
+/// The index arrays of a contact problem as views of memory of the executor; they come from
+/// host/contact/structure/structure.hpp.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +10,8 @@
 
 namespace tetwarp {
 
-/// Contacts in slots, blocks and dofs in places; targets say where each stored number goes.
+/// A slot is a position of a contact in the order of the structure, a place that of a dof. Targets
+/// map the stored numbers of a matrix to positions in the arrays of SystemMemory.
 struct ContactIndices {
   bool is_local = false;
   View<const std::int32_t> contact_of_slot;
@@ -26,18 +27,18 @@ struct ContactIndices {
   PairView pairs;
   BlockContacts block_contacts;
   View<const std::int32_t> dof_of_place;      ///< dof of the problem at each place
-  View<const std::uint8_t> block_is_coupled;  ///< [blocks]: in an island whose blocks A couples
+  View<const std::uint8_t> block_is_coupled;  ///< [blocks]: 1 in an island whose blocks A couples
   View<const std::int64_t> inverse_start;     ///< [blocks + 1]
   View<const std::int64_t> diagonal_value;    ///< [blocks]: place of the diagonal block of A
   View<const std::int64_t> jacobian_target;
   View<const std::int64_t> system_row;  ///< [blocks + 1]
   View<const std::int32_t> system_column;
   View<const std::int64_t> system_value;
-  View<const std::int64_t> system_target;  ///< -1: a zero without a place
+  View<const std::int64_t> system_target;  ///< -1: a stored zero that is left out
   std::int64_t jacobian_size = 0, system_size = 0, inverse_size = 0;
   bool has_only_nodes = false;  ///< all blocks have three dofs
 
-  /// No two stored numbers go to the same place: in W or A, in J.
+  /// Whether all targets of W or A differ, and those of J: then numbers are added in parallel.
   bool matrix_is_unique = true, jacobian_is_unique = true;
 
   std::int64_t slots() const { return contact_of_slot.size; }

@@ -1,10 +1,10 @@
 /// @file contact_law.hpp
-/// The law of one contact: the impulse it answers with while all other impulses stand still.
+/// The law of one contact: its impulse for given velocities while all other impulses stay fixed.
 ///
 /// Letters: r impulse, u velocity, B the contact's own 3x3 block of the Delassus matrix,
 /// K = diag(kappa_n, kappa_t, kappa_t) the adhesive springs over one step, o_t the stored
-/// tangential gap over dt, nu = r + K (u + o) what contact and friction alone carry, R the radius
-/// of friction.
+/// tangential gap over dt, nu = r + K (u + o) the impulse of contact and friction without the
+/// springs, R the radius of friction.
 #pragma once
 #include <cstdint>
 
@@ -12,20 +12,20 @@
 
 namespace tetwarp {
 
-/// Which law and which rule; see host/tetwarp/contact.hpp.
+/// The friction law and the adhesion rule; see host/tetwarp/contact.hpp.
 struct ContactSwitches {
-  bool pyramid = false;
-  bool restrictive = false;
+  bool pyramid = false;      ///< FrictionLaw::pyramid, else cone
+  bool restrictive = false;  ///< AdhesionRule::restrictive, else parallel
 };
 
-/// How much of the law a contact needs.
+/// Which parts of the law a contact needs.
 enum class ContactKind : std::uint8_t {
-  frictionless,  ///< no friction, no springs: the normal row is all there is
+  frictionless,  ///< neither friction nor tangential spring: normal row only
   coulomb,       ///< friction, no springs
   adhesive       ///< springs, with or without friction
 };
 
-/// What does not change during a solve, per contact.
+/// The constants of one contact during a solve.
 template <class T>
 struct ContactConstants {
   T block[9];           ///< B, row by row
@@ -43,24 +43,29 @@ TETWARP_HD T larger_eigenvalue(T a, T b, T c) {
   return (a + c) / 2 + sqrt(square_of((a - c) / 2) + square_of(b));
 }
 
-/// Normal impulse that answers the velocity `free` left by all others: compression stops it,
-/// traction stretches the spring (the proximal map of the spring's energy).
+/// Normal impulse for the normal velocity `free` that the contact has without it: compression stops
+/// the approach, traction stretches the spring (the proximal map of the spring's energy).
+/// @param metric  normal entry of B, 1/kg
+/// @param spring  kappa_n
 template <class T>
 TETWARP_HD T normal_impulse(T free, T metric, T spring) {
   return free <= 0 ? -free / metric : -spring * free / (1 + spring * metric);
 }
 
-/// Slip speed s in [0, free] of  s + m max(limit - kappa |s d + o|, 0) = free,  with m kappa =
-/// `coupling` < 1, `along` = d . o, `across` = |o|^2 - along^2: rule `restrictive` while sliding.
-/// The left side grows with s, so the root is unique; `rest` = 1 - coupling, exact for stiff
-/// springs.
+/// Slip speed under the rule `restrictive`: the s in [0, free] with
+///
+///     s + m max(limit - kappa |s d + o|, 0) = free
+///
+/// where m kappa = `coupling` < 1, `along` = d . o, `across` = |o|^2 - along^2 for the direction d
+/// of sliding. The left side grows with s, so the root is unique.
+/// @param complement  1 - coupling, given by the caller without cancellation for stiff springs
 template <class T>
-TETWARP_HD T restrictive_slip(T free, T limit, T m, T coupling, T rest, T along, T across) {
+TETWARP_HD T restrictive_slip(T free, T limit, T m, T coupling, T complement, T along, T across) {
   const T kappa = coupling / m;
   if (square_of(limit) <= square_of(kappa) * (square_of(free + along) + across)) return free;
   // (s - a)^2 = coupling^2 |s d + o|^2 on the branch s >= a, a = free - m limit.
   const T a = free - m * limit;
-  const T scale = rest * (1 + coupling);  // 1 - coupling^2
+  const T scale = complement * (1 + coupling);  // 1 - coupling^2
   const T middle = a + square_of(coupling) * along;
   const T spread = coupling * sqrt(square_of(a + along) + scale * across);
   // Of two equal forms the one without cancellation.
@@ -69,23 +74,28 @@ TETWARP_HD T restrictive_slip(T free, T limit, T m, T coupling, T rest, T along,
   return min_of(max_of(slip, T(0)), free);
 }
 
-/// Friction (without the springs) against the velocity `free` in metric m = p / (1 + kappa p):
-/// its size along -free, for |free| = `speed`.
+/// Size of the friction impulse (without the springs) for a free tangential velocity of `speed`; it
+/// acts against that velocity.
+/// @param limit   radius of friction, mu times the normal impulse
+/// @param metric  p; with the spring the effective metric is m = p / (1 + kappa p)
+/// @param along, across  stored gap along the velocity; square of the part across it
 template <class T>
 TETWARP_HD T
 friction_size(T speed, T limit, T spring, T metric, T along, T across, bool restrictive) {
-  const T rest = 1 / (1 + spring * metric);
-  const T m = metric * rest;
+  const T complement = 1 / (1 + spring * metric);  // 1 - m kappa
+  const T m = metric * complement;
   const bool springs_count = restrictive && spring > 0;
   const T stick_limit =
       springs_count ? max_of(limit - spring * T(sqrt(square_of(along) + across)), T(0)) : limit;
   if (speed <= m * stick_limit) return speed / m;
   if (!springs_count) return limit;
-  const T slip = restrictive_slip(speed, limit, m, spring * m, rest, along, across);
+  const T slip = restrictive_slip(speed, limit, m, spring * m, complement, along, across);
   return max_of(limit - spring * T(sqrt(square_of(slip + along) + across)), T(0));
 }
 
-/// Both tangential impulses at once, in the scalar metric of the constants (cone).
+/// Both tangential impulses under the friction cone, in the scalar metric of the constants.
+/// @param free     tangential velocity without the tangential impulse, [2]
+/// @param impulse  out: tangential impulses, [2]
 template <class T>
 TETWARP_HD void cone_impulses(
     const ContactConstants<T>& c, bool restrictive, T limit, const T* free, T* impulse) {
@@ -99,11 +109,11 @@ TETWARP_HD void cone_impulses(
     return;
   }
   const T spring = c.tangent_spring;
-  const T rest = 1 / (1 + spring * metric);
-  const T m = metric * rest;
+  const T complement = 1 / (1 + spring * metric);
+  const T m = metric * complement;
   // Velocity with the springs but without friction.
-  const T x = (free[0] - metric * spring * c.tangent_offset[0]) * rest;
-  const T y = (free[1] - metric * spring * c.tangent_offset[1]) * rest;
+  const T x = (free[0] - metric * spring * c.tangent_offset[0]) * complement;
+  const T y = (free[1] - metric * spring * c.tangent_offset[1]) * complement;
   const T speed = sqrt(square_of(x) + square_of(y));
   T size = 0;  // friction over speed
   if (speed > 0) {
@@ -117,26 +127,27 @@ TETWARP_HD void cone_impulses(
   impulse[1] = -size * y - spring * (slip * y + c.tangent_offset[1]);
 }
 
-/// One tangential impulse (pyramid: each axis for itself).
+/// One tangential impulse under the friction pyramid, whose axes are independent.
+/// @param free  velocity along the axis without this impulse
 template <class T>
 TETWARP_HD T
 axis_impulse(const ContactConstants<T>& c, bool restrictive, T limit, T free, T metric, T offset) {
   const T spring = c.tangent_spring;
-  const T rest = 1 / (1 + spring * metric);
-  const T x = (free - metric * spring * offset) * rest;
+  const T complement = 1 / (1 + spring * metric);
+  const T x = (free - metric * spring * offset) * complement;
   const T sign = x < 0 ? T(-1) : T(1);
   const T size =
       sign * friction_size(sign * x, limit, spring, metric, sign * offset, T(0), restrictive);
-  return -size - spring * (x - metric * rest * size + offset);
+  return -size - spring * (x - metric * complement * size + offset);
 }
 
-/// Whether its normal row is all there is to solve.
+/// Whether only the normal row of a contact is solved.
 template <class T>
 TETWARP_HD bool has_one_row(const ContactConstants<T>& c, const T* impulse) {
   return c.kind == ContactKind::frictionless && impulse[1] == 0 && impulse[2] == 0;
 }
 
-/// Replaces the normal impulse by the answer to the normal velocity; returns its change.
+/// Replaces the normal impulse by the solution for the normal velocity u_n; returns its change.
 template <class T>
 TETWARP_HD T solve_normal(const ContactConstants<T>& c, T velocity, T* impulse) {
   const T before = impulse[0];
@@ -144,9 +155,11 @@ TETWARP_HD T solve_normal(const ContactConstants<T>& c, T velocity, T* impulse) 
   return impulse[0] - before;
 }
 
-/// Replaces `impulse` by the answer to `velocity` (u = B impulse + what all others do; changed on
-/// the way): normal first, then the tangents under the friction that the new normal allows. Its
-/// fixed point over all contacts is the exact law.
+/// Replaces the impulse of a contact by the solution of its law, the other impulses fixed: normal
+/// first, then the tangents under the friction limit of the new normal impulse. Impulses that this
+/// changes at no contact satisfy the law exactly.
+/// @param velocity  in: u with the old impulse; overwritten, [3]
+/// @param impulse   in and out: r, [3]
 template <class T>
 TETWARP_HD void solve_contact(const ContactConstants<T>& c,
                               ContactSwitches switches,

@@ -1,5 +1,6 @@
 /// @file contact_methods.hpp
-/// Methods for one island whose blocks A does not couple: sweeps, and what makes them faster.
+/// Methods for one island whose blocks A does not couple: sweeps, plain or accelerated, and mass
+/// splitting.
 #pragma once
 #include <cstdint>
 
@@ -12,8 +13,8 @@
 
 namespace tetwarp {
 
-/// One index = one contact: the diagonal metric in which impulses are compared, 1 / rho of the
-/// natural residual.
+/// One index = one contact: the diagonal metric of impulse differences, 1 / rho with the weights
+/// rho of eta.
 template <class T>
 struct ImpulseWeightsBody {
   View<const ContactConstants<T>> constants;
@@ -27,17 +28,17 @@ struct ImpulseWeightsBody {
   }
 };
 
-/// Memory that methods work with; contents do not matter between islands.
+/// Work vectors of the methods; nothing in them is kept from one island to the next.
 template <class T>
 struct MethodWork {
   static constexpr int columns = AndersonMixer<int, T>::columns;
 
   View<double> weights;              ///< [3 slots]
-  View<T> before, best;              ///< [3 slots]
+  View<T> before, best;              ///< impulses before the last step; the best so far; [3 slots]
   View<T> mixed;                     ///< [columns][3 slots], island after island
-  View<ContactConstants<T>> metric;  ///< [slots]
+  View<ContactConstants<T>> metric;  ///< constants of mass splitting, [slots]
 
-  /// The part of an island; `metric` stays whole.
+  /// The views of one island; `metric` stays that of all.
   TETWARP_HD MethodWork of(const ContactIsland& island) const {
     const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
     return {{weights.data + first, size},
@@ -48,13 +49,13 @@ struct MethodWork {
   }
 };
 
-/// The methods of an island. Each goes on from the impulses at hand and returns why it stopped;
-/// restore_best() takes the best iterate back.
+/// The methods of one island. Each continues from the current impulses and returns why it stopped;
+/// restore_best() goes back to the iterate with the smallest residual.
 template <class Exec, class T, class Log>
 class ContactMethods {
  public:
-  /// One index = one entry: the slope along the last step.
-  struct UphillBody {
+  /// One index = one entry: product of gradient and last step; a positive sum means uphill.
+  struct SlopeBody {
     View<const double> weights;
     View<const T> before, x, last;
     TETWARP_HD PlainSums<1> operator()(std::int64_t i) const {
@@ -62,6 +63,7 @@ class ContactMethods {
       return {{weights[i] * (double{before[i]} - double{x[i]}) * step}};
     }
   };
+  /// One index = one entry: x += factor (x - last), and last becomes the old x.
   struct MomentumBody {
     T factor;
     View<T> last, x;
@@ -72,7 +74,7 @@ class ContactMethods {
     }
   };
 
-  /// @param work  of the whole problem
+  /// @param work  views of the whole problem
   TETWARP_ANY_EXEC ContactMethods(ContactPipeline<Exec, T>& pipeline,
                                   ConvergenceTest<Log>& convergence,
                                   const MethodWork<T>& work)
@@ -82,7 +84,8 @@ class ContactMethods {
     exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
   }
 
-  /// Measures the impulses at hand. True: done.
+  /// Measures the residual of the current impulses.
+  /// @return  whether they are within the tolerance, or no sweep is left
   TETWARP_ANY_EXEC bool is_done_at_start() {
     pipeline_.follow_impulses();
     return measure(0);
@@ -98,8 +101,8 @@ class ContactMethods {
     return iterate<ConjugateDirection<Exec, T>>(patience, {});
   }
 
-  /// Nesterov's acceleration, restarted when it leads uphill, of contacts solved all at once in the
-  /// metric of split masses.
+  /// Solves all contacts at once in the metric of split masses (see contact_split.hpp), with
+  /// Nesterov's acceleration, restarted when a step leads uphill.
   TETWARP_ANY_EXEC StopReason mass_splitting(std::int64_t patience) {
     convergence_.start_method(patience);
     pipeline_.split_metric(work_.metric);
@@ -123,7 +126,7 @@ class ContactMethods {
       const double uphill =
           exec()
               .template sum<PlainSums<1>>("contact/mix", 0, x.size,
-                                          UphillBody{work_.weights, work_.before, x, last})
+                                          SlopeBody{work_.weights, work_.before, x, last})
               .value[0];
       if (uphill > 0) momentum = 1;
       const double next = (1 + sqrt(1 + 4 * momentum * momentum)) / 2;
@@ -135,11 +138,12 @@ class ContactMethods {
     return convergence_.reason();
   }
 
-  /// What an option asks for; several methods in turn where it leaves the choice.
-  /// @param calm  which contacts plain sweeps may leave out
-  /// @return whether accelerated sweeps got stuck and conjugate directions went on from their best
+  /// Runs a method. `automatic` and `newton` (whose start this is) use Anderson acceleration and,
+  /// if it stalls, conjugate directions from the best iterate.
+  /// @param frozen  contacts that plain sweeps may skip
+  /// @return  whether it switched to conjugate directions
   TETWARP_ANY_EXEC bool run(ContactMethod method, const FrozenContacts<T>& frozen) {
-    constexpr std::int64_t patience = 100;  // sweeps without a drop
+    constexpr std::int64_t patience = 100;  // sweeps without progress
     switch (method) {
       case ContactMethod::gauss_seidel:
         gauss_seidel(endless, frozen);
@@ -163,7 +167,7 @@ class ContactMethods {
     return true;
   }
 
-  /// Takes the best impulses back.
+  /// Makes the best impulses the current ones.
   TETWARP_ANY_EXEC void restore_best() {
     exec().copy("contact/sweep", View<const T>(work_.best), pipeline_.impulse());
     pipeline_.follow_impulses();
@@ -194,14 +198,15 @@ class ContactMethods {
     return convergence_.reason();
   }
 
-  /// Whether the executor lets those who decide look now.
+  /// Whether the caller may read results of the executor after this sweep.
   TETWARP_ANY_EXEC bool is_sync_point() const {
     return exec().is_sync_point(convergence_.sweeps()) || convergence_.is_exhausted();
   }
 
+  /// @return  whether to stop
   TETWARP_ANY_EXEC bool measure(double defect) {
     bool is_best = false;
-    const bool is_done = convergence_.take(pipeline_.measure(), defect, is_best);
+    const bool is_done = convergence_.record(pipeline_.measure(), defect, is_best);
     if (is_best) exec().copy("contact/sweep", View<const T>(pipeline_.impulse()), work_.best);
     return is_done;
   }
@@ -211,21 +216,24 @@ class ContactMethods {
   MethodWork<T> work_;
 };
 
-/// How the solve of an island ended.
+/// Why and when the solve of an island ended.
 struct IslandEnd {
   StopReason reason = StopReason::exhausted;
-  std::int64_t sweeps = 0;  ///< in all
-  bool has_turned = false;  ///< from accelerated sweeps to conjugate directions
+  std::int64_t sweeps = 0;    ///< those of earlier solves included
+  bool has_switched = false;  ///< from accelerated sweeps to conjugate directions
 };
 
-/// What every island is solved by.
+/// Method and budget of every island.
 struct MethodPlan {
   ContactMethod method = ContactMethod::automatic;
-  double freeze_share = 0;  ///< see FrozenContacts; where the state has room for calm contacts
+  double freeze_share = 0;  ///< FrozenContacts::share, if the state has counters
   std::int64_t sweep_budget = 0;
 };
 
-/// Solves one island from the impulses at hand; the best are left.
+/// Solves one island from the current impulses and leaves the best ones.
+/// @param sweeps_done  by earlier solves of the island
+/// @param work         views of the whole problem
+/// @param log          gets every measured residual: note(ContactEvent)
 template <class Exec, class T, class Log>
 TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
                                         const StopCriterion& criterion,
@@ -235,23 +243,23 @@ TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
                                         Log& log) {
   ConvergenceTest<Log> convergence(criterion, sweeps_done, plan.sweep_budget, log);
   ContactMethods<Exec, T, Log> methods(pipeline, convergence, work);
-  bool has_turned = false;
+  bool has_switched = false;
   if (!methods.is_done_at_start()) {
     const ContactState<T>& state = pipeline.state();
-    has_turned = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
-                                           static_cast<T>(plan.freeze_share)});
+    has_switched = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
+                                             static_cast<T>(plan.freeze_share)});
     methods.restore_best();
   }
-  return {convergence.reason(), convergence.sweeps(), has_turned};
+  return {convergence.reason(), convergence.sweeps(), has_switched};
 }
 
-/// Where an island stands.
+/// Residual of an island and the scale of its free velocities.
 struct IslandSums {
   ContactSums sums;
   double free_square = 0;  ///< |q|^2
 };
 
-/// Of the impulses at hand, which bodies follow.
+/// Measures the current impulses of an island; sets its body velocities to what they cause.
 template <class Exec, class T>
 TETWARP_ANY_EXEC IslandSums measure_island(ContactPipeline<Exec, T> pipeline) {
   pipeline.follow_impulses();

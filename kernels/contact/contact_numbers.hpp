@@ -1,5 +1,5 @@
 /// @file contact_numbers.hpp
-/// A contact problem as the stages of the solver read and change it: views, wherever the memory is.
+/// What the stages of the contact solver read and change, as views of memory of the executor.
 #pragma once
 #include <cstdint>
 
@@ -9,21 +9,21 @@
 
 namespace tetwarp {
 
-/// Contacts that influence each other, with the blocks of dofs they move.
+/// Contacts that influence each other, and the blocks of dofs that they move, as index ranges.
 struct ContactIsland {
-  std::int64_t slot_begin = 0, slot_end = 0;    ///< its contacts
-  std::int64_t color_begin = 0, color_end = 0;  ///< its entries of color_start
+  std::int64_t slot_begin = 0, slot_end = 0;    ///< contacts, in the order of the structure
+  std::int64_t color_begin = 0, color_end = 0;  ///< entries of color_start
   std::int64_t block_begin = 0, block_end = 0;
   std::int64_t dof_begin = 0, dof_end = 0;
   bool is_coupled = false;  ///< A couples its blocks
 
   TETWARP_HD std::int64_t contact_count() const { return slot_end - slot_begin; }
   TETWARP_HD std::int64_t block_count() const { return block_end - block_begin; }
-  /// Numbers that its sweeps change: impulses, velocities of bodies.
+  /// How many numbers its sweeps change: impulses and body velocities.
   TETWARP_HD std::int64_t value_count() const { return 3 * contact_count() + dof_end - dof_begin; }
 };
 
-/// What a solve reads.
+/// The constant numbers of a problem: A, J, b, w in global form; W, q in local form.
 template <class T>
 struct ContactNumbers {
   bool is_local = false;
@@ -38,12 +38,12 @@ struct ContactNumbers {
   BlockContacts block_contacts;
   View<const T> body_free;  ///< A^-1 b, [dofs]; of coupled islands not set
 
-  // Of islands whose blocks A couples.
+  // Used for islands whose blocks A couples only.
   SystemView<T> system;
   View<const T> load;                       ///< b, [dofs]
-  View<const std::int64_t> diagonal_value;  ///< [blocks], diagonal blocks among those of A
+  View<const std::int64_t> diagonal_value;  ///< [blocks], first number of the diagonal block of A
   View<const std::int64_t> inverse_start;   ///< [blocks + 1]
-  View<const T> inverse;                    ///< D^-1
+  View<const T> inverse;                    ///< D^-1: inverses of the diagonal blocks
 };
 
 /// What a solve changes, for all islands together.
@@ -53,8 +53,8 @@ struct ContactState {
   View<T> velocity;                     ///< u, [3 slots]
   View<T> body_velocity;                ///< v, [dofs]
   View<T> defect;                       ///< b + J^T r - A v, [dofs], of coupled islands
-  View<std::uint8_t> unchanged_visits;  ///< [slots], or empty where no contact may be frozen
-  View<std::int32_t> skipped_visits;    ///< [slots]
+  View<std::uint8_t> unchanged_visits;  ///< of FrozenContacts, [slots]; empty: none is frozen
+  View<std::int32_t> skipped_visits;    ///< as above
 };
 
 }  // namespace tetwarp

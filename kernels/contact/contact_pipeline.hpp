@@ -1,7 +1,7 @@
 /// @file contact_pipeline.hpp
-/// The contact solver of one island as a list of stages, for any executor: threads of the host, a
-/// whole device, or one block of it. Read this file first: sweep() is the method, measure() what it
-/// is judged by.
+/// The contact solver of one island as a list of stages, for any executor: host threads, a whole
+/// device, or one block of it. Read this file first: sweep() improves the impulses, measure()
+/// returns their residual.
 #pragma once
 #include <cstdint>
 
@@ -14,10 +14,14 @@
 
 namespace tetwarp {
 
+/// The stages of one island. "Current" impulses and velocities are those of the state.
 template <class Exec, class T>
 class ContactPipeline {
  public:
-  /// @param color_start  of all islands, where the one that calls can read it
+  /// @param exec         where to run; kept by the caller
+  /// @param numbers      of the whole problem, in memory of the executor
+  /// @param color_start  of all islands, in memory that the caller reads
+  /// @param state        of the whole problem, in memory of the executor
   TETWARP_ANY_EXEC ContactPipeline(Exec& exec,
                                    const ContactNumbers<T>& numbers,
                                    View<const std::int64_t> color_start,
@@ -47,7 +51,8 @@ class ContactPipeline {
     return {numbers_.constants.data + island_.slot_begin, island_.contact_count()};
   }
 
-  /// One pass over all contacts.
+  /// One pass over all contacts of the island.
+  /// @param frozen  which of them it skips
   TETWARP_ANY_EXEC void sweep(const FrozenContacts<T>& frozen) {
     const View<const std::int64_t> colors = {color_start_.data + island_.color_begin,
                                              island_.color_end - island_.color_begin};
@@ -62,7 +67,7 @@ class ContactPipeline {
     }
   }
 
-  /// The contacts' constants with the metric of split masses for their own blocks.
+  /// Copies the constants of the contacts and replaces their blocks by the metric of split masses.
   /// @param metric  out, [slots]; only the island's part
   TETWARP_ANY_EXEC void split_metric(View<ContactConstants<T>> metric) {
     exec_.copy("contact/sweep", constants(),
@@ -75,13 +80,14 @@ class ContactPipeline {
     run_contacts(ContactMetricBody<T>{metric});
   }
 
-  /// Every contact's answer to the same velocities, in the metric from above.
+  /// Solves every contact by itself, all from the same velocities.
+  /// @param metric  of split_metric()
   TETWARP_ANY_EXEC void split(View<const ContactConstants<T>> metric) {
     find_velocities();
     run_contacts(ContactSplitBody<T>{metric, switches_, state_.velocity, state_.impulse});
   }
 
-  /// v from r, after r was changed by other means than a sweep.
+  /// Sets v to what r causes; needed after r was changed by anything but a sweep.
   /// @pre A does not couple the island's blocks
   TETWARP_ANY_EXEC void follow_impulses() {
     if (numbers_.is_local) return;
@@ -91,11 +97,11 @@ class ContactPipeline {
                                    state_.body_velocity});
   }
 
-  /// Goes on with velocities kept elsewhere, [dofs] of the whole problem.
+  /// Replaces the current body velocities by another vector, [dofs] of the whole problem.
   TETWARP_HD void use_body_velocity(View<T> body_velocity) { state_.body_velocity = body_velocity; }
 
-  /// A step of block-Jacobi with the impulses at hand: v = x + omega D^-1 (b + J^T r - A x).
-  /// @param x  [dofs] of the whole problem, other than v
+  /// A block-Jacobi step with the current impulses: v = x + omega D^-1 (b + J^T r - A x).
+  /// @param x  [dofs] of the whole problem; not the memory of v
   TETWARP_ANY_EXEC void step_bodies(View<const T> x, T relaxation) {
     body_relax(exec_, island_.block_begin, island_.block_end,
                BodyStepBody<T>{{numbers_.system, numbers_.block_contacts, numbers_.bodies.jacobian,
@@ -106,7 +112,7 @@ class ContactPipeline {
                                state_.body_velocity});
   }
 
-  /// How far r and v are from the law.
+  /// Residual of the current r and v.
   TETWARP_ANY_EXEC ContactSums measure() {
     find_velocities();
     return contact_residual(exec_, island_.slot_begin, island_.slot_end,

@@ -1,5 +1,6 @@
 /// @file contact_residual.hpp
-/// Stage "residual" of the contact solver: how far each contact is from its law.
+/// Stage "residual" of the contact solver: how far impulses and velocities are from the contact
+/// law.
 #pragma once
 #include <cstdint>
 
@@ -8,11 +9,11 @@
 
 namespace tetwarp {
 
-/// Sums over contacts, in float64 whatever the solver runs in.
+/// Sums over contacts, in float64 for solves of either precision.
 struct ContactSums {
-  double eta = 0;      ///< e_n^2 / rho_n + |e_t|^2 / rho_t: an energy [J]
-  double fclib = 0;    ///< |r - P(r - u~)|^2, P onto the cone of friction, u~ = u + mu |u_t| n
-  double work = 0;     ///< r . (u - q)
+  double eta = 0;    ///< e_n^2 / rho_n + |e_t|^2 / rho_t: an energy [J]
+  double fclib = 0;  ///< |r - P(r - u~)|^2, P: projection on the friction cone, u~ = u + mu |u_t| n
+  double work = 0;   ///< r . (u - q)
   double largest = 0;  ///< largest term of `eta`
   double deepest = 0;  ///< largest -u_n [m/s]
   std::int64_t largest_contact = -1;
@@ -30,7 +31,8 @@ struct ContactSums {
   }
 };
 
-/// |e_n|^2 / rho_n + |e_t|^2 / rho_t of the natural map of the law; zero exactly where it holds.
+/// |e_n|^2 / rho_n + |e_t|^2 / rho_t with e the natural map of the law; zero exactly if the law
+/// holds.
 template <class T>
 TETWARP_HD double natural_square(const ContactConstants<T>& c,
                                  ContactSwitches switches,
@@ -65,7 +67,7 @@ TETWARP_HD double natural_square(const ContactConstants<T>& c,
   return sum + (square_of(nu[0] - aim[0]) + square_of(nu[1] - aim[1])) / rho_t;
 }
 
-/// Metrics of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
+/// Weights of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
 template <class T>
 TETWARP_HD double normal_weight(const ContactConstants<T>& c) {
   return 1 / double{c.block[0]} + double{c.normal_spring};
@@ -75,7 +77,7 @@ TETWARP_HD double tangent_weight(const ContactConstants<T>& c) {
   return c.tangent_metric > 0 ? 1 / double{c.tangent_metric} + double{c.tangent_spring} : 1;
 }
 
-/// Share in eta.
+/// The term of one contact in ContactSums::eta.
 template <class T>
 TETWARP_HD double eta_square(const ContactConstants<T>& c,
                              ContactSwitches switches,
@@ -84,8 +86,9 @@ TETWARP_HD double eta_square(const ContactConstants<T>& c,
   return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
 }
 
-/// Share in FCLIB's error: squared distance of nu from the projection of nu - u~ onto the cone of
-/// friction, u~ = u + mu |u_t| n; laws without a cone: the natural map with metrics 1.
+/// The term of one contact in ContactSums::fclib: squared distance of nu from the projection of
+/// nu - u~ on the friction cone, u~ = u + mu |u_t| n. For laws without a cone the natural map with
+/// weights 1.
 template <class T>
 TETWARP_HD double fclib_square(const ContactConstants<T>& c,
                                ContactSwitches switches,
@@ -116,7 +119,7 @@ TETWARP_HD double fclib_square(const ContactConstants<T>& c,
   return sum;
 }
 
-/// One index = one contact, from its impulse and velocity.
+/// One index = one contact: its terms, from its impulse and velocity.
 template <class T>
 struct ContactResidualBody {
   View<const ContactConstants<T>> constants;
@@ -138,9 +141,12 @@ struct ContactResidualBody {
   }
 };
 
-/// Residual of contacts [first, last).
-/// Determinism: a fixed tree, same bits for any number of threads; each executor has its own.
-/// Cost: 9 numbers per contact.
+/// Sums the residual of contacts [first, last).
+/// @param exec  where to run
+/// @param body  input
+///
+/// Determinism: a fixed tree, so the same bits for any number of threads; each executor has its
+/// own. Cost: 9 numbers per contact.
 template <class Exec, class T>
 TETWARP_ANY_EXEC ContactSums contact_residual(Exec& exec,
                                               std::int64_t first,

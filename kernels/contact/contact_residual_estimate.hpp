@@ -1,5 +1,6 @@
-/// @file contact_judge.hpp
-/// What judging the impulses on bodies that A couples takes, index by index.
+/// @file contact_residual_estimate.hpp
+/// Bodies of the residual estimator for bodies that A couples; see
+/// host/contact/block_jacobi/residual_estimator.hpp.
 #pragma once
 #include <cstdint>
 
@@ -10,10 +11,11 @@
 
 namespace tetwarp {
 
-/// One index = one contact: its constants with at most the blocks of J A^-1 J^T. Those of the
-/// problem are of omega J D^-1 J^T. Diagonal blocks of A^-1 are at least those of D^-1; as a whole
-/// A^-1 is at least D^-1 over the largest eigenvalue of D^-1 A, which is below 2 / omega where the
-/// outer iteration converges.
+/// One index = one contact: its constants with a lower bound of its block of J A^-1 J^T.
+///
+/// `constants` hold blocks of omega J D^-1 J^T. A diagonal block of A^-1 is at least that of D^-1,
+/// so contacts of one block use 1 / omega. The whole A^-1 is at least D^-1 over the largest
+/// eigenvalue of D^-1 A, which is below 2 / omega if the outer iteration converges: hence 1/2.
 struct LowerBlocksBody {
   View<const std::int64_t> pair_start;
   View<const ContactConstants<double>> constants;
@@ -29,17 +31,17 @@ struct LowerBlocksBody {
   }
 };
 
-/// One index = one contact: a unit impulse along its normal.
+/// One index = one contact: sets a unit impulse along its normal.
 struct UnitPushBody {
   View<double> impulse;
   TETWARP_HD void operator()(std::int64_t c) const { impulse[3 * c] = 1; }
 };
 
-/// One index = one block: squares of rest, load and J^T r.
+/// One index = one block: |b + J^T r - A v|^2, |b|^2 and |J^T r|^2 of its dofs.
 struct BalanceBody {
   BlockContacts contacts;
   View<const std::int64_t> dof_start;
-  View<const double> jacobian, load, impulse, rest;
+  View<const double> jacobian, load, impulse, defect;
 
   TETWARP_HD PlainSums<3> operator()(std::int64_t b) const {
     PlainSums<3> sums;
@@ -51,7 +53,7 @@ struct BalanceBody {
         const double* j = jacobian.data + contacts.value[p] + k;
         push += j[0] * r[0] + j[size] * r[1] + j[2 * size] * r[2];
       }
-      sums.value[0] += square_of(rest[dof_start[b] + k]);
+      sums.value[0] += square_of(defect[dof_start[b] + k]);
       sums.value[1] += square_of(load[dof_start[b] + k]);
       sums.value[2] += square_of(push);
     }
@@ -59,10 +61,10 @@ struct BalanceBody {
   }
 };
 
-/// One index = one contact: squared difference of two velocities, weighed as eta does.
+/// One index = one contact: squared difference of two velocities in the weights of eta.
 struct DistanceBody {
   View<const ContactConstants<double>> constants;
-  const double *a, *b;
+  const double *a, *b;  ///< the velocities, [contacts][3]
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
     const double* x = a + 3 * c;

@@ -1,6 +1,6 @@
 /// @file contact_setup.hpp
-/// Stage "setup" of the contact solver: inverse blocks of A, responses of bodies to contacts, the
-/// contacts' own 3x3 Delassus blocks.
+/// Stage "setup" of the contact solver: inverse diagonal blocks of A, responses A^-1 J^T, and the
+/// 3x3 Delassus block of each contact.
 #pragma once
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace tetwarp {
 
-/// Which dofs a contact moves: pairs of a contact and a block of A. The Jacobian part of a pair is
-/// 3 x size, row by row; its response part size x 3, row by row; both start at the same place.
+/// Pairs of a contact and a block of dofs that it acts on. The Jacobian part of a pair is 3 x size,
+/// its response part size x 3, both row by row and from the same start.
 struct PairView {
   View<const std::int64_t> pair_start;   ///< [contacts + 1], first pair of each contact
   View<const std::int32_t> block;        ///< [pairs]
@@ -18,8 +18,8 @@ struct PairView {
   View<const std::int64_t> dof_start;    ///< [blocks + 1], first dof of each block
 };
 
-/// Inverts a symmetric positive definite matrix in place (Gauss-Jordan; such matrices need no
-/// pivoting).
+/// Inverts a symmetric positive definite matrix in place, by Gauss-Jordan elimination without
+/// pivoting.
 template <class T>
 TETWARP_HD void invert_spd(T* a, int size) {
   for (int k = 0; k < size; ++k) {
@@ -49,7 +49,7 @@ struct BlockInvertBody {
   }
 };
 
-/// One index = one contact: what its blocks answer to unit impulses, scaled by `relaxation`, and
+/// One index = one contact: the velocities of its blocks for unit impulses, times `relaxation`, and
 /// its own block of the Delassus matrix.
 template <class T>
 struct ContactResponseBody {
@@ -69,24 +69,25 @@ struct ContactResponseBody {
       const int size = static_cast<int>(pairs.dof_start[b + 1] - pairs.dof_start[b]);
       const T* j = jacobian.data + pairs.value_start[p];
       const T* inverse_block = inverse.data + inverse_start[b];
-      T* answer = response.data + pairs.value_start[p];
+      T* own_response = response.data + pairs.value_start[p];
       for (int row = 0; row < size; ++row) {
         for (int a = 0; a < 3; ++a) {
           T sum = 0;
           for (int k = 0; k < size; ++k) sum += inverse_block[row * size + k] * j[a * size + k];
-          answer[3 * row + a] = relaxation * sum;
+          own_response[3 * row + a] = relaxation * sum;
         }
       }
       for (int a = 0; a < 3; ++a) {
         for (int e = 0; e < 3; ++e) {
-          for (int k = 0; k < size; ++k) own[3 * a + e] += j[a * size + k] * answer[3 * k + e];
+          for (int k = 0; k < size; ++k)
+            own[3 * a + e] += j[a * size + k] * own_response[3 * k + e];
         }
       }
     }
   }
 };
 
-/// One index = one contact: the scalar metric of its tangents, once its block is known.
+/// One index = one contact: the scalar metric of its tangents, from its block.
 template <class T>
 struct ContactMetricBody {
   View<ContactConstants<T>> constants;
@@ -97,9 +98,13 @@ struct ContactMetricBody {
   }
 };
 
-/// Inverse blocks of A, kept for the life of a system.
-/// @param values  in: dense blocks row by row; out: their inverses
-/// @pre blocks are positive definite
+/// Inverts the diagonal blocks of A in place.
+/// @param exec         where to run
+/// @param dof_start    first dof of each block, [blocks + 1]
+/// @param value_start  first number of each block, [blocks + 1]
+/// @param values       in: dense blocks row by row; out: their inverses
+/// @pre  blocks are positive definite
+///
 /// Determinism: same bits on every back end with contraction off. Cost: size^3 per block.
 template <class Exec, class T>
 void block_invert(Exec& exec,
@@ -110,7 +115,11 @@ void block_invert(Exec& exec,
                 BlockInvertBody<T>{dof_start, value_start, values});
 }
 
-/// Responses and own blocks of all contacts; the rest of `constants` stays as it is.
+/// Sets the responses and Delassus blocks of all contacts; other constants do not change.
+/// @param exec  where to run
+/// @param body  input and output
+///
+/// Determinism: same bits on every back end with contraction off. Cost: size^2 per pair.
 template <class Exec, class T>
 void contact_response(Exec& exec, const ContactResponseBody<T>& body) {
   exec.for_each("contact/setup", body.constants.size, body);

@@ -1,6 +1,6 @@
 /// @file contact_split.hpp
-/// Stage "split" of the contact solver: every contact by itself, all from the same velocities, as
-/// if each body's mass were divided among its contacts. Needs no colors.
+/// Stage "split" of the contact solver: solves all contacts at once from the same velocities, as if
+/// the mass of each body were divided among its contacts. Needs no colors.
 #pragma once
 #include <cstdint>
 
@@ -11,8 +11,8 @@
 
 namespace tetwarp {
 
-/// One index = one contact between bodies: P = sum over its blocks of n_b J A^-1 J^T, n_b contacts
-/// on block b. No Delassus matrix exceeds P (Cauchy-Schwarz).
+/// One index = one contact between bodies: P = sum over its blocks b of n_b J A^-1 J^T, with n_b
+/// the number of contacts on block b. The Delassus matrix is at most diag(P) (Cauchy-Schwarz).
 template <class T>
 struct BodySplitMetricBody {
   BodiesView<T> bodies;
@@ -26,11 +26,11 @@ struct BodySplitMetricBody {
       const int size = static_cast<int>(bodies.pairs.dof_start[b + 1] - bodies.pairs.dof_start[b]);
       const T share = static_cast<T>(block_start[b + 1] - block_start[b]);
       const T* j = bodies.jacobian.data + bodies.pairs.value_start[p];
-      const T* answer = bodies.response.data + bodies.pairs.value_start[p];
+      const T* own_response = bodies.response.data + bodies.pairs.value_start[p];
       for (int a = 0; a < 3; ++a) {
         for (int e = 0; e < 3; ++e) {
           for (int k = 0; k < size; ++k)
-            own[3 * a + e] += share * j[a * size + k] * answer[3 * k + e];
+            own[3 * a + e] += share * j[a * size + k] * own_response[3 * k + e];
         }
       }
     }
@@ -38,8 +38,8 @@ struct BodySplitMetricBody {
   }
 };
 
-/// One index = one contact of a Delassus matrix: its diagonal block, raised by the sizes of the
-/// others in its row (block diagonal dominance does the same as the shares above).
+/// One index = one contact of a Delassus matrix: P = its diagonal block plus the norms of the other
+/// blocks of its row. The matrix is at most diag(P) (block diagonal dominance).
 template <class T>
 struct DelassusSplitMetricBody {
   DelassusView<T> delassus;
@@ -57,7 +57,8 @@ struct DelassusSplitMetricBody {
   }
 };
 
-/// One index = one contact: its answer to the velocity given, in the metric P of its constants.
+/// One index = one contact: solves its law for the given velocity, in the metric P of its
+/// constants.
 template <class T>
 struct ContactSplitBody {
   View<const ContactConstants<T>> constants;

@@ -1,6 +1,6 @@
 /// @file contact_sweep.hpp
-/// Stage "sweep" of the contact solver: one contact's projected Gauss-Seidel update, in a Delassus
-/// matrix or through the velocities of the bodies.
+/// Stage "sweep" of the contact solver: one pass of projected Gauss-Seidel over all contacts, with
+/// a Delassus matrix or through the velocities of the bodies.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// W by rows of 3x3 blocks, with the free velocities.
+/// The Delassus matrix W in rows of 3x3 blocks, and the free velocities q.
 template <class T>
 struct DelassusView {
   View<const std::int64_t> row_start;  ///< [contacts + 1]
@@ -18,7 +18,9 @@ struct DelassusView {
   View<const T> blocks;                ///< [blocks][9]
   View<const T> free_velocity;         ///< q, [contacts][3]
 
-  /// u = q + W r at one contact.
+  /// u = q + W r at contact c.
+  /// @param impulse   r of all contacts, [contacts][3]
+  /// @param velocity  out: u, [3]
   TETWARP_HD void velocity_at(std::int64_t c, const T* impulse, T* velocity) const {
     T x = free_velocity[3 * c], y = free_velocity[3 * c + 1], z = free_velocity[3 * c + 2];
     for (std::int64_t k = row_start[c]; k < row_start[c + 1]; ++k) {
@@ -32,7 +34,7 @@ struct DelassusView {
     velocity[1] = y;
     velocity[2] = z;
   }
-  /// Its normal component alone.
+  /// The normal component of u = q + W r at contact c.
   TETWARP_HD T normal_velocity_at(std::int64_t c, const T* impulse) const {
     T sum = free_velocity[3 * c];
     for (std::int64_t k = row_start[c]; k < row_start[c + 1]; ++k) {
@@ -44,15 +46,17 @@ struct DelassusView {
   }
 };
 
-/// J and the responses of bodies, with the velocity offsets.
+/// The Jacobian J, the responses A^-1 J^T of the bodies, and the velocity offsets w.
 template <class T>
 struct BodiesView {
   PairView pairs;
-  View<const T> jacobian;
-  View<const T> response;
-  View<const T> offset;  ///< w, [contacts][3]
+  View<const T> jacobian;  ///< by pairs; see PairView
+  View<const T> response;  ///< by pairs
+  View<const T> offset;    ///< w, [contacts][3]
 
-  /// u = J v + w at one contact.
+  /// u = J v + w at contact c.
+  /// @param body_velocity  v, [dofs]
+  /// @param velocity       out: u, [3]
   TETWARP_HD void velocity_at(std::int64_t c, const T* body_velocity, T* velocity) const {
     T sum[3] = {offset[3 * c], offset[3 * c + 1], offset[3 * c + 2]};
     for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
@@ -69,7 +73,7 @@ struct BodiesView {
     }
     for (int a = 0; a < 3; ++a) velocity[a] = sum[a];
   }
-  /// Its normal component alone.
+  /// The normal component of u = J v + w at contact c.
   TETWARP_HD T normal_velocity_at(std::int64_t c, const T* body_velocity) const {
     T sum = offset[3 * c];
     for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
@@ -81,49 +85,55 @@ struct BodiesView {
     }
     return sum;
   }
-  /// v += A^-1 J^T change.
+  /// v += A^-1 J^T change, for a change [3] of the impulse of contact c.
   TETWARP_HD void push(std::int64_t c, const T* change, T* body_velocity) const {
     for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
       const std::int32_t b = pairs.block[p];
       const std::int64_t first = pairs.dof_start[b];
       const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
-      const T* answer = response.data + pairs.value_start[p];
+      const T* own_response = response.data + pairs.value_start[p];
       T* v = body_velocity + first;
       for (int k = 0; k < size; ++k) {
-        v[k] += answer[3 * k] * change[0] + answer[3 * k + 1] * change[1] +
-                answer[3 * k + 2] * change[2];
+        v[k] += own_response[3 * k] * change[0] + own_response[3 * k + 1] * change[1] +
+                own_response[3 * k + 2] * change[2];
       }
     }
   }
-  /// So, for a change of the normal impulse alone.
+  /// As push(), for a change of the normal impulse only.
   TETWARP_HD void push_normal(std::int64_t c, T change, T* body_velocity) const {
     for (std::int64_t p = pairs.pair_start[c]; p < pairs.pair_start[c + 1]; ++p) {
       const std::int32_t b = pairs.block[p];
       const std::int64_t first = pairs.dof_start[b];
       const int size = static_cast<int>(pairs.dof_start[b + 1] - first);
-      const T* answer = response.data + pairs.value_start[p];
-      for (int k = 0; k < size; ++k) body_velocity[first + k] += answer[3 * k] * change;
+      const T* own_response = response.data + pairs.value_start[p];
+      for (int k = 0; k < size; ++k) body_velocity[first + k] += own_response[3 * k] * change;
     }
   }
 };
 
-/// Contacts that have come to rest are visited only every few sweeps. Empty views: none are.
+/// Freezes contacts whose impulse hardly changes: sweeps skip them, except one in every
+/// `revisit_interval`. With empty views no contact is ever frozen.
 template <class T>
 struct FrozenContacts {
-  static constexpr int visits_to_freeze =
-      10;  ///< so many calm visits in a row, and a contact is frozen
-  static constexpr int revisit_interval = 8;  ///< frozen contacts wake every so many sweeps
+  /// Consecutive visits without a change that freeze a contact.
+  static constexpr int visits_to_freeze = 10;
+  /// Sweeps from one visit of frozen contacts to the next.
+  static constexpr int revisit_interval = 8;
 
-  View<std::uint8_t> unchanged_visits;  ///< calm visits in a row, [contacts]
-  View<std::int32_t> skipped_visits;    ///< visits left out, [contacts]
-  bool all_active = true;
-  T share = 0;  ///< a calm visit changes the impulse by less than this share
+  View<std::uint8_t> unchanged_visits;  ///< consecutive visits without a change, [contacts]
+  View<std::int32_t> skipped_visits;    ///< visits skipped so far, [contacts]
+  bool all_active = true;               ///< this sweep visits frozen contacts, too
+  T share = 0;  ///< relative change of the impulse that still counts as none
 
+  /// Whether the sweep skips contact c, which is counted.
   TETWARP_HD bool skips(std::int64_t c) const {
     if (all_active || unchanged_visits[c] < visits_to_freeze) return false;
     ++skipped_visits[c];
     return true;
   }
+  /// Counts a visit of contact c.
+  /// @param change   of the impulse, [3]
+  /// @param impulse  after it, [3]
   TETWARP_HD void note(std::int64_t c, const T* change, const T* impulse) const {
     if (unchanged_visits.size == 0) return;
     T moved = 0, size = 0;
@@ -138,12 +148,14 @@ struct FrozenContacts {
   }
 };
 
-/// Replaces the impulse r of a contact by its answer to the velocity that all others leave it.
-/// @param velocities  DelassusView or BodiesView, with what its velocities come from
-/// @param change      out: what has been added to r, [3]
-/// @return whether tangents took part; else only the normal has changed
+/// Replaces the impulse r of contact c by the solution of its law, the other impulses fixed.
+/// @param velocities  DelassusView or BodiesView
+/// @param cause       what velocities.velocity_at() reads: all impulses, or all body velocities
+/// @param r           in and out, [3]
+/// @param change      out: r after minus r before, [3]
+/// @return  false if the contact has a normal row only, so that change[1] and change[2] are 0
 template <class Velocities, class T>
-TETWARP_HD bool answer_contact(const ContactConstants<T>& contact,
+TETWARP_HD bool update_contact(const ContactConstants<T>& contact,
                                ContactSwitches switches,
                                const Velocities& velocities,
                                std::int64_t c,
@@ -163,7 +175,7 @@ TETWARP_HD bool answer_contact(const ContactConstants<T>& contact,
   return true;
 }
 
-/// One index = one contact of a Delassus matrix.
+/// One index = one contact of a Delassus matrix. Contacts of one color have no block in common.
 template <class T>
 struct DelassusSweepBody {
   DelassusView<T> delassus;
@@ -176,12 +188,12 @@ struct DelassusSweepBody {
     if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
-    answer_contact(constants[c], switches, delassus, c, impulse.data, r, change);
+    update_contact(constants[c], switches, delassus, c, impulse.data, r, change);
     frozen.note(c, change, r);
   }
 };
 
-/// One index = one contact between bodies; contacts of one color share no body.
+/// One index = one contact between bodies. Contacts of one color share no body.
 template <class T>
 struct BodySweepBody {
   BodiesView<T> bodies;
@@ -195,7 +207,7 @@ struct BodySweepBody {
     if (frozen.skips(c)) return;
     T change[3];
     T* r = impulse.data + 3 * c;
-    if (answer_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
+    if (update_contact(constants[c], switches, bodies, c, body_velocity.data, r, change)) {
       bodies.push(c, change, body_velocity.data);
     } else {
       bodies.push_normal(c, change[0], body_velocity.data);
@@ -204,7 +216,8 @@ struct BodySweepBody {
   }
 };
 
-/// One index = one contact: its velocity, from impulses (DelassusView) or bodies (BodiesView).
+/// One index = one contact: its velocity u, from impulses (DelassusView) or body velocities
+/// (BodiesView).
 template <class Velocities, class T>
 struct ContactVelocityBody {
   Velocities velocities;
@@ -216,7 +229,7 @@ struct ContactVelocityBody {
   }
 };
 
-/// A run of contacts, shifted: index 0 is contact `first`.
+/// Shifts indices: index 0 of the stage is contact `first` of the body.
 template <class Body>
 struct FromContact {
   Body body;
@@ -225,10 +238,13 @@ struct FromContact {
   TETWARP_HD void operator()(std::int64_t i) const { body(first + i); }
 };
 
-/// One pass over the contacts of an island, color after color. Contacts are sorted by color, so
-/// the pass equals one in sequence.
-/// @param color_start  first contact of each color, one more at the end
+/// Updates the impulse of every contact of an island once, color after color.
+///
+/// Contacts are sorted by color, so the result equals that of a serial pass in their order.
+/// @param exec         where to run
+/// @param color_start  first contact of each color, and the end, [colors + 1]; the caller reads it
 /// @param body         DelassusSweepBody or BodySweepBody
+/// @pre  contacts of one color do not influence each other; see contact_color()
 ///
 /// Determinism: same bits for any number of threads. Cost: per contact its row of W, or J and the
 /// responses of its blocks once each.

@@ -1,5 +1,5 @@
 /// @file contact_system.hpp
-/// Memory for the numbers of a contact problem, of any executor, in the order of its structure.
+/// Memory for the numbers of a contact problem in the order of its structure, for any executor.
 #pragma once
 #include <cstdint>
 
@@ -8,6 +8,7 @@
 
 namespace tetwarp {
 
+/// The numbers of a problem; only the vectors of its form are used.
 template <class Exec, class T>
 struct SystemMemory {
   template <class U>
@@ -20,15 +21,15 @@ struct SystemMemory {
   Vector<T> offset;     ///< w, [3 slots]
   Vector<T> load;       ///< b, [dofs]
   Vector<T> jacobian;   ///< by pairs
-  Vector<T> response;   ///< A^-1 J^T by pairs; of coupled islands omega D^-1 J^T
+  Vector<T> response;   ///< A^-1 J^T by pairs; in coupled islands omega D^-1 J^T
   Vector<T> inverse;    ///< D^-1: inverses of the diagonal blocks
   Vector<T> system;     ///< A by blocks
-  Vector<T> body_free;  ///< A^-1 b, [dofs]; of coupled islands zero
+  Vector<T> body_free;  ///< A^-1 b, [dofs]; in coupled islands zero
 
   // Local form.
   Vector<T> delassus;  ///< W by blocks
 
-  /// Room for a problem; all numbers zero.
+  /// Sets the sizes for a problem; all numbers become zero.
   void resize(const Exec& exec, const ContactIndices& indices) {
     const bool is_local = indices.is_local;
     const auto global = [&](std::int64_t size) { return is_local ? 0 : size; };
@@ -44,13 +45,14 @@ struct SystemMemory {
     exec.resize(delassus, is_local ? 9 * indices.delassus_column.size : 0);
   }
 
+  /// The views that fill_numbers() writes.
   SystemViews<T> views() {
     return {view_of(constants), view_of(free_velocity), view_of(offset),  view_of(load),
             view_of(jacobian),  view_of(response),      view_of(inverse), view_of(system),
             view_of(body_free), view_of(delassus)};
   }
 
-  /// As the stages read it.
+  /// The views that the other stages read.
   ContactNumbers<T> numbers(const ContactIndices& indices) const {
     ContactNumbers<T> numbers;
     numbers.is_local = indices.is_local;
@@ -74,7 +76,8 @@ struct SystemMemory {
   }
 };
 
-/// The same numbers in another precision.
+/// Converts a system to another precision.
+/// @param to  resized
 template <class Exec, class To, class From>
 void convert_system(Exec& exec,
                     const ContactIndices& indices,

@@ -1,5 +1,5 @@
-/// @file contact_monitor.hpp
-/// When an island is looked at, when it is done, and which iterate was the best.
+/// @file convergence_test.hpp
+/// When the residual of an island is measured, and when its iteration stops.
 #pragma once
 #include <cstdint>
 
@@ -9,12 +9,13 @@
 
 namespace tetwarp {
 
-/// An island is done when error <= allowed + tolerance * sqrt(r . (u - q)), the last term for eta
-/// only. The allowances of all islands together keep the whole problem within the tolerance.
+/// An island has converged when error <= allowed + tolerance * sqrt(r . (u - q)), the last term for
+/// eta only. If all islands have converged, the whole problem is within the tolerance; see
+/// stop_criteria().
 struct StopCriterion {
   ContactMeasure measure = ContactMeasure::eta;
   double tolerance = 0;
-  double allowed = 0;
+  double allowed = 0;  ///< constant part of the allowed error
 
   TETWARP_HD double error_of(const ContactSums& sums) const {
     return sqrt(measure == ContactMeasure::eta ? sums.eta : sums.fclib);
@@ -23,7 +24,7 @@ struct StopCriterion {
     const double work = measure == ContactMeasure::eta ? sqrt(max_of(sums.work, 0.0)) : 0.0;
     return allowed + tolerance * work;
   }
-  /// At most 1 when done; never a NaN.
+  /// Error over allowed error: at most 1 when converged; infinity instead of NaN.
   TETWARP_HD double excess_of(const ContactSums& sums) const {
     const double error = error_of(sums);
     if (error == 0) return 0;
@@ -34,25 +35,28 @@ struct StopCriterion {
 
 enum class StopReason {
   converged,
-  stalled,   ///< the best residual has not dropped for long
-  exhausted  ///< the sweeps are used up
+  stalled,   ///< the smallest residual has not dropped by a tenth for `patience` sweeps
+  exhausted  ///< all sweeps of the budget are done
 };
 
-/// One measured residual.
+/// A measured residual and the sweep after which it was measured.
 struct ContactEvent {
   std::int64_t sweep;
   double error;
 };
 
-constexpr std::int64_t endless = INT64_MAX;  ///< sweeps, or patience
+constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of patience
 
-/// Follows one island. Measuring costs about a sweep, so it is done when the defect of the
-/// iteration (free to know) suggests success, and every now and then.
+/// The convergence test of one island, over all methods that work on it. Measuring a residual costs
+/// about a sweep; is_due() asks for it when the defect of the iteration, known at no cost, suggests
+/// convergence, and at growing intervals of 4 to 32 sweeps.
 /// @tparam Log  has note(ContactEvent)
 template <class Log>
 class ConvergenceTest {
  public:
-  /// @param sweeps_done  by those who worked on the island before
+  /// @param sweeps_done   by earlier solves of the island; they count in the budget
+  /// @param sweep_budget  sweeps after which to stop
+  /// @param log           gets every measured residual; kept by the caller
   TETWARP_HD ConvergenceTest(const StopCriterion& criterion,
                              std::int64_t sweeps_done,
                              std::int64_t sweep_budget,
@@ -67,7 +71,8 @@ class ConvergenceTest {
   TETWARP_HD std::int64_t sweeps() const { return sweeps_; }
   TETWARP_HD double best_excess() const { return best_excess_; }
 
-  /// A new method starts: it may be patient anew.
+  /// Starts the count of sweeps without progress anew, for the next method.
+  /// @param patience  sweeps without progress after which the method has stalled
   TETWARP_HD void start_method(std::int64_t patience) {
     patience_ = patience;
     drop_sweep_ = sweeps_;
@@ -77,16 +82,19 @@ class ConvergenceTest {
   TETWARP_HD void count_sweep() { ++sweeps_; }
   TETWARP_HD bool is_exhausted() const { return sweeps_ >= sweep_budget_; }
 
-  /// Whether to measure now, `defect` being the size of the last change.
+  /// Whether to measure the residual now.
+  /// @param defect  size of the last change of the impulses
   TETWARP_HD bool is_due(double defect) const {
     if (is_exhausted() || ratio_ == 0 || defect * ratio_ <= 1) return true;
     const std::int64_t pause = min_of(max_of(sweeps_ / 8, std::int64_t{4}), std::int64_t{32});
     return sweeps_ - measured_sweep_ >= pause;
   }
 
-  /// Takes a measurement. True: stop.
-  /// @param is_best  out: what was measured is the best so far
-  TETWARP_HD bool take(const ContactSums& sums, double defect, bool& is_best) {
+  /// Records a measured residual.
+  /// @param defect   as in is_due()
+  /// @param is_best  out: it is the smallest so far
+  /// @return  whether to stop; reason() tells why
+  TETWARP_HD bool record(const ContactSums& sums, double defect, bool& is_best) {
     const double excess = criterion_.excess_of(sums);
     log_.note({sweeps_, criterion_.error_of(sums)});
     measured_sweep_ = sweeps_;
@@ -120,7 +128,7 @@ class ConvergenceTest {
   std::int64_t patience_ = endless;
   double best_excess_ = INFINITY;
   double drop_excess_ = INFINITY;
-  double ratio_ = 0;  ///< measured excess per defect
+  double ratio_ = 0;  ///< excess per defect at the last measurement; 0: none yet
   StopReason reason_ = StopReason::exhausted;
 };
 

@@ -1,5 +1,5 @@
 /// @file sweep_graph.cuh
-/// Sweeps over colors as recorded graphs: what a sweep launches is the same every time.
+/// Sweeps over colors as CUDA graphs: a sweep makes the same launches every time, one per color.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// Records what is launched on a stream; the recording ends whatever is thrown meanwhile.
+/// Records the launches on a stream during its life; an exception ends the recording.
 class StreamCapture {
  public:
   explicit StreamCapture(cudaStream_t stream) : stream_(stream) {
@@ -25,7 +25,8 @@ class StreamCapture {
     if (graph_ != nullptr) cudaGraphDestroy(graph_);
   }
 
-  /// What was recorded; stays this object's.
+  /// Ends the recording.
+  /// @return  the graph, owned by this object
   cudaGraph_t end() {
     is_recording_ = false;
     check_cuda(cudaStreamEndCapture(stream_, &graph_), "cudaStreamEndCapture");
@@ -64,7 +65,7 @@ class SweepGraph {
   cudaGraphExec_t graph_ = nullptr;
 };
 
-/// What tells the sweeps of one solve apart: the island, what they change, what they leave out.
+/// Identifies a sweep of one solve: island, arrays changed, whether frozen contacts are visited.
 struct SweepKey {
   const std::int64_t* colors;
   const void* impulse;
@@ -83,10 +84,10 @@ SweepKey key_of(View<const std::int64_t> color_start, const BodySweepBody<T>& bo
   return {color_start.data, body.impulse.data, body.body_velocity.data, body.frozen.all_active};
 }
 
-/// The graphs of one solve.
+/// The graphs of one solve, recorded on demand.
 class SweepGraphs {
  public:
-  /// @param color_start  on the host
+  /// @param color_start  in memory of the host
   template <class Body>
   void launch(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
     const SweepKey key = key_of(color_start, body);

@@ -1,5 +1,5 @@
 /// @file vector_bodies.hpp
-/// What is done to whole vectors.
+/// Bodies for entries of vectors.
 #pragma once
 #include <cstdint>
 
@@ -9,6 +9,7 @@
 
 namespace tetwarp {
 
+/// One index = one entry: out = value.
 template <class T>
 struct FillBody {
   T value;
@@ -17,7 +18,7 @@ struct FillBody {
   TETWARP_HD void operator()(std::int64_t i) const { out[i] = value; }
 };
 
-/// Numbers in another precision.
+/// One index = one entry, converted to another precision.
 template <class To, class From>
 struct ConvertBody {
   View<const From> in;
@@ -26,7 +27,7 @@ struct ConvertBody {
   TETWARP_HD void operator()(std::int64_t i) const { out[i] = static_cast<To>(in[i]); }
 };
 
-/// One index = the square of one entry.
+/// One index = one entry: its square.
 template <class T>
 struct SquareBody {
   View<const T> in;
@@ -34,7 +35,7 @@ struct SquareBody {
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{square_of(double{in[i]})}}; }
 };
 
-/// One index = 1 for an entry that is not zero.
+/// One index = one entry: 1 if it is not zero.
 template <class T>
 struct NonzeroBody {
   View<const T> in;
@@ -42,7 +43,7 @@ struct NonzeroBody {
   TETWARP_HD PlainSums<1> operator()(std::int64_t i) const { return {{in[i] != 0 ? 1.0 : 0.0}}; }
 };
 
-/// One index = one entry of the square of a vector in a diagonal metric.
+/// One index = one entry: its term in the squared norm of a vector in a diagonal metric.
 template <class T>
 struct SizeBody {
   View<const double> weights;
@@ -63,7 +64,7 @@ void convert(Exec& exec, View<const From> in, View<To> out) {
   exec.for_each("contact/mix", in.size, ConvertBody<To, From>{in, out});
 }
 
-/// Entries [first, last) of a vector.
+/// View of the entries [first, last).
 template <class T>
 View<T> part_of(View<T> values, std::int64_t first, std::int64_t last) {
   return {values.data + first, last - first};

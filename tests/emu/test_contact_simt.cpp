@@ -231,7 +231,7 @@ TEST(ContactIslandSimt, AnIslandThatGetsNoBetterGivesUp) {
   solves.by_blocks(Place::shared);
 
   EXPECT_LT(solves.results[0].end.sweeps, 100000);
-  EXPECT_TRUE(solves.results[0].end.has_turned || solves.sums[0].sums.eta == 0);
+  EXPECT_TRUE(solves.results[0].end.has_switched || solves.sums[0].sums.eta == 0);
 }
 
 /// With room for few events: even spaces, rising, the last one kept.

@@ -225,7 +225,7 @@ class CudaContactDevice final : public ContactDevice {
       HostEventLog log;
       const auto k = static_cast<std::size_t>(i);
       const IslandEnd end = solve_island(pipeline, criteria[k], plan_of(options), 0, work, log);
-      outcomes[k].take(end, options.method, island(i).contact_count());
+      outcomes[k].add(end, options.method, island(i).contact_count());
       outcomes[k].events = std::move(log.events);
     }
     std::vector<std::int32_t> skipped;
@@ -258,7 +258,7 @@ class CudaContactDevice final : public ContactDevice {
     get(events_, events);
     for (std::size_t k = 0; k < tasks.size(); ++k) {
       IslandOutcome& outcome = outcomes[static_cast<std::size_t>(small_[k])];
-      outcome.take(results[k].end, options.method, tasks[k].island.contact_count());
+      outcome.add(results[k].end, options.method, tasks[k].island.contact_count());
       const auto first = events.begin() + static_cast<std::ptrdiff_t>(k) * events_per_island;
       outcome.events.assign(first, first + results[k].events);
     }

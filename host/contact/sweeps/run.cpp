@@ -5,7 +5,7 @@ namespace tetwarp {
 
 namespace {
 
-/// What run() starts with for each method.
+/// Report name of the method that ContactMethods::run() starts with.
 const char* first_method(ContactMethod method) {
   switch (method) {
     case ContactMethod::gauss_seidel:
@@ -24,11 +24,11 @@ const char* first_method(ContactMethod method) {
 
 }  // namespace
 
-void IslandOutcome::take(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {
+void IslandOutcome::add(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {
   reason = end.reason;
   contact_updates += (end.sweeps - sweeps) * contacts;
   if (end.sweeps > sweeps) methods.push_back(first_method(method));
-  if (end.has_turned) methods.push_back("nonlinear_cg");
+  if (end.has_switched) methods.push_back("nonlinear_cg");
   sweeps = end.sweeps;
 }
 

@@ -1,5 +1,5 @@
 /// @file run.hpp
-/// All islands whose blocks A does not couple, in one scalar type, on the host.
+/// Solves all islands whose blocks A does not couple, in one precision, on the host.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace tetwarp {
 
-/// How an island ended.
+/// Result and cost of one island.
 struct IslandOutcome {
   StopReason reason = StopReason::converged;
   std::int64_t sweeps = 0;
   std::int64_t outer_iterations = 0;
   std::int64_t newton_iterations = 0;
   std::int64_t contact_updates = 0;
-  std::vector<const char*> methods;  ///< in order
-  std::vector<ContactEvent> events;
-  ContactSums sums;        ///< of what is returned
-  ContactSums free;        ///< of no impulses at all
-  double free_square = 0;  ///< |q|^2
+  std::vector<const char*> methods;  ///< names, in the order of use
+  std::vector<ContactEvent> events;  ///< measured residuals
+  ContactSums sums;                  ///< of the solution
+  ContactSums free;                  ///< of zero impulses
+  double free_square = 0;            ///< |q|^2
 
-  /// Takes the end of an island's solve by solve_island().
-  void take(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
+  /// Adds the result of solve_island().
+  /// @param contacts  of the island
+  void add(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
 };
 
 /// Keeps every measured residual.
@@ -46,21 +47,25 @@ inline MethodPlan plan_of(const ContactOptions& options) {
   return {options.method, options.tolerance / 100, options.max_sweeps};
 }
 
-/// Whether contacts that have come to rest may be left out of sweeps.
+/// Whether sweeps may skip frozen contacts.
 inline bool freezes_contacts(const ContactOptions& options) {
   return options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts;
 }
 
-/// What each island may leave over: half by its share in the error without impulses, half by its
-/// number of contacts, so that none has to be solved to nothing.
-/// @param outcomes  with `free` and `free_square` of islands that are not coupled
+/// The stop criterion of each island. The allowed error of the whole problem is distributed half by
+/// the error of zero impulses and half by the number of contacts, so that no island gets none.
+/// @param outcomes  `free` and `free_square` of uncoupled islands are read
+/// @return  [islands with contacts]; of coupled ones not used
 std::vector<StopCriterion> stop_criteria(const ContactOptions& options,
                                          const ContactStructure& structure,
                                          const std::vector<IslandOutcome>& outcomes);
 
+/// The solve of the uncoupled islands of one problem.
 template <class T>
 class ContactRun {
  public:
+  /// Measures the islands without impulses. Arguments are kept by the caller.
+  /// @param outcomes  [islands with contacts]; results are added
   ContactRun(const ContactOptions& options,
              int threads,
              const ContactStructure& structure,
@@ -83,18 +88,21 @@ class ContactRun {
 
   StateMemory<CpuContactExec, T>& state() { return state_; }
   const ContactSystem<T>& system() const { return system_; }
+  /// Visits of frozen contacts that sweeps skipped.
   std::int64_t updates_skipped() const {
     std::int64_t sum = 0;
     for (const std::int32_t visits : state_.skipped_visits) sum += visits;
     return sum;
   }
 
-  /// @param impulse  [3 slots], or empty: none
+  /// Sets the current impulses.
+  /// @param impulse  [3 slots]; empty: no change
   void start_from(const std::vector<T>& impulse) {
     if (!impulse.empty()) state_.impulse = impulse;
   }
 
-  /// Islands side by side; only the contacts of large ones are shared among threads.
+  /// Solves all islands: large ones one after the other by all threads, the others in parallel by
+  /// one thread each.
   void solve() {
     std::vector<std::int64_t> small;
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
@@ -110,17 +118,18 @@ class ContactRun {
     for (std::size_t k = 0; k < small.size(); ++k) go_on(small[k], 1, options_.method);
   }
 
-  /// More sweeps on one island, to the end of the budget.
+  /// Continues one island with nonlinear conjugate gradients until it converges or the budget of
+  /// sweeps is used up.
   void run_to_budget(std::int64_t i) {
     go_on(i, threads_, ContactMethod::nonlinear_cg);
   }
 
-  /// Sums of an island, of the impulses at hand.
+  /// Measures the current impulses of an island.
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
     return measure_island(pipeline_of(i, exec)).sums;
   }
-  /// The error of an island over what it may leave.
+  /// Error over allowed error of an island.
   double excess(std::int64_t i, const ContactSums& sums) const {
     return criteria_[static_cast<std::size_t>(i)].excess_of(sums);
   }
@@ -132,8 +141,8 @@ class ContactRun {
   }
 
  private:
-  /// Contacts of an island worth all threads. Waking them in the middle of a sweep costs as much as
-  /// some thousand contacts do, and colors hold only a part of all.
+  /// Contacts from which an island uses all threads. Starting them for one color costs as much as
+  /// some thousand contacts, and a color has only a part of all contacts.
   static constexpr std::int64_t shared_from = 16384;
 
   const ContactIsland& island(std::int64_t i) const {
@@ -162,7 +171,7 @@ class ContactRun {
     plan.method = method;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
                                        outcome.sweeps, work_, log);
-    outcome.take(end, method, island(i).contact_count());
+    outcome.add(end, method, island(i).contact_count());
     outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
   }
 
