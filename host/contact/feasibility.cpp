@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/contact/sweeps/memory.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
@@ -12,7 +13,7 @@ namespace tetwarp {
 
 namespace {
 
-/// A frictionless, springless twin of the contacts.
+/// The same contacts without friction and springs.
 ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   ContactSystem<double> bare = system;
   for (ContactConstants<double>& c : bare.constants) {
@@ -27,9 +28,11 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t budget) {
-  const std::int64_t sweeps = std::min<std::int64_t>(budget, 4096);
-  constexpr double far = 1e7;  // times the distance that the contacts ask for one by one
+                                              std::int64_t max_sweeps) {
+  const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
+  // A distance so many times larger than those that the contacts need one by one counts as
+  // infinite.
+  constexpr double far = 1e7;
   const ContactSystem<double> bare = make_bare(system);
   HostContactState<double> state(bare);
   CpuContactExec exec(1);
@@ -47,15 +50,15 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   for (std::int64_t sweep = 1; sweep <= sweeps; ++sweep) {
     std::copy_n(y.data, y.size, before.data());
     pipeline.sweep({});
-    if ((sweep & (sweep - 1)) != 0) continue;  // powers of two are often enough
-    // The last growth as y: what it does to velocities is B y.
+    if ((sweep & (sweep - 1)) != 0) continue;  // the test is made at powers of two only
+    // y is what the last sweep added to the impulses; B y is the velocity change it causes.
     std::vector<double> growth(before.size());
     for (std::size_t i = 0; i < growth.size(); ++i) {
       growth[i] = std::max(y.data[i] - before[i], 0.0);
     }
-    const double most = *std::max_element(growth.begin(), growth.end());
-    if (!(most > 0)) return {};
-    for (double& entry : growth) entry /= most;  // squares of tiny growths would vanish
+    const double largest = *std::max_element(growth.begin(), growth.end());
+    if (!(largest > 0)) return {};
+    for (double& entry : growth) entry /= largest;  // squares of tiny numbers would underflow
     const std::vector<double> impulse(y.data, y.data + y.size);
     std::copy(growth.begin(), growth.end(), y.data);
     pipeline.follow_impulses();
@@ -75,6 +78,35 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     return slots;
   }
   return {};
+}
+
+EngineResult solve_feasible(const ContactProblem& given,
+                            std::optional<ContactProblem> changed,
+                            const std::function<EngineResult(const ContactProblem&)>& solve_round) {
+  std::vector<std::int32_t> clamped;
+  // Each round raises at least one more offset; one or two rounds are usual.
+  for (;;) {
+    EngineResult result = solve_round(changed ? *changed : given);
+    if (result.clamped.empty()) {
+      result.clamped = std::move(clamped);
+      return result;
+    }
+    if (!changed) changed = given;
+    std::vector<double>& offsets =
+        changed->is_local() ? changed->free_velocity : changed->velocity_offset;
+    bool is_new = false;
+    for (const std::int32_t c : result.clamped) {
+      double& offset = offsets[3 * index_of(c)];
+      is_new = is_new || offset < 0;
+      offset = std::max(offset, 0.0);
+    }
+    if (!is_new) {
+      result.clamped.insert(result.clamped.end(), clamped.begin(), clamped.end());
+      return result;
+    }
+    clamped.insert(clamped.end(), result.clamped.begin(), result.clamped.end());
+    changed->impulse_guess.clear();
+  }
 }
 
 }  // namespace tetwarp
