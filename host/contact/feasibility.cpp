@@ -23,6 +23,19 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   return bare;
 }
 
+/// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
+/// velocities computed from them anew.
+double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::vector<double>& y) {
+  const View<double> impulse = pipeline.impulse();
+  const std::vector<double> kept(impulse.data, impulse.data + impulse.size);
+  std::copy(y.begin(), y.end(), impulse.data);
+  pipeline.follow_impulses();
+  const double energy = std::max(pipeline.measure().work, 0.0);
+  std::copy(kept.begin(), kept.end(), impulse.data);
+  pipeline.follow_impulses();
+  return energy;
+}
+
 }  // namespace
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
@@ -59,16 +72,11 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     const double largest = *std::max_element(growth.begin(), growth.end());
     if (!(largest > 0)) return {};
     for (double& entry : growth) entry /= largest;  // squares of tiny numbers would underflow
-    const std::vector<double> impulse(y.data, y.data + y.size);
-    std::copy(growth.begin(), growth.end(), y.data);
-    pipeline.follow_impulses();
-    const double energy = std::max(pipeline.measure().work, 0.0);
+    const double energy = energy_of(pipeline, growth);
     double gain = 0;
     for (std::size_t i = 0; i < growth.size(); ++i) {
       gain -= growth[i] * bare.free_velocity[static_cast<std::size_t>(3 * island.slot_begin) + i];
     }
-    std::copy(impulse.begin(), impulse.end(), y.data);
-    pipeline.follow_impulses();
     if (!(gain > 0 && gain > far * std::sqrt(energy * wanted))) continue;
     std::vector<std::int64_t> slots;
     for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {

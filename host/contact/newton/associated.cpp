@@ -89,32 +89,37 @@ VectorXd AssociatedContact::solve(const VectorXd& lift) {
     } else if (++idle >= idle_limit && least < rounding_gap) {
       break;
     }
-    if (mean_gap < gap_goal * unit_ * unit_) break;
-    for (Cone& cone : cones_) cone.scaling = lorentz::scaling_of(cone.impulse, cone.velocity);
-    if (!factorize()) break;
-    const auto complement = [](const Cone& cone) {
-      const Vector middle = cone.scaling.forward * cone.velocity;
-      return Vector(-lorentz::product(middle, middle));
-    };
-    if (!find_step(complement)) break;
-    const double centering = std::pow(1 - std::min(1.0, longest_step()), 3);
-    const auto corrected = [&](const Cone& cone) {
-      Vector target =
-          complement(cone) - lorentz::product(cone.scaling.inverse * cone.impulse_step,
-                                              cone.scaling.forward * cone.velocity_step);
-      target(0) += centering * mean_gap;
-      return target;
-    };
-    if (!find_step(corrected)) break;
-    const double length = std::min(1.0, step_share * longest_step());
-    for (Cone& cone : cones_) {
-      cone.impulse += length * cone.impulse_step;
-      cone.velocity += length * cone.velocity_step;
-    }
-    impulse_ += length * impulse_step_;
-    velocity_ += length * velocity_step_;
+    if (mean_gap < gap_goal * unit_ * unit_ || !take_step(mean_gap)) break;
   }
   return best;
+}
+
+/// One predictor-corrector step.
+/// @return false  if the equations are singular or the step is not finite
+bool AssociatedContact::take_step(double mean_gap) {
+  for (Cone& cone : cones_) cone.scaling = lorentz::scaling_of(cone.impulse, cone.velocity);
+  if (!factorize()) return false;
+  const auto complement = [](const Cone& cone) {
+    const Vector middle = cone.scaling.forward * cone.velocity;
+    return Vector(-lorentz::product(middle, middle));
+  };
+  if (!find_step(complement)) return false;
+  const double centering = std::pow(1 - std::min(1.0, longest_step()), 3);
+  const auto corrected = [&](const Cone& cone) {
+    Vector target = complement(cone) - lorentz::product(cone.scaling.inverse * cone.impulse_step,
+                                                        cone.scaling.forward * cone.velocity_step);
+    target(0) += centering * mean_gap;
+    return target;
+  };
+  if (!find_step(corrected)) return false;
+  const double length = std::min(1.0, step_share * longest_step());
+  for (Cone& cone : cones_) {
+    cone.impulse += length * cone.impulse_step;
+    cone.velocity += length * cone.velocity_step;
+  }
+  impulse_ += length * impulse_step_;
+  velocity_ += length * velocity_step_;
+  return true;
 }
 
 /// Starts from zero impulses and from cone variables on the axes of the cones.

@@ -62,6 +62,7 @@ class AssociatedContact {
   void start(const Eigen::VectorXd& lift);
   double gap() const;
   double mismatch(const Eigen::VectorXd& lift);
+  bool take_step(double mean_gap);
   bool factorize();
   template <class TargetOf>
   bool find_step(const TargetOf& target_of);

@@ -117,6 +117,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
   return order;
 }
 
+/// The dofs of the blocks in their order.
 void fill_dofs(const Blocks& blocks, const std::vector<std::int32_t>& order, ContactStructure& s) {
   s.dof_start = {0};
   s.inverse_start = {0};
@@ -133,6 +134,7 @@ void fill_dofs(const Blocks& blocks, const std::vector<std::int32_t>& order, Con
   }
 }
 
+/// The blocks of each contact, sorted, and the targets of the numbers of J.
 void fill_pairs(const ContactProblem& problem,
                 const Blocks& blocks,
                 const std::vector<std::int32_t>& place_of_block,
@@ -168,11 +170,14 @@ void fill_pairs(const ContactProblem& problem,
       }
     }
   }
-  // The same pairs, sorted by block.
+}
+
+/// The pairs of fill_pairs(), sorted by block.
+void fill_block_pairs(std::int64_t block_count, ContactStructure& s) {
   Lists pairs;
   pairs.start = s.pair_start;
   pairs.item = s.pair_block;
-  const Lists by_block = make_transposed(pairs, blocks.count());
+  const Lists by_block = make_transposed(pairs, block_count);
   s.block_start = by_block.start;
   s.block_contact = by_block.item;
   s.block_value.resize(s.block_contact.size());
@@ -182,6 +187,7 @@ void fill_pairs(const ContactProblem& problem,
   }
 }
 
+/// The blocks of A, and the targets of its numbers.
 void fill_system(const ContactProblem& problem,
                  const Blocks& blocks,
                  const std::vector<std::int32_t>& order,
@@ -247,6 +253,7 @@ void fill_global_structure(const ContactProblem& problem,
                                       index_of(island.block_count()), island.is_coupled);
   }
   fill_pairs(problem, blocks, place_of_block, structure);
+  fill_block_pairs(blocks.count(), structure);
   fill_system(problem, blocks, order, place_of_block, structure);
 }
 
