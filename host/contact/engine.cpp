@@ -15,6 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Whether any normal offset is below -speed.
 bool exceeds(const ContactProblem& problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
     if (problem.velocity_offset[row] < -speed) return true;

@@ -1,5 +1,7 @@
 /// @file engine.hpp
-/// The solve of a checked contact problem: structure, islands, coupled islands, contradictions.
+/// The solve of a checked contact problem. Read solve() in engine.cpp first: it makes the
+/// structure, solves the islands whose bodies A does not couple, then coupled islands, then bodies
+/// without contacts, and repeats this with raised offsets where contacts contradict each other.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -9,14 +9,14 @@
 
 namespace tetwarp {
 
-/// In the order of the problem.
+/// Arrays are in the order of the problem.
 struct EngineResult {
   std::vector<double> impulse;          ///< [3 contacts]
   std::vector<double> body_velocity;    ///< [dofs]; empty in local form
   std::vector<IslandOutcome> outcomes;  ///< of the islands that have contacts
-  ContactSavings savings;
-  std::int64_t colors = 0;  ///< of the island with the most
-  std::int64_t updates_skipped = 0;
+  ContactSavings savings;               ///< rows and springs that were left out
+  std::int64_t colors = 0;              ///< of the island with the most
+  std::int64_t updates_skipped = 0;     ///< as in ContactReport, like the next two
   std::int64_t bodies_skipped = 0;
   std::int64_t condensations_kept = 0;
   std::vector<std::int32_t> clamped;  ///< contacts whose normal offsets were raised to 0, because

@@ -43,8 +43,8 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactIsland& island,
                                               std::int64_t max_sweeps) {
   const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
-  // A distance so many times larger than those that the contacts need one by one counts as
-  // infinite.
+  // A distance counts as infinite if it is larger by this factor than what the contacts need
+  // singly.
   constexpr double far = 1e7;
   const ContactSystem<double> bare = make_bare(system);
   HostContactState<double> state(bare);

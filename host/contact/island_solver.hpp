@@ -30,14 +30,15 @@ class IslandSolver {
 
   /// Takes the numbers of a problem that has the pattern of the structure.
   /// @param problem  kept by the caller, unchanged, for the calls below
-  /// @return what was left out
+  /// @return rows and springs that were left out
   ContactSavings set_problem(const ContactProblem& problem);
 
-  /// Another solver has used the device: the problem must be copied there again before use.
+  /// To be called before another solver uses the device; the next use copies the problem there
+  /// again.
   void forget_device() { has_device_system_ = false; }
 
-  /// Solves all islands whose blocks A does not couple. Where sweeps fail, contradicting contacts
-  /// are looked for, then Newton's method and more sweeps are tried.
+  /// Solves all islands whose blocks A does not couple. Where sweeps do not converge, contradicting
+  /// contacts are looked for; if there are none, Newton's method and more sweeps follow.
   /// @param result  in: make_result()
   void solve_uncoupled(EngineResult& result);
 
@@ -65,7 +66,7 @@ class IslandSolver {
   ContactDevice* device_;
   ContactStructure structure_;
   const ContactProblem* problem_ = nullptr;
-  ContactSystem<double> system_;    ///< kept for its memory
+  ContactSystem<double> system_;    ///< a member so that its memory is reused
   bool has_host_system_ = false;    ///< system_ has the numbers of the problem
   bool has_device_system_ = false;  ///< the device has them
   std::vector<double> free_motion_;

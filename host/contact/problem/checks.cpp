@@ -117,7 +117,7 @@ class SymmetryCheck {
     return static_cast<std::size_t>(system_.column[static_cast<std::size_t>(e)]);
   }
 
-  /// Compares entries of a row left of `end` that have no mirror image stored with 0.
+  /// Compares with 0 those entries of a row left of `end` whose mirror image is not stored.
   void compare_unpaired(std::size_t row, std::size_t end) {
     for (; cursor_[row] < system_.row_start[row + 1] && column(cursor_[row]) < end;
          ++cursor_[row]) {

@@ -17,7 +17,7 @@ SparseMatrix make_sorted(const SparseMatrix& matrix);
 
 /// Whether a matrix is stored as dense 3x3 blocks, which CondensedProblem does with its Delassus
 /// matrix: row_start and column are empty, and value is [rows / 3][columns / 3][3][3].
-/// check_problem() lets no such matrix of a caller pass.
+/// check_problem() rejects such a matrix in a problem of the caller.
 inline bool has_dense_blocks(const SparseMatrix& matrix) {
   return matrix.rows > 0 && matrix.row_start.empty();
 }

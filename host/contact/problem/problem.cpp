@@ -74,9 +74,8 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
 
 /// Every normal row, and one tangential row where something resists sliding, must be moved by
 /// impulses.
-/// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or a measure of each row of
-/// J
-///                  that is 0 for a row of zeros
+/// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or the largest entry of each
+///                  row of J
 void check_diagonal(const ContactProblem& problem,
                     const std::string& field,
                     std::span<const double> diagonal) {
