@@ -152,7 +152,7 @@ void set_status(const EngineResult& result, const ContactOptions& options, Conta
       " others together; their normal offsets were raised to 0, which the residual refers to";
 }
 
-/// row += matrix x, in the order of the stored entries.
+/// row + matrix x, added in the order of the entries.
 void add_product(const SparseMatrix& matrix,
                  const std::vector<double>& x,
                  std::vector<double>& row) {

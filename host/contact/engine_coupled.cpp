@@ -126,7 +126,7 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
   scatter_velocities(structure, island, v.data(), result.body_velocity);
   IslandOutcome& outcome = result.outcomes[index_of(i)];
   const IslandOutcome before = std::exchange(outcome, inner.outcomes[0]);
-  name_largest(structure, island.slot_begin, outcome.sums);
+  to_problem_index(structure, island.slot_begin, outcome.sums);
   outcome.sweeps += before.sweeps;
   outcome.outer_iterations = before.outer_iterations;
   outcome.contact_updates += before.contact_updates;

@@ -97,7 +97,7 @@ void IslandSolver::solve_on_device(EngineResult& result) {
       finish(i, *run, result);
       continue;
     }
-    name_largest(structure_, 0, outcome.sums);
+    to_problem_index(structure_, 0, outcome.sums);
     scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
     if (structure_.is_local) continue;
     scatter_velocities(structure_, island, free_motion_.data() + island.dof_begin,
@@ -113,7 +113,7 @@ void IslandSolver::finish(std::int64_t i, ContactRun<double>& run, EngineResult&
   outcome.sums = run.measure(i);
   outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
   if (!run.is_done(i, outcome.sums)) fall_back(i, run, result);
-  name_largest(structure_, 0, outcome.sums);
+  to_problem_index(structure_, 0, outcome.sums);
   scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
                    result.impulse);
   if (structure_.is_local) return;
@@ -182,7 +182,7 @@ void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineRe
     exec.get(judge.best_impulse(), impulse.data());
     exec.get(judge.best_body_velocity(), body_velocity.data());
   }
-  name_largest(structure_, 0, outcome.sums);
+  to_problem_index(structure_, 0, outcome.sums);
   result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
   scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
   scatter_velocities(structure_, island, body_velocity.data() + island.dof_begin,

@@ -120,7 +120,9 @@ void scatter_velocities(const ContactStructure& structure,
   }
 }
 
-void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums) {
+void to_problem_index(const ContactStructure& structure,
+                      std::int64_t first_slot,
+                      ContactSums& sums) {
   if (sums.largest_contact < 0) return;
   sums.largest_contact = structure.contact_of_slot[index_of(first_slot + sums.largest_contact)];
 }

@@ -43,6 +43,8 @@ void scatter_velocities(const ContactStructure& structure,
 
 /// Replaces sums.largest_contact, a slot counted from `first_slot`, by the contact's index in the
 /// problem.
-void name_largest(const ContactStructure& structure, std::int64_t first_slot, ContactSums& sums);
+void to_problem_index(const ContactStructure& structure,
+                      std::int64_t first_slot,
+                      ContactSums& sums);
 
 }  // namespace tetwarp
