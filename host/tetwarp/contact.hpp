@@ -100,8 +100,7 @@ struct ContactOptions {
   ContactPrecision precision = ContactPrecision::float64;
   Backend backend = Backend::automatic;  ///< see choose_contact_backend()
   int device = 0;                        ///< CUDA device number
-  int threads =
-      0;  ///< of the cpu back end, 0: all cores; results have the same bits for any number
+  int threads = 0;  ///< of the cpu back end, 0: all cores; any number gives the same bits
   ContactSkipOptions skip = {};
 };
 
