@@ -1,5 +1,5 @@
 /// @file adhesion.cpp
-/// Adhesion after a solve: the stage on host data, and the checks before it.
+/// evolve_adhesion(): checks of its arguments, and the stage "adhesion" on the host or on a device.
 #include <cmath>
 #include <stdexcept>
 #include <string>

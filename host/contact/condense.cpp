@@ -13,22 +13,23 @@ using Eigen::VectorXd;
 CondensedProblem::CondensedProblem(const ContactProblem& problem)
     : jacobian_(make_eigen(problem.jacobian)) {
   factor_.factorize(make_eigen(problem.system));
-  const Index rows = jacobian_.rows();
-  constexpr Index run = 48;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> delassus(rows, rows);
-  for (Index first = 0; first < rows; first += run) {
-    const Index count = std::min(run, rows - first);
+  const Index rows = jacobian_.rows(), contacts = rows / 3;
+  constexpr Index columns_at_once = 48;  // a multiple of 3
+  std::vector<double>& blocks = local_.delassus.value;
+  blocks.resize(static_cast<std::size_t>(rows * rows));
+  for (Index first = 0; first < rows; first += columns_at_once) {
+    const Index count = std::min(columns_at_once, rows - first);
     const Eigen::MatrixXd pushes = jacobian_.middleRows(first, count).transpose();
-    delassus.middleCols(first, count) = jacobian_ * factor_.solve(pushes);
-  }
-  local_.delassus.rows = local_.delassus.columns = rows;
-  for (Index row = 0; row <= rows; ++row) local_.delassus.row_start.push_back(row * rows);
-  for (Index row = 0; row < rows; ++row) {
-    for (Index column = 0; column < rows; ++column) {
-      local_.delassus.column.push_back(static_cast<std::int32_t>(column));
+    const Eigen::MatrixXd columns = jacobian_ * factor_.solve(pushes);
+    for (Index row = 0; row < rows; ++row) {
+      for (Index k = 0; k < count; ++k) {
+        const Index block = row / 3 * contacts + (first + k) / 3;
+        blocks[static_cast<std::size_t>(9 * block + 3 * (row % 3) + (first + k) % 3)] =
+            columns(row, k);
+      }
     }
   }
-  local_.delassus.value.assign(delassus.data(), delassus.data() + delassus.size());
+  local_.delassus.rows = local_.delassus.columns = rows;
   update(problem);
 }
 

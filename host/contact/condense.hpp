@@ -1,5 +1,5 @@
 /// @file condense.hpp
-/// A coupled problem in local form: its Delassus matrix, by a sparse Cholesky factorization.
+/// A coupled problem in local form: its Delassus matrix, by a sparse Cholesky factorization of A.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
@@ -13,20 +13,22 @@ namespace tetwarp {
 
 class CondensedProblem {
  public:
-  /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers. The solves go in
-  /// runs, so that A^-1 J^T is never there as a whole.
-  /// @param problem  global form
+  /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers. A^-1 J^T is computed
+  /// 48 columns at a time and never stored as a whole.
+  /// @param problem  in global form
   /// @throws ContactProblemError  A is not positive definite
   explicit CondensedProblem(const ContactProblem& problem);
 
-  /// Takes all but A and J from another problem, which has the same; the bits are those of a new
-  /// condensation. Cost: one solve.
+  /// Takes load, offsets, friction, adhesion and guess from another problem with the same A and J.
+  /// The numbers have the same bits as those of a new condensation. Cost: one solve.
   void update(const ContactProblem& problem);
 
-  /// W = J A^-1 J^T dense, q = J A^-1 b + w; the rest as in the problem.
+  /// The contacts in local form, with W = J A^-1 J^T as dense blocks (see has_dense_blocks()) and
+  /// q = J A^-1 b + w.
   const ContactProblem& local() const { return local_; }
 
-  /// v = A^-1 (b + J^T r), [dofs].
+  /// v = A^-1 (b + J^T r), [dofs], m/s.
+  /// @param impulse  r, [3 contacts], N s
   std::vector<double> body_velocity(const std::vector<double>& impulse) const;
 
  private:

@@ -165,7 +165,7 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
   return u;
 }
 
-/// Counts and residuals of an engine's result; not the balance, the status and the times.
+/// Sets the counts and residuals of a report; not the balance, the status and the times.
 void fill_report(const EngineResult& result, ContactMeasure measure, ContactReport& report) {
   report.colors = result.colors;
   report.islands = static_cast<std::int64_t>(result.outcomes.size());
@@ -202,7 +202,7 @@ struct ContactSolver::State {
   ContactOptions options;
   Backend backend;
   int threads;
-  std::unique_ptr<ContactDevice> device;  ///< null: the host solves
+  std::unique_ptr<ContactDevice> device;  ///< null unless the back end is cuda
   ContactEngine engine;
 };
 

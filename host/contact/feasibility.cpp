@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
@@ -12,7 +13,7 @@ namespace tetwarp {
 
 namespace {
 
-/// A frictionless, springless twin of the contacts.
+/// The same contacts without friction and springs.
 ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   ContactSystem<double> bare = system;
   for (ContactConstants<double>& c : bare.constants) {
@@ -22,14 +23,29 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   return bare;
 }
 
+/// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
+/// velocities computed from them anew.
+double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::vector<double>& y) {
+  const View<double> impulse = pipeline.impulse();
+  const std::vector<double> kept(impulse.data, impulse.data + impulse.size);
+  std::copy(y.begin(), y.end(), impulse.data);
+  pipeline.follow_impulses();
+  const double energy = std::max(pipeline.measure().work, 0.0);
+  std::copy(kept.begin(), kept.end(), impulse.data);
+  pipeline.follow_impulses();
+  return energy;
+}
+
 }  // namespace
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t budget) {
-  const std::int64_t sweeps = std::min<std::int64_t>(budget, 4096);
-  constexpr double far = 1e7;  // times the distance that the contacts ask for one by one
+                                              std::int64_t max_sweeps) {
+  const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
+  // A distance counts as infinite if it is larger by this factor than what the contacts need
+  // singly.
+  constexpr double far = 1e7;
   const ContactSystem<double> bare = make_bare(system);
   const ContactNumbers<double> numbers = bare.numbers(structure.indices());
   CpuContactExec exec(1);
@@ -48,25 +64,20 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   for (std::int64_t sweep = 1; sweep <= sweeps; ++sweep) {
     std::copy_n(y.data, y.size, before.data());
     pipeline.sweep({});
-    if ((sweep & (sweep - 1)) != 0) continue;  // powers of two are often enough
-    // The last growth as y: what it does to velocities is B y.
+    if ((sweep & (sweep - 1)) != 0) continue;  // the test is made at powers of two only
+    // y is what the last sweep added to the impulses; B y is the velocity change it causes.
     std::vector<double> growth(before.size());
     for (std::size_t i = 0; i < growth.size(); ++i) {
       growth[i] = std::max(y.data[i] - before[i], 0.0);
     }
-    const double most = *std::max_element(growth.begin(), growth.end());
-    if (!(most > 0)) return {};
-    for (double& entry : growth) entry /= most;  // squares of tiny growths would vanish
-    const std::vector<double> impulse(y.data, y.data + y.size);
-    std::copy(growth.begin(), growth.end(), y.data);
-    pipeline.follow_impulses();
-    const double energy = std::max(pipeline.measure().work, 0.0);
+    const double largest = *std::max_element(growth.begin(), growth.end());
+    if (!(largest > 0)) return {};
+    for (double& entry : growth) entry /= largest;  // squares of tiny numbers would underflow
+    const double energy = energy_of(pipeline, growth);
     double gain = 0;
     for (std::size_t i = 0; i < growth.size(); ++i) {
       gain -= growth[i] * bare.free_velocity[static_cast<std::size_t>(3 * island.slot_begin) + i];
     }
-    std::copy(impulse.begin(), impulse.end(), y.data);
-    pipeline.follow_impulses();
     if (!(gain > 0 && gain > far * std::sqrt(energy * wanted))) continue;
     std::vector<std::int64_t> slots;
     for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
@@ -76,6 +87,35 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     return slots;
   }
   return {};
+}
+
+EngineResult solve_feasible(const ContactProblem& given,
+                            std::optional<ContactProblem> changed,
+                            const std::function<EngineResult(const ContactProblem&)>& solve_round) {
+  std::vector<std::int32_t> clamped;
+  // Each round raises at least one more offset; one or two rounds are usual.
+  for (;;) {
+    EngineResult result = solve_round(changed ? *changed : given);
+    if (result.clamped.empty()) {
+      result.clamped = std::move(clamped);
+      return result;
+    }
+    if (!changed) changed = given;
+    std::vector<double>& offsets =
+        changed->is_local() ? changed->free_velocity : changed->velocity_offset;
+    bool is_new = false;
+    for (const std::int32_t c : result.clamped) {
+      double& offset = offsets[3 * index_of(c)];
+      is_new = is_new || offset < 0;
+      offset = std::max(offset, 0.0);
+    }
+    if (!is_new) {
+      result.clamped.insert(result.clamped.end(), clamped.begin(), clamped.end());
+      return result;
+    }
+    clamped.insert(clamped.end(), result.clamped.begin(), result.clamped.end());
+    changed->impulse_guess.clear();
+  }
 }
 
 }  // namespace tetwarp

@@ -1,11 +1,15 @@
 /// @file feasibility.hpp
-/// Whether any velocity keeps all contacts of a problem apart.
+/// Contacts whose normal offsets no velocity satisfies together: how they are found, and how a
+/// problem that has some is solved.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/engine_result.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 
@@ -13,14 +17,25 @@ namespace tetwarp {
 
 /// Slots of an island whose normal offsets contradict each other; empty when none do.
 ///
-/// For y >= 0 every velocity that meets all contacts differs from the free one by at least
-/// -y.q / sqrt(y.B y) in the energy norm. Frictionless sweeps of a contradiction grow without end
-/// along a y that makes this infinite: then these are the contacts where y pushes.
-/// @param budget  sweeps at most
-/// @pre A does not couple the island's blocks
+/// For any y >= 0, every velocity that satisfies all contacts differs from the free one by at least
+/// -y.q / sqrt(y.B y) in the energy norm. Where the offsets contradict each other, the impulses of
+/// frictionless sweeps grow without bound along a y for which this is infinite; the slots with
+/// y > 0 are returned.
+/// @param max_sweeps  sweeps at most; never more than 4096
+/// @pre A does not couple the blocks of the island
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t budget);
+                                              std::int64_t max_sweeps);
+
+/// Solves a problem; as long as contacts that contradict each other are found, raises their
+/// negative normal offsets (local form: free velocities) to 0 and solves again.
+/// @param given        the problem
+/// @param changed      a changed copy to solve instead, or none
+/// @param solve_round  solves one problem and sets EngineResult::clamped to the contacts it found
+/// @return the result of the last round, with the contacts found in all rounds
+EngineResult solve_feasible(const ContactProblem& given,
+                            std::optional<ContactProblem> changed,
+                            const std::function<EngineResult(const ContactProblem&)>& solve_round);
 
 }  // namespace tetwarp

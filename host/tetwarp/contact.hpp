@@ -101,8 +101,7 @@ struct ContactOptions {
   ContactPrecision precision = ContactPrecision::float64;
   Backend backend = Backend::automatic;  ///< see choose_contact_backend()
   int device = 0;                        ///< CUDA device number
-  int threads =
-      0;  ///< of the cpu back end, 0: all cores; results have the same bits for any number
+  int threads = 0;  ///< of the cpu back end, 0: all cores; any number gives the same bits
   ContactSkipOptions skip = {};
 };
 
@@ -166,17 +165,19 @@ struct ContactSolution {
   bool converged() const { return report.status == ContactStatus::converged; }
 };
 
-/// How the adhesion intensity is integrated over a step.
+/// Integration of the adhesion intensity over a step.
 enum class AdhesionIntegrator {
   exact,          ///< the piecewise linear law in closed form
   explicit_euler  ///< clamped to [0, 1]; for comparison
 };
 
+/// Options of evolve_adhesion(): the integrator, and when a contact with energy W > 0 and viscosity
+/// > 0 debonds, which sets its beta to 0.
 struct EvolutionOptions {
   AdhesionIntegrator integrator = AdhesionIntegrator::exact;
-  double debond_gap_factor = 10;   ///< a contact debonds (beta = 0) where its gap exceeds this
-                                   ///< multiple of sqrt(W / C), >= 1
-  double debond_intensity = 1e-3;  ///< and in traction where beta falls below this, >= 0
+  double debond_gap_factor = 10;   ///< debonds where the gap exceeds this multiple of sqrt(W / C),
+                                   ///< >= 1
+  double debond_intensity = 1e-3;  ///< debonds in traction where beta falls below this, >= 0
 };
 
 /// Adhesion at the start of the next step.
@@ -211,12 +212,11 @@ class TETWARP_EXPORT ContactSolver {
   ~ContactSolver();
 
   /// A problem that does not converge is no error: see ContactReport::status.
-  /// @throws ContactProblemError  the problem fails check_problem(), or A as a whole is not
-  /// positive
-  ///                              definite
+  /// @throws ContactProblemError  the problem fails check_problem(), or a factorization of A shows
+  ///                              that it is not positive definite
   ContactSolution solve(const ContactProblem& problem);
 
-  /// evolve_adhesion() on this solver's back end; same results.
+  /// evolve_adhesion() on this solver's back end.
   AdhesionStep evolve(const ContactProblem& problem,
                       const ContactSolution& solution,
                       const EvolutionOptions& options = {});

@@ -201,7 +201,11 @@ ContactSavings fill_numbers(Exec& exec,
                 GatherBody<3>{indices.contact_of_slot, in.given_velocity,
                               indices.is_local ? out.free_velocity : out.offset});
   if (indices.is_local) {
-    scatter(in.matrix, indices.delassus_target, indices.matrix_is_unique, out.delassus);
+    if (indices.delassus_target.size == 0) {
+      exec.copy(label, in.matrix, out.delassus);
+    } else {
+      scatter(in.matrix, indices.delassus_target, indices.matrix_is_unique, out.delassus);
+    }
     exec.for_each(label, slots,
                   DelassusDiagonalBody{out.delassus, indices.delassus_diagonal, out.constants});
   } else {

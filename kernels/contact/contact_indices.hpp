@@ -20,7 +20,7 @@ struct ContactIndices {
   // Local form.
   View<const std::int64_t> delassus_row;  ///< [slots + 1]
   View<const std::int32_t> delassus_column;
-  View<const std::int64_t> delassus_target;
+  View<const std::int64_t> delassus_target;    ///< empty: W is stored by blocks already
   View<const std::int64_t> delassus_diagonal;  ///< [slots]: entry of the diagonal block
 
   // Global form.

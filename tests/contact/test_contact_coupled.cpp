@@ -10,11 +10,39 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/condense.hpp"
+#include "host/contact/problem/matrix.hpp"
+#include "host/contact/structure/system.hpp"
 #include "tests/scenes/contact_methods.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {
+
+/// The Delassus matrix of a condensed island, stored by blocks, is used like one stored by rows.
+TEST(DenseBlocks, HaveTheStructureAndNumbersOfTheSameMatrixByRows) {
+  const ContactProblem dense =
+      CondensedProblem(scenes::elastic_slab({.cubes = {3, 3, 2}, .contacts = 5})).local();
+  ContactProblem by_rows = dense;
+  by_rows.delassus = make_rows(dense.delassus);
+
+  const ContactStructure own = make_dense_structure(dense.contact_count());
+  const ContactStructure other = make_structure(by_rows, {});
+  ContactSystem<double> system, other_system;
+  ContactSavings savings;
+  fill_system(dense, {}, own, system, savings);
+  fill_system(by_rows, {}, other, other_system, savings);
+
+  EXPECT_EQ(own.contact_of_slot, other.contact_of_slot);
+  EXPECT_EQ(own.color_start, other.color_start);
+  EXPECT_EQ(own.delassus_row, other.delassus_row);
+  EXPECT_EQ(own.delassus_column, other.delassus_column);
+  EXPECT_EQ(own.delassus_diagonal, other.delassus_diagonal);
+  ASSERT_EQ(other.islands.size(), 1U);
+  EXPECT_EQ(own.islands[0].slot_end, other.islands[0].slot_end);
+  EXPECT_EQ(own.islands[0].color_end, other.islands[0].color_end);
+  EXPECT_EQ(system.delassus, other_system.delassus);
+}
 
 /// The bound that stops the iteration is one from soft to stiff, free to glued.
 TEST(ResidualEstimator, WhatIsCalledConvergedIsWithinTheTolerance) {

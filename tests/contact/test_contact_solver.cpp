@@ -22,6 +22,17 @@ namespace {
 
 using Numbers = std::vector<double>;
 
+/// Only cuda has to be asked for by name.
+TEST(ContactSolver, RunsOnTheCpuUnlessAskedOtherwise) {
+  const auto [automatic, reason] = choose_contact_backend(Backend::automatic);
+  const ContactReport report = solve_contacts(local_problem(90, 2)).report;
+
+  EXPECT_EQ(automatic, Backend::cpu);
+  EXPECT_FALSE(reason.empty());
+  EXPECT_EQ(report.backend, Backend::cpu);
+  EXPECT_EQ(choose_contact_backend(Backend::reference).first, Backend::reference);
+}
+
 /// Also when structure, size and form have changed in between.
 TEST(ContactSolver, UsedAgainGivesTheBitsOfANewOne) {
   ContactProblem moved = global_problem(91, 6, 0);

@@ -18,13 +18,13 @@ namespace {
 
 constexpr int iteration_limit = 60;
 constexpr double gap_goal = 1e-12;
-constexpr double step_share = 0.99;  ///< of the way to the boundary
-/// Times the mean of the diagonal block: a compliance in the Newton steps only, which redundant
-/// contacts need once their cones are flat.
+constexpr double step_share = 0.99;  ///< of the distance to the boundary of the cones
+/// Times the mean diagonal entry of the contact's block: a compliance added in the Newton steps
+/// only, without which redundant contacts make the equations singular close to the solution.
 constexpr double step_compliance = 1e-10;
-/// From this gap on, so many steps without a gain are the end: the rest is rounding.
+/// Below this relative gap the iteration ends after so many steps that do not improve the best.
 constexpr double rounding_gap = 1e-6;
-constexpr int patience = 4;
+constexpr int idle_limit = 4;
 
 double compliance_of(const MeasuredContact& contact) {
   return contact.diagonal_block.trace() / 3;
@@ -86,38 +86,43 @@ VectorXd AssociatedContact::solve(const VectorXd& lift) {
       least = error;
       best = impulse_;
       idle = 0;
-    } else if (++idle >= patience && least < rounding_gap) {
+    } else if (++idle >= idle_limit && least < rounding_gap) {
       break;
     }
-    if (mean_gap < gap_goal * unit_ * unit_) break;
-    for (Cone& cone : cones_) cone.scaling = lorentz::scaling_of(cone.impulse, cone.velocity);
-    if (!factorize()) break;
-    const auto complement = [](const Cone& cone) {
-      const Vector middle = cone.scaling.forward * cone.velocity;
-      return Vector(-lorentz::product(middle, middle));
-    };
-    if (!find_step(complement)) break;
-    const double centering = std::pow(1 - std::min(1.0, longest_step()), 3);
-    const auto corrected = [&](const Cone& cone) {
-      Vector target =
-          complement(cone) - lorentz::product(cone.scaling.inverse * cone.impulse_step,
-                                              cone.scaling.forward * cone.velocity_step);
-      target(0) += centering * mean_gap;
-      return target;
-    };
-    if (!find_step(corrected)) break;
-    const double length = std::min(1.0, step_share * longest_step());
-    for (Cone& cone : cones_) {
-      cone.impulse += length * cone.impulse_step;
-      cone.velocity += length * cone.velocity_step;
-    }
-    impulse_ += length * impulse_step_;
-    velocity_ += length * velocity_step_;
+    if (mean_gap < gap_goal * unit_ * unit_ || !take_step(mean_gap)) break;
   }
   return best;
 }
 
-/// No impulses, and all cones on their axis.
+/// One predictor-corrector step.
+/// @return false  if the equations are singular or the step is not finite
+bool AssociatedContact::take_step(double mean_gap) {
+  for (Cone& cone : cones_) cone.scaling = lorentz::scaling_of(cone.impulse, cone.velocity);
+  if (!factorize()) return false;
+  const auto complement = [](const Cone& cone) {
+    const Vector middle = cone.scaling.forward * cone.velocity;
+    return Vector(-lorentz::product(middle, middle));
+  };
+  if (!find_step(complement)) return false;
+  const double centering = std::pow(1 - std::min(1.0, longest_step()), 3);
+  const auto corrected = [&](const Cone& cone) {
+    Vector target = complement(cone) - lorentz::product(cone.scaling.inverse * cone.impulse_step,
+                                                        cone.scaling.forward * cone.velocity_step);
+    target(0) += centering * mean_gap;
+    return target;
+  };
+  if (!find_step(corrected)) return false;
+  const double length = std::min(1.0, step_share * longest_step());
+  for (Cone& cone : cones_) {
+    cone.impulse += length * cone.impulse_step;
+    cone.velocity += length * cone.velocity_step;
+  }
+  impulse_ += length * impulse_step_;
+  velocity_ += length * velocity_step_;
+  return true;
+}
+
+/// Starts from zero impulses and from cone variables on the axes of the cones.
 void AssociatedContact::start(const VectorXd& lift) {
   impulse_ = VectorXd::Zero(row_of(contacts_.size()));
   velocity_ = delassus_.free_velocity();
@@ -138,14 +143,15 @@ Vector3d AssociatedContact::nu_of(std::size_t c) const {
          contacts_[c].stiffness.cwiseProduct(velocity_.segment<3>(row_of(c)) + contacts_[c].offset);
 }
 
-/// Mean of g . z [J].
+/// Duality gap: the mean of g . z [J].
 double AssociatedContact::gap() const {
   double sum = 0;
   for (const Cone& cone : cones_) sum += cone.impulse.dot(cone.velocity);
   return sum / static_cast<double>(cones_.size());
 }
 
-/// By how much velocities and those of the cones differ at most [sqrt(J)].
+/// Sets residual_ and the mismatch of each cone.
+/// @return the largest residual of a row [sqrt(J)]
 double AssociatedContact::mismatch(const VectorXd& lift) {
   residual_ = -velocity_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
@@ -164,8 +170,9 @@ double AssociatedContact::mismatch(const VectorXd& lift) {
   return largest;
 }
 
-/// With M the sum of P^T V^-2 P: M dnu + du = ..., dnu = dr + K du. Without friction the tangents
-/// have nu_t = 0 instead.
+/// Factorizes the equations of a step: M dnu + du = right side, dnu = dr + K du, with M the sum of
+/// P^T V^-2 P over the cones of a contact. Contacts without friction have nu_t = 0 as their
+/// tangential equations.
 bool AssociatedContact::factorize() {
   derivatives_.assign(contacts_.size(), {Matrix3d::Zero(), Matrix3d::Zero()});
   for (const Cone& cone : cones_) {
@@ -185,7 +192,9 @@ bool AssociatedContact::factorize() {
   return system_.factorize(derivatives_);
 }
 
-/// The step to where V^-1 g o V z has changed by the target, to first order.
+/// Finds the step by which V^-1 g o V z changes by the target, to first order.
+/// @param target_of  (cone) -> target
+/// @return false  if the step is not finite
 template <class TargetOf>
 bool AssociatedContact::find_step(const TargetOf& target_of) {
   VectorXd right_side = residual_;

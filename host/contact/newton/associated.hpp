@@ -1,5 +1,5 @@
 /// @file associated.hpp
-/// Contact with associated friction: the convex relative of Coulomb's law.
+/// Contact with associated friction, the convex problem from which Newton's method gets starts.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -18,14 +18,15 @@ namespace tetwarp {
 ///
 ///     nu in K',   y = u + s n in its dual cone,   nu . y = 0   at every contact
 ///
-/// A convex problem: u is unique, redundant contacts or not. Where s = mu |u_t| (pyramid:
-/// mu (|u_1| + |u_2|)) its solutions are those of Coulomb's law, rule parallel; s = 0 is right
-/// where nothing slides.
+/// The problem is convex, and u is unique even where impulses are not. If s = mu |u_t| (pyramid:
+/// mu (|u_1| + |u_2|)), its solutions are those of Coulomb's law with AdhesionRule::parallel; s = 0
+/// is exact where no contact slides.
 ///
 /// Source: De Saxce, Feng 1998 (the lift); Nesterov, Todd 1998; Mehrotra 1992.
 class AssociatedContact {
  public:
-  /// @param contacts  with their diagonal blocks; outlived by this, as all other arguments
+  /// @param contacts  with their diagonal blocks
+  /// All references must be valid as long as this object.
   AssociatedContact(const std::vector<MeasuredContact>& contacts,
                     FrictionLaw law,
                     const Delassus& delassus,
@@ -33,22 +34,23 @@ class AssociatedContact {
 
   /// Finds the impulses [N s], [3 contacts], by a primal-dual interior point method.
   ///
-  /// Close to a solution rather than at it: rounding ends the iteration at a gap of 1e-6 to 1e-12
-  /// of the free motion's.
+  /// Rounding ends the iteration at a duality gap of 1e-6 to 1e-12 relative to the energy of the
+  /// free motion, so that the result is close to a solution only.
   /// @param lift  s, [contacts], m/s
   Eigen::VectorXd solve(const Eigen::VectorXd& lift);
 
-  /// s of Coulomb's law at these velocities.
+  /// The s for which these velocities, [3 contacts], obey Coulomb's law.
   Eigen::VectorXd lift_of(const Eigen::VectorXd& velocity) const;
 
-  /// Linear systems solved so far.
+  /// Linear systems solved so far, by all calls of solve().
   std::int64_t iterations() const { return iterations_; }
 
  private:
-  /// g = P nu and z, both in a Lorentz cone [sqrt(J)]; y is the sum of P^T z over the contact's.
+  /// g = P nu and z, both in a Lorentz cone [sqrt(J)]; y of a contact is the sum of P^T z over its
+  /// cones: one, with the pyramid one per tangent.
   struct Cone {
     Eigen::Index contact;
-    Eigen::Matrix3d part;      ///< P
+    Eigen::Matrix3d part;      ///< P [1/sqrt(kg)]
     lorentz::Vector impulse;   ///< g
     lorentz::Vector velocity;  ///< z
     lorentz::Vector impulse_step;
@@ -60,6 +62,7 @@ class AssociatedContact {
   void start(const Eigen::VectorXd& lift);
   double gap() const;
   double mismatch(const Eigen::VectorXd& lift);
+  bool take_step(double mean_gap);
   bool factorize();
   template <class TargetOf>
   bool find_step(const TargetOf& target_of);
@@ -77,7 +80,7 @@ class AssociatedContact {
   Eigen::VectorXd impulse_step_;
   Eigen::VectorXd velocity_step_;
   Eigen::VectorXd residual_;  ///< P^T z - (u + s n)
-  double unit_ = 0;           ///< sqrt(J)
+  double unit_ = 0;           ///< root of the energy scale of the free motion [sqrt(J)]
   std::int64_t iterations_ = 0;
 };
 

@@ -1,7 +1,8 @@
 /// @file lorentz_cone.hpp
-/// The cone x_0 >= |(x_1, x_2)| as interior point methods see it.
+/// Algebra of the Lorentz cone x_0 >= |(x_1, x_2)| for interior point methods.
 ///
-/// Those of one and two dimensions are its vectors with zeros at the end; all below keeps them so.
+/// Cones of one and two dimensions are embedded as vectors with zeros at the end; every operation
+/// below keeps these zeros.
 /// Source: Alizadeh, Goldfarb 2003.
 #pragma once
 #include <Eigen/Core>
@@ -26,7 +27,7 @@ inline Vector product(const Vector& x, const Vector& y) {
   return result;
 }
 
-/// The y with x o y = z.
+/// The y with product(x, y) = z.
 inline Vector quotient(const Vector& z, const Vector& x) {
   Vector y;
   y(0) = (x(0) * z(0) - x.tail<2>().dot(z.tail<2>())) / determinant(x);
@@ -34,11 +35,12 @@ inline Vector quotient(const Vector& z, const Vector& x) {
   return y;
 }
 
-/// How far one may go from x, inside the cone, along a direction before leaving it.
+/// The largest t for which x + t direction is in the cone; infinity if all are.
+/// @pre x inside the cone
 inline double distance_to_boundary(const Vector& x, const Vector& direction) {
-  constexpr double never = std::numeric_limits<double>::infinity();
-  double distance = direction(0) < 0 ? -x(0) / direction(0) : never;
-  // The determinant along the way is a t^2 + 2 b t + c.
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double distance = direction(0) < 0 ? -x(0) / direction(0) : infinity;
+  // determinant(x + t direction) = a t^2 + 2 b t + c.
   const double a = determinant(direction), c = determinant(x);
   const double b = 2 * x(0) * direction(0) - x.dot(direction);
   const double discriminant = b * b - a * c;
@@ -50,11 +52,11 @@ inline double distance_to_boundary(const Vector& x, const Vector& direction) {
   return distance;
 }
 
-/// The symmetric V, and its inverse, that maps the cone to itself and y to where V^-1 maps x
-/// (Nesterov, Todd).
+/// The scaling of Nesterov and Todd for x and y: the symmetric V that maps the cone onto itself
+/// with V y = V^-1 x, and its inverse.
 struct Scaling {
-  Matrix forward;
-  Matrix inverse;
+  Matrix forward;  ///< V
+  Matrix inverse;  ///< V^-1
 };
 
 /// @pre x and y inside the cone

@@ -22,20 +22,20 @@ using Eigen::VectorXd;
 
 namespace {
 
-// All found by trial on stacks, packings and problems recorded in other simulators, their contacts
-// thinned out, permuted, and with other friction and loads.
+// All constants were found by trial on stacks, packings and problems recorded in other simulators,
+// also with fewer contacts, in other orders, and with other friction and loads.
 constexpr double first_epsilon = 1e-3;
 constexpr double min_epsilon = 1e-12;
 constexpr double max_epsilon = 100;
 constexpr double epsilon_drop = 0.3;
 constexpr double rounding_error = 1e-13;
-constexpr int inner_limit = 12;     ///< Newton steps to a proximal point
-constexpr int halving_limit = 12;   ///< of one step's length
-constexpr int hold_after_miss = 3;  ///< proximal points before epsilon may drop again
-/// A map of steepness epsilon^-p; where Newton misses one proximal point, the next is sought with
-/// the other p.
+constexpr int inner_limit = 12;     ///< Newton steps per proximal point
+constexpr int halving_limit = 12;   ///< of the length of one Newton step
+constexpr int hold_after_miss = 3;  ///< proximal points after a failure before epsilon may drop
+/// The steepness of the map is epsilon^-p; after each proximal point that Newton's method does not
+/// find, the other p is used.
 constexpr double steepness_powers[] = {0.5, 0.75};
-/// Of proximal points that start from an associated problem's solution.
+/// Start of epsilon, and linear systems at most, from the solution of an associated problem.
 constexpr double lift_epsilon = 1e-6;
 constexpr std::int64_t lift_steps = 20;
 
@@ -43,7 +43,7 @@ std::int64_t iteration_limit(std::size_t contacts) {
   return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
 }
 
-/// Impulses, the velocities they cause, and how far both are from a solution.
+/// Impulses, the velocities they cause, and the residuals of both.
 struct Iterate {
   VectorXd impulse;
   VectorXd velocity;
@@ -51,12 +51,12 @@ struct Iterate {
   double fclib = 0;
 };
 
-/// A proximal point iteration, to go on with.
+/// State of a proximal point iteration, which advance() continues.
 struct Approach {
   Iterate center;
   double epsilon = first_epsilon;
-  int misses = 0;
-  int hold = 0;
+  int misses = 0;  ///< proximal points not found
+  int hold = 0;    ///< proximal points until epsilon may drop
 };
 
 class NewtonPolish {
@@ -100,7 +100,7 @@ class NewtonPolish {
     return options_.measure == ContactMeasure::eta ? iterate.eta : iterate.fclib;
   }
 
-  /// What is left is rounding.
+  /// The best iterate is within the tolerance, or its error is rounding.
   bool is_settled() const { return is_done(best_) || error_of(best_) < rounding_error; }
 
   void keep(const Iterate& iterate) {
@@ -119,15 +119,18 @@ class NewtonPolish {
     return map_.value(iterate.impulse, iterate.velocity, 1).norm();
   }
 
-  /// Proximal points, one after the other, until done or after a number of linear systems.
+  /// Finds proximal points until the problem is solved or `limit` linear systems were solved.
   void advance(Approach& approach, std::int64_t limit);
 
-  /// De Saxce's fixed point iteration on the lifts: convex problems, the solution of each of which
-  /// proximal points try to complete.
+  /// De Saxce's fixed point iteration on the lifts: solves a series of convex problems and
+  /// continues from each solution with proximal points.
+  /// @param limit  linear systems at most
   void solve_associated(std::int64_t limit);
 
   /// Newton steps on F(r, u + epsilon / rho (r - center)) = 0 from the center.
-  /// @return whether |F| has dropped to a tenth, or the whole problem is solved on the way
+  /// @param pull     epsilon / rho of every row
+  /// @param iterate  in: the center; out: the proximal point
+  /// @return whether |F| has dropped to a tenth, or an iterate solves the whole problem
   bool find_proximal_point(const VectorXd& pull, double steepness, Iterate& iterate);
 
   const ContactOptions& options_;

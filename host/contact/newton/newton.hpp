@@ -1,5 +1,5 @@
 /// @file newton.hpp
-/// Semismooth Newton for contact, for what sweeps leave over.
+/// Semismooth Newton method for contact, for problems on which sweeps converge slowly.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,23 +12,23 @@ struct NewtonResult {
   std::int64_t iterations = 0;  ///< linear systems solved
   double eta = 0;
   double fclib = 0;
-  bool converged = false;  ///< options.measure is within options.tolerance
+  bool converged = false;  ///< options.measure is at most options.tolerance
 };
 
-/// Improves impulses by semismooth Newton steps on the natural map, inside a proximal point
+/// Improves impulses by semismooth Newton steps on the natural map inside a proximal point
 /// iteration: each outer step solves the problem with a compliance epsilon / rho added to every
-/// contact, pulled towards the impulses at hand, and epsilon falls as long as that succeeds. Where
-/// it does not succeed soon, the solutions of some convex problems of associated friction, each
-/// lifted by what the last one slides, are tried as starts.
+/// contact, relative to the current impulses, and epsilon is lowered as long as these steps
+/// converge. If this does not converge soon, starts are taken from convex problems of associated
+/// friction, a series in which each takes its lift from the sliding velocities of the one before.
 ///
-/// Redundant contacts, which make the Jacobian of the problem itself singular, do no harm. Returns
-/// the best impulses met, never worse than the start. Unconnected contacts are better polished one
-/// island at a time. Solves on through any number of sweeps: options.max_sweeps does not count.
+/// Works for redundant contacts, which make the Jacobian of the problem itself singular. Returns
+/// the best impulses found, never worse than the start. It is cheaper to call it for each island
+/// than for several together. options.max_sweeps has no effect.
 /// @param options        law, rule, measure, tolerance and recovery_speed are read
-/// @param impulse        in: start, [3 contacts], or empty: none; out: best [N s]
+/// @param impulse        in: start, [3 contacts], or empty: zeros; out: the best [N s]
 /// @param body_velocity  out: v that the impulses cause, [dofs], m/s; empty in local form
 /// @pre check_problem(problem) has passed
-/// @throws ContactProblemError  when A as a whole is not positive definite
+/// @throws ContactProblemError  A as a whole is not positive definite
 ///
 /// Determinism: serial; same bits. Cost: a sparse LU factorization per iteration, of (3 contacts)^2
 /// in local form, of (dofs)^2 in global form.

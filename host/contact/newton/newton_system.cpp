@@ -14,10 +14,11 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
 
-/// Below this many unknowns a dense factorization is faster than a sparse one.
+/// With fewer unknowns a dense factorization is faster than a sparse one.
 constexpr Index dense_limit = 300;
 
-/// Zeros inside the blocks are stored, so that the pattern stays from step to step.
+/// A block diagonal matrix. Zeros inside the blocks are stored, so that the pattern is constant.
+/// @param block_of  (contact) -> block
 template <class BlockOf>
 Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
   const auto size = 3 * static_cast<Index>(count);

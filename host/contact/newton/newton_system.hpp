@@ -16,19 +16,19 @@ namespace tetwarp {
 
 /// Solves (E + F B) x = c, with E and F block diagonal and B the Delassus matrix.
 ///
-/// Local form: as it stands. Global form: through the velocities y = A^-1 J^T x,
+/// Local form: these equations. Global form: equations for the velocities y = A^-1 J^T x,
 ///
 ///     (A + J^T E^-1 F J) y = J^T E^-1 c,   x = E^-1 (c - F J y)
 ///
-/// which has no more entries than A and the contacts between its blocks, and about half as many
-/// unknowns where contacts are dense.
+/// whose matrix has entries only where A has and between bodies in contact, and about half as many
+/// unknowns where bodies have many contacts.
 class NewtonSystem {
  public:
-  /// @param delassus  of the same problem, outlived by this
+  /// @param delassus  of the same problem; must be valid as long as this object
   NewtonSystem(const ContactProblem& problem, const Delassus& delassus);
 
   /// @param derivatives  E and F, [contacts]; global form: E invertible
-  /// @return false  when the equations are singular to rounding
+  /// @return false  if the equations are numerically singular
   bool factorize(const std::vector<MapDerivative>& derivatives);
 
   /// x, after one step of iterative refinement.
@@ -49,7 +49,7 @@ class NewtonSystem {
   bool is_dense_;
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_factor_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_factor_;
-  bool has_order_ = false;  ///< the fill-reducing order is kept: the pattern stays
+  bool has_order_ = false;  ///< the fill-reducing order was computed; the pattern does not change
 };
 
 }  // namespace tetwarp

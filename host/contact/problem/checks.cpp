@@ -37,7 +37,7 @@ void check_finite(const std::string& field, std::span<const double> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     throw ContactProblemError(field, at(static_cast<std::int64_t>(i)) + text_of(values[i]) +
-                                         " is not finite; mend it where the step is assembled");
+                                         " is not finite; correct it where the step is assembled");
   }
 }
 
@@ -53,8 +53,8 @@ void check_not_negative(const std::string& field,
 }
 
 void check_rows(const std::string& field, const SparseMatrix& matrix) {
-  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
-  if (matrix.rows < 0 || matrix.columns < 0 || matrix.rows > most || matrix.columns > most) {
+  constexpr std::int64_t limit = std::numeric_limits<std::int32_t>::max();
+  if (matrix.rows < 0 || matrix.columns < 0 || matrix.rows > limit || matrix.columns > limit) {
     throw ContactProblemError(field, ": " + std::to_string(matrix.rows) + " rows and " +
                                          std::to_string(matrix.columns) +
                                          " columns; both must be from 0 to 2^31 - 1");
@@ -98,11 +98,11 @@ class SymmetryCheck {
 
   void run() {
     for (std::size_t row = 0; row + 1 < cursor_.size(); ++row) {
-      lone_entries(row, row);
+      compare_unpaired(row, row);
       for (std::int64_t e = system_.row_start[row]; e < system_.row_start[row + 1]; ++e) {
         const std::size_t c = column(e);
         if (c <= row) continue;
-        lone_entries(c, row);
+        compare_unpaired(c, row);
         const bool found = cursor_[c] < system_.row_start[c + 1] && column(cursor_[c]) == row;
         compare(row, c, value(e), found ? value(cursor_[c]++) : 0.0);
       }
@@ -117,8 +117,8 @@ class SymmetryCheck {
     return static_cast<std::size_t>(system_.column[static_cast<std::size_t>(e)]);
   }
 
-  /// Entries of a row left of `end` that no row above has asked for.
-  void lone_entries(std::size_t row, std::size_t end) {
+  /// Compares with 0 those entries of a row left of `end` whose mirror image is not stored.
+  void compare_unpaired(std::size_t row, std::size_t end) {
     for (; cursor_[row] < system_.row_start[row + 1] && column(cursor_[row]) < end;
          ++cursor_[row]) {
       compare(row, column(cursor_[row]), value(cursor_[row]), 0.0);
@@ -135,11 +135,13 @@ class SymmetryCheck {
   }
 
   void compare(std::size_t row, std::size_t c, double entry, double mirrored) {
-    if (std::abs(entry - mirrored) > tolerance * std::abs(entry)) doubt(row, c, entry, mirrored);
+    if (std::abs(entry - mirrored) > tolerance * std::abs(entry)) {
+      check_difference(row, c, entry, mirrored);
+    }
   }
 
-  /// Throws unless the difference is small beside the largest entry of either row.
-  void doubt(std::size_t row, std::size_t c, double entry, double mirrored) {
+  /// Throws unless the difference is small relative to the largest entry of either row.
+  void check_difference(std::size_t row, std::size_t c, double entry, double mirrored) {
     const double difference = std::abs(entry - mirrored);
     if (difference <= tolerance * std::max(largest_of(row), largest_of(c))) return;
     const std::string r = std::to_string(row);
@@ -150,12 +152,12 @@ class SymmetryCheck {
   }
 
   const SparseMatrix& system_;
-  std::vector<std::int64_t> cursor_;  ///< first entry of each row that nobody asked for yet
-  std::vector<double> largest_;       ///< size of the largest entry of each row; -1: not looked at
+  std::vector<std::int64_t> cursor_;  ///< of each row: the first entry not compared so far
+  std::vector<double> largest_;       ///< of each row: the largest |entry|; -1: not computed so far
 };
 
-constexpr double smallest_pivot =
-    1e-14;  ///< relative; rounding leaves about this of a singular one
+/// Relative. In a singular block, rounding leaves pivots of about this size.
+constexpr double smallest_pivot = 1e-14;
 constexpr int largest_dense_block = 12;
 
 bool is_positive(const SparseMatrix& system, std::int32_t begin, int size) {

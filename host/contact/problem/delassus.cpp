@@ -67,7 +67,7 @@ class HalfSolve {
     }
   }
 
-  const Matrix& lower_;  ///< L below its unit diagonal, rows rising in every column
+  const Matrix& lower_;  ///< L without its unit diagonal, rows of each column in increasing order
   const VectorXd diagonal_;
   const Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order_;
   std::vector<Vector3d> rows_;

@@ -46,6 +46,22 @@ SparseMatrix make_sorted(const SparseMatrix& matrix) {
   return sorted;
 }
 
+SparseMatrix make_rows(const SparseMatrix& blocks) {
+  SparseMatrix rows{blocks.rows, blocks.columns, {0}, {}, {}};
+  rows.column.reserve(blocks.value.size());
+  rows.value.reserve(blocks.value.size());
+  for (std::int64_t row = 0; row < blocks.rows; ++row) {
+    for (std::int64_t column = 0; column < blocks.columns; ++column) {
+      const std::int64_t block = row / 3 * (blocks.columns / 3) + column / 3;
+      rows.column.push_back(static_cast<std::int32_t>(column));
+      rows.value.push_back(
+          blocks.value[static_cast<std::size_t>(9 * block + 3 * (row % 3) + column % 3)]);
+    }
+    rows.row_start.push_back(static_cast<std::int64_t>(rows.column.size()));
+  }
+  return rows;
+}
+
 Eigen::SparseMatrix<double> make_eigen(const SparseMatrix& matrix) {
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(matrix.value.size());
@@ -69,7 +85,7 @@ std::vector<std::int32_t> blocks_of(const ContactProblem& problem) {
 
   const SparseMatrix& system = problem.system;
   const auto dofs = static_cast<std::int32_t>(system.rows);
-  // reach[d]: the last dof that couples to one at or before d.
+  // reach[d]: the last dof that is coupled to a dof at or before d.
   std::vector<std::int32_t> reach(static_cast<std::size_t>(dofs));
   std::iota(reach.begin(), reach.end(), 0);
   for (std::int32_t row = 0; row < dofs; ++row) {
@@ -77,7 +93,7 @@ std::vector<std::int32_t> blocks_of(const ContactProblem& problem) {
     std::int32_t low = row, high = row;
     for (std::int64_t e = system.row_start[r]; e < system.row_start[r + 1]; ++e) {
       const std::int32_t column = system.column[static_cast<std::size_t>(e)];
-      // Recorded files store zeros.
+      // Stored zeros do not couple; files of other programs contain them.
       const std::int32_t other = system.value[static_cast<std::size_t>(e)] != 0 ? column : row;
       low = std::min(low, other);
       high = std::max(high, other);

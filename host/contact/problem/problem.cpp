@@ -1,5 +1,5 @@
 /// @file problem.cpp
-/// What a contact problem must hold before anything computes with it.
+/// check_problem(): the checks that every solve makes before it computes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -63,7 +63,7 @@ void check_blocks(const ContactProblem& problem) {
   }
 }
 
-/// Whether tangential rows of a contact matter at all.
+/// Whether friction or a spring acts on the tangential rows of a contact.
 bool resists_sliding(const ContactProblem& problem, std::size_t c) {
   const AdhesionState& adhesion = problem.adhesion;
   const std::vector<double>& stiffness =
@@ -72,8 +72,10 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
          (!adhesion.empty() && adhesion.intensity[c] > 0 && !stiffness.empty() && stiffness[c] > 0);
 }
 
-/// A row that no impulse can move cannot be solved for.
-/// @param diagonal  of the Delassus matrix, or any measure of a row of J that is 0 for an empty one
+/// Every normal row, and one tangential row where something resists sliding, must be moved by
+/// impulses.
+/// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or the largest entry of each
+///                  row of J
 void check_diagonal(const ContactProblem& problem,
                     const std::string& field,
                     std::span<const double> diagonal) {
@@ -159,8 +161,8 @@ void check_global(const ContactProblem& problem) {
   check_diagonal(problem, "jacobian", sizes);
 }
 
-/// The anchors' normal gap and the offset in u_n are the same length, said twice. (In local form
-/// the offset is lost in the free velocity.)
+/// The normal gap of the adhesion must equal time_step * velocity_offset. Local form has no
+/// separate velocity offset, so that there is nothing to check.
 void check_gap(const ContactProblem& problem) {
   const AdhesionState& adhesion = problem.adhesion;
   if (adhesion.gap.empty() || adhesion.time_step == 0) return;

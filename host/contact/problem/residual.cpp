@@ -1,5 +1,5 @@
 /// @file residual.cpp
-/// Residuals of a given solution, from the problem's own data.
+/// residual_of(): residuals of given impulses and velocities.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,8 +27,9 @@ struct Eta {
   std::int64_t largest_contact = -1;
 };
 
-/// eta = sqrt(energy(r, u)) / (sqrt(energy(0, u - B r)) + sqrt(r . B r)), the residual relative to
-/// that of no impulses at all.
+/// eta = sqrt(energy(r, u)) / (sqrt(energy(0, u - B r)) + sqrt(r . B r)): relative to the residual
+/// without impulses.
+/// @param velocity_change  B r
 Eta eta_of(const std::vector<MeasuredContact>& contacts,
            const VectorXd& impulse,
            const VectorXd& velocity,
@@ -36,7 +37,7 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
            const ContactOptions& options) {
   double energy = 0;
   double free_energy = 0;
-  double most = 0;
+  double largest = 0;
   Eta eta;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const auto row = 3 * static_cast<Index>(c);
@@ -46,15 +47,15 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
     energy += share;
     free_energy += natural_energy(contacts[c], Vector3d::Zero(),
                                   u - velocity_change.segment<3>(row), options.law, options.rule);
-    if (share <= most) continue;
-    most = share;
+    if (share <= largest) continue;
+    largest = share;
     eta.largest_contact = static_cast<std::int64_t>(c);
   }
   const double scale =
       std::max(std::sqrt(free_energy) + std::sqrt(std::max(impulse.dot(velocity_change), 0.0)),
                std::numeric_limits<double>::min());
   eta.total = std::sqrt(energy) / scale;
-  eta.largest = std::sqrt(most) / scale;
+  eta.largest = std::sqrt(largest) / scale;
   return eta;
 }
 
@@ -109,7 +110,7 @@ ContactResidual residual_of(const ContactProblem& problem,
   }
   Eta eta = eta_of(contacts, r, u, change, options);
   if (!body_velocity.empty()) {
-    // Velocities that the impulses do not cause must not hide a wrong impulse.
+    // The velocities may not be those that the impulses cause; the larger error counts.
     const Eta caused = eta_of(contacts, r, implied, change, options);
     if (caused.total > eta.total) eta = caused;
   }

@@ -3,18 +3,21 @@
 
 #include <algorithm>
 
+#include "host/contact/problem/matrix.hpp"
+
 namespace tetwarp {
 
 namespace {
 
-/// Where each item of a part stands in it; -1 for the others.
+/// The place of each item in a part; -1 for items that are not in it.
 std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::int32_t>& part) {
   std::vector<std::int32_t> place(index_of(count), -1);
   for (std::size_t i = 0; i < part.size(); ++i) place[index_of(part[i])] = static_cast<int>(i);
   return place;
 }
 
-/// Rows of a matrix with renumbered columns; entries in columns that are left out are zeros.
+/// Some rows of a matrix, with renumbered columns. Entries in columns without a place are dropped;
+/// they are zeros.
 SparseMatrix make_part(const SparseMatrix& matrix,
                        const std::vector<std::int32_t>& rows,
                        const std::vector<std::int32_t>& column_place,
@@ -76,9 +79,13 @@ ContactProblem make_island_problem(const ContactProblem& problem,
                    pick(adhesion.bonding_rate, 1),
                    pick(adhesion.saturation_pressure, 1)};
   if (structure.is_local) {
+    part.free_velocity = pick(problem.free_velocity, 3);
+    if (has_dense_blocks(problem.delassus)) {  // the island is the whole problem, in its order
+      part.delassus = make_rows(problem.delassus);
+      return part;
+    }
     const std::vector<std::int32_t> place = places_in(problem.delassus.columns, rows);
     part.delassus = make_part(problem.delassus, rows, place, rows.size());
-    part.free_velocity = pick(problem.free_velocity, 3);
     return part;
   }
   const std::vector<std::int32_t> dofs(structure.dof_of_place.begin() + island.dof_begin,

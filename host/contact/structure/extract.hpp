@@ -1,5 +1,6 @@
 /// @file extract.hpp
-/// An island of a contact problem as a problem of its own.
+/// An island of a contact problem as a separate problem, and the copy of its solution back to the
+/// order of the whole problem.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,32 +12,37 @@
 
 namespace tetwarp {
 
-/// The same form, contacts and dofs in the order of the island.
+/// The contacts, bodies and adhesion of an island, in the form of the whole problem and in the
+/// order of the structure's slots and places.
 ContactProblem make_island_problem(const ContactProblem& problem,
                                    const ContactStructure& structure,
                                    const ContactIsland& island);
 
-/// Entries of `values` (`width` each) at `order`.
+/// The entries order[0] .. order[count - 1] of `values`, `width` numbers each; empty where `values`
+/// is empty.
 std::vector<double> gathered(const std::vector<double>& values,
                              std::int64_t width,
                              const std::int32_t* order,
                              std::int64_t count);
 
-/// Impulses of an island from its slots to the contacts of the problem.
+/// Copies the impulses of an island to the order of the problem.
 /// @param from  [3 slots of the island]
+/// @param to    [3 contacts]
 void scatter_impulses(const ContactStructure& structure,
                       const ContactIsland& island,
                       const double* from,
                       std::vector<double>& to);
 
-/// Velocities of an island from its places to the dofs of the problem.
+/// Copies the body velocities of an island to the order of the problem.
 /// @param from  [dofs of the island]
+/// @param to    [dofs]
 void scatter_velocities(const ContactStructure& structure,
                         const ContactIsland& island,
                         const double* from,
                         std::vector<double>& to);
 
-/// The slot of the largest term, counted from `first_slot`, becomes its contact.
+/// Replaces sums.largest_contact, a slot counted from `first_slot`, by the contact's index in the
+/// problem.
 void to_problem_index(const ContactStructure& structure,
                       std::int64_t first_slot,
                       ContactSums& sums);

@@ -1,5 +1,5 @@
 /// @file islands.hpp
-/// Connected components of contacts and the order in which contacts are swept.
+/// Connected components of bodies and contacts, and the order in which contacts are swept.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace tetwarp {
 
-/// Lists of int32 of varying length, one after the other.
+/// Lists of int32 of different lengths, stored one after the other.
 struct Lists {
-  std::vector<std::int64_t> start = {0};  ///< [lists + 1]
+  std::vector<std::int64_t> start = {0};  ///< [lists + 1]: first item of each list
   std::vector<std::int32_t> item;
 
   std::int64_t size() const { return static_cast<std::int64_t>(start.size()) - 1; }
@@ -17,25 +17,27 @@ struct Lists {
     const auto l = static_cast<std::size_t>(list);
     return {item.data() + start[l], item.data() + start[l + 1]};
   }
+  /// Ends the current list at the last item stored.
   void close_list() { start.push_back(static_cast<std::int64_t>(item.size())); }
 };
 
-/// For lists of items in [0, item_count): the lists of each item, rising.
+/// For lists of items in [0, item_count): the numbers of the lists that contain each item, in
+/// increasing order.
 Lists make_transposed(const Lists& lists, std::int64_t item_count);
 
-/// The two stages that a structure takes, wherever they run.
+/// The two stages by which a structure is made; the host and each device implement them.
 class StructureStages {
  public:
   virtual ~StructureStages() = default;
 
-  /// The lowest item of the connected component of each item; two items are connected when they
-  /// stand in a common list.
+  /// The lowest item of the connected component of each item; the items of a list are connected.
   virtual std::vector<std::int32_t> lowest_connected(const Lists& lists,
                                                      std::int64_t item_count) = 0;
 
-  /// The color of each contact: greedy in their order, none twice in a group.
-  /// @param groups   of each contact
-  /// @param members  of each group: contacts, rising
+  /// The color of each contact, greedy in the order of the contacts: no two contacts of a group
+  /// have the same color.
+  /// @param groups   groups of each contact
+  /// @param members  contacts of each group, in increasing order: make_transposed(groups)
   virtual std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) = 0;
 };
 
@@ -46,7 +48,8 @@ class HostStages final : public StructureStages {
   std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override;
 };
 
-/// Number of the connected component of each item, components numbered by their lowest item.
+/// Number of the connected component of each item; components are numbered in the order of their
+/// lowest items.
 std::vector<std::int32_t> components_of(const Lists& lists,
                                         std::int64_t item_count,
                                         StructureStages& stages);
@@ -54,13 +57,14 @@ std::vector<std::int32_t> components_of(const Lists& lists,
 /// Contacts sorted by (island, color, contact).
 struct ContactOrder {
   std::vector<std::int32_t> contact_of_slot;  ///< [contacts]
-  std::vector<std::int64_t> island_start;     ///< [islands + 1], slots
-  std::vector<std::int64_t> island_colors;    ///< [islands + 1], where in color_start
-  std::vector<std::int64_t> color_start;      ///< per island: first slot of each color, then end
+  std::vector<std::int64_t> island_start;     ///< [islands + 1]: first slot of each island
+  std::vector<std::int64_t> island_colors;    ///< [islands + 1]: its first entry of color_start
+  std::vector<std::int64_t> color_start;      ///< for each island in turn: the first slot of each
+                                              ///< of its colors, then the end of its slots
 };
 
-/// @param groups  of each contact: what it must not share with another contact of its color
-/// @param island  of each contact, from 0 without holes
+/// @param groups  groups of each contact; contacts that share one get different colors
+/// @param island  number of the island of each contact; 0 to islands - 1, all in use
 ContactOrder make_contact_order(const Lists& groups,
                                 std::span<const std::int32_t> island,
                                 StructureStages& stages);

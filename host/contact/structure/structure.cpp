@@ -20,19 +20,27 @@ std::vector<std::int64_t> zeros_of(const SparseMatrix& matrix) {
   return zeros;
 }
 
-/// Whether no place of a matrix is stored twice.
+/// Whether no entry of a matrix is stored twice.
 bool is_unique(const SparseMatrix& matrix) {
   std::vector<std::int32_t> row;
   for (std::size_t r = 0; r + 1 < matrix.row_start.size(); ++r) {
     const auto first = matrix.column.begin() + matrix.row_start[r];
     const auto last = matrix.column.begin() + matrix.row_start[r + 1];
     const auto is_late = [](std::int32_t a, std::int32_t b) { return a >= b; };
-    if (std::adjacent_find(first, last, is_late) == last) continue;  // rising, as in most files
+    if (std::adjacent_find(first, last, is_late) == last) continue;  // increasing, the usual case
     row.assign(first, last);
     std::sort(row.begin(), row.end());
     if (std::adjacent_find(row.begin(), row.end()) != row.end()) return false;
   }
   return true;
+}
+
+ContactStructure empty_structure(bool is_local) {
+  static std::atomic<std::int64_t> made = 0;
+  ContactStructure structure;
+  structure.serial = ++made;
+  structure.is_local = is_local;
+  return structure;
 }
 
 }  // namespace
@@ -63,10 +71,7 @@ ContactStructure make_structure(const ContactProblem& problem, const ContactSkip
 ContactStructure make_structure(const ContactProblem& problem,
                                 const ContactSkipOptions& skip,
                                 StructureStages& stages) {
-  static std::atomic<std::int64_t> made = 0;
-  ContactStructure structure;
-  structure.serial = ++made;
-  structure.is_local = problem.is_local();
+  ContactStructure structure = empty_structure(problem.is_local());
   if (structure.is_local) {
     fill_local_structure(problem, skip, stages, structure);
     structure.matrix_is_unique = is_unique(problem.delassus);
@@ -75,6 +80,12 @@ ContactStructure make_structure(const ContactProblem& problem,
     structure.matrix_is_unique = is_unique(problem.system);
     structure.jacobian_is_unique = is_unique(problem.jacobian);
   }
+  return structure;
+}
+
+ContactStructure make_dense_structure(std::int64_t contacts) {
+  ContactStructure structure = empty_structure(true);
+  fill_dense_structure(contacts, structure);
   return structure;
 }
 

@@ -1,6 +1,6 @@
 /// @file structure.hpp
-/// All that follows from the pattern of a contact problem alone: islands, order of contacts, blocks
-/// and where each stored number goes. Kept as long as the pattern stays.
+/// Everything that depends only on the sparsity pattern of a contact problem: islands, order of the
+/// contacts, blocks, and the target of each stored number. Reused while the pattern stays the same.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,60 +14,67 @@
 
 namespace tetwarp {
 
-/// Contacts are kept in slots sorted by (island, color, index), blocks and dofs by island; the dofs
-/// of blocks that no contact reaches come last, in islands without contacts.
+/// Contacts are numbered by slots, sorted by (island, color, index in the problem); blocks and dofs
+/// by places, sorted by island. Islands without contacts come last.
 struct ContactStructure {
-  std::int64_t serial = 0;  ///< another for every structure made
+  std::int64_t serial = 0;  ///< different for every structure of the process
   bool is_local = false;
   std::vector<std::int32_t> contact_of_slot;
-  std::vector<std::int64_t> color_start;
+  std::vector<std::int64_t> color_start;  ///< see ContactOrder
   std::vector<ContactIsland> islands;
-  std::int64_t contact_islands = 0;  ///< the first so many have contacts
+  std::int64_t contact_islands = 0;  ///< number of islands with contacts, which come first
 
   // Global form.
-  std::vector<std::int32_t> dof_of_place;      ///< dof of the problem at each place here
+  std::vector<std::int32_t> dof_of_place;      ///< [dofs]: index in the problem
   std::vector<std::int64_t> dof_start;         ///< [blocks + 1]
   std::vector<std::uint8_t> block_is_coupled;  ///< [blocks]: in a coupled island
   bool has_only_nodes = false;                 ///< all blocks have three dofs
-  std::vector<std::int64_t> pair_start;        ///< [slots + 1]
-  std::vector<std::int32_t> pair_block;
-  std::vector<std::int64_t> pair_value;
-  std::vector<std::int64_t> block_start;  ///< [blocks + 1]: the pairs of each block
-  std::vector<std::int32_t> block_contact;
-  std::vector<std::int64_t> block_value;
-  std::int64_t jacobian_size = 0;
-  std::vector<std::int64_t> jacobian_target;  ///< place of each stored number of J
-  std::vector<std::int64_t> inverse_start;    ///< [blocks + 1]: dense diagonal blocks
-  std::vector<std::int64_t> system_row;       ///< [blocks + 1]: entries of each block row of A
-  std::vector<std::int32_t> system_column;
-  std::vector<std::int64_t> system_value;
-  std::int64_t system_size = 0;
-  std::vector<std::int64_t> system_target;   ///< place of each stored number of A, -1: a zero
-  std::vector<std::int64_t> diagonal_value;  ///< [blocks]: place of the diagonal block
+  std::vector<std::int64_t> pair_start;        ///< [slots + 1]: (contact, block) pairs of each slot
+  std::vector<std::int32_t> pair_block;        ///< [pairs]
+  std::vector<std::int64_t> pair_value;        ///< [pairs]: first number of J
+  std::vector<std::int64_t> block_start;       ///< [blocks + 1]: the pairs of each block
+  std::vector<std::int32_t> block_contact;     ///< [pairs], by block
+  std::vector<std::int64_t> block_value;       ///< [pairs], by block: first number of J
+  std::int64_t jacobian_size = 0;              ///< numbers of J
+  std::vector<std::int64_t> jacobian_target;   ///< of each stored number of J: its index by pairs
+  std::vector<std::int64_t> inverse_start;     ///< [blocks + 1]: dense diagonal blocks
+  std::vector<std::int64_t> system_row;        ///< [blocks + 1]: entries of each block row of A
+  std::vector<std::int32_t> system_column;     ///< [entries]: block
+  std::vector<std::int64_t> system_value;      ///< [entries]: first number of A
+  std::int64_t system_size = 0;                ///< numbers of A
+  std::vector<std::int64_t> system_target;     ///< of each stored number of A: its index by blocks;
+                                               ///< -1: a zero that is left out
+  std::vector<std::int64_t> diagonal_value;    ///< [blocks]: first number of the diagonal block
 
   // Local form.
-  std::vector<std::int64_t> delassus_row;  ///< [slots + 1]
-  std::vector<std::int32_t> delassus_column;
-  std::vector<std::int64_t> delassus_target;
+  std::vector<std::int64_t> delassus_row;     ///< [slots + 1]: entries of each block row of W
+  std::vector<std::int32_t> delassus_column;  ///< [entries]: slot
+  std::vector<std::int64_t> delassus_target;  ///< of each stored number of W: its index by blocks;
+                                              ///< empty for dense blocks: the same index
   std::vector<std::int64_t> delassus_diagonal;  ///< [slots]: entry of the diagonal block
 
-  /// No two stored numbers go to the same place: in W or A, in J.
+  /// No two stored numbers have the same target: in W or A, in J.
   bool matrix_is_unique = true, jacobian_is_unique = true;
 
-  /// As the stages read it.
+  /// Views for the stages, valid while the structure is not changed.
   ContactIndices indices() const;
 };
 
-/// @param skip  without `converged_islands` all contacts are one island; without
-///              `contactless_bodies` the blocks that no contact reaches join the first island
+/// @param skip    without `converged_islands` all contacts are one island; without
+///                `contactless_bodies` the blocks that no contact reaches join the first island
+/// @param stages  where the stages run; without: on one thread of the host
 /// @pre check_problem(problem) has passed
 ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip);
 ContactStructure make_structure(const ContactProblem& problem,
                                 const ContactSkipOptions& skip,
                                 StructureStages& stages);
 
-/// What a structure follows from: the index arrays of a problem, and which of the numbers of A are
-/// zero, since blocks and couplings are made of the others.
+/// The structure of a local problem whose Delassus matrix has_dense_blocks().
+/// @param contacts  1 or more
+ContactStructure make_dense_structure(std::int64_t contacts);
+
+/// The data of a problem that determine its structure: the index arrays, and which stored numbers
+/// of A are zero, since blocks and couplings follow from the others.
 struct ContactPattern {
   std::vector<std::int64_t> delassus_row;
   std::vector<std::int32_t> delassus_column;

@@ -11,12 +11,12 @@ namespace tetwarp {
 
 namespace {
 
-/// Blocks of the problem, in its own order, and what connects them.
+/// Blocks of dofs in the order of the problem, and their connections.
 struct Blocks {
   std::vector<std::int64_t> start;  ///< [blocks + 1], dofs
   std::vector<std::int32_t> of_dof;
-  Lists touched;  ///< blocks of each contact
-  Lists coupled;  ///< blocks of each block row of A
+  Lists touched;  ///< of each contact: the blocks with entries in its rows of J
+  Lists coupled;  ///< of each block: the blocks with nonzero entries in its rows of A
 
   std::int64_t count() const { return static_cast<std::int64_t>(start.size()) - 1; }
 };
@@ -36,8 +36,9 @@ Blocks make_blocks(const ContactProblem& problem, std::vector<std::int64_t> star
   return blocks;
 }
 
-/// Uncoupled neighbors that share a contact become one block of up to six dofs: a rigid body whose
-/// mass matrix happens to be diagonal would fall apart otherwise.
+/// Starts of the blocks after merging adjacent blocks that A does not couple and that share a
+/// contact, up to six dofs. Without it a rigid body with a diagonal mass matrix would be six
+/// blocks.
 std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
   constexpr std::int64_t rigid_dofs = 6;
   const Lists contacts = make_transposed(blocks.touched, blocks.count());
@@ -56,8 +57,10 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
   return starts;
 }
 
-/// Order of blocks by island; fills the islands. Contacts decide the numbering; blocks that no
-/// contact reaches form the islands behind, or join the first.
+/// Sets the order of the contacts and the islands of `s`. Islands with contacts are numbered in the
+/// order of their first contact; blocks connected to no contact form the islands after them, or
+/// join the first one.
+/// @return the blocks, sorted by island
 std::vector<std::int32_t> order_blocks(const Blocks& blocks,
                                        const ContactSkipOptions& skip,
                                        StructureStages& stages,
@@ -69,7 +72,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
     links.close_list();
   }
   const std::vector<std::int32_t> component = components_of(links, blocks.count(), stages);
-  std::vector<std::int32_t> island_of(index_of(blocks.count()), -1);  // of each component
+  std::vector<std::int32_t> island_of(index_of(blocks.count()), -1);  // by component
   std::vector<std::int32_t> contact_island;
   std::int32_t count = 0;
   for (std::int64_t c = 0; c < blocks.touched.size(); ++c) {
@@ -114,6 +117,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
   return order;
 }
 
+/// The dofs of the blocks in their order.
 void fill_dofs(const Blocks& blocks, const std::vector<std::int32_t>& order, ContactStructure& s) {
   s.dof_start = {0};
   s.inverse_start = {0};
@@ -130,6 +134,7 @@ void fill_dofs(const Blocks& blocks, const std::vector<std::int32_t>& order, Con
   }
 }
 
+/// The blocks of each contact, sorted, and the targets of the numbers of J.
 void fill_pairs(const ContactProblem& problem,
                 const Blocks& blocks,
                 const std::vector<std::int32_t>& place_of_block,
@@ -165,11 +170,14 @@ void fill_pairs(const ContactProblem& problem,
       }
     }
   }
-  // The same pairs by block.
+}
+
+/// The pairs of fill_pairs(), sorted by block.
+void fill_block_pairs(std::int64_t block_count, ContactStructure& s) {
   Lists pairs;
   pairs.start = s.pair_start;
   pairs.item = s.pair_block;
-  const Lists by_block = make_transposed(pairs, blocks.count());
+  const Lists by_block = make_transposed(pairs, block_count);
   s.block_start = by_block.start;
   s.block_contact = by_block.item;
   s.block_value.resize(s.block_contact.size());
@@ -179,6 +187,7 @@ void fill_pairs(const ContactProblem& problem,
   }
 }
 
+/// The blocks of A, and the targets of its numbers.
 void fill_system(const ContactProblem& problem,
                  const Blocks& blocks,
                  const std::vector<std::int32_t>& order,
@@ -191,7 +200,7 @@ void fill_system(const ContactProblem& problem,
   s.system_row = {0};
   s.system_target.resize(a.value.size());
   std::vector<std::int32_t> columns;
-  std::vector<std::int64_t> entry_of(order.size(), -1);  // in this block row, by block
+  std::vector<std::int64_t> entry_of(order.size(), -1);  // of the current block row, by block
   for (std::size_t place = 0; place < order.size(); ++place) {
     const std::size_t b = index_of(order[place]);
     columns.clear();
@@ -244,6 +253,7 @@ void fill_global_structure(const ContactProblem& problem,
                                       index_of(island.block_count()), island.is_coupled);
   }
   fill_pairs(problem, blocks, place_of_block, structure);
+  fill_block_pairs(blocks.count(), structure);
   fill_system(problem, blocks, order, place_of_block, structure);
 }
 

@@ -1,6 +1,7 @@
 /// @file structure_local.cpp
-/// Structure of a problem given by its Delassus matrix.
+/// Structure of a problem in local form, which is given by its Delassus matrix.
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "host/contact/structure/structure_parts.hpp"
@@ -17,7 +18,7 @@ void fill_local_structure(const ContactProblem& problem,
   const auto contact_of = [](std::int32_t column) { return column / 3; };
   const Lists rows = block_columns(w, contact_rows(contacts), contacts, contact_of, true);
 
-  // A coupling, in either direction, is a group of two.
+  // Two contacts that W couples, in either direction, are a group.
   std::vector<std::pair<std::int32_t, std::int32_t>> couplings;
   for (std::int64_t c = 0; c < contacts; ++c) {
     for (const std::int32_t other : rows.of(c)) {
@@ -61,6 +62,27 @@ void fill_local_structure(const ContactProblem& problem,
     }
     s.delassus_column.insert(s.delassus_column.end(), columns.begin(), columns.end());
     s.delassus_row.push_back(static_cast<std::int64_t>(s.delassus_column.size()));
+  }
+}
+
+/// All contacts in one island, each with its own color.
+void fill_dense_structure(std::int64_t contacts, ContactStructure& s) {
+  ContactIsland island;
+  island.slot_end = contacts;
+  island.color_end = contacts + 1;
+  s.islands = {island};
+  s.contact_islands = 1;
+  s.contact_of_slot.resize(index_of(contacts));
+  std::iota(s.contact_of_slot.begin(), s.contact_of_slot.end(), 0);
+  s.color_start.resize(index_of(contacts) + 1);
+  std::iota(s.color_start.begin(), s.color_start.end(), 0);
+  s.delassus_row = {0};
+  s.delassus_column.reserve(index_of(contacts * contacts));
+  for (std::int64_t c = 0; c < contacts; ++c) {
+    s.delassus_column.insert(s.delassus_column.end(), s.contact_of_slot.begin(),
+                             s.contact_of_slot.end());
+    s.delassus_row.push_back((c + 1) * contacts);
+    s.delassus_diagonal.push_back(c * contacts + c);
   }
 }
 

@@ -1,5 +1,5 @@
 /// @file structure_parts.hpp
-/// What the structures of both forms are made from.
+/// Parts from which the structures of both forms are made.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// Where each item stands in an order.
+/// The place of each item in an order.
 inline std::vector<std::int32_t> places_of(const std::vector<std::int32_t>& order) {
   std::vector<std::int32_t> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -19,18 +19,18 @@ inline std::vector<std::int32_t> places_of(const std::vector<std::int32_t>& orde
   return place;
 }
 
-/// First scalar row of each contact, and the end.
+/// First scalar row of each contact, then the number of rows.
 inline std::vector<std::int64_t> contact_rows(std::int64_t contacts) {
   std::vector<std::int64_t> starts(index_of(contacts) + 1);
   for (std::size_t c = 0; c < starts.size(); ++c) starts[c] = 3 * static_cast<std::int64_t>(c);
   return starts;
 }
 
-/// The block columns that each range of scalar rows touches, rising.
-/// @param row_start    first scalar row of each range, and the end
-/// @param blocks       how many block columns there are
-/// @param block_of     block of a scalar column
-/// @param keeps_zeros  whether stored zeros count
+/// The block columns in which each range of scalar rows has entries, in increasing order.
+/// @param row_start    first scalar row of each range, then the number of rows
+/// @param blocks       number of block columns
+/// @param block_of     (column) -> block column
+/// @param keeps_zeros  whether stored zeros count as entries
 template <class BlockOf>
 Lists block_columns(const SparseMatrix& matrix,
                     const std::vector<std::int64_t>& row_start,
@@ -39,7 +39,7 @@ Lists block_columns(const SparseMatrix& matrix,
                     bool keeps_zeros) {
   Lists rows;
   std::vector<std::int32_t> touched;
-  std::vector<std::size_t> last_range(index_of(blocks), row_start.size());  // that touched a block
+  std::vector<std::size_t> last_range(index_of(blocks), row_start.size());  // with this block
   for (std::size_t b = 0; b + 1 < row_start.size(); ++b) {
     touched.clear();
     const std::int64_t last = matrix.row_start[index_of(row_start[b + 1])];
@@ -55,13 +55,14 @@ Lists block_columns(const SparseMatrix& matrix,
   return rows;
 }
 
-/// Takes the slots of `order` and makes its islands.
+/// Moves the order of the contacts into a structure and makes the islands.
 void take_order(ContactStructure& structure, ContactOrder order);
 
 void fill_local_structure(const ContactProblem& problem,
                           const ContactSkipOptions& skip,
                           StructureStages& stages,
                           ContactStructure& structure);
+void fill_dense_structure(std::int64_t contacts, ContactStructure& structure);
 void fill_global_structure(const ContactProblem& problem,
                            const ContactSkipOptions& skip,
                            StructureStages& stages,

@@ -1,5 +1,5 @@
 /// @file system.hpp
-/// The numbers of a contact problem in the order of its structure, in memory of the host.
+/// The numbers of a contact problem in the order of its structure, in host memory.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -16,11 +16,12 @@ namespace tetwarp {
 template <class T>
 using ContactSystem = SystemMemory<CpuContactExec, T>;
 
+/// The options that the stage "setup" reads.
 ContactChoices choices_of(const ContactOptions& options);
 
-/// The system of a problem, in float64.
-/// @param structure  of this problem or one of the same pattern
-/// @param savings    out
+/// Fills `system` with the numbers of a problem, in float64.
+/// @param structure  of this problem or of one with the same pattern
+/// @param savings    out: rows and springs that were left out
 void fill_system(const ContactProblem& problem,
                  const ContactOptions& options,
                  const ContactStructure& structure,
@@ -28,7 +29,7 @@ void fill_system(const ContactProblem& problem,
                  ContactSavings& savings,
                  int threads = 1);
 
-/// The same numbers, rounded.
+/// The same numbers, rounded to float32.
 ContactSystem<float> make_float32(const ContactStructure& structure, ContactSystem<double>& system);
 
 }  // namespace tetwarp

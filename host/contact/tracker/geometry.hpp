@@ -1,5 +1,5 @@
 /// @file geometry.hpp
-/// Poses and contact frames.
+/// Conversion between body and world coordinates, and contact frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
@@ -30,7 +30,8 @@ inline Point3 body_of(const BodyPose& pose, const Eigen::Vector3d& world) {
   return point_of(rotation_of(pose).conjugate() * (world - vector_of(pose.position)));
 }
 
-/// The normal that a record's two bodies carry; where they turned against each other, halfway.
+/// The last reported normal [world], unit: the mean of the directions into which the two bodies
+/// have rotated it.
 inline Eigen::Vector3d carried_normal(const ContactRecord& record,
                                       const BodyPose& pose_a,
                                       const BodyPose& pose_b) {
@@ -39,8 +40,8 @@ inline Eigen::Vector3d carried_normal(const ContactRecord& record,
   return sum.norm() > 0 ? sum.normalized() : rotation_of(pose_a) * vector_of(record.normal_a);
 }
 
-/// Tangent 1 along the part of `wanted` across the unit `normal`; where that leaves nothing, along
-/// that of the coordinate axis furthest from the normal.
+/// Tangent 1: `wanted` projected onto the plane of the unit `normal`, normalized; where the
+/// projection vanishes, that of the coordinate axis with the largest angle to the normal.
 inline Eigen::Vector3d tangent_of(const Eigen::Vector3d& normal, const Eigen::Vector3d& wanted) {
   const Eigen::Vector3d across = wanted - normal.dot(wanted) * normal;
   if (across.norm() > 1e-9 * wanted.norm()) return across.normalized();

@@ -1,5 +1,5 @@
 /// @file match.hpp
-/// Which of the reported contacts is which of the remembered ones.
+/// Assigns reported contacts to the records of earlier steps.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -9,13 +9,13 @@
 
 namespace tetwarp {
 
-/// The same contact with the smaller (body, feature) as a.
+/// The same contact, with bodies exchanged if necessary so that a is the smaller (body, feature).
 ReportedContact in_key_order(const ReportedContact& report);
 
-/// For each report the index of its record, or -1: by key, then pairs of the same two bodies by
-/// growing distance between the reported point and the anchor on body a, up to `match_distance`;
-/// ties go to the smaller keys.
-/// @param reports  in key order, sorted by key
+/// For each report the index of its record, or -1. Equal keys match first; then reports and records
+/// of the same two bodies, in the order of the distance between reported point and anchor on body
+/// a, up to `match_distance` [m]. Of equal distances the smaller keys come first.
+/// @param reports  each from in_key_order(), sorted by key
 /// @param records  sorted by key
 std::vector<std::int64_t> match_contacts(std::span<const ReportedContact> reports,
                                          std::span<const ContactRecord> records,

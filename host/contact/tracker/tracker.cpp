@@ -64,6 +64,8 @@ void check_report(const ReportedContact& report,
   if (!sum.allFinite()) refuse(name_of(report.key), "has a position that is not finite");
 }
 
+/// The reports in key order, sorted by key.
+/// @throws std::invalid_argument  two have the same key
 std::vector<ReportedContact> sorted(std::span<const ReportedContact> reports) {
   std::vector<ReportedContact> result;
   result.reserve(reports.size());
@@ -76,11 +78,11 @@ std::vector<ReportedContact> sorted(std::span<const ReportedContact> reports) {
   return result;
 }
 
-/// Brings a record up to what was reported of it.
-void renew(ContactRecord& record,
-           const ReportedContact& report,
-           std::span<const BodyPose> poses,
-           const ContactTrackerOptions& options) {
+/// Updates a record, or a new one, from its report.
+void update(ContactRecord& record,
+            const ReportedContact& report,
+            std::span<const BodyPose> poses,
+            const ContactTrackerOptions& options) {
   const BodyPose& pose_a = poses[static_cast<std::size_t>(report.key.body_a)];
   const BodyPose& pose_b = poses[static_cast<std::size_t>(report.key.body_b)];
   const Vector3d normal = vector_of(report.normal).normalized();
@@ -101,7 +103,8 @@ void renew(ContactRecord& record,
   }
 }
 
-/// A contact at its reported points or, without a report, at its anchors.
+/// The contact of a record at its reported points or, without a report, at its anchors.
+/// @param report  or null
 TrackedContact contact_of(const ContactRecord& record,
                           const ReportedContact* report,
                           std::span<const BodyPose> poses) {
@@ -116,7 +119,7 @@ TrackedContact contact_of(const ContactRecord& record,
   const Vector3d tangent =
       tangent_of(normal, report != nullptr ? vector_of(report->tangent) : Vector3d::Zero());
   const Vector3d other = normal.cross(tangent);
-  // Without adhesion the anchors are the points, and tangential gaps mean nothing.
+  // Without adhesion the anchors are the reported points, and there are no tangential gaps.
   const Vector3d apart = record.intensity > 0 ? Vector3d(anchor_a - anchor_b) : Vector3d::Zero();
   TrackedContact contact;
   contact.key = record.key;
@@ -128,7 +131,7 @@ TrackedContact contact_of(const ContactRecord& record,
   return contact;
 }
 
-/// Moves anchor b so that the share `keep` of the tangential gap remains.
+/// Moves anchor b so that the tangential gap is multiplied by `keep`.
 void shrink_gap(ContactRecord& record, double keep, std::span<const BodyPose> poses) {
   const BodyPose& pose_a = poses[static_cast<std::size_t>(record.key.body_a)];
   const BodyPose& pose_b = poses[static_cast<std::size_t>(record.key.body_b)];
@@ -185,7 +188,7 @@ const std::vector<TrackedContact>& ContactTracker::begin_step(
       step.record = records_[static_cast<std::size_t>(matches[r])];
       is_matched[static_cast<std::size_t>(matches[r])] = true;
     }
-    renew(step.record, reports[r], poses, options_);
+    update(step.record, reports[r], poses, options_);
     steps.push_back(step);
   }
   for (std::size_t k = 0; k < records_.size(); ++k) {

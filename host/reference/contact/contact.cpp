@@ -72,7 +72,7 @@ ContactSolution solve_contacts_reference(const ContactProblem& problem,
     report.status = ContactStatus::infeasible;
     report.status_reason = "no velocity keeps all contacts apart";
     if (!problem.is_local()) {
-      // Bodies that may stay where they are can always be solved for.
+      // With a recovery speed of 0, zero velocity satisfies all contacts.
       report.status_reason += "; penetration is left as it is, at a recovery speed of 0";
       contacts = make_dense(problem, 0);
       impulse = solve(contacts, problem, options, report);

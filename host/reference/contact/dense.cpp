@@ -34,7 +34,7 @@ VectorXd dense_of(const std::vector<double>& values) {
   return VectorXd::Map(values.data(), static_cast<Index>(values.size()));
 }
 
-/// A vector per contact, where an empty one stands for zeros.
+/// A value per contact; an empty vector means zeros.
 VectorXd per_contact(const std::vector<double>& values, Index contacts) {
   return values.empty() ? VectorXd::Zero(contacts) : dense_of(values);
 }
@@ -61,19 +61,19 @@ void add_adhesion(const AdhesionState& adhesion, DenseContacts& contacts) {
   }
 }
 
-/// What friction may carry against sliding, max(mu nu_n - chi |spring|, 0): per tangent of the
-/// pyramid, for both tangents together, said twice, of the cone.
+/// Bound of the friction impulse, max(mu nu_n - chi |spring|, 0): of each tangent for the pyramid,
+/// of both together for the cone, in both components.
 Vector2d friction_bounds(double friction,
                          const Vector3d& nu,
                          const Vector3d& spring,
                          const ContactOptions& options) {
-  Vector2d carried = Vector2d::Zero();
+  Vector2d pull = Vector2d::Zero();
   if (options.rule == AdhesionRule::restrictive) {
-    carried = spring.tail<2>().cwiseAbs();
-    if (options.law == FrictionLaw::cone) carried.setConstant(carried.norm());
+    pull = spring.tail<2>().cwiseAbs();
+    if (options.law == FrictionLaw::cone) pull.setConstant(pull.norm());
   }
   const double coulomb = friction * std::max(nu(0), 0.0);
-  return (Vector2d::Constant(coulomb) - carried).cwiseMax(0.0);
+  return (Vector2d::Constant(coulomb) - pull).cwiseMax(0.0);
 }
 
 /// |e_n|^2 / rho_n + |e_t|^2 / rho_t of one contact.

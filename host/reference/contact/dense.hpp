@@ -1,6 +1,6 @@
 /// @file dense.hpp
-/// A contact problem as dense matrices, and its residual straight from the laws. Part of back end
-/// `reference`, which shares no line with the kernels it is the judge of.
+/// A contact problem as dense matrices, and its residual computed directly from the laws. Part of
+/// back end `reference`, which shares no code with the kernels: the tests compare them with it.
 #pragma once
 #include <Eigen/Core>
 #include <limits>
@@ -26,21 +26,22 @@ struct DenseContacts {
   }
 };
 
-/// @param recovery_speed  limit of -w_n in global form [m/s]
+/// @param recovery_speed  upper limit of -w_n in global form [m/s]
 /// @pre check_problem(problem) has passed
-/// @throws ContactProblemError  when A as a whole is not positive definite
+/// @throws ContactProblemError  A as a whole is not positive definite
 DenseContacts make_dense(const ContactProblem& problem,
                          double recovery_speed = std::numeric_limits<double>::infinity());
 
-/// The energy-weighted natural residual, relative to that of no impulses; 0 exactly at a solution.
+/// ContactMeasure::eta: the energy-weighted natural residual, relative to that without impulses; 0
+/// exactly at a solution.
 double eta_of(const DenseContacts& contacts,
               const Eigen::VectorXd& impulse,
               const ContactOptions& options);
 
-/// Impulses of every solution of a pyramid or frictionless problem whose velocities differ, by
-/// trying all combinations of open, sticking and sliding contacts: each makes the laws a linear
-/// system; its answer counts when it satisfies all of them.
-/// @pre mode_count(contacts, options) is a number of systems one is willing to solve
+/// Impulses of the solutions of a pyramid or frictionless problem, one for each velocity. All
+/// combinations of open, sticking and sliding contacts are tried: in each the laws are a linear
+/// system, whose solution is kept if it satisfies all laws.
+/// @pre mode_count(contacts, options) is finite; the cost is proportional to it
 std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
                                                 const ContactOptions& options);
 
@@ -48,7 +49,7 @@ std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
 /// linear.
 double mode_count(const DenseContacts& contacts, const ContactOptions& options);
 
-/// Whether any impulses at all make every u_n >= 0.
+/// Whether some impulses make every u_n >= 0.
 bool is_feasible(const DenseContacts& contacts);
 
 }  // namespace tetwarp::reference

@@ -1,5 +1,5 @@
 /// @file enumerate.cpp
-/// Every solution of a small problem, by trying all states its contacts can be in.
+/// All solutions of a small problem, by trying all combinations of states of its contacts.
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -19,11 +19,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// What one tangent of a closed contact does.
+/// State of one tangent of a closed contact.
 struct TangentMode {
   bool sticks = false;
-  int slide = 0;   ///< sign of u where it slides; 0: friction carries nothing
-  int spring = 0;  ///< sign of u + o where the spring takes its part from the friction
+  int slide = 0;   ///< sign of u where it slides; 0: no friction
+  int spring = 0;  ///< sign of u + o where the spring reduces the friction (rule restrictive)
 };
 
 constexpr std::array free_tangent{TangentMode{}};
@@ -43,13 +43,13 @@ std::span<const TangentMode> tangent_modes(const DenseContacts& contacts,
   return coulomb_tangent;
 }
 
-/// Open, or closed with a mode for each tangent.
+/// Number of states of a contact: open, or closed with a mode for each tangent.
 Index contact_modes(std::span<const TangentMode> tangent) {
   return 1 + static_cast<Index>(tangent.size() * tangent.size());
 }
 
-/// The laws of all contacts in given modes, as M nu = y. With the springs inside, velocities are
-/// u = C nu + f: C = (I + B K)^-1 B, f = (I + B K)^-1 (q - B K o).
+/// The laws of all contacts in given modes, as M nu = y. With the springs eliminated, velocities
+/// are u = C nu + f, C = (I + B K)^-1 B, f = (I + B K)^-1 (q - B K o).
 class ModeSystem {
  public:
   explicit ModeSystem(const DenseContacts& contacts)
@@ -77,8 +77,8 @@ class ModeSystem {
     set_tangent(c, 3 * c + 2, second);
   }
 
-  /// r = nu - K (u + o), in the form that does not cancel: (I + K B) r = nu - K (q + o). Of several
-  /// nu, where contacts share a load, the smallest.
+  /// r = nu - K (u + o), computed without cancellation from (I + K B) r = nu - K (q + o). Where nu
+  /// is not unique, the one of least norm.
   VectorXd impulse() const {
     const VectorXd nu = matrix_.completeOrthogonalDecomposition().solve(right_);
     return impulse_from_.solve(

@@ -1,5 +1,5 @@
 /// @file feasible.cpp
-/// Whether any velocity keeps all contacts apart.
+/// Whether some velocity satisfies all contacts.
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) {
   VectorXd x = VectorXd::Zero(matrix.cols());
   std::vector<Index> passive;
-  // The method ends by itself; the bound is for rounding that makes it turn in circles.
+  // In exact arithmetic the method ends by itself; with rounding errors it may cycle.
   for (Index step = 0; step < 10 * matrix.cols(); ++step) {
     const VectorXd slope = matrix.transpose() * (right - matrix * x);
     Index entering = -1;
@@ -77,7 +77,7 @@ bool is_feasible(const DenseContacts& contacts) {
   if (!(speeds.array() < 0).any()) return true;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> spectrum(0.5 * (normals + normals.transpose()));
   const VectorXd roots = spectrum.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  // By Farkas: infeasible exactly if impulses d >= 0 exist with B d = 0 and q . d < 0.
+  // Farkas: infeasible if and only if impulses d >= 0 exist with B d = 0 and q . d < 0.
   MatrixXd certificate(count + 1, count);
   certificate.topRows(count) = roots.asDiagonal() * spectrum.eigenvectors().transpose();
   certificate.row(count) = -speeds.transpose() * (roots.maxCoeff() / speeds.norm());

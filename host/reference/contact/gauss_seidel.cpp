@@ -18,7 +18,9 @@ constexpr double goal = 1e-12;
 constexpr std::int64_t sweeps_per_residual = 10;
 
 /// One pass over all contacts in their order.
-/// @returns whether any impulse changed
+/// @param impulse   in and out
+/// @param velocity  in and out: that of the impulses
+/// @return whether any impulse changed
 bool sweep(const DenseContacts& contacts,
            const ContactOptions& options,
            VectorXd& impulse,
@@ -54,7 +56,8 @@ SweptImpulses gauss_seidel(const DenseContacts& contacts,
   bool has_changed = true;
   while (has_changed && best > goal && swept.sweeps < options.max_sweeps) {
     const std::int64_t sweeps = std::min(sweeps_per_residual, options.max_sweeps - swept.sweeps);
-    // Velocities are carried along a few sweeps only, lest their rounding errors add up.
+    // Velocities are updated with the impulses for a few sweeps only, then computed anew, so that
+    // rounding errors do not accumulate.
     VectorXd velocity = contacts.velocity(impulse);
     for (std::int64_t s = 0; s < sweeps; ++s) {
       has_changed = sweep(contacts, options, impulse, velocity);

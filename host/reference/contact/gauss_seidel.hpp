@@ -12,13 +12,13 @@
 namespace tetwarp::reference {
 
 struct SweptImpulses {
-  Eigen::VectorXd impulse;  ///< the best met
+  Eigen::VectorXd impulse;  ///< those with the least eta
   std::int64_t sweeps = 0;
   std::vector<double> residual_history;  ///< eta at the start and after every ten sweeps
 };
 
 /// Sweeps from `start` until eta is at most 1e-12, no impulse changes any more, or
-/// options.max_sweeps are done.
+/// options.max_sweeps have been made.
 SweptImpulses gauss_seidel(const DenseContacts& contacts,
                            const ContactOptions& options,
                            Eigen::VectorXd start);

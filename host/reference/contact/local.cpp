@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// How far friction exceeds its bound, for nu and u.
+/// Friction minus its bound, for nu and u.
 double excess(const LocalContact& contact,
               const Vector3d& nu,
               const Vector3d& u,
@@ -24,8 +24,12 @@ double excess(const LocalContact& contact,
   return nu.tail<2>().norm() - std::max(bound, 0.0);
 }
 
-/// Impulse along one tangent. With p = B_aa, u0 = u - p r, the spring alone moves to
-/// h = (u0 - p kappa o) / (1 + kappa p); friction f acts against p' = p / (1 + kappa p).
+/// Impulse along tangent `a`. With p = B_aa and u0 = u - p r, the velocity with the spring but
+/// without friction is h = (u0 - p kappa o) / (1 + kappa p), and friction f adds p' f to it, p' = p
+/// / (1 + kappa p).
+/// @param coulomb   mu times the normal impulse
+/// @param impulse   r before
+/// @param velocity  u before
 double tangent_impulse(const LocalContact& contact,
                        Eigen::Index a,
                        double coulomb,
@@ -47,7 +51,7 @@ double tangent_impulse(const LocalContact& contact,
     friction = -sign * coulomb;
     if (chi > 0) {
       friction = 0;
-      // The spring pulls towards q; only one q agrees with the velocity it leads to.
+      // q is the sign of u + o; the result is valid for one q only.
       for (const double q : {1.0, -1.0}) {
         const double u = (h - sign * softened * (coulomb - q * kappa * offset)) /
                          (1 - sign * q * softened * kappa);
@@ -67,10 +71,10 @@ Vector3d solve_cone(const LocalContact& contact,
   const Matrix3d stiffness = contact.stiffness.asDiagonal();
   const Eigen::PartialPivLU<Matrix3d> with_springs(Matrix3d::Identity() +
                                                    contact.delassus * stiffness);
-  // u = compliance nu + start, the springs inside.
+  // u = compliance nu + start, with the springs eliminated.
   const Matrix3d compliance = with_springs.solve(contact.delassus);
   const Vector3d start = with_springs.solve(free - contact.delassus * (stiffness * contact.offset));
-  // r = nu - K (u + o) without its cancellation: (I + K B) r = nu - K (u0 + o).
+  // r = nu - K (u + o), computed without cancellation from (I + K B) r = nu - K (u0 + o).
   const auto impulse_of = [&](const Vector3d& nu) -> Vector3d {
     return (Matrix3d::Identity() + stiffness * contact.delassus)
         .partialPivLu()
@@ -81,7 +85,7 @@ Vector3d solve_cone(const LocalContact& contact,
   const Vector3d stick = compliance.completeOrthogonalDecomposition().solve(-start);
   if (excess(contact, stick, compliance * stick + start, options) <= 0) return impulse_of(stick);
 
-  // Sliding, nu_t = -a u_t with a = mix scale / (1 - mix): no friction at mix = 0, stick at 1.
+  // Sliding: nu_t = -a u_t with a = mix scale / (1 - mix); mix = 0: no friction, mix = 1: stick.
   const double scale = 1 / compliance.bottomRightCorner<2, 2>().norm();
   const auto sliding = [&](double mix) -> Vector3d {
     Matrix3d matrix = compliance;

@@ -1,5 +1,5 @@
 /// @file local.hpp
-/// One contact solved for its own impulse, all others held. Part of back end `reference`.
+/// The problem of one contact, all other impulses constant. Part of back end `reference`.
 #pragma once
 #include <Eigen/Core>
 
@@ -7,7 +7,7 @@
 
 namespace tetwarp::reference {
 
-/// One contact as its neighbors leave it: u = B r + u0.
+/// One contact: u = B r + u0, where u0 is its velocity from all other impulses.
 struct LocalContact {
   Eigen::Matrix3d delassus;   ///< B, 1/kg
   Eigen::Vector3d stiffness;  ///< diagonal of K, kg
@@ -15,14 +15,15 @@ struct LocalContact {
   double friction = 0;        ///< mu
 };
 
-/// Impulse that obeys the laws with the cone exactly: open, sticking or, by bisection, sliding.
+/// Impulse that obeys the laws with the cone: open, sticking, or sliding by bisection to rounding.
 /// @param free  u0, m/s
 Eigen::Vector3d solve_cone(const LocalContact& contact,
                            const Eigen::Vector3d& free,
                            const ContactOptions& options);
 
-/// Impulse after one update of normal, tangent 1 and tangent 2 in this order, each by its own law
-/// with the other two as they stand: a step towards the solution with the pyramid.
+/// Impulse after one Gauss-Seidel update of normal, tangent 1 and tangent 2 in this order, each by
+/// its own law with the other two constant. Repeated updates converge to the solution with the
+/// pyramid.
 /// @param impulse   before the update
 /// @param velocity  u with that impulse, m/s
 Eigen::Vector3d update_pyramid(const LocalContact& contact,

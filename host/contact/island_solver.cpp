@@ -1,0 +1,194 @@
+/// @file island_solver.cpp
+#include "host/contact/island_solver.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "host/contact/block_jacobi/block_jacobi.hpp"
+#include "host/contact/feasibility.hpp"
+#include "host/contact/newton/newton.hpp"
+#include "host/contact/structure/extract.hpp"
+
+namespace tetwarp {
+
+IslandSolver::IslandSolver(const ContactOptions& options, int threads, ContactDevice* device)
+    : options_(options), threads_(threads), device_(device) {}
+
+ContactSavings IslandSolver::set_problem(const ContactProblem& problem) {
+  problem_ = &problem;
+  has_host_system_ = has_device_system_ = false;
+  if (device_ != nullptr) return set_device_problem();
+  ContactSavings savings;
+  fill_system(problem, options_, structure_, system_, savings, threads_);
+  has_host_system_ = true;
+  return savings;
+}
+
+/// The numbers on the host. With a device they are filled in only for what it leaves to the host.
+ContactSystem<double>& IslandSolver::host_system() {
+  ContactSavings counted;
+  if (!has_host_system_) {
+    fill_system(*problem_, options_, structure_, system_, counted, threads_);
+    has_host_system_ = true;
+  }
+  return system_;
+}
+
+ContactSavings IslandSolver::set_device_problem() {
+  has_device_system_ = true;
+  return device_->set_problem(options_, structure_, input_of(*problem_));
+}
+
+std::vector<double> IslandSolver::guess() const {
+  return gathered(problem_->impulse_guess, 3, structure_.contact_of_slot.data(),
+                  problem_->contact_count());
+}
+
+void IslandSolver::solve_uncoupled(EngineResult& result) {
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    const ContactIsland& island = structure_.islands[index_of(i)];
+    if (island.is_coupled) continue;
+    result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
+  }
+  device_ != nullptr ? solve_on_device(result) : solve_on_host(result);
+}
+
+void IslandSolver::solve_on_host(EngineResult& result) {
+  ContactSystem<double>& system = host_system();
+  free_motion_ = system.body_free;
+  std::vector<double> start = guess();
+  ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
+  if (options_.precision == ContactPrecision::float32) {
+    const ContactSystem<float> rounded = make_float32(structure_, system);
+    ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes);
+    coarse.start_from({start.begin(), start.end()});
+    coarse.solve();
+    start.assign(coarse.state().impulse.begin(), coarse.state().impulse.end());
+    result.updates_skipped = coarse.updates_skipped();
+    run.start_from(start);
+  } else {
+    run.start_from(start);
+    run.solve();
+    result.updates_skipped = run.updates_skipped();
+  }
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    if (!structure_.islands[index_of(i)].is_coupled) finish(i, run, result);
+  }
+}
+
+/// Islands that do not converge on the device continue on the host from its impulses.
+void IslandSolver::solve_on_device(EngineResult& result) {
+  std::vector<double> impulse = guess();
+  impulse.resize(3 * structure_.contact_of_slot.size(), 0.0);
+  free_motion_.resize(structure_.dof_of_place.size());
+  result.updates_skipped =
+      device_->solve_uncoupled(options_, impulse, free_motion_, result.outcomes);
+  std::optional<ContactRun<double>> run;
+  for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
+    const ContactIsland& island = structure_.islands[index_of(i)];
+    if (island.is_coupled) continue;
+    IslandOutcome& outcome = result.outcomes[index_of(i)];
+    if (outcome.reason != StopReason::converged) {
+      if (!run) {
+        run.emplace(options_, threads_, structure_, host_system(), result.outcomes);
+        run->start_from(impulse);
+      }
+      finish(i, *run, result);
+      continue;
+    }
+    to_problem_index(structure_, 0, outcome.sums);
+    scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
+    if (structure_.is_local) continue;
+    scatter_velocities(structure_, island, free_motion_.data() + island.dof_begin,
+                       result.body_velocity);
+  }
+}
+
+/// Measures an island in float64, falls back to other methods if it has not converged, and copies
+/// its impulses and velocities to the result.
+void IslandSolver::finish(std::int64_t i, ContactRun<double>& run, EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  outcome.sums = run.measure(i);
+  outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
+  if (!run.is_done(i, outcome.sums)) fall_back(i, run, result);
+  to_problem_index(structure_, 0, outcome.sums);
+  scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
+                   result.impulse);
+  if (structure_.is_local) return;
+  scatter_velocities(structure_, island, run.state().body_velocity.data() + island.dof_begin,
+                     result.body_velocity);
+}
+
+void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result) {
+  IslandOutcome& outcome = result.outcomes[index_of(island)];
+  for (const std::int64_t slot : contradicting_slots(
+           structure_, run.system(), structure_.islands[index_of(island)], options_.max_sweeps)) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
+  }
+  if (!result.clamped.empty()) return;
+  if (options_.method == ContactMethod::automatic || options_.method == ContactMethod::newton) {
+    polish(island, run, outcome);
+  }
+  outcome.sums = run.measure(island);
+  if (options_.method != ContactMethod::automatic || run.is_done(island, outcome.sums)) return;
+  run.run_to_budget(island);
+  outcome.sums = run.measure(island);
+  if (run.is_done(island, outcome.sums)) return;
+  polish(island, run, outcome);  // may converge from the better start
+  outcome.sums = run.measure(island);
+}
+
+/// Newton's method from the impulses of the sweeps; its impulses are kept if their error is not
+/// larger.
+void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome& outcome) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  ContactOptions options = options_;
+  options.tolerance /= 2;  // relative to this island; relative to the whole its error is smaller
+  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
+  std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
+  const std::vector<double> swept = polished;
+  const NewtonResult newton = newton_polish(make_island_problem(*problem_, structure_, island),
+                                            options, polished, body_velocity);
+  outcome.newton_iterations += newton.iterations;
+  outcome.methods.push_back("newton");
+  const double before = run.excess(i, outcome.sums);
+  std::copy(polished.begin(), polished.end(), impulse);
+  if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
+}
+
+void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  IslandOutcome& outcome = result.outcomes[index_of(i)];
+  const std::vector<double> guess = this->guess();
+  std::vector<double> impulse(3 * structure_.contact_of_slot.size());
+  std::vector<double> body_velocity(structure_.dof_of_place.size());
+  if (device_ != nullptr) {
+    if (!has_device_system_) result.savings = set_device_problem();
+    device_->solve_coupled(options_, island, guess, max_iterations, impulse, body_velocity,
+                           outcome);
+  } else {
+    CpuContactExec exec(threads_);
+    if (block_jacobi_memory_ == nullptr)
+      block_jacobi_memory_ = std::make_shared<BlockJacobiMemory<CpuContactExec>>();
+    ContactSystem<double>& system = host_system();
+    const ContactIndices indices = structure_.indices();
+    const ContactNumbers<double> numbers = system.numbers(indices);
+    ContactSystem<float> rounded;
+    if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
+    const CoupledTask task{
+        options_,       island,        indices.color_start, numbers, rounded.numbers(indices),
+        view_of(guess), max_iterations};
+    const CoupledSolution best = solve_coupled_island(exec, task, *block_jacobi_memory_, outcome);
+    exec.get(best.impulse, impulse.data());
+    exec.get(best.body_velocity, body_velocity.data());
+  }
+  to_problem_index(structure_, 0, outcome.sums);
+  result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
+  scatter_impulses(structure_, island, impulse.data() + 3 * island.slot_begin, result.impulse);
+  scatter_velocities(structure_, island, body_velocity.data() + island.dof_begin,
+                     result.body_velocity);
+}
+
+}  // namespace tetwarp

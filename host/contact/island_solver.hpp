@@ -1,0 +1,77 @@
+/// @file island_solver.hpp
+/// The solve of the islands of a contact problem on the host or on a device: sweeps where A couples
+/// no bodies, block Jacobi where it does.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact/cuda/device.hpp"
+#include "host/contact/engine_result.hpp"
+#include "host/contact/structure/structure.hpp"
+#include "host/contact/structure/system.hpp"
+#include "host/contact/sweeps/run.hpp"
+
+namespace tetwarp {
+
+template <class Exec>
+struct BlockJacobiMemory;
+
+/// Holds one structure and, on the host, on a device or on both, the numbers of one problem.
+class IslandSolver {
+ public:
+  /// @param device  solves the islands, kept by the caller; null: the host does
+  IslandSolver(const ContactOptions& options, int threads, ContactDevice* device);
+
+  const ContactStructure& structure() const { return structure_; }
+  void set_structure(ContactStructure structure) { structure_ = std::move(structure); }
+
+  /// Takes the numbers of a problem that has the pattern of the structure.
+  /// @param problem  kept by the caller, unchanged, for the calls below
+  /// @return rows and springs that were left out
+  ContactSavings set_problem(const ContactProblem& problem);
+
+  /// To be called before another solver uses the device; the next use copies the problem there
+  /// again.
+  void forget_device() { has_device_system_ = false; }
+
+  /// Solves all islands whose blocks A does not couple. Where sweeps do not converge, contradicting
+  /// contacts are looked for; if there are none, Newton's method and more sweeps follow.
+  /// @param result  in: make_result()
+  void solve_uncoupled(EngineResult& result);
+
+  /// Iterates one island whose blocks A couples.
+  /// @param max_iterations  outer iterations at most
+  void iterate(std::int64_t island, std::int64_t max_iterations, EngineResult& result);
+
+  /// v without impulses, [dofs] in the order of the structure; of coupled islands not set. Set by
+  /// solve_uncoupled().
+  const std::vector<double>& free_motion() const { return free_motion_; }
+
+ private:
+  ContactSystem<double>& host_system();
+  ContactSavings set_device_problem();
+  std::vector<double> guess() const;
+
+  void solve_on_host(EngineResult& result);
+  void solve_on_device(EngineResult& result);
+  void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
+  void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
+  void polish(std::int64_t island, ContactRun<double>& run, IslandOutcome& outcome);
+
+  ContactOptions options_;
+  int threads_;
+  ContactDevice* device_;
+  ContactStructure structure_;
+  const ContactProblem* problem_ = nullptr;
+  ContactSystem<double> system_;    ///< a member so that its memory is reused
+  bool has_host_system_ = false;    ///< system_ has the numbers of the problem
+  bool has_device_system_ = false;  ///< the device has them
+  std::vector<double> free_motion_;
+  std::shared_ptr<BlockJacobiMemory<CpuContactExec>>
+      block_jacobi_memory_;  ///< null: no island iterated so far
+};
+
+}  // namespace tetwarp
