@@ -35,7 +35,7 @@ void check_quantity(const VolumeView& source, Quantity quantity) {
   }
 }
 
-/// What would add to a total, or change it, is not asked for.
+/// Rejects options that would add to a total or change it.
 void check_conservative(const WarpOptions& options) {
   const char* wrong = nullptr;
   if (options.antialias) wrong = "means are exact without antialias";

@@ -1,5 +1,5 @@
 /// @file warper.cpp
-/// The public calls: check every argument once, run, fill the report.
+/// The public calls: checks of all arguments, the queue of steps, the report.
 #include <cmath>
 #include <memory>
 #include <optional>

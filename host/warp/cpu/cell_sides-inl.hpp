@@ -1,6 +1,6 @@
 /// @file cell_sides-inl.hpp
-/// Which voxels of a cell lie inside a tetrahedron, by exact intervals of its rows. Included once
-/// per vector instruction set (the name and the toggled guard are Highway's convention).
+/// The voxels of a cell that lie inside a tetrahedron, as an interval per row. Included once per
+/// vector instruction set (the name and the toggled guard are Highway's convention).
 #if defined(TETWARP_CELL_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_SIDES_INL
 #undef TETWARP_CELL_SIDES_INL
@@ -44,7 +44,7 @@ inline int count_of(const CellBits& bits) {
   return count;
 }
 
-/// Bit 8 k + j: some voxel of row (j, k).
+/// Bit 8 k + j: row (j, k) has a voxel.
 inline std::uint64_t rows_of(const CellBits& bits) {
   const hn::CappedTag<std::uint8_t, sizeof(CellBits)> d;
   const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
@@ -60,7 +60,7 @@ inline std::uint64_t rows_of(const CellBits& bits) {
   return mask;
 }
 
-/// set_cell_plane() of the four faces at once: equal bits.
+/// set_cell_plane() for the four faces, with equal bits.
 inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& planes) {
   const hn::CappedTag<double, 4> d;  // one lane per face
   const hn::Rebind<float, decltype(d)> df;
@@ -83,20 +83,20 @@ inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& 
   }
 }
 
-/// Where rows cross the planes of a tetrahedron, ready for vectors of rows.
+/// The positions along x where rows cross the planes of a tetrahedron.
 ///
-/// With the unit of CellPlanes, certain_side() is open only where a plane is within 1.7 of zero,
-/// and rounding moves a crossing by less than 1.8 / |step|. Crossings are taken `width`, which is
-/// `margin` / |step| at least, to either side; beyond, both agree.
+/// certain_side() returns 0 only where a plane value is within 1.7 of zero, in the unit of
+/// CellPlanes, and rounding moves a crossing by less than 1.8 / |step|. Farther than `width` from a
+/// crossing, which is at least `margin` / |step|, interval and certain_side() therefore agree.
 struct RowCrossings {
   static constexpr float margin = 4.0f;
-  static constexpr float flattest = 0x1p-3f;  ///< steps below change a row by less than 1
+  static constexpr float min_step = 0x1p-3f;  ///< below, the value changes by less than 1 in a row
 
   explicit RowCrossings(const CellPlanes& planes) {
     const hn::FixedTag<float, 4> d;  // one lane per face
     const auto zero = hn::Zero(d), never = hn::Set(d, std::numeric_limits<float>::infinity());
     const auto step = hn::LoadU(d, planes.step[0]);
-    const auto is_flat = hn::Lt(hn::Abs(step), hn::Set(d, flattest));
+    const auto is_flat = hn::Lt(hn::Abs(step), hn::Set(d, min_step));
     const auto voxels = hn::IfThenZeroElse(is_flat, hn::Div(hn::Set(d, -1.0f), step));
     hn::Store(hn::Mul(hn::LoadU(d, planes.value), voxels), d, at);
     hn::Store(hn::Mul(hn::LoadU(d, planes.step[1]), voxels), d, per_row);
@@ -114,17 +114,17 @@ struct RowCrossings {
   alignas(16) float per_slice[4];
   alignas(16) float if_entering[4];  ///< 0 where rows enter through the face, else -infinity
   alignas(16) float if_leaving[4];   ///< 0 where rows leave through the face, else +infinity
-  float width;
-  unsigned flat;  ///< bits of the faces that rows run along
+  float width;                       ///< [voxel]
+  unsigned flat;                     ///< bits of the faces with steps below min_step
 };
 
-/// Rows of a cell that a tetrahedron's box meets.
+/// Rows of a cell that intersect the bounding box of a tetrahedron.
 struct RowBox {
   int j_begin, j_end, k_begin, k_end;
 };
 
-/// cell_sides() with `Rows` rows of a slice, from `j_first` on, side by side in a vector; where it
-/// is wider, the next slice follows.
+/// cell_sides() for `Rows` rows of each slice, from `j_first` on. A vector holds one row per lane;
+/// wider vectors hold the rows of several slices.
 template <int Rows>
 inline void packed_sides(const CellPlanes& planes,
                          const RowBox& box,
@@ -199,8 +199,9 @@ inline void packed_sides(const CellPlanes& planes,
   }
 }
 
-/// Sides of the voxels of some rows of a cell: those that lie inside for certain, and those that
-/// may; about the difference certain_side() must be asked. Other rows hold anything.
+/// Finds the voxels of the rows `box` of a cell that are certainly inside a tetrahedron.
+/// @param inside    out: certainly inside; undefined in other rows
+/// @param possible  out: inside or too close to a face for float32, to be decided by certain_side()
 inline void cell_sides(const CellPlanes& planes,
                        const RowBox& box,
                        CellBits& inside,
