@@ -68,10 +68,10 @@ void check_rules(std::span<const VolumeView> sources, const WarpOptions& options
         options.quantities.empty() ? Quantity::components : options.quantities[s];
     check_quantity(sources[s], quantity);
     const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
-    const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
-    if (computes && (is_wide || options.filter == Filter::labels)) {
+    const bool is_64_bit = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
+    if (computes && (is_64_bit || options.filter == Filter::labels)) {
       throw std::invalid_argument(
-          std::string("source: ") + (is_wide ? name_of(sources[s].type) : "labels") +
+          std::string("source: ") + (is_64_bit ? name_of(sources[s].type) : "labels") +
           " cannot be scaled or turned; leave out intensity and quantities, or use another type");
     }
   }

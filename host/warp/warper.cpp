@@ -32,8 +32,8 @@ void check_filter(const VolumeView& source, Filter filter) {
     }
     return;
   }
-  const bool wide = is_integer(source.type) && size_of(source.type) == 8;
-  if (wide && filter != Filter::nearest) {
+  const bool is_64_bit = is_integer(source.type) && size_of(source.type) == 8;
+  if (is_64_bit && filter != Filter::nearest) {
     throw std::invalid_argument(type +
                                 " cannot be interpolated without loss; use the nearest filter");
   }

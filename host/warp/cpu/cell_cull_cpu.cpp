@@ -59,7 +59,7 @@ class TetCells {
   bool is_accepted() const { return is_accepted_; }
 
   /// Computes the verdict on cell ci of the row.
-  void judge(int ci) {
+  void classify(int ci) {
     const CellSpan x(tet_, frame_, 0, ci);
     const auto margin = hn::Set(d, margin_);
     is_rejected_ = false;
@@ -99,13 +99,13 @@ class TetCells {
 };
 
 /// Computes the verdicts on candidate pairs [first, past) of tetrahedron t.
-void judge_cells(const TetSetup& tet,
-                 std::int64_t t,
-                 std::int64_t first,
-                 std::int64_t past,
-                 CullSwitches switches,
-                 const OutputFrame& frame,
-                 CellPair* pairs) {
+void classify_cells(const TetSetup& tet,
+                    std::int64_t t,
+                    std::int64_t first,
+                    std::int64_t past,
+                    CullSwitches switches,
+                    const OutputFrame& frame,
+                    CellPair* pairs) {
   TetCells cells(tet, frame);
   const int ci_begin = first_cell(tet, 0), ci_end = last_cell(tet, 0) + 1;
   const int ny = last_cell(tet, 1) - first_cell(tet, 1) + 1;
@@ -117,7 +117,7 @@ void judge_cells(const TetSetup& tet,
     cells.start_row(cj, ck);
     const std::int64_t line = frame.cell_index(0, cj, ck);
     for (; ci < ci_end && left > 0; ++ci, --left) {
-      cells.judge(ci);
+      cells.classify(ci);
       const bool accepted = switches.accept && cells.is_accepted();
       const bool rejected = switches.reject && cells.is_rejected();
       *pairs++ = rejected ? rejected_pair : make_pair(line + ci, t, accepted);
@@ -136,7 +136,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tetwarp {
 
-HWY_EXPORT(judge_cells);
+HWY_EXPORT(classify_cells);
 
 void cell_verdicts(CpuExec& exec,
                    View<const TetSetup> setups,
@@ -148,7 +148,7 @@ void cell_verdicts(CpuExec& exec,
                    View<CellPair> pairs) {
   exec.for_each_span("warp/cull", pair_offsets, pairs.size,
                      [&](std::int64_t t, std::int64_t first, std::int64_t past, std::int64_t item) {
-                       HWY_DYNAMIC_DISPATCH(judge_cells)
+                       HWY_DYNAMIC_DISPATCH(classify_cells)
                        (setups[t], t, first, past, switches, frame, pairs.data + item);
                      });
 }

@@ -118,8 +118,8 @@ class RowSource {
         hn::Store(hn::DemoteTo(df, step), df, axis[a] + lane);
       }
       start = hn::Add(start, hn::LoadU(d, setup_->map[3] + lane));
-      const auto farthest = hn::Set(d, max_whole);
-      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      const auto limit = hn::Set(d, max_whole);
+      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
       hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
       const auto local = hn::Sub(floor, hn::LoadU(d, bounds.origin + lane));
       hn::Store(hn::DemoteTo(di, local), di, whole + lane);
@@ -132,8 +132,8 @@ class RowSource {
   }
 
   /// Sets the prefetch distances. Rows that run along lines of the source next read lines of the
-  /// next slice. Rows that run across lines next read where the neighbouring line of cells does, one
-  /// row further.
+  /// next slice. Rows that run across lines next read where the neighbouring line of cells does,
+  /// one row further.
   void look_ahead(std::int64_t line, std::int64_t slice, int components) {
     const hn::FixedTag<float, 4> d;
     const hn::RebindToSigned<decltype(d)> di;

@@ -51,8 +51,8 @@ class WideRow {
         start = a == 0 ? part : hn::Add(start, part);
       }
       start = hn::Add(start, hn::LoadU(d, tet.map[3] + lane));
-      const auto farthest = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
-      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      const auto limit = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
+      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
       const auto of_row = hn::Mul(hn::LoadU(d, tet.map[1] + lane), hn::Set(d, double(j)));
       const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
       const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
