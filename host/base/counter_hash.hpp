@@ -1,12 +1,11 @@
 /// @file counter_hash.hpp
-/// Random-looking numbers that are a function of a counter: the same with every compiler and
-/// library.
+/// Pseudo-random numbers as a function of a counter, the same with every compiler and library.
 #pragma once
 #include <cstdint>
 
 namespace tetwarp {
 
-/// 64 mixed bits of a counter. Neighboring counters give unrelated bits.
+/// 64 pseudo-random bits of a counter.
 /// Source: the finalizer of G. L. Steele, D. Lea, C. H. Flood, "Fast Splittable Pseudorandom Number
 /// Generators", OOPSLA 2014.
 constexpr std::uint64_t hash_of(std::uint64_t counter) {

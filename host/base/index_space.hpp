@@ -1,5 +1,5 @@
 /// @file index_space.hpp
-/// World to index space of a grid: the one place where the matrix is inverted.
+/// Maps between the world and the index spaces of grids.
 #pragma once
 #include <array>
 
@@ -9,18 +9,19 @@
 
 namespace tetwarp {
 
-/// Inverse of direction * diag(spacing) and the origin. By pivoted elimination, so that a diagonal
-/// matrix has exactly the reciprocals. @pre the grid passed check_grid().
+/// The map from world to index positions: inverse of direction * diag(spacing), and the origin. The
+/// inverse of a diagonal matrix consists of the rounded reciprocals. @pre check_grid() accepts
+/// `grid`
 IndexFromWorld index_from_world(const Grid& grid);
 
-/// The map output index -> source index of one world position: x_source = linear * x_output +
-/// offset.
+/// Index positions of the same world position in two grids: x_source = linear * x_output + offset.
 struct IndexMap {
   std::array<double, 9> linear;
   std::array<double, 3> offset;
 };
 
-/// Entries within 2^-40 of a whole-voxel shift are rounded to it, so that congruent grids copy.
+/// A map within 2^-40 of a whole-voxel shift is rounded to it, so that samples are copied between
+/// grids that differ by whole voxels.
 IndexMap source_from_output(const Grid& source, const Grid& output);
 
 }  // namespace tetwarp

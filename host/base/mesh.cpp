@@ -30,9 +30,9 @@ void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
 
 void check_mesh(const Mesh& mesh) {
   if (mesh.cell_count() == 0) throw std::invalid_argument("mesh: no tetrahedra or hexahedra");
-  constexpr std::size_t most = std::size_t{1} << 31;
-  if (mesh.rest_positions.size() >= most || mesh.tets.size() >= most ||
-      mesh.tets.size() + tets_per_hex * mesh.hexes.size() >= most) {
+  constexpr std::size_t limit = std::size_t{1} << 31;
+  if (mesh.rest_positions.size() >= limit || mesh.tets.size() >= limit ||
+      mesh.tets.size() + tets_per_hex * mesh.hexes.size() >= limit) {
     throw std::invalid_argument("mesh: 2^31 or more nodes or tetrahedra (a hexahedron is six)");
   }
   check_nodes(mesh.tets, mesh.rest_positions.size(), "tetrahedron");

@@ -1,6 +1,4 @@
 /// @file names.cpp
-#include <stdexcept>
-#include <string>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/make.hpp>
@@ -64,16 +62,6 @@ constexpr EnumName<ContactStatus> contact_status_names[] = {
 constexpr EnumName<AdhesionIntegrator> adhesion_integrator_names[] = {
     {AdhesionIntegrator::exact, "exact"}, {AdhesionIntegrator::explicit_euler, "explicit-euler"}};
 
-template <class Enum>
-Enum parsed(std::string_view word, std::span<const EnumName<Enum>> names) {
-  std::string listed;
-  for (const EnumName<Enum>& entry : names) {
-    if (word == entry.name) return entry.value;
-    listed += (listed.empty() ? "" : ", ") + std::string(entry.name);
-  }
-  throw std::invalid_argument("'" + std::string(word) + "' is none of " + listed);
-}
-
 }  // namespace
 
 template <>
@@ -81,128 +69,64 @@ TETWARP_EXPORT std::span<const EnumName<Backend>> names_of() {
   return backend_names;
 }
 template <>
-TETWARP_EXPORT Backend parse(std::string_view word) {
-  return parsed<Backend>(word, backend_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<PixelType>> names_of() {
   return pixel_type_names;
-}
-template <>
-TETWARP_EXPORT PixelType parse(std::string_view word) {
-  return parsed<PixelType>(word, pixel_type_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<Filter>> names_of() {
   return filter_names;
 }
 template <>
-TETWARP_EXPORT Filter parse(std::string_view word) {
-  return parsed<Filter>(word, filter_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<Overshoot>> names_of() {
   return overshoot_names;
-}
-template <>
-TETWARP_EXPORT Overshoot parse(std::string_view word) {
-  return parsed<Overshoot>(word, overshoot_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<Quantity>> names_of() {
   return quantity_names;
 }
 template <>
-TETWARP_EXPORT Quantity parse(std::string_view word) {
-  return parsed<Quantity>(word, quantity_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<Intensity>> names_of() {
   return intensity_names;
-}
-template <>
-TETWARP_EXPORT Intensity parse(std::string_view word) {
-  return parsed<Intensity>(word, intensity_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<Outside>> names_of() {
   return outside_names;
 }
 template <>
-TETWARP_EXPORT Outside parse(std::string_view word) {
-  return parsed<Outside>(word, outside_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<Deformation>> names_of() {
   return deformation_names;
-}
-template <>
-TETWARP_EXPORT Deformation parse(std::string_view word) {
-  return parsed<Deformation>(word, deformation_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<FrictionLaw>> names_of() {
   return friction_law_names;
 }
 template <>
-TETWARP_EXPORT FrictionLaw parse(std::string_view word) {
-  return parsed<FrictionLaw>(word, friction_law_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<AdhesionRule>> names_of() {
   return adhesion_rule_names;
-}
-template <>
-TETWARP_EXPORT AdhesionRule parse(std::string_view word) {
-  return parsed<AdhesionRule>(word, adhesion_rule_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<ContactMethod>> names_of() {
   return contact_method_names;
 }
 template <>
-TETWARP_EXPORT ContactMethod parse(std::string_view word) {
-  return parsed<ContactMethod>(word, contact_method_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<ContactCoupling>> names_of() {
   return contact_coupling_names;
-}
-template <>
-TETWARP_EXPORT ContactCoupling parse(std::string_view word) {
-  return parsed<ContactCoupling>(word, contact_coupling_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<ContactMeasure>> names_of() {
   return contact_measure_names;
 }
 template <>
-TETWARP_EXPORT ContactMeasure parse(std::string_view word) {
-  return parsed<ContactMeasure>(word, contact_measure_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<ContactPrecision>> names_of() {
   return contact_precision_names;
-}
-template <>
-TETWARP_EXPORT ContactPrecision parse(std::string_view word) {
-  return parsed<ContactPrecision>(word, contact_precision_names);
 }
 template <>
 TETWARP_EXPORT std::span<const EnumName<ContactStatus>> names_of() {
   return contact_status_names;
 }
 template <>
-TETWARP_EXPORT ContactStatus parse(std::string_view word) {
-  return parsed<ContactStatus>(word, contact_status_names);
-}
-template <>
 TETWARP_EXPORT std::span<const EnumName<AdhesionIntegrator>> names_of() {
   return adhesion_integrator_names;
-}
-template <>
-TETWARP_EXPORT AdhesionIntegrator parse(std::string_view word) {
-  return parsed<AdhesionIntegrator>(word, adhesion_integrator_names);
 }
 
 }  // namespace tetwarp

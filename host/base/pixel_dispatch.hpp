@@ -1,5 +1,5 @@
 /// @file pixel_dispatch.hpp
-/// From a pixel type known at run time to a C++ type.
+/// Calls of templates with the C++ type of a PixelType.
 #pragma once
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 
-/// Calls work(T{}) with the C++ type of a pixel type.
+/// Calls work(T{}), where T is the C++ type of `type`.
 template <class Work>
 void with_pixel_type(PixelType type, Work&& work) {
   switch (type) {

@@ -20,11 +20,11 @@ namespace {
 
 using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// Asks for huge pages, before the memory is touched: rows that run across a volume meet a new
-/// small page every few voxels. A wish; small pages work, too.
+/// Advises the system to use huge pages for memory not yet touched: accesses across a volume would
+/// enter a new small page every few voxels. Has no effect where the system does not support them.
 void ask_for_huge_pages(std::byte* memory, std::size_t size) {
   constexpr std::size_t huge_page = std::size_t{2} << 20;
-  if (size < 2 * huge_page) return;  // it may hold none
+  if (size < 2 * huge_page) return;  // may not contain an aligned huge page
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const auto address = reinterpret_cast<std::uintptr_t>(memory);
   const std::uintptr_t skipped = (page - address % page) % page;
@@ -88,7 +88,7 @@ void check_grid(const Grid& grid, const std::string& what) {
       throw std::invalid_argument(what + ": direction is not finite");
     }
   }
-  // Columns of any length are accepted; what matters is that they span space.
+  // Columns may have any length, but must be linearly independent.
   const RowMatrix direction = Eigen::Map<const RowMatrix>(grid.direction.data());
   const double scale = direction.colwise().norm().prod();
   if (!(std::abs(direction.determinant()) > 1e-6 * scale)) {

@@ -1,6 +1,6 @@
 /// @file exec_cpu.hpp
-/// CpuExec: the operations a pipeline is made of, on host threads. Results do not depend on how
-/// many threads there are: every index writes its own output, scans and sorts are stable.
+/// CpuExec: the operations of a pipeline on host threads. Results do not depend on the number of
+/// threads: every index writes its own output, scans and sorts are stable.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -17,6 +17,8 @@
 
 namespace tetwarp {
 
+/// Executor for host threads, with the interface of CudaExec. Copies between host and device are
+/// no-ops: stages read and write the memory of the caller.
 class CpuExec {
  public:
   template <class T>
@@ -24,9 +26,9 @@ class CpuExec {
   template <class T>
   using PinnedBuffer = HostBuffer<T>;
   template <class T>
-  struct Staged {};  ///< nothing: what upload() is given is read in place
+  struct Staged {};  ///< empty: the argument of upload() is read in place
 
-  /// Sizes can be read between stages for nothing, so buffers are always made to measure.
+  /// Results of a stage can be read at once, so that lists get exactly the size they need.
   static constexpr bool reads_are_free = true;
 
   explicit CpuExec(int threads) : threads_(threads) {}
@@ -35,8 +37,8 @@ class CpuExec {
   std::string device() const { return processor_name(); }
   StageTimes& times() { return times_[flight_]; }
 
-  /// What follows belongs to one of two steps in flight, 0 or 1. All of it is done at once, so that
-  /// nothing has to wait for anything.
+  /// Selects which of two steps in flight, 0 or 1, the following calls belong to. Every call
+  /// returns when its work is done, so that there is nothing to wait for.
   void select(int flight) { flight_ = flight; }
   void begin_compute(void*) {}
   void end_compute() {}
@@ -57,12 +59,12 @@ class CpuExec {
   T* writable(T* host, std::int64_t, Buffer<T>&) {
     return host;
   }
-  /// Brings what was written to writable() memory home: it is there.
+  /// Copies writable() memory to the host: stages have written to it directly.
   template <class T>
   void download(const char*, View<const T>, T*) {}
   bool downloads_async(const void*) const { return true; }
 
-  /// The value of a few entries, once all stages before have run.
+  /// Copies entries to the host after all preceding stages.
   template <class T>
   void read(View<const T> from, T* to) {
     std::copy_n(from.data, from.size, to);
@@ -77,7 +79,7 @@ class CpuExec {
     std::memset(static_cast<void*>(view.data), 0, static_cast<std::size_t>(view.size) * sizeof(T));
   }
 
-  /// body(i) for i in [0, count).
+  /// Calls body(i) for i in [0, count).
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     const Clock clock(*this, label);
@@ -85,8 +87,8 @@ class CpuExec {
     for (std::int64_t i = 0; i < count; ++i) body(i);
   }
 
-  /// body(segment, local, item) for every item of every segment: offsets[s] + local = item.
-  /// Items from `capacity` on are left out.
+  /// Calls body(segment, local, item) for every item of every segment: offsets[segment] + local =
+  /// item. Items from `capacity` on are left out.
   template <class Body>
   void for_each_item(const char* label,
                      View<const std::int64_t> offsets,
@@ -99,8 +101,8 @@ class CpuExec {
         });
   }
 
-  /// body(segment, first, past, item) for stretches of items that follow each other in a segment:
-  /// offsets[s] + first = item.
+  /// Calls body(segment, first, past, item) for stretches of successive items of a segment, local
+  /// numbers [first, past): offsets[segment] + first = item.
   template <class Body>
   void for_each_span(const char* label,
                      View<const std::int64_t> offsets,
@@ -124,8 +126,8 @@ class CpuExec {
     }
   }
 
-  /// values[i] becomes the sum of the values before it; the last entry, whatever it held, the
-  /// total.
+  /// Replaces values[i] by the sum of the values before it. The last entry becomes the total; its
+  /// own value does not count.
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     const Clock clock(*this, label);
     std::int64_t sum = 0;
@@ -136,13 +138,13 @@ class CpuExec {
     }
   }
 
-  /// Makes room for scans of so many values: here they need none.
+  /// Reserves memory for scans of so many values: not needed here.
   void reserve_scan(std::int64_t) {}
 
-  /// Marks pairs that no later stage may read by accident; here stages stop at the count.
+  /// Fills a list with rejected_pair; not needed here, where stages read up to the count only.
   void reject_all(const char*, View<CellPair>) {}
 
-  /// Copies the pairs that are not rejected, in their order, and counts them.
+  /// Copies the first candidate_count[0] pairs that are not rejected, in order, and counts them.
   void select_valid(const char* label,
                     View<const CellPair> candidates,
                     View<const std::int64_t> candidate_count,
@@ -178,7 +180,7 @@ class CpuExec {
     scratch_.reserve(count);
     CellPair* from = pairs.data;
     CellPair* to = scratch_.view(count).data;
-    // Digits as even as the bits allow: fewer passes over the pairs count most.
+    // As few passes as possible, with digits of about the same size.
     const int passes = (cell_bits + radix_bits - 1) / radix_bits;
     for (int pass = 0; pass < passes; ++pass) {
       const int shift = 32 + cell_bits * pass / passes;
@@ -189,7 +191,7 @@ class CpuExec {
     if (from != pairs.data) std::copy_n(from, count, pairs.data);
   }
 
-  /// Adds its life time to a label.
+  /// Adds the time from its construction to its destruction to the times of a label.
   class Clock {
    public:
     Clock(CpuExec& exec, const char* label)
@@ -208,7 +210,7 @@ class CpuExec {
   };
 
  private:
-  /// work(part, begin, end) for every thread's part of [0, count); parts ascend.
+  /// Calls work(part, begin, end) for the part of [0, count) of every thread; parts ascend.
   template <class Work>
   void for_each_part(std::int64_t count, const Work& work) {
 #pragma omp parallel for schedule(static, 1) num_threads(threads_) if (count > serial_below)
@@ -217,7 +219,7 @@ class CpuExec {
     }
   }
 
-  /// One pass of the sort: stable by `bits` bits from `shift` on.
+  /// One pass of the radix sort: stable, by `bits` bits from bit `shift` on.
   void sort_digit(const CellPair* from, CellPair* to, std::int64_t count, int shift, int bits) {
     const std::int64_t digits = std::int64_t{1} << bits;
     const CellPair mask = static_cast<CellPair>(digits - 1);
@@ -241,12 +243,13 @@ class CpuExec {
     });
   }
 
-  static constexpr std::int64_t serial_below = 2048;  ///< starting threads costs more than that
+  static constexpr std::int64_t serial_below =
+      2048;  ///< items; fewer take less time than starting threads
   static constexpr std::int64_t chunk_ = 4096;
   static constexpr int radix_bits = 11;
 
   int threads_;
-  StageTimes times_[2];  ///< of each step in flight
+  StageTimes times_[2];  ///< per step in flight
   int flight_ = 0;
   HostBuffer<CellPair> scratch_;
   std::vector<std::int64_t> places_;  ///< of the sort, [thread][digit]

@@ -1,5 +1,5 @@
 /// @file deform_mesh.cpp
-/// Procedural deformations, each a displacement as a function of the rest position.
+/// Procedural deformations: displacements as functions of the rest position.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +18,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Box of the rest positions and the axes of a deformation: `along`, then the two across it in
-/// cyclic order.
+/// Box of the rest positions, and the axes of a deformation: `along` is its axis, `side` and
+/// `other` follow in cyclic order.
 struct Frame {
   Point3 low;
   Point3 size;
@@ -28,7 +28,7 @@ struct Frame {
   std::size_t side;
   std::size_t other;
 
-  /// 0 at the low end of the box, 1 at the high end.
+  /// Position within the box along an axis: 0 at the low end, 1 at the high end.
   double share(const Point3& x, std::size_t axis) const {
     return size[axis] > 0 ? (x[axis] - low[axis]) / size[axis] : 0.5;
   }
@@ -52,7 +52,7 @@ Frame frame_of(const std::vector<Point3>& positions, int axis) {
   return frame;
 }
 
-/// Displacement of a turn by `angle` about the line through the box's center along the axis.
+/// Displacement of a rotation by `angle` about the axis through the center of the box [radian].
 Point3 turn(const Frame& frame, const Point3& x, double angle) {
   const double side = x[frame.side] - frame.center[frame.side];
   const double other = x[frame.other] - frame.center[frame.other];
@@ -63,14 +63,14 @@ Point3 turn(const Frame& frame, const Point3& x, double angle) {
   return moved;
 }
 
-/// The ends turn by half the angle each, in opposite directions.
+/// Rotates the ends by half the angle each, in opposite directions.
 Point3 twist(const Frame& frame, const Point3& x, double angle) {
   return turn(frame, x, angle * (frame.share(x, frame.along) - 0.5));
 }
 
-/// Lays the axis on an arc of `angle` whose center is on the far `side`. The line that keeps its
-/// length is the box's middle or, where the box is too thick for that, one nearer to the arc's
-/// center, so that the inside of the bend does not fold.
+/// Bends the axis to an arc of `angle`, with the center at positive `side`. The line that keeps its
+/// length is the middle of the box; in boxes too thick for that the radius is larger, so that the
+/// inside of the bend does not fold.
 Point3 bend(const Frame& frame, const Point3& x, double angle) {
   if (angle == 0) return {0, 0, 0};
   const double length = frame.size[frame.along];
@@ -87,9 +87,9 @@ Point3 bend(const Frame& frame, const Point3& x, double angle) {
   return moved;
 }
 
-/// A wave as long as the box that travels from the high to the low end, two beats from time 0 to 1;
-/// the low end beats by a tenth of the length, the high end by a hundredth. Every cross-section
-/// moves sideways as a whole, so that volume is kept.
+/// A wave of the length of the box that travels from the high to the low end, two periods from time
+/// 0 to 1. Its amplitude is a tenth of the length at the low end and a hundredth at the high end.
+/// Every cross-section moves sideways as a whole, so that volume is preserved.
 Point3 swim(const Frame& frame, const Point3& x, double amount, double time) {
   const double from_head = 1 - frame.share(x, frame.along);
   const double growth = 0.1 + 0.9 * from_head * from_head;
@@ -100,9 +100,9 @@ Point3 swim(const Frame& frame, const Point3& x, double amount, double time) {
   return moved;
 }
 
-/// A sum of sine waves in the box's shares; wave vectors and phases come from the seed. At strength
-/// 1 no wave sum passes a twentieth of the box, and no gradient passes 0.05 * 2 pi * 3 < 1 in the
-/// Frobenius norm, so that nothing is turned inside out.
+/// A sum of sine waves of the position within the box; wave vectors and phases depend on the seed.
+/// At strength 1 the displacement is at most a twentieth of the box and the Frobenius norm of its
+/// gradient at most 0.05 * 2 pi * 3 < 1, so that nothing is inverted.
 Point3 wobble(const Frame& frame, const Point3& x, std::uint64_t seed, double strength) {
   constexpr std::uint64_t wave_count = 4;
   Point3 moved{0, 0, 0};
@@ -166,7 +166,7 @@ std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& opti
   check_mesh(mesh);
   check_options(options, time);
   std::vector<Point3> positions = mesh.rest_positions;
-  if (time == 0) return positions;  // bit for bit, the sign of zeros included
+  if (time == 0) return positions;  // with the signs of zeros
   const Frame frame = frame_of(mesh.rest_positions, options.axis);
   for (Point3& x : positions) {
     const Point3 moved = displacement(frame, x, options, time);

@@ -1,5 +1,5 @@
 /// @file lattice_mesh.cpp
-/// The embedding lattice: cubic cells around the foreground, five tetrahedra each or as they are.
+/// Lattice meshes: cubic cells around the foreground, as hexahedra or five tetrahedra each.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace tetwarp {
 
 namespace {
 
-/// Marks the foreground of a volume one row of voxels at a time.
+/// Finds the foreground of a volume, one row of voxels per call.
 class ForegroundRows {
  public:
   ForegroundRows(const Volume& volume, std::optional<double> threshold)
@@ -25,7 +25,7 @@ class ForegroundRows {
         threshold_(threshold),
         flags_(static_cast<std::size_t>(volume.grid.dims[0])) {}
 
-  /// One flag per voxel of row (j, k), valid until the next call.
+  /// Per voxel of row (j, k), 1: foreground. Valid until the next call.
   const std::vector<std::uint8_t>& row(std::int64_t j, std::int64_t k) {
     if (!threshold_) {
       std::fill(flags_.begin(), flags_.end(), std::uint8_t{1});
@@ -90,7 +90,7 @@ Box foreground_box(const Volume& volume, const LatticeOptions& options) {
   return box;
 }
 
-/// Where the cells are: lattice node (a, b, c) is at index-space position start + edge * (a, b, c).
+/// Positions of the cells: lattice node (a, b, c) is at index position start + edge * (a, b, c).
 struct Lattice {
   std::array<std::int64_t, 3> cells;
   Point3 start;  ///< [index]
@@ -122,7 +122,7 @@ Lattice place_cells(const Grid& grid, const Box& box, int cells_along_longest) {
   Lattice lattice;
   double tet_count = 5;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // A length that is a whole number of edges but for rounding takes no further cell.
+    // Lengths within rounding of a whole number of edges need no further cell.
     const double count = std::max(1.0, std::ceil(length[axis] / edge - 1e-9));
     const double middle = 0.5 * static_cast<double>(box.begin[axis] + box.end[axis] - 1);
     lattice.cells[axis] = static_cast<std::int64_t>(count);
@@ -137,7 +137,7 @@ Lattice place_cells(const Grid& grid, const Box& box, int cells_along_longest) {
   return lattice;
 }
 
-/// Cells [begin, end) that the extent of a voxel, half a voxel around its center, overlaps.
+/// Cells [begin, end) that overlap the box of a voxel, half a voxel around its center.
 struct CellRange {
   std::int64_t begin;
   std::int64_t end;
@@ -148,7 +148,7 @@ std::vector<CellRange> cells_of_voxels(const Lattice& lattice, const Box& box, s
   const auto last = static_cast<double>(lattice.cells[axis] - 1);
   for (std::int64_t v = box.begin[axis]; v < box.end[axis]; ++v) {
     const double low = static_cast<double>(v) - 0.5 - lattice.start[axis];
-    // A cell that is overlapped by rounding only is not occupied.
+    // An overlap within rounding does not count.
     const double first_cell = std::floor(low / lattice.edge[axis] + 1e-9);
     const double last_cell = std::ceil((low + 1) / lattice.edge[axis] - 1e-9) - 1;
     ranges.push_back({static_cast<std::int64_t>(std::clamp(first_cell, 0.0, last)),
@@ -190,8 +190,9 @@ std::vector<std::uint8_t> occupied_cells(const Volume& volume,
   return occupied;
 }
 
-/// The five tetrahedra of a cell; corner bits 1, 2, 4 are the far side along the three axes. A cell
-/// and its mirror image cut the face between them along the same diagonal. All positive.
+/// The five tetrahedra of a cell and of its mirror image, which divide the face between them along
+/// the same diagonal; all have positive volume. Bits 1, 2 and 4 of a corner: at the far end of axis
+/// 0, 1, 2.
 constexpr int tets_of_cell[2][5][4] = {
     {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 6, 3, 5}},
     {{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 4, 2, 7}}};

@@ -1,5 +1,5 @@
 /// @file phantom.cpp
-/// Paints the anatomy onto a grid: soft edges, skin and fat by depth, a faint texture.
+/// Drawing of the anatomy on a grid: antialiased edges, skin and fat by depth, a faint texture.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -19,17 +19,17 @@ constexpr double fat_level = 0.24;
 constexpr double muscle_level = 0.45;
 constexpr double skin_depth = 3;       // [mm]
 constexpr double fat_depth = 12;       // [mm]
-constexpr double blend_length = 44;    // over which parts of the trunk flow together [mm]
-constexpr double half_height = 174;    // the trunk is cut there, through neck and hips [mm]
+constexpr double blend_length = 44;    // of the smooth transition between parts of the trunk [mm]
+constexpr double half_height = 174;    // of the trunk, which ends at neck and hips [mm]
 constexpr double texture_grain = 5;    // [mm]
 constexpr double texture_depth = 0.1;  // share of the level
 
-/// Share of a voxel that a solid fills whose surface is at `distance`.
+/// Share of a voxel that a solid fills, by the distance of its surface from the voxel's center.
 double coverage(double distance, double voxel) {
   return std::clamp(0.5 - distance / voxel, 0.0, 1.0);
 }
 
-/// Distance to two solids that flow together (a quadratic blend of the smaller one).
+/// Distance to the smooth union of two solids (quadratic smooth minimum).
 double blended(double a, double b) {
   const double overlap = std::max(blend_length - std::abs(a - b), 0.0) / blend_length;
   return std::min(a, b) - 0.25 * overlap * overlap * blend_length;
@@ -43,7 +43,7 @@ double trunk_distance(const Anatomy& anatomy, double x, double y, double z) {
   return std::max(distance, std::abs(z) - half_height);
 }
 
-/// Skin, fat and muscle by the distance to the trunk's surface.
+/// Gray level of skin, fat and muscle by the distance to the surface of the trunk.
 double tissue_level(double distance, double voxel) {
   const double below_skin = coverage(distance + skin_depth, voxel);
   const double below_fat = coverage(distance + fat_depth, voxel);
@@ -51,7 +51,8 @@ double tissue_level(double distance, double voxel) {
          below_fat * (muscle_level - fat_level);
 }
 
-/// Smooth noise in [0, 1): random numbers on a cubic lattice of texture_grain, interpolated.
+/// Smooth noise in [0, 1): random numbers on a cubic lattice of spacing texture_grain,
+/// interpolated.
 double texture(double x, double y, double z) {
   const Point3 cell{x / texture_grain, y / texture_grain, z / texture_grain};
   std::uint64_t base[3];
@@ -76,7 +77,7 @@ double texture(double x, double y, double z) {
   return sum;
 }
 
-/// One slice of the phantom on its way to the volume.
+/// One slice of the phantom, drawn in float64.
 class Slice {
  public:
   Slice(const Grid& grid, std::int64_t k)
@@ -141,7 +142,7 @@ class Slice {
 
   const Grid& grid_;
   double z_;
-  double voxel_;               // mean edge: the width of an edge [mm]
+  double voxel_;               // mean spacing, the width of antialiased edges [mm]
   std::vector<double> body_;   // share of the voxel inside the body
   std::vector<double> level_;  // gray level there
 };

@@ -88,7 +88,7 @@ void Organs::grow(const Tree& tree,
   const Point3 to = moved(from, direction, own_length);
   if (generation == tree.generations || tree.region.distance(to[0], to[1], to[2]) > -4) return;
   rod(tree.level, from, to, radius, 0.8 * radius);
-  // The children bend to opposite sides, in a plane through the branch.
+  // Two children, bent to opposite sides in a random plane through the branch.
   const Point3 any{chance(1) - 0.5, chance(2) - 0.5, chance(3) - 0.5};
   const Point3 sideways = normalized(moved(any, direction, -dot(any, direction)));
   const double bend = 0.45 + 0.35 * chance(4);

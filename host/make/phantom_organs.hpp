@@ -1,5 +1,5 @@
 /// @file phantom_organs.hpp
-/// A list of organs in painting order, with curved tubes and forking vessels made of rods.
+/// A list of organs in the order of drawing; curved tubes and branching vessels are made of rods.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -9,15 +9,15 @@
 
 namespace tetwarp {
 
-/// How a vessel forks.
+/// Shape of a branching vessel.
 struct Tree {
-  Ellipsoid region;   ///< where it stays
+  Ellipsoid region;   ///< branches end at its surface
   double level;       ///< gray level
-  double shortening;  ///< length of a branch to that of the one before, but for chance
-  int generations;
+  double shortening;  ///< mean ratio of the length of a branch to that of its parent
+  int generations;    ///< largest number of successive branches
 };
 
-/// Collects organs; the last one added lies on top.
+/// Collects organs; later ones are drawn over earlier ones.
 class Organs {
  public:
   void add(const Ellipsoid& ellipsoid, double level) { organs_.push_back({ellipsoid, level}); }
@@ -34,9 +34,9 @@ class Organs {
             double first_radius,
             double last_radius);
 
-  /// A vessel that forks, and so on, as long as it stays inside its region.
-  /// @param branch  number of the first branch, 1 or more: its seed. The children of a branch are
-  ///                2 branch and 2 branch + 1.
+  /// A vessel that branches in two repeatedly, within its region.
+  /// @param branch  number of the first branch, 1 or more, which seeds its random numbers. The
+  ///                children of a branch are 2 branch and 2 branch + 1.
   void tree(const Tree& tree,
             const Point3& from,
             const Point3& direction,
@@ -44,6 +44,7 @@ class Organs {
             double radius,
             std::uint64_t branch);
 
+  /// Moves the list out.
   std::vector<Organ> take() { return std::move(organs_); }
 
  private:

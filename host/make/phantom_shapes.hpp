@@ -1,6 +1,6 @@
 /// @file phantom_shapes.hpp
-/// The solids a phantom is painted from. Lengths in mm; x to the left of the body, y to its back,
-/// z to its head.
+/// The solids of a phantom. Lengths in mm; x points to the left of the body, y to its back, z to
+/// its head.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,11 +18,11 @@ struct Extent {
   Point3 high;
 };
 
-/// An ellipsoid, leaning in the plane of x and z.
+/// An ellipsoid, tilted in the plane of x and z.
 class Ellipsoid {
  public:
-  /// @param radii  along the leaning x, along y, along the leaning z
-  /// @param lean   turn [radian]; positive: the top goes towards positive x
+  /// @param radii  along the tilted x, along y, along the tilted z
+  /// @param lean   tilt [radian]; positive: the top moves towards positive x
   Ellipsoid(const Point3& center, const Point3& radii, double lean = 0)
       : center_(center),
         radii_(radii),
@@ -42,7 +42,7 @@ class Ellipsoid {
     const double ga = a * reciprocal_[0];
     const double gb = b * reciprocal_[1];
     const double gc = c * reciprocal_[2];
-    // The floors keep the very center defined: deep inside is all that matters there.
+    // The lower bounds avoid 0 / 0 at the center, where any negative distance will do.
     return (k - 1) * std::max(k, 1e-6) / std::max(std::sqrt(ga * ga + gb * gb + gc * gc), 1e-9);
   }
 
@@ -56,12 +56,12 @@ class Ellipsoid {
  private:
   Point3 center_;
   Point3 radii_;
-  Point3 reciprocal_;  // of the radii: an ellipsoid is asked for many distances
+  Point3 reciprocal_;  // of the radii, computed once for speed
   double cosine_;
   double sine_;
 };
 
-/// A rod with round ends whose radius goes linearly from one end to the other.
+/// A rod with round ends whose radius changes linearly from one end to the other.
 struct Rod {
   Point3 from;
   Point3 to;
@@ -96,10 +96,10 @@ struct Organ {
   double level;
 };
 
-/// A body: where it is, and what is in it.
+/// A body: its outline and its organs.
 struct Anatomy {
   std::vector<Ellipsoid> trunk;  ///< blended smoothly into one another
-  std::vector<Organ> organs;     ///< painted in this order, each over the ones before
+  std::vector<Organ> organs;     ///< drawn in this order, each over the ones before
 };
 
 /// Size of the box that the anatomy is made for, centered at the origin [mm].

@@ -29,12 +29,14 @@ constexpr double artery = 0.94;
 
 constexpr std::array<double, 2> both_sides{-1, 1};
 
-/// Front to back position of the middle of the spine: curved back in the chest, forward below.
+/// y of the middle of the spine at height z: curved to the back in the chest, to the front below.
 double spine_y(double z) {
   return 53 + 7 * std::cos(pi * (z - 55) / 140);
 }
 
-/// A point of the rib cage, an egg around the lungs. `turn` 0 is at the spine, pi at the sternum.
+/// A point of the rib cage, an egg shape around the lungs.
+/// @param side  -1 right, 1 left
+/// @param turn  angle around the body, 0 at the spine, pi at the sternum
 Point3 rib_cage(double side, double z, double turn) {
   const double height = (z - 22) / 150;
   const double width = std::sqrt(std::max(1 - height * height, 0.05));

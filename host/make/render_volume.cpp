@@ -17,23 +17,23 @@ namespace tetwarp {
 namespace {
 
 constexpr int largest_height = 4096;
-constexpr double largest_aspect = 8;           // wider or narrower panels are drawn at this ratio
-constexpr std::int64_t max_samples = 1 << 18;  // that the percentiles are taken from
+constexpr double largest_aspect = 8;           // width to height of a panel, or its inverse
+constexpr std::int64_t max_samples = 1 << 18;  // for the percentiles
 constexpr std::uint8_t separator_gray = 48;
 
-/// Values shown black and white.
+/// The values that are drawn black and white.
 struct Window {
   double low;
   double high;
 
-  /// 0 to 1; NaN is black. A window of no width separates what is above it from the rest.
+  /// Gray of a value, 0 to 1; of NaN 0. When low equals high, 1 above and 0 otherwise.
   double gray_of(double value) const {
     if (!(value > low)) return 0;
     return value >= high ? 1 : (value - low) / (high - low);
   }
 };
 
-/// What is drawn of a voxel: its value or, with several components, their Euclidean norm.
+/// The number drawn for a voxel: its value or, for several components, their Euclidean norm.
 template <class T>
 double shown_value(const T* sample, int components) {
   if (components == 1) return static_cast<double>(*sample);
@@ -44,7 +44,7 @@ double shown_value(const T* sample, int components) {
   return std::sqrt(sum);
 }
 
-/// Finite values: of all voxels of a small volume, of voxels drawn by lot from a large one.
+/// The finite values of all voxels of a small volume, of randomly chosen voxels of a large one.
 std::vector<double> finite_values(const Volume& volume) {
   const std::int64_t voxel_count = volume.grid.voxel_count();
   const std::int64_t count = std::min(voxel_count, max_samples);
@@ -83,7 +83,7 @@ Window window_of(const Volume& volume, const RenderOptions& options) {
   return window;
 }
 
-/// A picture in voxels, rows from top to bottom.
+/// A picture with one pixel per voxel, rows from top to bottom.
 struct Plane {
   std::int64_t width;
   std::int64_t height;
@@ -101,8 +101,8 @@ double length_of(const Grid& grid, std::size_t axis) {
          std::hypot(d[axis], d[3 + axis], d[6 + axis]);
 }
 
-/// What a panel shows: grid axis `right` to the right and `up` upwards (`down` downwards), either
-/// the middle slice of the third axis or the maximum along it.
+/// Content of a panel: grid axis `right` to the right and grid axis `vertical` upwards or
+/// downwards; either the middle slice of the third axis or the maximum along it.
 struct PanelView {
   std::size_t right;
   std::size_t vertical;
@@ -110,7 +110,8 @@ struct PanelView {
   bool is_projection;
 };
 
-/// Head up, and in the axial slice the first row at the top, as in radiology.
+/// Coronal and sagittal panels have the head at the top, axial panels the first row, as in
+/// radiology.
 constexpr std::array<PanelView, 4> panel_views{{{0, 1, false, false},  // axial
                                                 {0, 2, true, false},   // coronal
                                                 {1, 2, true, false},   // sagittal
@@ -152,7 +153,7 @@ int panel_width(const Plane& plane, int height) {
   return std::max(1, static_cast<int>(std::lround(aspect * height)));
 }
 
-/// The two voxels around a pixel's center, and how far it is from the first to the next.
+/// The two voxels around the center of a pixel, and its position between them, 0 to 1.
 struct Tap {
   std::int64_t voxel;
   std::int64_t next;

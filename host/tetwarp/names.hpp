@@ -1,7 +1,9 @@
 /// @file names.hpp
-/// The words of every public enum: what options take, reports say and parse() reads.
+/// The words of the public enums, as options of the command and reports spell them.
 #pragma once
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -36,6 +38,13 @@ const char* name_of(Enum value) {
 /// The enumerator of a word: parse<Filter>("linear").
 /// @throws std::invalid_argument that lists the words
 template <class Enum>
-TETWARP_EXPORT Enum parse(std::string_view word);
+Enum parse(std::string_view word) {
+  std::string listed;
+  for (const EnumName<Enum>& entry : names_of<Enum>()) {
+    if (word == entry.name) return entry.value;
+    listed += (listed.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw std::invalid_argument("'" + std::string(word) + "' is none of " + listed);
+}
 
 }  // namespace tetwarp

@@ -73,7 +73,7 @@ struct SourceWindow {
   std::vector<std::vector<double>> ranges = {};
 };
 
-/// Choices of a warp. Defaults give what most people want.
+/// Choices of a warp. The defaults suit most uses.
 struct WarpOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
   Overshoot overshoot = Overshoot::keep;

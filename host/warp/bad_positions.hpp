@@ -1,5 +1,5 @@
 /// @file bad_positions.hpp
-/// What a mesh may ask too much of, told by name.
+/// Errors for meshes beyond the limits: nodes that are not finite or too far away, too many pairs.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// Cells know their pairs by 32-bit positions.
+/// Largest number of (tetrahedron, cell) pairs: CellRange holds 32-bit positions in their list.
 constexpr std::int64_t max_pairs = (std::int64_t{1} << 32) - 2;
 
 /// @throws std::invalid_argument above max_pairs
@@ -22,13 +22,13 @@ inline void check_pair_count(std::int64_t count) {
       " pairs of tetrahedron and cell, at most 2^32 - 2 fit; compute regions of the grid");
 }
 
-/// True when a tetrahedron of these classes cannot be placed.
+/// True when the counts per TetClass include tetrahedra that cannot be placed in the grid.
 inline bool has_bad_positions(const std::int64_t* classes) {
   return classes[static_cast<int>(TetClass::bad_position)] != 0 ||
          classes[static_cast<int>(TetClass::too_large)] != 0;
 }
 
-/// @throws std::invalid_argument naming tetrahedron t when its class says that it cannot be placed
+/// @throws std::invalid_argument naming tetrahedron t when it is of a class that cannot be placed
 inline void throw_on_bad_position(TetClass tet_class, std::int64_t t) {
   if (tet_class == TetClass::bad_position) {
     throw std::invalid_argument("deformed positions: a node of tetrahedron " + std::to_string(t) +

@@ -1,5 +1,5 @@
 /// @file block_mesh.cpp
-/// The part of a mesh that a block needs.
+/// Extraction of the part of a mesh that a block needs.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

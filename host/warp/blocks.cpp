@@ -43,7 +43,7 @@ std::int64_t voxels_of(const Box& box) {
   return (box.end[0] - box.begin[0]) * (box.end[1] - box.begin[1]) * (box.end[2] - box.begin[2]);
 }
 
-/// A box cut in two.
+/// A box divided at the step nearest to its middle.
 std::pair<Box, Box> halves(const Box& box, int axis, const BlockLimits& limits) {
   const std::int64_t step = limits.step[static_cast<std::size_t>(axis)];
   const std::int64_t steps = (box.end[axis] - box.begin[axis] + step - 1) / step;
@@ -71,17 +71,19 @@ struct BlockPlanner::State {
   Grid source;
   WarpOptions options;
   WarpGeometry geometry;
-  std::vector<Footprint> footprints;  ///< of every cell in the step at hand
+  std::vector<Footprint> footprints;  ///< of every cell of the mesh, in the current step
 
   /// Tetrahedra that are not parts of hexahedra; they come first.
   std::int64_t lone_tet_count() const {
     return std::ssize(mesh.tets) - tets_per_hex * std::ssize(mesh.hexes);
   }
+  /// Computes the footprints of a step, and the counts of its plan.
   void set_footprints(const PositionsView& deformed, BlockPlan& plan);
   /// Replaces the footprints of the tetrahedra that hexahedra were split into by those of the
   /// hexahedra.
   void merge_hexahedra();
-  /// Appends the blocks of a box to a plan.
+  /// Divides a box into blocks and appends them to a plan.
+  /// @param cells  that may own voxels of the box
   void cut(const Box& box,
            std::vector<std::int32_t> cells,
            const BlockLimits& limits,
@@ -89,11 +91,12 @@ struct BlockPlanner::State {
   WarpBlock make_block(const Box& box,
                        const std::vector<std::int32_t>& cells,
                        const BlockLimits& limits) const;
-  /// Where to cut a box so that its halves read least; the longest of equal axes; -1: nowhere.
+  /// The axis along which the halves of a box read the fewest source voxels; of equal ones the
+  /// longest; -1: the box is one step long along all axes.
   int best_axis(const Box& box,
                 const std::vector<std::int32_t>& cells,
                 const BlockLimits& limits) const;
-  /// What is read for the voxels of a box.
+  /// The voxels of the source that the voxels of a box are computed from.
   Box source_of(const Box& box, const std::vector<std::int32_t>& cells) const;
 };
 
@@ -215,8 +218,9 @@ WarpBlock BlockPlanner::State::make_block(const Box& box,
     output_voxels *= static_cast<double>(box.end[axis] - box.begin[axis]);
     source_voxels *= static_cast<double>(from.end[axis] - from.begin[axis]);
   }
-  // Setups, nodes and the mesh itself; lists of pairs and a copy to sort them; ranges, counts and
-  // work of cells of 512 voxels; two bytes per block of the source that may be constant.
+  // Per tetrahedron: setup, nodes, mesh. Per pair: the list and its copy for sorting. Per output
+  // voxel: ranges, counts and work of cells, which have 512 voxels. Per source voxel: two bytes for
+  // each block that may be constant.
   constexpr double tet_bytes = 600, pair_bytes = 32, output_share = 0.1, source_share = 0.005;
   const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone_tet_count());
   const auto tets = std::ssize(cells) + (tets_per_hex - 1) * hexes;

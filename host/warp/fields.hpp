@@ -1,5 +1,5 @@
 /// @file fields.hpp
-/// The fields of the deformation that a step writes beside the volumes, for any executor.
+/// The stages that write FieldTarget, for any executor.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace tetwarp {
 
-/// The map of displacements from the output grid to the source.
+/// The constants of voxel_fields(): index spaces of output grid and source, and their difference.
 inline DisplacementMap make_displacement_map(const WarpPlan& plan, const OutputFrame& frame) {
   const Grid &source = plan.sources.front().grid, &output = plan.output_grid;
   DisplacementMap map;
@@ -31,6 +31,7 @@ inline DisplacementMap make_displacement_map(const WarpPlan& plan, const OutputF
   return map;
 }
 
+/// Computes the fields of each step.
 template <class Exec>
 class WarpFields {
  public:
@@ -38,10 +39,10 @@ class WarpFields {
   WarpFields(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : exec_(exec), plan_(plan), geometry_(geometry) {}
 
-  /// Writes the fields of a step whose owners the raster has found.
-  /// @param owners   of all output voxels
-  /// @param touched  cells to write, as WarpPairs has them; size 0: all
-  /// @param to       where the executor writes; null: not wanted
+  /// Writes the fields of a step after its raster.
+  /// @param owners   tetrahedron of each output voxel, -1 outside; size 0: no field needs them
+  /// @param touched  1 for cells to write, see WarpPairs::touched_in(); size 0: all
+  /// @param to       arrays in the memory of the executor; null: not wanted
   void run(const WarpPairs<Exec>& pairs,
            View<const std::int32_t> owners,
            View<const std::uint8_t> touched,
@@ -70,8 +71,9 @@ class WarpFields {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  /// The displacement of the warp that has rest and deformed positions exchanged. Who owns a voxel
-  /// of it never changes; both meshes are in the frame, so that only differences count.
+  /// The forward field: the backward displacement of the warp with rest and deformed positions
+  /// exchanged. Its owners are those of the rest mesh, computed once. Both meshes are relative to
+  /// the frame, so that its origin cancels.
   void forward(const WarpPairs<Exec>& pairs, float* to) {
     const OutputFrame& frame = geometry_.frame;
     const std::int64_t tets = pairs.tet_count();
@@ -105,8 +107,8 @@ class WarpFields {
                          .stretch = 1});
   }
 
-  /// The rest mesh in the frame, and who owns its voxels: by a raster of one that stays at rest,
-  /// the samples of which nobody looks at.
+  /// Computes the rest mesh in the frame and the owners of its voxels, by a raster of the mesh at
+  /// rest whose samples are discarded.
   void find_rest() {
     const std::vector<Point3>& positions = plan_.mesh.rest_positions;
     const OutputFrame& frame = geometry_.frame;
@@ -137,7 +139,8 @@ class WarpFields {
     const Progress silent;
     cell_raster(exec_, job, ProgressPart{silent, 0, 1});
     std::int32_t first;
-    exec_.read(rest_owners_.const_view(1), &first);  // waits: the scratch memory goes
+    exec_.read(rest_owners_.const_view(1),
+               &first);  // waits until the scratch memory is no longer in use
     has_rest_ = true;
   }
 
@@ -148,7 +151,7 @@ class WarpFields {
   Buffer<Node> rest_;  ///< in the frame
   Buffer<std::int32_t> rest_owners_;
   Buffer<TetSetup> exchanged_;   ///< from rest to deformed
-  Buffer<std::int64_t> unused_;  ///< counts that a setup makes for later stages
+  Buffer<std::int64_t> unused_;  ///< counts of tet_setup() that the forward field does not need
   bool has_rest_ = false;
 };
 

@@ -73,7 +73,7 @@ bool is_too_large(const TetNodes& tet) {
   return false;
 }
 
-/// Of the cell that tetrahedron t is or is a part of.
+/// Kind and number of the cell that tetrahedron t is or is a part of, for messages.
 std::string cell_name(const Mesh& mesh, std::size_t t) {
   const std::size_t alone = mesh.tets.size() - tets_per_hex * mesh.hexes.size();
   if (t < alone) return "tetrahedron " + std::to_string(t);
@@ -99,7 +99,7 @@ WarpGeometry make_geometry(const WarpPlan& plan) {
                                   " is over 2^40 voxels from the source grid");
     }
   }
-  // Seen from index spaces of opposite handedness the same tetrahedron has opposite signs.
+  // In index spaces of opposite handedness the same tetrahedron has volumes of opposite sign.
   const bool mirrored =
       determinant(linear_part(source_index)) * determinant(geometry.axes.output_index) < 0;
   const View<const Node> rest{geometry.rest.data(),

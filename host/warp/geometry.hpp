@@ -1,5 +1,5 @@
 /// @file geometry.hpp
-/// What a plan means in index space: the frame, the quantized rest mesh, the map of uncovered
+/// A plan in index space: the frame of the output, the quantized rest mesh, the map of uncovered
 /// voxels.
 #pragma once
 #include <cstdint>
@@ -11,27 +11,29 @@
 
 namespace tetwarp {
 
-/// Geometry that no step changes, in the terms of the kernels.
+/// Geometry that is the same in all steps, in the types of the kernels.
 struct WarpGeometry {
   OutputFrame frame;
   IndexFromWorld output_index;
   std::vector<Node> rest;                     ///< in the source's index space [quantum]
-  std::vector<std::int8_t> rest_orientation;  ///< sign of the rest volume in the output's sense
+  std::vector<std::int8_t> rest_orientation;  ///< sign of the rest volume as it would be in the
+                                              ///< output's index space
   OutsideMap outside;
   GridAxes axes;
 };
 
-/// Throws std::invalid_argument when a rest position is too far from the source grid, or a
-/// tetrahedron spans too many of its voxels.
+/// @throws std::invalid_argument when a rest position is too far from the source grid, or a
+///                               tetrahedron spans too many of its voxels
 WarpGeometry make_geometry(const WarpPlan& plan);
 
-/// A share of a step's progress.
+/// A part of a step that reports its progress.
 struct ProgressPart {
   const Progress& progress;
-  double begin;
-  double share;
+  double begin;  ///< fraction of the step that is finished before this part
+  double share;  ///< of this part in the step
 
-  /// Reports `fraction` of this part; throws Cancelled when told to stop.
+  /// Reports that `fraction` of this part is finished.
+  /// @throws Cancelled when the callback returns false
   void report(double fraction) const;
   bool is_wanted() const { return static_cast<bool>(progress); }
 };

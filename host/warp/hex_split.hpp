@@ -1,5 +1,5 @@
 /// @file hex_split.hpp
-/// Hexahedra as tetrahedra, for all that decides who owns a voxel.
+/// Division of hexahedra into tetrahedra, which decide the owners of voxels.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,18 +12,18 @@
 
 namespace tetwarp {
 
-/// Splits each hexahedron into tets_per_hex tetrahedra: from the node with the lowest number to the
-/// triangles of the three faces that do not hold it. Every face is cut from its own lowest node, so
-/// that hexahedra that share it agree.
+/// Splits each hexahedron into tets_per_hex tetrahedra. Each joins the node of the lowest number to
+/// one of the six triangles of the faces that do not contain this node. Faces are divided by the
+/// diagonal from their own lowest node, so that hexahedra that share a face divide it alike.
 ///
 /// Source: the rule of the lowest number is that of J. Dompierre et al., "How to subdivide
 /// pyramids, prisms and hexahedra into tetrahedra", 1999.
 /// @param hexes  nodes in VTK's order: 0 to 3 around the bottom, 4 to 7 above them
-/// @returns [tets_per_hex * hexes.size()], those of a hexahedron side by side
+/// @returns [tets_per_hex * hexes.size()], those of a hexahedron in succession
 std::vector<std::array<std::int32_t, 4>> split_hexes(
     std::span<const std::array<std::int32_t, 8>> hexes);
 
-/// A mesh whose tetrahedra are followed by those of its hexahedra.
+/// The mesh with the tetrahedra of its hexahedra appended to its own.
 Mesh with_split_hexes(Mesh mesh);
 
 }  // namespace tetwarp

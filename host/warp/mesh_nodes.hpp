@@ -1,5 +1,5 @@
 /// @file mesh_nodes.hpp
-/// What no step changes of a mesh, in an executor's memory.
+/// The parts of a mesh that are the same in all steps, in the memory of an executor.
 #pragma once
 #include <cstdint>
 
@@ -10,10 +10,11 @@
 
 namespace tetwarp {
 
+/// Uploads a plan's mesh once.
 template <class Exec>
 class WarpMesh {
  public:
-  /// Uploads. The arguments must outlive it.
+  /// The arguments must outlive the object: a cpu executor reads their memory in place.
   WarpMesh(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry) {
     const auto tet_count = static_cast<std::int64_t>(plan.mesh.tets.size());
     const auto hex_count = static_cast<std::int64_t>(plan.mesh.hexes.size());

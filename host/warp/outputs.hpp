@@ -1,5 +1,6 @@
 /// @file outputs.hpp
-/// The memory that a step writes: the target's own, or an executor's that is brought home to it.
+/// The memory that a step writes: the arrays of its target, or memory of the executor that is then
+/// downloaded to them.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -14,16 +15,18 @@
 
 namespace tetwarp {
 
-/// Cells along j and k, half-open.
+/// Cells [begin, end) along j and k.
 struct CellWindow {
   int begin[2];
   int end[2];
 };
 
+/// Two slots of memory, one per target of the two steps that may be in flight, and a record of what
+/// the targets hold.
 template <class Exec>
 class WarpOutputs {
  public:
-  /// The arguments must outlive it.
+  /// The arguments must outlive the object.
   WarpOutputs(Exec& exec, const WarpPlan& plan, const OutputFrame& frame)
       : exec_(exec),
         frame_(frame),
@@ -32,8 +35,9 @@ class WarpOutputs {
     for (Slot& slot : slots_) slot.arrays.resize(voxel_bytes_.size());
   }
 
-  /// Chooses the memory for a step. What the target holds is unknown from now on.
-  /// @returns how many steps ago it got what, by its word, it still holds: 1 or 2; else 0
+  /// Chooses the slot of a new step. The content of the target counts as undefined until finish().
+  /// @returns age of the result that the target still holds according to `holds_previous`: 1 or 2
+  ///          steps; 0 unknown
   int take(const WarpTarget& target) {
     ++step_;
     const auto wrote = [&](const Slot& slot) { return slot.held && slot.held->is(target); };
@@ -43,15 +47,15 @@ class WarpOutputs {
       now_ = static_cast<int>(found - slots_);
       if (target.holds_previous) age = step_ - found->held->step;
     } else if (target.holds_previous || slots_[now_].is_leaving) {
-      now_ = 1 - now_;  // two targets in turns keep their own memory; others share where they can
+      now_ = 1 - now_;  // two alternating targets get a slot each
     }
     slots_[now_].held.reset();
     slots_[now_].is_leaving = true;
     return age <= 2 ? static_cast<int>(age) : 0;
   }
-  /// The memory of the step that take() was called for last.
+  /// The slot that the last call of take() chose.
   int slot() const { return now_; }
-  /// That memory has been brought home, or never will be.
+  /// Ends the use of a slot by its step, after the download or when there is none.
   void release(int slot) { slots_[slot].is_leaving = false; }
 
   /// Where an executor writes volume s.
@@ -73,7 +77,7 @@ class WarpOutputs {
     return arrays;
   }
 
-  /// What was written: the least window with all marked cells; size 0: all.
+  /// The smallest window that contains all cells marked 1; all cells when `marks` has size 0.
   CellWindow window_of(View<const std::uint8_t> marks) {
     if (marks.size == 0) return {{0, 0}, {frame_.cells[1], frame_.cells[2]}};
     std::vector<std::uint8_t> marked(static_cast<std::size_t>(marks.size));
@@ -94,25 +98,25 @@ class WarpOutputs {
     return window;
   }
 
-  /// True when download() to this target does not keep the host waiting.
+  /// True when download() to this target does not block the calling thread.
   bool downloads_async(const WarpTarget& target) const {
     return std::ranges::all_of(arrays_of(target), [&](const void* to) {
       return to == nullptr || exec_.downloads_async(to);
     });
   }
 
-  /// Brings home a window of what a step wrote to the memory of a slot. The forward field is not
-  /// on the cells of the output and comes whole.
+  /// Queues the download of a window of a slot to the target. The forward field does not depend on
+  /// the cells that were written and is downloaded as a whole.
   void download(int from, const WarpTarget& target, const CellWindow& window) {
     const std::vector<void*> arrays = arrays_of(target);
     for (std::size_t a = 0; a < arrays.size(); ++a) {
       if (arrays[a] == nullptr) continue;
       download(slots_[from].arrays[a], voxel_bytes_[a], static_cast<std::byte*>(arrays[a]),
-              a == volume_count_ + forward_output ? window_of({}) : window);
+               a == volume_count_ + forward_output ? window_of({}) : window);
     }
   }
 
-  /// The step is complete: the target holds its result.
+  /// Records that the target holds the result of the current step.
   void finish(const WarpTarget& target) {
     slots_[now_].held = Held{arrays_of(target), target.memory, step_};
   }
@@ -121,7 +125,7 @@ class WarpOutputs {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  /// A target, by its pointers, and the step whose result it got.
+  /// A target, identified by its pointers, and the number of the step whose result it holds.
   struct Held {
     std::vector<void*> arrays;
     Memory memory;
@@ -136,7 +140,7 @@ class WarpOutputs {
   struct Slot {
     std::vector<Buffer<std::byte>> arrays;
     std::optional<Held> held;
-    bool is_leaving = false;  ///< a step in flight writes it or has it brought home
+    bool is_leaving = false;  ///< a step in flight writes or downloads it
   };
 
   void* writable(std::size_t place, const WarpTarget& target) {
@@ -146,7 +150,7 @@ class WarpOutputs {
                           voxel_bytes_[place] * frame_.voxel_count(), slots_[now_].arrays[place]);
   }
 
-  /// Slices as long as they are whole, else slice by slice.
+  /// One copy when the window has all rows of its slices, else one per slice.
   void download(const Buffer<std::byte>& from,
                 std::int64_t per_voxel,
                 std::byte* to,
@@ -173,7 +177,7 @@ class WarpOutputs {
   std::size_t volume_count_;
   std::vector<std::int64_t> voxel_bytes_;  ///< per array of a target
   Slot slots_[2];
-  int now_ = 0;  ///< the slot of this step
+  int now_ = 0;  ///< slot of the current step
   std::int64_t step_ = 0;
 };
 

@@ -1,6 +1,6 @@
 /// @file pairs.hpp
-/// From node positions to the sorted pairs of every cell, for any executor: all of them, or those
-/// of the step before brought up to date where tetrahedra have moved.
+/// The stages from node positions to the sorted (cell, tetrahedron) pairs, for any executor: from
+/// scratch, or as an update of the step before where only some tetrahedra have moved.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -22,10 +22,11 @@
 
 namespace tetwarp {
 
+/// Computes and holds the pairs of the current step and of the one before.
 template <class Exec>
 class WarpPairs {
  public:
-  /// The arguments must outlive it.
+  /// The arguments must outlive the object.
   WarpPairs(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : exec_(exec), options_(plan.options), geometry_(geometry), mesh_(exec, plan, geometry) {
     setups_.reserve(tet_count());
@@ -35,8 +36,9 @@ class WarpPairs {
     for (Buffer<Node>& nodes : nodes_) nodes.reserve(mesh_.node_count());
   }
 
-  /// Runs setup, mask and cull. Where sizes would have to travel from a device, buffers are trusted
-  /// from the second step on: nothing waits, nothing is allocated; had_room() tells at the end.
+  /// Runs setup, mask and cull. On a device the first step reads the sizes of its lists and
+  /// allocates them with some room; later steps neither wait nor allocate, and had_room() reports
+  /// afterwards whether the room sufficed.
   /// @throws std::invalid_argument on positions that are not finite or too far away
   void run(View<const double> positions) {
     now_ = 1 - now_;
@@ -48,8 +50,9 @@ class WarpPairs {
     if (!is_update_) make();
   }
 
-  /// False when a buffer was too small: it has grown, the step must run again.
-  /// @param counters  of the step, all of whose stages have run
+  /// False when a list was too small for the step: it has been enlarged, and the step must run
+  /// again.
+  /// @param counters  of the step, after all of its stages
   bool had_room(const StepCounters& counters) {
     take_totals(counters);
     if (Exec::reads_are_free) return true;
@@ -59,7 +62,7 @@ class WarpPairs {
     return false;
   }
 
-  /// The step is complete: the next may be an update of it.
+  /// Records that the step is complete, so that the next one may be an update of it.
   void finish(const StepCounters& counters) {
     pairs_before_ = is_update_ ? counters.work.merged_pairs : counters.work.pairs;
     moved_count_ = counters.work.moved;
@@ -75,17 +78,17 @@ class WarpPairs {
   PairList list() const { return view_of(lists_[now_]); }
   View<StepCounters> counters() const { return counters_.view(1); }
 
-  /// True when this step is an update; what follows is about updates only.
+  /// True when this step is an update of the one before. The functions below require it.
   bool is_update() const { return is_update_; }
-  /// True when the last `steps` ones are: 1 or 2.
+  /// True when this step, and with steps = 2 also the one before, is an update.
   bool are_updates(int steps) const { return is_update_ && (steps == 1 || was_update_); }
-  /// 1 where a tetrahedron has moved; size 0: not an update, all count as moved.
+  /// Per tetrahedron, 1: it has moved. Size 0: not an update, all have.
   View<const std::uint8_t> moved() const { return moved_.const_view(is_update_ ? tet_count() : 0); }
   View<const Node> nodes_before() const { return nodes_[1 - now_].const_view(mesh_.node_count()); }
   PairList list_before() const { return view_of(lists_[1 - now_]); }
-  /// 1 where a tetrahedron that has moved was or is in the list of a cell.
+  /// Per cell, 1: a moved tetrahedron was or is in its list.
   View<const std::uint8_t> touched() const { return touched_[now_].const_view(cell_count()); }
-  /// The same for any of the last `steps` steps, all of them updates: 1 or 2.
+  /// The same for the last `steps` steps together, all of them updates: 1 or 2.
   View<const std::uint8_t> touched_in(int steps) {
     if (steps == 1) return touched();
     touched_in_two_.reserve(cell_count());
@@ -107,10 +110,10 @@ class WarpPairs {
   struct List {
     Buffer<CellPair> pairs;
     Buffer<CellRange> ranges;
-    std::int64_t size = 0;  ///< of the view of pairs; at least as many as there are
+    std::int64_t size = 0;  ///< upper bound of the number of pairs
   };
 
-  /// All pairs of all tetrahedra.
+  /// Computes the pairs of all tetrahedra.
   void make() {
     exec_.zero("warp/setup", View<MeshCounters>{&counters().data->mesh, 1});
     const TetSetupBody setup = setup_body();
@@ -128,8 +131,9 @@ class WarpPairs {
     cull(corner_capacity_, pair_capacity_, lists_[now_]);
   }
 
-  /// The pairs of the step before, but for those of moved tetrahedra. False when these are known to
-  /// be so many that it would save next to nothing.
+  /// Computes the pairs of moved tetrahedra only, and merges them with the others of the step
+  /// before.
+  /// @returns false, with nothing done, when so many have moved that make() is as fast
   bool update() {
     const std::int64_t tets = tet_count();
     const TetSetupBody setup = setup_body();
@@ -168,7 +172,7 @@ class WarpPairs {
     return true;
   }
 
-  /// Scans of the counts that a setup made, and their totals among the counters.
+  /// Turns the counts of a setup into offsets, and stores their totals in the counters.
   void sum_up(const TetSetupBody& setup, View<const std::int64_t> moved_offsets) {
     exec_.exclusive_scan("warp/setup", setup.corner_counts);
     exec_.exclusive_scan("warp/setup", setup.pair_counts);
@@ -178,7 +182,8 @@ class WarpPairs {
             moved_offsets, setup.corner_counts, setup.pair_counts, {&counters().data->work, 1}});
   }
 
-  /// Pairs of the tetrahedra that have corners and candidates.
+  /// Pairs of the tetrahedra for which the last setup counted corners and candidates.
+  /// @param corners, candidates  sizes of the lists, at least those counted
   void cull(std::int64_t corners, std::int64_t candidates, List& list) {
     const View<const std::int64_t> corner_offsets = corner_offsets_.const_view(tet_count() + 1);
     const View<const std::int64_t> pair_offsets = pair_offsets_.const_view(tet_count() + 1);
@@ -213,8 +218,8 @@ class WarpPairs {
     check_pair_count(pair_total_);
   }
 
-  /// A quarter more than needed, so that a moving mesh does not come back at every step; and all
-  /// that an update will want, so that no later step allocates.
+  /// Enlarges the lists to a quarter more than needed, so that small motions do not exceed them,
+  /// and allocates what updates need, so that later steps do not allocate.
   void grow(std::int64_t corners, std::int64_t pairs) {
     corner_capacity_ = std::max(corner_capacity_, corners + corners / 4 + 1024);
     pair_capacity_ = std::max(pair_capacity_, std::min(pairs + pairs / 4 + 1024, max_pairs));
@@ -258,7 +263,7 @@ class WarpPairs {
     return {list.pairs.const_view(list.size), list.ranges.const_view(cell_count() + 1)};
   }
   std::int64_t cell_count() const { return geometry_.frame.cell_count(); }
-  /// Cells then need every tetrahedron that touches a box of their voxels.
+  /// With conservative intensity a cell needs every tetrahedron that touches a box of its voxels.
   bool keeps_totals() const { return options_.intensity == Intensity::conservative; }
 
   Exec& exec_;
@@ -271,18 +276,18 @@ class WarpPairs {
   Buffer<std::uint16_t> masks_;
   Buffer<CellPair> candidates_;
   Buffer<StepCounters> counters_;
-  Buffer<Node> nodes_[2];  ///< of this step and the one before, in turns
+  Buffer<Node> nodes_[2];  ///< of this step at index now_, of the one before at 1 - now_
   List lists_[2];
   int now_ = 0;
 
   Buffer<std::uint8_t> node_moved_, moved_;
   Buffer<std::int64_t> moved_offsets_;
   List fresh_;                       ///< of the moved tetrahedra
-  Buffer<std::uint8_t> touched_[2];  ///< by this step and by the one before, in turns
+  Buffer<std::uint8_t> touched_[2];  ///< as nodes_
   Buffer<std::uint8_t> touched_in_two_;
   Buffer<std::int64_t> cell_offsets_;
-  bool has_before_ = false;                      ///< the step before was completed
-  bool is_update_ = false, was_update_ = false;  ///< of this step and the one before
+  bool has_before_ = false;                      ///< the step before is complete
+  bool is_update_ = false, was_update_ = false;  ///< of this step and of the one before
 
   std::int64_t moved_count_ = 0;
   std::int64_t corner_capacity_ = 0, pair_capacity_ = 0, corner_total_ = 0, pair_total_ = 0;

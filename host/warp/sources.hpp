@@ -1,6 +1,6 @@
 /// @file sources.hpp
-/// The sources in an executor's memory, and what is found out about them when it is first asked
-/// for.
+/// The sources in the memory of an executor, with data derived from them on first use: spline
+/// coefficients, ranges, constant regions.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -19,10 +19,11 @@
 
 namespace tetwarp {
 
+/// Uploads a plan's sources once.
 template <class Exec>
 class WarpSources {
  public:
-  /// Uploads. The arguments must outlive it.
+  /// The arguments must outlive the object: a cpu executor reads their memory in place.
   WarpSources(Exec& exec, const WarpPlan& plan)
       : exec_(exec), plan_(plan), sources_(plan.sources.size()) {
     for (std::size_t s = 0; s < sources_.size(); ++s) {
@@ -37,7 +38,8 @@ class WarpSources {
 
   std::size_t size() const { return sources_.size(); }
 
-  /// Samples of source s, of type T, and what the plan's filter needs beside them.
+  /// Samples of source s, of type T, with the coefficients and the range that the plan's filter
+  /// needs.
   template <class T>
   SourceView<T> view(std::size_t s) {
     SourceView<T> view =
@@ -51,8 +53,8 @@ class WarpSources {
     return view;
   }
 
-  /// Where source s, or what a filter reads in its place, holds one value; empty where no cell can
-  /// be filled.
+  /// The regions where source s, or the coefficients that the filter reads, have one value; an
+  /// empty map when no cell can be filled.
   /// @param tets, rest  as in volume_uniform()
   template <class T>
   UniformMap uniform_map(std::size_t s,
@@ -80,7 +82,7 @@ class WarpSources {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  /// In the arithmetic of the source's type.
+  /// Derived data in the arithmetic of the source's type, float or double.
   template <class Real>
   struct Found {
     Buffer<Real> coefficients;
@@ -110,7 +112,7 @@ class WarpSources {
     if (!found.has_coefficients) {
       found.coefficients.reserve(entries);
       const View<Real> to = found.coefficients.view(entries);
-      // Less than the rounding of a value: air is as even as it looks, and need not be sampled.
+      // Below the rounding of a value: keeps constant regions of the source constant.
       constexpr double share = std::numeric_limits<Real>::epsilon() / 4;
       double largest = 0;
       range(s, view);
@@ -123,7 +125,8 @@ class WarpSources {
         work.reserve(entries);
         volume_prefilter(exec_, view, tolerance, work.view(entries), to);
         Real first;
-        exec_.read(View<const Real>(to.data, 1), &first);  // waits: the scratch memory goes
+        exec_.read(View<const Real>(to.data, 1),
+                   &first);  // waits until the scratch memory is no longer in use
       }
       found.has_coefficients = true;
     }

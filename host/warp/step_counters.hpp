@@ -1,5 +1,6 @@
 /// @file step_counters.hpp
-/// What the stages count on the device, and the step's report made of it.
+/// The counters that the stages of a step increase in the executor's memory, and the report made
+/// from them.
 #pragma once
 #include <cstdint>
 
@@ -12,25 +13,25 @@
 
 namespace tetwarp {
 
-/// Counters that describe the mesh as it stands: a step that updates the one before keeps them up
-/// to date, any other starts them anew.
+/// Counters of the current mesh. A step that is an update of the one before adjusts them, any other
+/// step starts from zero.
 struct MeshCounters {
   std::int64_t classes[tet_class_count];
   std::int64_t folded;
   std::int64_t averaged;  ///< tetrahedra whose voxels are means of samples
 };
 
-/// Counters of the work of one step, zeroed at its start.
+/// Counters of the work of one step, set to zero at its start.
 struct WorkCounters {
-  std::int64_t moved;         ///< tetrahedra, of an update
-  std::int64_t corners;       ///< that the tetrahedra to cull have
-  std::int64_t candidates;    ///< that they have
-  std::int64_t pairs;         ///< that were not rejected
-  std::int64_t merged_pairs;  ///< all pairs after an update
-  std::int64_t accepted;
-  std::int64_t touched_cells;
-  std::int64_t constant_cells;
-  std::int64_t covered;  ///< of the whole output, kept cells included
+  std::int64_t moved;           ///< tetrahedra that have moved; updates only
+  std::int64_t corners;         ///< coarse corners of the tetrahedra to cull
+  std::int64_t candidates;      ///< candidate pairs of these tetrahedra
+  std::int64_t pairs;           ///< of the candidates, not rejected
+  std::int64_t merged_pairs;    ///< all pairs after an update
+  std::int64_t accepted;        ///< of `pairs`
+  std::int64_t touched_cells;   ///< updates only
+  std::int64_t constant_cells;  ///< cells that were filled
+  std::int64_t covered;         ///< voxels of the whole output, including cells that were kept
   RasterCounts raster;
 };
 
@@ -39,7 +40,7 @@ struct StepCounters {
   WorkCounters work;
 };
 
-/// Brings the ends of sums to where the other counters are, so that the host reads once. One index.
+/// Copies the totals of three scans to the counters, so that the host reads memory once. One index.
 struct TotalsBody {
   View<const std::int64_t> moved_offsets;  ///< size 0: not an update
   View<const std::int64_t> corner_offsets;
@@ -53,7 +54,7 @@ struct TotalsBody {
   }
 };
 
-/// How much of the mesh and of the output a step had to do with.
+/// Sizes that the host knows of a step.
 struct StepSizes {
   std::int64_t tets;
   std::int64_t tets_unchanged;

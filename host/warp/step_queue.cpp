@@ -36,8 +36,8 @@ void StepQueue::begin(const PositionsView& deformed,
   Flight& now = *flights_.back();
   now.target.volumes = now.volumes;
   attempt(now, [&] { backend_->upload(now.number, deformed); });
-  // What a step builds on must be known before it is computed; the copy home that may keep the host
-  // comes when the device has the next kernels to run.
+  // A step may update the one before, so that one must be computed first. Its download, which may
+  // block this thread, is queued after the kernels of the new step.
   if (before != nullptr) settle(*before);
   attempt(now, [&] { backend_->compute(now.number, now.target, progress); });
   if (before != nullptr) attempt(*before, [&] { backend_->download(before->number); });

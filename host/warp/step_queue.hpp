@@ -1,5 +1,5 @@
 /// @file step_queue.hpp
-/// The steps in flight of a Warper: their order, their errors, and what runs beside what.
+/// The steps in flight of a Warper: their order, their errors, and which parts of them overlap.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace tetwarp {
 
-/// Drives a back end so that the download of a step runs beside the kernels of the next. Arguments
-/// have been checked.
+/// Calls the parts of WarpBackend so that the download of a step overlaps with the kernels of the
+/// next. Arguments have been checked.
 class StepQueue {
  public:
   explicit StepQueue(std::unique_ptr<WarpBackend> backend);
@@ -27,24 +27,26 @@ class StepQueue {
   /// True when a step in flight writes to memory of this target.
   bool writes_to(const WarpTarget& target) const;
 
-  /// Starts a step; fewer than two are in flight. What goes wrong is kept for finish().
+  /// Starts a step. Its errors are stored, and thrown by finish().
+  /// @pre size() < 2
   void begin(const PositionsView& deformed, const WarpTarget& target, const Progress& progress);
 
-  /// Ends the oldest step, in flight no longer whether it throws or not.
-  /// @throws what went wrong with this step
+  /// Ends the oldest step, which is no longer in flight afterwards, even when the call throws.
+  /// @throws the first error of this step
+  /// @pre size() > 0
   StepReport finish();
 
  private:
   struct Flight {
-    int number;  ///< 0 or 1, as the back end knows it
+    int number;  ///< 0 or 1, the argument of WarpBackend's functions
     std::vector<void*> volumes;
-    WarpTarget target;  ///< of these volumes
+    WarpTarget target;  ///< its span refers to `volumes`
     std::chrono::steady_clock::time_point start;
     bool is_settled = false;
     std::exception_ptr error = {};
   };
 
-  /// Does a part of a step, unless an earlier part failed.
+  /// Runs a part of a step, unless an earlier part failed.
   static void attempt(Flight& flight, const std::function<void()>& part);
   void settle(Flight& flight);
 

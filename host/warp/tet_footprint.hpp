@@ -1,5 +1,6 @@
 /// @file tet_footprint.hpp
-/// Where a tetrahedron lies in the output and which voxels of the source it reads, in whole voxels.
+/// Bounds of the output voxels that a tetrahedron or hexahedron may own, and of the source voxels
+/// that it reads for them.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,15 +12,16 @@
 
 namespace tetwarp {
 
-/// Where a tetrahedron or hexahedron lies in the output, and where it sends its voxels.
+/// Bounds of one cell of the mesh. The source position of output voxel begin + (i, j, k) is
+/// linear (i, j, k) + offset, unless `is_boxed`.
 struct Footprint {
-  int begin[3], end[3];  ///< voxels of the frame
-  int source_begin[3];   ///< voxels of the source that its samples are among
+  int begin[3], end[3];  ///< output voxels it may own [frame voxel]
+  int source_begin[3];   ///< source voxels around its positions, for all of its voxels
   int source_end[3];
-  bool is_boxed;       ///< by source_begin and source_end alone: there is no single mild map
-  int spread[3];       ///< how far around its position a voxel is sampled [source voxel]
-  float linear[3][3];  ///< the source position of begin + (i, j, k) is
-  double offset[3];    ///< linear (i, j, k) + offset
+  bool is_boxed;  ///< the map is not affine or too steep: only source_begin and source_end hold
+  int spread[3];  ///< distance of an averaged sample from the position [source voxel]
+  float linear[3][3];
+  double offset[3];
 };
 
 /// A box of voxels: empty unless begin < end along every axis.
@@ -38,7 +40,7 @@ inline Box common(const Box& a, const Box& b) {
   return box;
 }
 
-/// Makes `box` hold `other`, too.
+/// Extends `box` to contain `other`.
 inline void enclose(Box& box, const Box& other) {
   if (other.is_empty()) return;
   for (int axis = 0; axis < 3; ++axis) {
@@ -47,8 +49,8 @@ inline void enclose(Box& box, const Box& other) {
   }
 }
 
-/// Whole voxels around the image of the box of integers [begin, end) under start + linear (i, j,
-/// k), with a voxel to spare for all rounding.
+/// The voxels around the image of the voxels of `box` under start + linear (i, j, k). One voxel
+/// more on each side than exact arithmetic needs, for rounding.
 template <class Real>
 Box image_of(const Box& box, const Real (*linear)[3], const double* start) {
   Box image;
@@ -68,12 +70,13 @@ Box image_of(const Box& box, const Real (*linear)[3], const double* start) {
 }
 
 inline int clamped_int(std::int64_t value) {
-  constexpr std::int64_t far = std::int64_t{1} << 30;  // no grid reaches there
+  constexpr std::int64_t far = std::int64_t{1} << 30;  // beyond any grid
   return static_cast<int>(std::clamp(value, -far, far));
 }
 
-/// @param rest    nodes of the same tetrahedron in the source's index space
-/// @param spread  how far around its position a voxel may be sampled [output voxel]
+/// The footprint of a tetrahedron.
+/// @param rest    its nodes in the index space of the source
+/// @param spread  distance of an averaged sample from the position [output voxel]
 inline Footprint footprint_of(const TetSetup& setup, const TetNodes& rest, double spread) {
   Footprint footprint;
   footprint.is_boxed = setup.kind == MapKind::steep;
@@ -102,9 +105,10 @@ inline Footprint footprint_of(const TetSetup& setup, const TetNodes& rest, doubl
   return footprint;
 }
 
-/// Of a hexahedron, from those of its tetrahedra: wherever its trilinear map, continued by its
-/// margin, goes.
-/// @param parts  tets_per_hex of them; empty ones own nothing
+/// The footprint of a hexahedron: its source box is that of the trilinear map of its corners, moved
+/// outwards by hex_margin.
+/// @param parts  footprints of its tets_per_hex tetrahedra; empty ones own nothing
+/// @param rest   its corners in the index space of the source
 inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
   Footprint all = parts[0];
   all.is_boxed = true;
@@ -144,7 +148,8 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
   return all;
 }
 
-/// The voxels of the source around which a tetrahedron samples for the voxels of a box.
+/// The voxels of the source around the positions that a cell of the mesh has for the voxels of
+/// `box`.
 inline Box samples_of(const Footprint& footprint, const Box& box) {
   Box part, rest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -163,6 +168,7 @@ inline Box samples_of(const Footprint& footprint, const Box& box) {
   return common(rest, image);
 }
 
+/// Whether the cell may own voxels of `box`.
 inline bool meets(const Footprint& footprint, const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     if (footprint.begin[axis] >= box.end[axis] || footprint.end[axis] <= box.begin[axis]) {
@@ -172,7 +178,7 @@ inline bool meets(const Footprint& footprint, const Box& box) {
   return true;
 }
 
-/// Pairs with cells of a box.
+/// Upper bound of the number of (tetrahedron, cell) pairs within `box`. @pre meets(footprint, box)
 inline std::int64_t pairs_of(const Footprint& footprint, const Box& box) {
   std::int64_t pairs = 1;
   for (int axis = 0; axis < 3; ++axis) {

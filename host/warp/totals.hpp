@@ -1,6 +1,6 @@
 /// @file totals.hpp
-/// Totals of the sources over what the mesh covers at rest, and of the outputs, where intensities
-/// are not plain values.
+/// Integrals of the sources over the mesh at rest, and of the outputs, when intensities are
+/// densities or conservative; for any executor.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -14,10 +14,11 @@
 
 namespace tetwarp {
 
+/// Computes the numbers of Totals.
 template <class Exec>
 class WarpTotals {
  public:
-  /// The arguments must outlive it.
+  /// The arguments must outlive the object.
   WarpTotals(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : exec_(exec), plan_(plan), geometry_(geometry) {
     if (plan.options.intensity == Intensity::value || plan.options.source_window) return;
@@ -30,7 +31,7 @@ class WarpTotals {
 
   bool are_wanted() const { return !firsts_.empty(); }
 
-  /// Sums source s, once, and what has been computed of it.
+  /// Sums output s of this step, and in the first step also source s.
   void run(std::size_t s, NumberView source, NumberView output, const WarpPairs<Exec>& pairs) {
     const int components = plan_.sources[s].components;
     if (std::ssize(before_) == firsts_[s]) add_before(components, source, pairs);
@@ -38,10 +39,11 @@ class WarpTotals {
         {sums_.view(firsts_.back()).data + firsts_[s], components});
   }
 
-  /// Of all sources, component by component [world]; the sums of outputs lack the volume of a
-  /// voxel.
+  /// Integrals of the sources, component by component [world].
   const std::vector<double>& before() const { return before_; }
+  /// Sums of the outputs, to be multiplied by output_voxel().
   View<const double> sums() const { return sums_.const_view(firsts_.back()); }
+  /// Volume of an output voxel [world].
   double output_voxel() const { return 1 / std::abs(determinant(geometry_.axes.output_index)); }
 
  private:
@@ -87,7 +89,8 @@ class WarpTotals {
   Exec& exec_;
   const WarpPlan& plan_;
   const WarpGeometry& geometry_;
-  std::vector<int> firsts_;  ///< component of each source, and how many there are; empty: no totals
+  std::vector<int> firsts_;  ///< place of each source's first component in the lists, then the
+                             ///< number of all; empty: totals are not wanted
   std::vector<double> before_;
   Buffer<double> sums_;
   Buffer<double> scratch_;

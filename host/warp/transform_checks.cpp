@@ -35,7 +35,7 @@ void check_quantity(const VolumeView& source, Quantity quantity) {
   }
 }
 
-/// What would add to a total, or change it, is not asked for.
+/// Rejects options that would add to a total or change it.
 void check_conservative(const WarpOptions& options) {
   const char* wrong = nullptr;
   if (options.antialias) wrong = "means are exact without antialias";
@@ -68,10 +68,10 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
         options.quantities.empty() ? Quantity::components : options.quantities[s];
     check_quantity(sources[s], quantity);
     const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
-    const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
-    if (computes && (is_wide || options.filter == Filter::labels)) {
+    const bool is_64_bit = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
+    if (computes && (is_64_bit || options.filter == Filter::labels)) {
       throw std::invalid_argument(
-          std::string("source: ") + (is_wide ? name_of(sources[s].type) : "labels") +
+          std::string("source: ") + (is_64_bit ? name_of(sources[s].type) : "labels") +
           " cannot be scaled or turned; leave out intensity and quantities, or use another type");
     }
   }

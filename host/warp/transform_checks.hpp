@@ -1,5 +1,5 @@
 /// @file transform_checks.hpp
-/// Whether options that give voxels more than plain samples go with sources and with each other.
+/// Checks of the options that change samples: antialias, intensity and quantities.
 #pragma once
 #include <span>
 
@@ -7,7 +7,9 @@
 
 namespace tetwarp {
 
-/// Throws std::invalid_argument, naming the option and what would do.
+/// @throws std::invalid_argument when these options do not fit the sources or each other, naming
+/// the
+///                               option and an alternative
 void check_transforms(std::span<const VolumeView> sources, const WarpOptions& options);
 
 }  // namespace tetwarp

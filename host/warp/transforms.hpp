@@ -1,5 +1,5 @@
 /// @file transforms.hpp
-/// The transforms of a step's tetrahedra, for the sources that ask for more than plain samples.
+/// The transforms of a step's tetrahedra, for the sources whose samples are changed.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace tetwarp {
 template <class Exec>
 class WarpTransforms {
  public:
-  /// The arguments must outlive it.
+  /// The arguments must outlive the object.
   WarpTransforms(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : exec_(exec), options_(plan.options), axes_(geometry.axes), outside_(plain_transform()) {
     for (std::size_t s = 0; s < plan.sources.size(); ++s) {
@@ -32,9 +32,9 @@ class WarpTransforms {
     outside_.is_plain = !is_averaging(outside_);
   }
 
-  /// Makes the transforms of a step whose pairs are there; of an update those that have changed.
+  /// Computes the transforms of a step after its pairs; of an update only those that have changed.
   void run(const WarpPairs<Exec>& pairs) {
-    bool is_first = true;  // tetrahedra that average are counted once
+    bool is_first = true;  // counts the tetrahedra that average, once
     for (auto& [reorientation, buffer] : buffers_) {
       tet_transform(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
                     choice(reorientation), buffer.view(pairs.tet_count()),

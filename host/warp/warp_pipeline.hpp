@@ -1,5 +1,5 @@
 /// @file warp_pipeline.hpp
-/// The warp as a list of stages, for any executor. Read this file first; run() is the method.
+/// The warp as a list of stages, for any executor. Read this file first: run() is the method.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -23,6 +23,7 @@
 
 namespace tetwarp {
 
+/// The back ends cpu and cuda.
 template <class Exec>
 class WarpPipeline : public WarpBackend {
  public:
@@ -60,7 +61,7 @@ class WarpPipeline : public WarpBackend {
     flight.slot = outputs_.slot();
     flight.is_delivered = false;
     compute(flight, progress);
-    // Parts of an output are known when the step is settled; a whole one may be on its way by then.
+    // Which part of an update was written is known after settle(); all of it can be downloaded now.
     if (stale_.size == 0 && target.memory == Memory::host && outputs_.downloads_async(target)) {
       flight.window = outputs_.window_of({});
       download(number);
@@ -90,7 +91,7 @@ class WarpPipeline : public WarpBackend {
 
   StepReport finish(int number) override {
     exec_.select(number);
-    StageTimes& times = exec_.times();  // waits for the download, too
+    StageTimes& times = exec_.times();  // waits for the download
     outputs_.release(flights_[number].slot);
     StepReport report = flights_[number].report;
     add_stages(times, report.timings);
@@ -108,18 +109,18 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   using Buffer = typename Exec::template Buffer<T>;
 
-  /// A step between its parts.
+  /// The state of a step between the calls for its parts.
   struct Flight {
     typename Exec::template Staged<double> position_buffer;
     View<const double> positions;
     typename Exec::template PinnedBuffer<StepCounters> counters;
     typename Exec::template PinnedBuffer<double> totals;
     WarpTarget target;
-    int age = 0;   ///< steps since the target got what it holds; 0: nothing is known
-    int slot = 0;  ///< of outputs_
-    CellWindow window{};
+    int age = 0;          ///< see WarpOutputs::take()
+    int slot = 0;         ///< of outputs_
+    CellWindow window{};  ///< cells to download
     bool is_delivered = false;
-    bool is_open = false;  ///< not finished: where another is begun, it failed
+    bool is_open = false;  ///< begun and not finished; still set when the step failed
     StepReport report;
   };
 
@@ -135,8 +136,8 @@ class WarpPipeline : public WarpBackend {
     exec_.end_compute();
   }
 
-  /// The method: tetrahedron, corner, cell, voxel.
-  /// @param age  steps since the target got what it holds; 0: nothing is known
+  /// All stages of a step, in order: tetrahedra, corners, cells, voxels.
+  /// @param age  of the result that the target holds [step]; 0: unknown
   void run(View<const double> positions,
            const WarpTarget& target,
            int age,
@@ -160,7 +161,8 @@ class WarpPipeline : public WarpBackend {
                    CoveredSumBody{cell_covered_.const_view(cells), {&work_counters().covered, 1}});
   }
 
-  /// Of an update only touched cells are counted again: what they held before is taken back.
+  /// In an update only touched cells are counted again, and their counts of the step before are
+  /// subtracted.
   void count_folded() {
     const View<const std::uint8_t> touched =
         pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
@@ -199,7 +201,7 @@ class WarpPipeline : public WarpBackend {
       job.background = rounded_to<T>(plan_.options.background);
       job.copy_whole_shifts = plan_.options.skip.copied_voxels;
       job.volume = static_cast<T*>(volume);
-      // The extra outputs and the counts come once, with the first source.
+      // Mask, owners and counts are the same for all sources.
       job.mask = s == 0 ? extra.mask : nullptr;
       job.tet = s == 0 ? extra.owner : nullptr;
       job.counts = s == 0 ? &work_counters().raster : nullptr;
@@ -221,7 +223,7 @@ class WarpPipeline : public WarpBackend {
     });
   }
 
-  /// Owners, as ever, with the first source; then what lies in the voxels' boxes.
+  /// Averages over the voxels' boxes; for the first source after a raster of mask and owners.
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
     VoxelOverlapBody body = {job.setups,
@@ -249,7 +251,7 @@ class WarpPipeline : public WarpBackend {
     }
   }
 
-  /// Cells to keep and cells to fill. Where there cannot be either, all are sampled.
+  /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
   template <class T>
   void choose_work(std::size_t s, RasterJob<T>& job) {
     const UniformMap uniform =
@@ -265,7 +267,7 @@ class WarpPipeline : public WarpBackend {
 
   WorkCounters& work_counters() const { return pairs_.counters().data->work; }
 
-  /// The step is computed: its report without times, and what the next one may build on.
+  /// Records a computed step for the next one. @returns its report without times
   StepReport complete(const WarpTarget& target, StepCounters counters) {
     if (stale_.size == 0) counters.work.covered = counters.work.raster.covered;
     pairs_.finish(counters);
@@ -291,8 +293,8 @@ class WarpPipeline : public WarpBackend {
 
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;
-  Buffer<std::uint16_t> cell_covered_;  ///< kept from step to step where cells are
-  View<const std::uint8_t> stale_;      ///< 0 for cells that the target holds; size 0: it has none
+  Buffer<std::uint16_t> cell_covered_;  ///< covered voxels per cell; kept from step to step
+  View<const std::uint8_t> stale_;      ///< per cell, 0: the target holds it; size 0: it holds none
 };
 
 }  // namespace tetwarp

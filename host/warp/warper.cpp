@@ -1,5 +1,5 @@
 /// @file warper.cpp
-/// The public calls: check every argument once, run, fill the report.
+/// The public calls: checks of all arguments, the queue of steps, the report.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -32,8 +32,8 @@ void check_filter(const VolumeView& source, Filter filter) {
     }
     return;
   }
-  const bool wide = is_integer(source.type) && size_of(source.type) == 8;
-  if (wide && filter != Filter::nearest) {
+  const bool is_64_bit = is_integer(source.type) && size_of(source.type) == 8;
+  if (is_64_bit && filter != Filter::nearest) {
     throw std::invalid_argument(type +
                                 " cannot be interpolated without loss; use the nearest filter");
   }

@@ -1,6 +1,6 @@
 /// @file exact_geometry.hpp
-/// The geometry of the reference: rounded nodes, signed volumes in exact integers, barycentric
-/// coordinates. Straight from the definitions; nothing of kernels/ in it.
+/// Geometry of the reference: rounded nodes, signed volumes in exact integers, barycentric
+/// coordinates. Straight from the definitions, independent of kernels/.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -18,7 +18,7 @@ using Corners = std::array<Quanta, 4>;
 
 constexpr double one_voxel = 1048576.0;  // 2^20 quanta
 constexpr std::int64_t one_voxel_int = 1048576;
-constexpr double rim = 2.0 / one_voxel;  // rounded nodes: a position on the source's rim is inside
+constexpr double rim = 2.0 / one_voxel;  // tolerance at the source's boundary, for rounded nodes
 
 /// Index-space matrix and its inverse of a grid.
 struct IndexSpace {
@@ -70,7 +70,8 @@ inline Integer signed_volume(const Corners& tet) {
   return signed_volume(tet[0], tet[1], tet[2], tet[3]);
 }
 
-/// Determinants of nodes further apart would not fit 128 bits.
+/// Determinants of nodes farther apart could exceed 128 bits.
+/// @throws std::invalid_argument when nodes are more than 2^20 voxels apart
 inline void check_extent(const Corners& tet) {
   for (const Quanta& a : tet) {
     for (const Quanta& b : tet) {
@@ -83,11 +84,13 @@ inline void check_extent(const Corners& tet) {
   }
 }
 
-/// Barycentric coordinates of x, or nothing when x is outside the closed tetrahedron.
+/// Barycentric coordinates of a point, and whether one of them is zero.
 struct Barycentric {
   Eigen::Vector4d weight;
   bool on_face;
 };
+
+/// Those of x, or nothing when x is outside the closed tetrahedron.
 inline std::optional<Barycentric> barycentric_of(const Corners& tet, const Quanta& x) {
   const Integer whole = signed_volume(tet);
   Barycentric result{Eigen::Vector4d::Zero(), false};
@@ -103,7 +106,8 @@ inline std::optional<Barycentric> barycentric_of(const Corners& tet, const Quant
   return result;
 }
 
-/// The whole-voxel shift by which all nodes of a cell move, to within a quantum.
+/// The whole-voxel shift from deformed to rest nodes, or nothing when a node deviates from it by
+/// more than a quantum.
 template <std::size_t N>
 std::optional<Eigen::Vector3d> whole_shift(const std::array<Quanta, N>& rest,
                                            const std::array<Quanta, N>& deformed) {

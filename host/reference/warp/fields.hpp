@@ -1,5 +1,5 @@
 /// @file fields.hpp
-/// Fields of the deformation in the reference: straight from node positions, in Eigen's matrices.
+/// Fields of the deformation in the reference: straight from node positions.
 #pragma once
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace tetwarp::reference {
 
-/// F = d deformed / d rest of a tetrahedron that is not flat: edges to edges, in world axes.
+/// F = d deformed / d rest of a tetrahedron that is not flat at rest, in world axes.
 inline Eigen::Matrix3d gradient_of(const Corners& rest,
                                    const IndexSpace& source,
                                    const Corners& deformed,
@@ -29,7 +29,7 @@ inline Eigen::Matrix3d gradient_of(const Corners& rest,
   return edges(deformed, output) * edges(rest, source).inverse();
 }
 
-/// (F^T F - I) / 2.
+/// Green-Lagrange strain, (F^T F - I) / 2.
 inline Eigen::Matrix3d green_lagrange(const Eigen::Matrix3d& gradient) {
   return (gradient.transpose() * gradient - Eigen::Matrix3d::Identity()) / 2;
 }

@@ -1,6 +1,6 @@
 /// @file hexahedron.hpp
-/// The inverse of a trilinear map as the reference finds it: by following the solution along a
-/// straight line from the centre, in float64. Nothing of kernels/ in it.
+/// Trilinear maps of the reference and their inverse, by continuation along a straight line from
+/// the centre, in float64. Independent of kernels/.
 #pragma once
 #include <Eigen/Dense>
 #include <array>
@@ -13,7 +13,7 @@ namespace tetwarp::reference {
 /// Eight corners in VTK's order.
 using HexCorners = std::array<Quanta, 8>;
 
-/// x(u) = sum over the eight products of powers 0 and 1 of u, v, w, times a column each.
+/// x(u) = sum of eight columns, each times a product of powers 0 or 1 of u, v and w.
 class Trilinear {
  public:
   explicit Trilinear(const HexCorners& corners) {
@@ -39,7 +39,7 @@ class Trilinear {
     return result;
   }
 
-  /// Local coordinates of x, each cut to the unit interval and a quarter more on both sides.
+  /// Local coordinates of x, limited to [-0.25, 1.25].
   Eigen::Vector3d inverse(const Eigen::Vector3d& x) const {
     Eigen::Vector3d u = Eigen::Vector3d::Constant(0.5);
     const Eigen::Vector3d centre = at(u);
@@ -53,7 +53,7 @@ class Trilinear {
   }
 
  private:
-  /// The products, or their derivatives by one of u.
+  /// The eight products, or their derivatives by coordinate `by`; -1: no derivative.
   static Eigen::Matrix<double, 8, 1> powers(const Eigen::Vector3d& u, int by) {
     Eigen::Matrix<double, 8, 1> result;
     for (int power = 0; power < 8; ++power) {

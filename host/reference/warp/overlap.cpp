@@ -23,7 +23,7 @@ Simplex simplex_of(const Corners& tet) {
   return simplex;
 }
 
-/// What of simplices lies where normal . x >= offset, as simplices again.
+/// The parts of simplices where normal . x >= offset, as simplices.
 std::vector<Simplex> cut(const std::vector<Simplex>& simplices,
                          const Eigen::Vector3d& normal,
                          double offset) {
@@ -35,7 +35,7 @@ std::vector<Simplex> cut(const std::vector<Simplex>& simplices,
       const double above = normal.dot(in[i]) - offset, below = offset - normal.dot(out[o]);
       return Eigen::Vector3d(in[i] + above / (above + below) * (out[o] - in[i]));
     };
-    std::vector<Eigen::Vector3d> prism;  // two triangles, corner beside corner
+    std::vector<Eigen::Vector3d> prism;  // two triangles, with corresponding corners
     if (out.empty()) {
       kept.push_back(simplex);
     } else if (in.size() == 1) {
@@ -52,7 +52,7 @@ std::vector<Simplex> cut(const std::vector<Simplex>& simplices,
   return kept;
 }
 
-/// What lies in the box of the voxel at `centre`.
+/// The parts of simplices in the box of the voxel at `centre`.
 std::vector<Simplex> in_box(std::vector<Simplex> simplices, const Eigen::Vector3d& centre) {
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d normal = Eigen::Vector3d::Unit(axis);
@@ -70,7 +70,7 @@ double volume_of(const std::vector<Simplex>& simplices) {
   return volume;
 }
 
-/// Calls work(voxel, pieces) for the voxels whose boxes hold some of the simplices.
+/// Calls work(voxel, pieces) for the voxels whose boxes overlap the simplices.
 template <class Work>
 void for_boxes(const std::vector<Simplex>& simplices, const Dims& dims, const Work& work) {
   std::int64_t first[3], last[3];

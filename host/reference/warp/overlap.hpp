@@ -1,5 +1,6 @@
 /// @file overlap.hpp
-/// Back end reference: what keeps totals, by cutting simplices.
+/// Conservative intensity in the reference: overlap volumes of tetrahedra with boxes of voxels, by
+/// clipping simplices.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,31 +14,33 @@
 
 namespace tetwarp::reference {
 
-/// Boxes of voxels, from voxel (0, 0, 0) on.
+/// Voxels of a grid along each axis.
 using Dims = std::array<std::int64_t, 3>;
 
-/// Told of a voxel of the output, one of the source, and how much of the latter's box gets from
-/// there to the former's [source voxel].
+/// Callback: output voxel, source voxel, and the volume of the part of the source voxel's box that
+/// the deformation moves into the output voxel's box [source voxel].
 using Visit = std::function<void(std::int64_t, std::int64_t, double)>;
 
-/// Tells what a tetrahedron that is not flat brings.
+/// Calls `visit` for all overlaps of one tetrahedron that is not flat.
 void for_overlaps(const Corners& rest,
                   const Corners& now,
                   const Dims& source,
                   const Dims& output,
                   const Visit& visit);
 
-/// Told of a voxel of the source and how much of its box a tetrahedron holds [source voxel].
+/// Callback: source voxel, and the volume of its box within a tetrahedron [source voxel].
 using VisitHeld = std::function<void(std::int64_t, double)>;
 
-/// Tells what a tetrahedron holds at rest.
+/// Calls `visit` for all source voxels whose boxes overlap a tetrahedron at rest.
 void for_held(const Corners& rest, const Dims& source, const VisitHeld& visit);
 
+/// A tetrahedron at rest in the source's and deformed in the output's index space.
 struct MovedTet {
   Corners rest, now;
 };
 
-/// Every voxel of a region gets what tetrahedra bring into its box.
+/// Writes to every voxel of a region the amount that tetrahedra carry into its box, over its
+/// volume.
 /// @param ratio  volume of a source voxel over that of an output voxel
 /// @param out    [voxel of the region][component]
 template <class T>
@@ -67,7 +70,7 @@ void carry(const VolumeView& source,
   for (std::size_t v = 0; v < sums.size(); ++v) out[v] = stored<T>(sums[v]);
 }
 
-/// What tetrahedra hold of a source at rest, component by component [source voxel].
+/// Integral of a source over the tetrahedra at rest, component by component [source voxel].
 template <class T>
 std::vector<double> total_held(const VolumeView& source, const std::vector<MovedTet>& tets) {
   std::vector<double> totals(static_cast<std::size_t>(source.components), 0.0);

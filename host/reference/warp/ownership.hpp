@@ -1,6 +1,6 @@
 /// @file ownership.hpp
-/// Who owns each voxel and where its material rests, straight from the definition: every
-/// tetrahedron over its bounding box, by determinants in exact integers, serially.
+/// The owner of each voxel and the rest position of its material, straight from the definition: all
+/// voxels in the bounding box of every tetrahedron, by determinants in exact integers, serially.
 #pragma once
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,13 +18,15 @@
 
 namespace tetwarp::reference {
 
+/// Owners for one plan.
 class Ownership {
  public:
   /// The plan must outlive it.
   explicit Ownership(const WarpPlan& plan)
       : output(plan.output_grid), source(plan.sources.front().grid), plan_(plan) {}
 
-  /// Finds the owner of every voxel and its source position.
+  /// Computes owner, source_position and strictly_inside, and adds to `counts`.
+  /// @throws Cancelled when `progress` returns false
   void claim_all(const double* rest,
                  const double* deformed,
                  Counts& counts,
@@ -50,12 +52,13 @@ class Ownership {
     return corners;
   }
 
-  /// What tetrahedron t is a part of.
+  /// The maps of a hexahedron from local coordinates to deformed and rest positions.
   struct Hexahedron {
     Trilinear now;
     Trilinear rest;
-    std::optional<Eigen::Vector3d> shift;
+    std::optional<Eigen::Vector3d> shift;  ///< see whole_shift()
   };
+  /// The hexahedron that tetrahedron t is a part of, if any.
   std::optional<Hexahedron> hexahedron_of(std::int32_t t,
                                           const double* rest_positions,
                                           const double* deformed) const {
@@ -70,7 +73,7 @@ class Ownership {
     return Hexahedron{Trilinear(now), Trilinear(rest), whole_shift(rest, now)};
   }
 
-  /// F = d deformed / d rest where tetrahedron t owns a voxel, in world axes.
+  /// F = d deformed / d rest at a voxel that tetrahedron t owns, in world axes.
   Eigen::Matrix3d gradient(std::int32_t t,
                            const Eigen::Vector3d& voxel,
                            const double* rest,
@@ -92,8 +95,9 @@ class Ownership {
   IndexSpace output;
   IndexSpace source;
   std::vector<std::int32_t> owner;               ///< tetrahedron of each voxel, or -1
-  std::vector<Eigen::Vector3d> source_position;  ///< [voxel]
-  std::vector<std::uint8_t> strictly_inside;     ///< tetrahedra, up to two; empty: not wanted
+  std::vector<Eigen::Vector3d> source_position;  ///< of covered voxels [source voxel]
+  std::vector<std::uint8_t> strictly_inside;     ///< number of tetrahedra that strictly contain the
+                                                 ///< voxel, at most 2; empty: not counted
 
  private:
   /// Assigns to tetrahedron t every voxel of its closed shape that no tetrahedron of a lower number
@@ -165,7 +169,7 @@ class Ownership {
     return static_cast<std::int32_t>(plan_.mesh.tets.size() - 6 * plan_.mesh.hexes.size());
   }
 
-  /// sum_i b_i R_i [voxel]
+  /// sum_i weight_i rest_i [voxel]
   static Eigen::Vector3d combined(const Corners& rest, const Eigen::Vector4d& weight) {
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (std::size_t node = 0; node < 4; ++node) {

@@ -41,8 +41,8 @@ Eigen::VectorXd components_of(const Eigen::Matrix3d& tensor) {
   return d;
 }
 
-/// As Alexander et al. describe it: the rotation that takes e1 to n1 and e2 to the part of n2
-/// across n1.
+/// The rotation that takes e1 to n1 = F e1 and e2 to the part of n2 = F e2 orthogonal to n1, all
+/// normalized. Source: Alexander et al. 2001.
 Eigen::Matrix3d principal_rotation(const Eigen::Matrix3d& tensor, const Eigen::Matrix3d& forward) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(tensor);
   const Eigen::Vector3d e1 = eigen.eigenvectors().col(2), e2 = eigen.eigenvectors().col(1);

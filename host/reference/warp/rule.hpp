@@ -1,5 +1,5 @@
 /// @file rule.hpp
-/// Back end reference: what a voxel gets beyond a plain sample, from the definitions.
+/// Averages, reorientation and density in the reference, from the definitions.
 #pragma once
 #include <Eigen/Dense>
 
@@ -9,19 +9,20 @@
 
 namespace tetwarp::reference {
 
-/// What one tetrahedron does to the samples that it brings.
+/// The change of samples in one tetrahedron.
 struct Rule {
   Eigen::Vector3i parts = {1, 1, 1};                      ///< samples along each axis of a voxel
   Eigen::Matrix3d step = Eigen::Matrix3d::Identity();     ///< source index by output index
   Eigen::Matrix3d forward = Eigen::Matrix3d::Identity();  ///< deformation gradient in the world
   bool is_singular = false;                               ///< flat at rest: there is no gradient
-  bool is_still = true;                                   ///< moves nothing but by whole voxels
-  double scale = 1;                                       ///< of a density
+  bool is_still = true;                                   ///< a shift by whole voxels
+  double scale = 1;                                       ///< factor of densities
 
   bool averages() const { return parts.maxCoeff() > 1; }
 };
 
-/// Samples along each axis that a step from voxel to voxel asks for.
+/// Samples to average along each axis.
+/// @param step  source index by output index
 Eigen::Vector3i parts_of(const Eigen::Matrix3d& step);
 
 /// The rule of a tetrahedron that is not flat.
@@ -31,7 +32,8 @@ Rule rule_of(const Corners& rest,
              const IndexSpace& output,
              const WarpOptions& options);
 
-/// Components as a deformation gradient takes them along.
+/// Components of a quantity after a deformation.
+/// @param forward  deformation gradient in world axes
 Eigen::VectorXd reoriented(const Eigen::VectorXd& values,
                            Quantity quantity,
                            const Eigen::Matrix3d& forward);

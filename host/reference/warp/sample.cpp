@@ -41,7 +41,8 @@ void solve_line(double* line, std::int64_t step, std::int64_t n) {
   }
 }
 
-/// Fills gaps in a row from the left, and what is left of the first number from the right.
+/// Replaces samples that are not finite by the one before, at the beginning by the first finite
+/// one.
 void bridge_gaps(double* row, std::int64_t step, std::int64_t n) {
   const auto is_gap = [&](std::int64_t i) { return !std::isfinite(row[i * step]); };
   std::int64_t first = 0;

@@ -1,5 +1,5 @@
 /// @file sample.hpp
-/// Back end reference: the source at a position by every filter, in float64, from the definitions.
+/// Interpolation in the reference: every filter in float64, from the definitions.
 #pragma once
 #include <Eigen/Dense>
 #include <algorithm>
@@ -18,21 +18,25 @@
 
 namespace tetwarp::reference {
 
-/// How much a sample counts at a distance [voxel] along one axis; unscaled.
+/// Weight of a sample at a distance along one axis [voxel]; the weights of a position need not sum
+/// to one.
 double weight_of(Filter filter, double distance);
 
-/// Half the width of what weight_of() is not zero on [voxel].
+/// Distance beyond which weight_of() is zero [voxel].
 int radius_of(Filter filter);
 
-/// Index of the sample that stands at i of n: the nearest, or for splines the mirrored one.
+/// Index of the sample to use at index i of n samples, which may be out of range: the nearest, for
+/// splines the mirrored one.
 std::int64_t stand_in(Filter filter, std::int64_t i, std::int64_t n);
 
-/// Coefficients of the cubic B-spline through samples [k][j][i][component], mirrored at the rim; in
-/// place of a sample that is not finite stands the one before it in its row, or else the next.
+/// Coefficients of the cubic B-spline through samples [k][j][i][component], mirrored at the
+/// boundary. A sample that is not finite is replaced by the one before it in its row, at the
+/// beginning of a row by the next finite one.
 std::vector<double> spline_coefficients(std::vector<double> samples,
                                         const std::array<std::int64_t, 3>& dims,
                                         int components);
 
+/// A value rounded to T and limited to its range.
 template <class T>
 T stored(double value) {
   if constexpr (std::is_integral_v<T>) {
@@ -48,11 +52,12 @@ T stored(double value) {
   return static_cast<T>(value);
 }
 
-/// One source as a filter sees it.
+/// Samples of one source by one filter.
 template <class T>
 class Sampler {
  public:
-  /// @param range  least and largest sample of each component in turn; null: of source.data
+  /// @param held   voxels of the source grid that source.data holds
+  /// @param range  least and largest sample of each component in turn; null: computed when needed
   Sampler(const VolumeView& source,
           const Region& held,
           const WarpOptions& options,
@@ -92,7 +97,7 @@ class Sampler {
   T background() const { return background_; }
   int components() const { return components_; }
 
-  /// Writes the samples at an index position, or the background outside of the source.
+  /// Writes the values at an index position, rounded to T, or the background outside of the source.
   void store(const Eigen::Vector3d& x, T* out) const {
     bool is_centre = true;
     for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +123,8 @@ class Sampler {
     }
   }
 
-  /// Adds the values at an index position, not rounded. @returns false outside of the source
+  /// Adds the values at an index position, not rounded. @returns false outside of the source, where
+  /// nothing is added
   bool add(const Eigen::Vector3d& x, Eigen::VectorXd& sums) const {
     for (int axis = 0; axis < 3; ++axis) {
       const auto n = static_cast<double>(n_[static_cast<std::size_t>(axis)]);
@@ -132,7 +138,7 @@ class Sampler {
     return true;
   }
 
-  /// Clamps values to the range of the samples where that is wanted.
+  /// Limits values to the range of the samples with Overshoot::clamp.
   void clamp(Eigen::VectorXd& values) const {
     for (int c = 0; c < components_; ++c) {
       const auto of = static_cast<std::size_t>(c);
@@ -142,7 +148,7 @@ class Sampler {
   }
 
  private:
-  /// Position in memory of component 0 of the voxel that stands at (i, j, k).
+  /// Position in memory of component 0 of the voxel to use at (i, j, k), see stand_in().
   std::int64_t offset_of(const Eigen::Vector3d& ijk) const {
     std::int64_t offset = 0;
     for (std::size_t axis = 3; axis-- > 0;) {
@@ -153,7 +159,7 @@ class Sampler {
     return offset * components_;
   }
 
-  /// visit(offset, weight) for all that weigh anything at x.
+  /// Calls visit(offset, weight) for all samples with a weight at x.
   template <class Visit>
   void for_neighbors(const Eigen::Vector3d& x, const Visit& visit) const {
     const int radius = radius_of(filter_);
@@ -182,7 +188,7 @@ class Sampler {
     return sum / weights;
   }
 
-  /// Positions are rounded to 2^-20 voxel, or a tie would hang on the last bit of one.
+  /// Positions are rounded to 2^-20 voxel, so that ties do not depend on rounding errors.
   T label_at(const Eigen::Vector3d& x) const {
     std::map<T, double> shares;
     const Eigen::Vector3d rounded = (x * one_voxel).array().rint() / one_voxel;
@@ -194,12 +200,12 @@ class Sampler {
 
   const T* data_;
   std::array<std::int64_t, 3> n_;
-  Region held_;  ///< what `data_` is of the source
+  Region held_;  ///< voxels of the source grid that `data_` holds
   int components_;
   Filter filter_;
   T background_;
-  std::vector<double> coefficients_;  ///< for splines, in place of the samples
-  std::vector<double> low_, high_;    ///< bounds of a value, per component
+  std::vector<double> coefficients_;  ///< of splines; empty for other filters
+  std::vector<double> low_, high_;    ///< limits of values, per component
 };
 
 }  // namespace tetwarp::reference

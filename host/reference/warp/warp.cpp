@@ -1,7 +1,7 @@
 /// @file warp.cpp
-/// Back end reference: the warp straight from its definition. Every tetrahedron over its bounding
-/// box, ownership by determinants in exact integers, values in float64; serial, no culling, no
-/// filter. It shares no line with the kernels it is the judge of.
+/// Back end reference: the warp straight from its definition. All voxels in the bounding box of
+/// every tetrahedron, owners by determinants in exact integers, values in float64; serial, without
+/// culling. It shares no code with the kernels that are tested against it.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -92,7 +92,7 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// What is kept of a source, and what voxels hold of it.
+  /// Totals of source s and its output; with conservative intensity also the output itself.
   template <class T>
   void conserve(
       std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
@@ -142,7 +142,7 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// Of voxels that show the source at their own place.
+  /// Of voxels outside the mesh, which get the source at their own position.
   Rule outside_rule() const {
     Rule rule;
     rule.step = owners_.source.from_world * owners_.output.to_world;
@@ -150,7 +150,8 @@ class ReferenceBackend : public WarpBackend {
     return rule;
   }
 
-  /// One voxel: a sample, or a mean of samples at the midpoints of its parts, by its rule.
+  /// Writes one voxel: a sample, or the mean of samples at the midpoints of its parts, changed by
+  /// its rule.
   template <class T>
   void store_voxel(std::size_t s,
                    const Sampler<T>& sampler,
@@ -196,7 +197,7 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// Where the material of each voxel comes from, less the voxel's own place.
+  /// Rest position of the material at each voxel minus the voxel's position [world].
   void write_displacement(float* displacement) const {
     for_each_voxel([&](std::size_t v, const Eigen::Vector3d& index) {
       Eigen::Vector3d apart = Eigen::Vector3d::Zero();
@@ -226,7 +227,7 @@ class ReferenceBackend : public WarpBackend {
     });
   }
 
-  /// Source index of an output voxel's own world position; whole voxels within 2^-40 are whole.
+  /// Source index of the world position of an output voxel, rounded to whole voxels within 2^-40.
   Eigen::Vector3d same_place(std::int64_t i, std::int64_t j, std::int64_t k) const {
     const Eigen::Vector3d index(static_cast<double>(i), static_cast<double>(j),
                                 static_cast<double>(k));

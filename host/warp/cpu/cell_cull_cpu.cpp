@@ -1,5 +1,5 @@
 /// @file cell_cull_cpu.cpp
-/// Culls rows of cells; compiled once per vector instruction set.
+/// Implementation by Highway, compiled once per vector instruction set.
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct CellSpan {
 
   double first;
   double last;
-  bool is_whole;  ///< all voxels of the cell that are in the output
+  bool is_whole;  ///< the box contains all voxels of the cell that are in the output
 };
 
 /// Verdicts on the cells of one tetrahedron.
@@ -38,11 +38,11 @@ class TetCells {
     double longest = 1;
     for (int axis = 0; axis < 3; ++axis) longest += tet.end[axis] - tet.begin[axis] + 1;
     for (int face = 0; face < 4; ++face) longest = std::max(longest, std::abs(tet.plane[3][face]));
-    // A thousand times the rounding error of a plane value.
+    // A thousand times the bound of the rounding error of a plane value.
     margin_ = 4 * longest * 0x1p-40;
   }
 
-  /// What y and z add to the values of the planes in row (cj, ck).
+  /// Computes the contributions of y and z to the plane values in row (cj, ck) of cells.
   void start_row(int cj, int ck) {
     const CellSpan y(tet_, frame_, 1, cj), z(tet_, frame_, 2, ck);
     is_whole_ = y.is_whole && z.is_whole;
@@ -58,8 +58,8 @@ class TetCells {
   bool is_rejected() const { return is_rejected_; }
   bool is_accepted() const { return is_accepted_; }
 
-  /// Tells the verdict on cell ci of the row.
-  void judge(int ci) {
+  /// Computes the verdict on cell ci of the row.
+  void classify(int ci) {
     const CellSpan x(tet_, frame_, 0, ci);
     const auto margin = hn::Set(d, margin_);
     is_rejected_ = false;
@@ -78,7 +78,7 @@ class TetCells {
   using Tag = hn::CappedTag<double, 4>;  ///< one lane per face
   static constexpr Tag d{};
 
-  /// The least and the largest that the voxels of a span add to the values of the planes.
+  /// Adds to `low` and `high` the least and largest contribution of a span to the plane values.
   template <class V>
   void add(int axis, const CellSpan& span, std::size_t face, V& low, V& high) const {
     const auto normal = hn::LoadU(d, tet_.plane[axis] + face);
@@ -98,14 +98,14 @@ class TetCells {
   alignas(64) double high_[4];
 };
 
-/// Judges candidates [first, past) of tetrahedron t.
-void judge_cells(const TetSetup& tet,
-                 std::int64_t t,
-                 std::int64_t first,
-                 std::int64_t past,
-                 CullSwitches switches,
-                 const OutputFrame& frame,
-                 CellPair* pairs) {
+/// Computes the verdicts on candidate pairs [first, past) of tetrahedron t.
+void classify_cells(const TetSetup& tet,
+                    std::int64_t t,
+                    std::int64_t first,
+                    std::int64_t past,
+                    CullSwitches switches,
+                    const OutputFrame& frame,
+                    CellPair* pairs) {
   TetCells cells(tet, frame);
   const int ci_begin = first_cell(tet, 0), ci_end = last_cell(tet, 0) + 1;
   const int ny = last_cell(tet, 1) - first_cell(tet, 1) + 1;
@@ -117,7 +117,7 @@ void judge_cells(const TetSetup& tet,
     cells.start_row(cj, ck);
     const std::int64_t line = frame.cell_index(0, cj, ck);
     for (; ci < ci_end && left > 0; ++ci, --left) {
-      cells.judge(ci);
+      cells.classify(ci);
       const bool accepted = switches.accept && cells.is_accepted();
       const bool rejected = switches.reject && cells.is_rejected();
       *pairs++ = rejected ? rejected_pair : make_pair(line + ci, t, accepted);
@@ -136,7 +136,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tetwarp {
 
-HWY_EXPORT(judge_cells);
+HWY_EXPORT(classify_cells);
 
 void cell_verdicts(CpuExec& exec,
                    View<const TetSetup> setups,
@@ -148,7 +148,7 @@ void cell_verdicts(CpuExec& exec,
                    View<CellPair> pairs) {
   exec.for_each_span("warp/cull", pair_offsets, pairs.size,
                      [&](std::int64_t t, std::int64_t first, std::int64_t past, std::int64_t item) {
-                       HWY_DYNAMIC_DISPATCH(judge_cells)
+                       HWY_DYNAMIC_DISPATCH(classify_cells)
                        (setups[t], t, first, past, switches, frame, pairs.data + item);
                      });
 }

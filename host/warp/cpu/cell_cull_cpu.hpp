@@ -1,6 +1,6 @@
 /// @file cell_cull_cpu.hpp
-/// Stage "cull" on host threads: each cell of a tetrahedron's box against its four faces at once;
-/// ranges of cells in one sweep over the pairs.
+/// Stage "cull" on host threads: each cell of a tetrahedron's box is tested against the four faces
+/// in one vector.
 #pragma once
 #include <cstdint>
 
@@ -10,12 +10,13 @@
 
 namespace tetwarp {
 
-/// Rejects, accepts or keeps every candidate pair; no masks are made.
+/// Classifies every candidate pair as rejected, accepted or partial. Unlike the body of
+/// cell_cull.hpp it needs no corner masks.
 ///
-/// Along a normal one corner of a cell lies farthest in and one farthest out: these two decide what
-/// eight masks do. Corners are those of the voxels that cell, box and output share, so that small
-/// tetrahedra lose most of their cells too. As conservative as corner_mask: culling never changes
-/// the output.
+/// Along the normal of a face, one corner of a box of voxels has the least and one the largest
+/// plane value; these two suffice. The box is the intersection of the cell, the tetrahedron's
+/// bounding box and the output, so that small tetrahedra are rejected from most of their cells.
+/// Conservative: culling never changes the output.
 /// @param exec          threads and clock
 /// @param setups        from tet_setup, shape [tet_count]
 /// @param pair_offsets  first candidate pair of each tetrahedron, shape [tet_count + 1]
@@ -25,7 +26,7 @@ namespace tetwarp {
 ///
 /// Determinism: same bits for any vector width and number of threads. Cost: 8 products, 8 bytes
 /// written per pair.
-/// Source: ours; Gascon et al. 2013, section 4, mask corners.
+/// Source: own; Gascon et al. 2013, section 4, use corner masks.
 void cell_verdicts(CpuExec& exec,
                    View<const TetSetup> setups,
                    View<const std::int64_t>,
@@ -35,7 +36,7 @@ void cell_verdicts(CpuExec& exec,
                    const OutputFrame& frame,
                    View<CellPair> pairs);
 
-/// The range of every cell: a stretch of cells needs one search.
+/// Computes the range of pairs of every cell: one binary search per stretch of cells.
 void cell_ranges(CpuExec& exec, const CellRangeBody& body);
 
 }  // namespace tetwarp

@@ -1,7 +1,7 @@
 /// @file cell_line-inl.hpp
-/// A line of cells along x: who owns its voxels, then what they get, row by row over the whole
-/// line, so that the source is read in long streaks. Included once per vector instruction set (the
-/// name and the toggled guard are Highway's convention).
+/// Raster of a line of cells along x: first the owners of its voxels, then the samples, row by row
+/// over the whole line, so that the source is read in long runs. Included once per vector
+/// instruction set (the name and the toggled guard are Highway's convention).
 #if defined(TETWARP_CELL_LINE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_LINE_INL
 #undef TETWARP_CELL_LINE_INL
@@ -29,7 +29,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Rasters lines of cells of one job. Keeps its scratch from line to line.
+/// Rasters lines of cells of one job. Reuses its scratch memory from line to line.
 template <class T>
 class CellLine {
  public:
@@ -46,7 +46,7 @@ class CellLine {
             static_cast<std::size_t>(longest * cell_edge * cell_edge * cell_edge))),
         row_capacity_(longest * cell_edge) {}
 
-  /// Cells [ci_begin, ci_end) of line (cj, ck), stretch by stretch of those that are not kept.
+  /// Rasters cells [ci_begin, ci_end) of line (cj, ck), except those that are kept.
   void raster(int ci_begin, int ci_end, int cj, int ck) {
     const auto is_kept = [&](int ci) {
       return work_of(job_, job_.frame.cell_index(ci, cj, ck)) == keep_cell;
@@ -60,15 +60,15 @@ class CellLine {
   }
 
  private:
-  /// Cells of the line with voxels that are not sampled.
+  /// Successive cells of the line with voxels that are not sampled.
   struct FlatCells {
     int first, past;
-    bool is_whole;   ///< all voxels of all cells; else `bits` of one
-    const T* value;  ///< what they get, one per component; null where nobody owns them
+    bool is_whole;   ///< all voxels of the cells; else the voxels `bits` of one cell
+    const T* value;  ///< their value, one per component; null: voxels without an owner
     CellBits bits;
   };
 
-  /// Cells [ci_begin, ci_end) of line (cj, ck), of which none is kept.
+  /// Rasters cells [ci_begin, ci_end) of line (cj, ck), none of them kept.
   void raster_stretch(int ci_begin, int ci_end, int cj, int ck) {
     sources_.clear();
     flat_.clear();
@@ -109,7 +109,7 @@ class CellLine {
     return runs_.get() + static_cast<std::ptrdiff_t>(cell_edge * k + j) * row_capacity_;
   }
 
-  /// Owners of one cell, the runs that they serve, and what needs no sample.
+  /// Finds the owners of one cell, their runs, and the voxels that are not sampled.
   void find(const CellBox& box, const CellRange& range, std::int64_t cell_index) {
     const int cell = box.corner[0] / cell_edge - first_;
     const std::int64_t work = work_of(job_, cell_index);
@@ -142,7 +142,7 @@ class CellLine {
     if (lists_open_) add_flat(box, cell, open, nullptr);
   }
 
-  /// What the covered voxels of a cell get around a voxel of the source; kept for this stretch.
+  /// The value of cells that are constant around a voxel of the source; valid for this stretch.
   const T* constant_at(std::int64_t voxel) {
     const int components = job_.source.components;
     if (job_.source.coefficients == nullptr) return job_.source.data + voxel * components;
@@ -153,7 +153,8 @@ class CellLine {
     return values.data();
   }
 
-  /// Voxels of a cell that get `value`, or what nobody owns.
+  /// Adds voxels of a cell to the flat ones.
+  /// @param value  see FlatCells
   void add_flat(const CellBox& box, int cell, const CellBits& bits, const T* value) {
     const int voxels = count_of(bits);
     if (voxels == 0) return;
@@ -175,7 +176,7 @@ class CellLine {
     return std::memcmp(a, b, sizeof(T) * static_cast<std::size_t>(job_.source.components)) == 0;
   }
 
-  /// The rows that the latest source serves in a cell.
+  /// Adds the runs of the last element of sources_ in a cell.
   void add_runs(const CellBits& bits, int cell) {
     const auto source = static_cast<std::int32_t>(sources_.size() - 1);
     const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
@@ -187,7 +188,7 @@ class CellLine {
     }
   }
 
-  /// calls with(bits, first voxel of the row) for the rows of a cell that have any of `bits`.
+  /// Calls with(bits, first voxel of the row) for the rows of a cell that have any of `bits`.
   template <class With>
   void for_rows(const CellBox& box, const CellBits& bits, With&& with) const {
     const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
@@ -198,7 +199,7 @@ class CellLine {
     }
   }
 
-  /// Writes what is not sampled in row (j, k), run by run.
+  /// Writes the flat voxels of row (j, k), run by run.
   void write_flat(const CellBox& first, int j, int k, std::int64_t row) {
     for (const FlatCells& cells : flat_) {
       const int at = cell_edge * cells.first;
@@ -215,7 +216,8 @@ class CellLine {
     }
   }
 
-  /// Voxels [begin, end) of the line's row (j, k).
+  /// Writes flat voxels [begin, end) of the line's row (j, k).
+  /// @param value  see FlatCells
   void write_run(
       int begin, int end, const T* value, const CellBox& first, int j, int k, std::int64_t row) {
     const int components = job_.source.components;
@@ -231,7 +233,8 @@ class CellLine {
     }
   }
 
-  /// Voxels [begin, end) of the line's row (j, k), which hold the background.
+  /// Writes voxels without an owner, [begin, end) of the line's row (j, k). Their samples are the
+  /// background already.
   void write_outside(int begin, int end, const CellBox& first, int j, int k, std::int64_t row) {
     if (job_.mask != nullptr) std::fill_n(job_.mask + row + begin, end - begin, std::uint8_t{0});
     if (job_.tet != nullptr) std::fill_n(job_.tet + row + begin, end - begin, -1);
@@ -247,7 +250,7 @@ class CellLine {
     }
   }
 
-  /// The outputs beside the volume of the runs of a row.
+  /// Writes mask and owners for the runs of a row.
   void write_extra(const RowRun* runs, int count, std::int64_t row) {
     if (job_.mask == nullptr && job_.tet == nullptr) return;
     for (int r = 0; r < count; ++r) {
@@ -256,13 +259,13 @@ class CellLine {
     }
   }
 
-  /// The same for the voxels of a cell that `tet` owns.
+  /// Writes mask and owners for the voxels of a cell that `tet` owns.
   void write_extra(const CellBox& box, const CellBits& bits, int tet) {
     if (job_.mask == nullptr && job_.tet == nullptr) return;
     for_rows(box, bits, [&](unsigned row, std::int64_t voxel) { write_extra(row, voxel, tet); });
   }
 
-  /// The outputs beside the volume of the voxels `bits`, of which `tet` is the owner.
+  /// Writes mask and owners for the voxels `bits` of a row that `tet` owns.
   void write_extra(unsigned bits, std::int64_t row, int tet) {
     for (; bits != 0; bits &= bits - 1) {
       const std::int64_t voxel = row + std::countr_zero(bits);
@@ -273,15 +276,15 @@ class CellLine {
 
   const RasterJob<T>& job_;
   RasterCounts& counts_;
-  RasterJob<T> row_job_;  ///< whose volume is the row at work
+  RasterJob<T> row_job_;  ///< job_ with the current row as its volume
   RowSampler<T> sampler_;
   SourceBounds bounds_;
   RowStream<T> stream_;
-  std::vector<RowSource> sources_;  ///< of the pairs that own voxels of this line
+  std::vector<RowSource> sources_;  ///< one per pair that owns voxels of this line
   std::vector<FlatCells> flat_;     ///< ascending
-  std::deque<std::array<T, max_components>> constants_;  ///< that stand nowhere in the source
-  bool lists_open_;                 ///< voxels without owner get more than the background
-  bool has_open_ = false;           ///< the line has some
+  std::deque<std::array<T, max_components>> constants_;  ///< values computed from coefficients
+  bool lists_open_;                 ///< voxels without an owner need more than the background
+  bool has_open_ = false;           ///< the line has voxels without an owner
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;
   int run_counts_[cell_edge][cell_edge] = {};

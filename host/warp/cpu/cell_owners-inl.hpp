@@ -1,6 +1,6 @@
 /// @file cell_owners-inl.hpp
-/// Who owns the voxels of a cell. Included once per vector instruction set (the
-/// name and the toggled guard are Highway's convention).
+/// The owners of the voxels of a cell. Included once per vector instruction set (the name and the
+/// toggled guard are Highway's convention).
 #if defined(TETWARP_CELL_OWNERS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_OWNERS_INL
 #undef TETWARP_CELL_OWNERS_INL
@@ -23,9 +23,9 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The part of a cell that is in the output, and where the cell is.
+/// A cell: its position and the part of it that is in the output.
 struct CellBox {
-  int corner[3];  ///< frame voxel
+  int corner[3];  ///< first voxel [frame voxel]
   int begin[3];   ///< voxels of the cell, 0 to 8
   int end[3];
 };
@@ -72,7 +72,7 @@ inline void test_each(const RasterJob<T>& job,
   }
 }
 
-/// Tells the memory that the tetrahedron of pair `p` will be read: meshes are larger than caches.
+/// Prefetches the setup of the tetrahedron of pair `p`: meshes are larger than caches.
 template <class T>
 inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
   if (p >= static_cast<std::uint64_t>(job.pairs.size)) return;
@@ -122,8 +122,8 @@ inline bool find_inside(const RasterJob<T>& job,
 /// @param box     the cell
 /// @param range   its pairs
 /// @param open    in and out: voxels without an owner
-/// @param counts  tests are added
-/// @param own     own(pair, bits) is told of every pair that owns voxels, pairs ascending
+/// @param counts  numbers of tests are added
+/// @param own     own(pair, bits) is called for every pair that owns voxels, pairs ascending
 template <class T, class Own>
 inline void find_owners(const RasterJob<T>& job,
                         const CellBox& box,

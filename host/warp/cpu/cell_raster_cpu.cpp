@@ -1,5 +1,5 @@
 /// @file cell_raster_cpu.cpp
-/// Rasters cells row by row; compiled once per vector instruction set.
+/// Implementation by Highway, compiled once per vector instruction set.
 #include "host/warp/cpu/cell_raster_cpu.hpp"
 
 #include <atomic>
@@ -18,7 +18,9 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Rasters pieces of lines of cells, taken from `next` until `end`.
+/// Rasters pieces of the line grid: takes numbers from `next` until `end`.
+/// @param job     RasterJob of the pixel type
+/// @param counts  of these pieces, added
 void raster_pieces(PixelType type,
                    const void* job,
                    std::atomic<std::int64_t>& next,

@@ -1,6 +1,6 @@
 /// @file cell_sides-inl.hpp
-/// Which voxels of a cell lie inside a tetrahedron, by exact intervals of its rows. Included once
-/// per vector instruction set (the name and the toggled guard are Highway's convention).
+/// The voxels of a cell that lie inside a tetrahedron, as an interval per row. Included once per
+/// vector instruction set (the name and the toggled guard are Highway's convention).
 #if defined(TETWARP_CELL_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_SIDES_INL
 #undef TETWARP_CELL_SIDES_INL
@@ -44,7 +44,7 @@ inline int count_of(const CellBits& bits) {
   return count;
 }
 
-/// Bit 8 k + j: some voxel of row (j, k).
+/// Bit 8 k + j: row (j, k) has a voxel.
 inline std::uint64_t rows_of(const CellBits& bits) {
   const hn::CappedTag<std::uint8_t, sizeof(CellBits)> d;
   const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
@@ -60,7 +60,7 @@ inline std::uint64_t rows_of(const CellBits& bits) {
   return mask;
 }
 
-/// set_cell_plane() of the four faces at once: equal bits.
+/// set_cell_plane() for the four faces, with equal bits.
 inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& planes) {
   const hn::CappedTag<double, 4> d;  // one lane per face
   const hn::Rebind<float, decltype(d)> df;
@@ -83,20 +83,20 @@ inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& 
   }
 }
 
-/// Where rows cross the planes of a tetrahedron, ready for vectors of rows.
+/// The positions along x where rows cross the planes of a tetrahedron.
 ///
-/// With the unit of CellPlanes, certain_side() is open only where a plane is within 1.7 of zero,
-/// and rounding moves a crossing by less than 1.8 / |step|. Crossings are taken `width`, which is
-/// `margin` / |step| at least, to either side; beyond, both agree.
+/// certain_side() returns 0 only where a plane value is within 1.7 of zero, in the unit of
+/// CellPlanes, and rounding moves a crossing by less than 1.8 / |step|. Farther than `width` from a
+/// crossing, which is at least `margin` / |step|, interval and certain_side() therefore agree.
 struct RowCrossings {
   static constexpr float margin = 4.0f;
-  static constexpr float flattest = 0x1p-3f;  ///< steps below change a row by less than 1
+  static constexpr float min_step = 0x1p-3f;  ///< below, the value changes by less than 1 in a row
 
   explicit RowCrossings(const CellPlanes& planes) {
     const hn::FixedTag<float, 4> d;  // one lane per face
     const auto zero = hn::Zero(d), never = hn::Set(d, std::numeric_limits<float>::infinity());
     const auto step = hn::LoadU(d, planes.step[0]);
-    const auto is_flat = hn::Lt(hn::Abs(step), hn::Set(d, flattest));
+    const auto is_flat = hn::Lt(hn::Abs(step), hn::Set(d, min_step));
     const auto voxels = hn::IfThenZeroElse(is_flat, hn::Div(hn::Set(d, -1.0f), step));
     hn::Store(hn::Mul(hn::LoadU(d, planes.value), voxels), d, at);
     hn::Store(hn::Mul(hn::LoadU(d, planes.step[1]), voxels), d, per_row);
@@ -114,49 +114,82 @@ struct RowCrossings {
   alignas(16) float per_slice[4];
   alignas(16) float if_entering[4];  ///< 0 where rows enter through the face, else -infinity
   alignas(16) float if_leaving[4];   ///< 0 where rows leave through the face, else +infinity
-  float width;
-  unsigned flat;  ///< bits of the faces that rows run along
+  float width;                       ///< [voxel]
+  unsigned flat;                     ///< bits of the faces with steps below min_step
 };
 
-/// Rows of a cell that a tetrahedron's box meets.
+/// Rows of a cell that intersect the bounding box of a tetrahedron.
 struct RowBox {
   int j_begin, j_end, k_begin, k_end;
 };
 
-/// cell_sides() with `Rows` rows of a slice, from `j_first` on, side by side in a vector; where it
-/// is wider, the next slice follows.
+using SideTag = hn::CappedTag<float, cell_edge>;  ///< one lane per row
+using SideIntTag = hn::RebindToSigned<SideTag>;
+using SideByteTag = hn::Rebind<std::uint8_t, SideTag>;
+
+/// The first voxel of a row at or beyond a position, 0 to 8.
+HWY_INLINE hn::Vec<SideTag> voxel_from(hn::Vec<SideTag> x) {
+  const SideTag d;
+  return hn::Ceil(hn::Min(hn::Max(x, hn::Zero(d)), hn::Set(d, float{cell_edge})));
+}
+
+/// Bits [begin, past) of each row.
+HWY_INLINE hn::Vec<SideByteTag> row_bits(hn::Vec<SideTag> begin, hn::Vec<SideTag> past) {
+  const SideIntTag di;
+  const auto all = hn::Set(di, -1);
+  const auto bits =
+      hn::AndNot(hn::Shl(all, hn::ConvertTo(di, past)), hn::Shl(all, hn::ConvertTo(di, begin)));
+  return hn::TruncateTo(SideByteTag(), hn::BitCast(hn::RebindToUnsigned<SideIntTag>(), bits));
+}
+
+/// Stores the rows of a vector, `Rows` per slice, from row (j, k) on.
+template <int Rows>
+HWY_INLINE void store_rows(hn::Vec<SideByteTag> rows, int j, int k, CellBits& bits) {
+  constexpr int lanes = static_cast<int>(hn::MaxLanes(SideTag()));
+  std::uint8_t part[lanes];
+  hn::StoreU(rows, SideByteTag(), part);
+  for (int slice = 0; slice < std::max(lanes / Rows, 1); ++slice) {
+    auto* row = reinterpret_cast<std::uint8_t*>(&bits.slice[k + slice]) + j;
+    std::memcpy(row, part + Rows * slice, std::min(lanes, Rows));
+  }
+}
+
+/// Empties the intervals of rows that run along a face and lie outside of it.
+/// @param past       in and out: end of the certain interval
+/// @param past_late  in and out: end of the possible one
+HWY_INLINE void cut_flat_faces(const CellPlanes& planes,
+                               unsigned flat,
+                               hn::Vec<SideTag> j,
+                               hn::Vec<SideTag> k,
+                               hn::Vec<SideTag>& past,
+                               hn::Vec<SideTag>& past_late) {
+  const SideTag d;
+  for (; flat != 0; flat &= flat - 1) {
+    const int face = std::countr_zero(flat);
+    const auto value = hn::Add(
+        hn::Add(hn::Set(d, planes.value[face]), hn::Mul(j, hn::Set(d, planes.step[1][face]))),
+        hn::Mul(k, hn::Set(d, planes.step[2][face])));
+    const auto margin = hn::Set(d, RowCrossings::margin);
+    past = hn::IfThenElseZero(hn::Gt(value, margin), past);
+    past_late = hn::IfThenElseZero(hn::Gt(value, hn::Neg(margin)), past_late);
+  }
+}
+
+/// cell_sides() for `Rows` rows of each slice, from `j_first` on. A vector holds one row per lane;
+/// wider vectors hold the rows of several slices.
 template <int Rows>
 inline void packed_sides(const CellPlanes& planes,
                          const RowBox& box,
                          int j_first,
                          CellBits& inside,
                          CellBits& possible) {
-  const hn::CappedTag<float, cell_edge> d;  // one lane per row
-  const hn::RebindToSigned<decltype(d)> di;
-  const hn::Rebind<std::uint8_t, decltype(d)> d8;
+  const SideTag d;
+  const SideIntTag di;
   constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
   constexpr int slices = std::max(lanes / Rows, 1);
   const RowCrossings rows(planes);
-  const auto edge = hn::Set(d, float{cell_edge}), zero = hn::Zero(d);
   const auto width = hn::Set(d, rows.width);
   const auto never = hn::Set(d, std::numeric_limits<float>::infinity());
-  // The first voxel of a row at or beyond a position.
-  const auto voxel_from = [&](auto x) { return hn::Ceil(hn::Min(hn::Max(x, zero), edge)); };
-  // Bits [begin, past) of a row.
-  const auto row_bits = [&](auto begin, auto past) {
-    const auto all = hn::Set(di, -1);
-    const auto bits =
-        hn::AndNot(hn::Shl(all, hn::ConvertTo(di, past)), hn::Shl(all, hn::ConvertTo(di, begin)));
-    return hn::TruncateTo(d8, hn::BitCast(hn::RebindToUnsigned<decltype(di)>(), bits));
-  };
-  const auto store_rows = [&](auto rows8, CellBits& bits, int k, int j) {
-    std::uint8_t part[lanes];
-    hn::StoreU(rows8, d8, part);
-    for (int slice = 0; slice < slices; ++slice) {
-      auto* row = reinterpret_cast<std::uint8_t*>(&bits.slice[k + slice]) + j;
-      std::memcpy(row, part + Rows * slice, std::min(lanes, Rows));
-    }
-  };
   const auto lane = hn::Iota(di, 0);
   const auto lane_k = hn::ConvertTo(d, hn::ShiftRight < Rows == 8 ? 3 : 2 > (lane));
   const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, Rows - 1)));
@@ -180,27 +213,21 @@ inline void packed_sides(const CellPlanes& planes,
       const auto begin_early = voxel_from(hn::Sub(enter, width));
       auto past = voxel_from(hn::Sub(leave, width));
       auto past_late = voxel_from(hn::Add(leave, width));
-      for (unsigned flat = rows.flat; flat != 0; flat &= flat - 1) {
-        const int face = std::countr_zero(flat);
-        const auto slice = hn::Add(lane_k, hn::Set(d, static_cast<float>(k)));
-        const auto value = hn::Add(
-            hn::Add(hn::Set(d, planes.value[face]), hn::Mul(j, hn::Set(d, planes.step[1][face]))),
-            hn::Mul(slice, hn::Set(d, planes.step[2][face])));
-        const auto margin = hn::Set(d, RowCrossings::margin);
-        past = hn::IfThenElseZero(hn::Gt(value, margin), past);
-        past_late = hn::IfThenElseZero(hn::Gt(value, hn::Neg(margin)), past_late);
-      }
+      const auto slice = hn::Add(lane_k, hn::Set(d, static_cast<float>(k)));
+      cut_flat_faces(planes, rows.flat, j, slice, past, past_late);
       const auto sure = row_bits(begin, past);
-      store_rows(sure, inside, k, j_first + j_part);
+      store_rows<Rows>(sure, j_first + j_part, k, inside);
       const auto is_sure = hn::And(hn::Eq(begin, begin_early), hn::Eq(past, past_late));
       const bool all_sure = hn::AllTrue(d, is_sure);
-      store_rows(all_sure ? sure : row_bits(begin_early, past_late), possible, k, j_first + j_part);
+      store_rows<Rows>(all_sure ? sure : row_bits(begin_early, past_late), j_first + j_part, k,
+                       possible);
     }
   }
 }
 
-/// Sides of the voxels of some rows of a cell: those that lie inside for certain, and those that
-/// may; about the difference certain_side() must be asked. Other rows hold anything.
+/// Finds the voxels of the rows `box` of a cell that are certainly inside a tetrahedron.
+/// @param inside    out: certainly inside; undefined in other rows
+/// @param possible  out: inside or too close to a face for float32, to be decided by certain_side()
 inline void cell_sides(const CellPlanes& planes,
                        const RowBox& box,
                        CellBits& inside,

@@ -1,6 +1,6 @@
 /// @file line_grid.hpp
-/// The order in which the cpu back end visits cells: lines along x, a few neighbouring lines a
-/// piece of work, so that what one line has fetched of the source serves the next.
+/// The order in which the cpu back end visits cells: lines along x. A piece of work is a few
+/// neighbouring lines, which read parts of the source that are in the cache already.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace tetwarp {
 
+/// The lines and pieces of an output frame.
 class LineGrid {
  public:
-  static constexpr int longest_line = 64;  ///< cells
-  static constexpr int piece_lines = 8;    ///< lines a thread takes at a time
+  static constexpr int longest_line = 64;  ///< [cell]
+  static constexpr int piece_lines = 8;    ///< lines per piece
 
-  /// Cells [ci_begin, ci_end) of row (cj, ck) of cells.
+  /// Cells [ci_begin, ci_end) along x at (cj, ck).
   struct Line {
     int ci_begin, ci_end, cj, ck;
   };
@@ -33,7 +34,7 @@ class LineGrid {
     return {p * piece_lines, std::min(count(), (p + 1) * piece_lines)};
   }
 
-  /// Lines with neighbouring cj follow each other.
+  /// Line number l; lines with neighbouring cj have successive numbers.
   Line line(std::int64_t l) const {
     const int cj = static_cast<int>(l % cells_[1]);
     const std::int64_t rest = l / cells_[1];

@@ -1,6 +1,6 @@
 /// @file row_components-inl.hpp
-/// Samples of a row where voxels have several components: float32 arithmetic, four components a
-/// vector. Included once per vector instruction set (the name and the toggled guard are Highway's
+/// Samples of a row for several components: float32 arithmetic, four components per vector.
+/// Included once per vector instruction set (the name and the toggled guard are Highway's
 /// convention).
 #if defined(TETWARP_ROW_COMPONENTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_COMPONENTS_INL
@@ -31,7 +31,7 @@ constexpr int max_components = 9;  ///< that a volume may have
 
 using ComponentTag = hn::FixedTag<float, 4>;  ///< components of one voxel
 
-/// Four components as float32; those that the voxel does not have are what follows it.
+/// Four values from `samples` on as float32, also where the voxel has fewer components.
 template <class T>
 HWY_INLINE hn::Vec<ComponentTag> read_components(const T* samples) {
   const ComponentTag d;
@@ -43,8 +43,8 @@ HWY_INLINE hn::Vec<ComponentTag> read_components(const T* samples) {
   }
 }
 
-/// Values of all units of `taps`: [voxel][component], and up to three more behind the last. The
-/// blends are those of sample(), in its order: equal bits.
+/// Values of all units of `taps`. The blends are those of sample(), in its order: equal bits.
+/// @param values  out, [voxel][component]; up to three values more are written behind them
 template <bool Rim, class T>
 inline void sample_components(const SourceView<T>& view,
                               bool nearest,

@@ -1,6 +1,6 @@
 /// @file row_sample-inl.hpp
-/// What the covered voxels of a row get. Included once per vector instruction set (the name and the
-/// toggled guard are Highway's convention).
+/// Samples of the covered voxels of a row. Included once per vector instruction set (the name and
+/// the toggled guard are Highway's convention).
 #if defined(TETWARP_ROW_SAMPLE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_SAMPLE_INL
 #undef TETWARP_ROW_SAMPLE_INL
@@ -27,16 +27,16 @@ HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 
-/// Writes rows of a line of cells. Keeps its buffers of taps from row to row. The job's volume is
-/// the row to be written, from voxel 0 of the line's cell 0 on.
+/// Writes the sampled voxels of rows of a line of cells. The job's volume is the row to be written,
+/// from voxel 0 of the line's cell 0 on.
 template <class T>
 class RowSampler {
  public:
   explicit RowSampler(const RasterJob<T>& job)
       : job_(job), nearest_(job.filter == Filter::nearest) {}
 
-  /// Writes the covered voxels of row (j, k). Runs of a cell stand side by side; their order within
-  /// it is lost.
+  /// Writes the covered voxels of row (j, k).
+  /// @param runs  those of a cell in succession; their order within a cell is changed
   void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     if (job_.transforms.size > 0) count = write_transformed(sources, runs, count, j, k);
     if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
@@ -59,8 +59,7 @@ class RowSampler {
   }
 
  private:
-  /// Writes the runs that have a transform. @returns how many others there are; they move to the
-  /// front
+  /// Writes the runs that have a transform, and moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int plain_count = 0;
     for (int r = 0; r < count; ++r) {
@@ -74,9 +73,9 @@ class RowSampler {
     return plain_count;
   }
 
-  /// A cell's row of which some runs go voxel by voxel.
+  /// Writes a cell's row of which some runs are copied or written voxel by voxel.
   void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    int vectored_count = 0;  // those move to the front
+    int vectored_count = 0;  // runs that are not; they move to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
@@ -84,7 +83,7 @@ class RowSampler {
       if (source.kind() == RowKind::alone) {
         sample_alone(job_, source, runs[r].bits, j, k, cell_row);
       } else if (source.kind() == RowKind::copied) {
-        unsigned bits = runs[r].bits;  // and of neighbours that move alike
+        unsigned bits = runs[r].bits;  // and those of following runs with the same shift
         for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
           bits |= runs[r + 1].bits;
         }

@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using LaneTag = hn::FixedTag<float, 4>;
 using LaneIntTag = hn::RebindToSigned<LaneTag>;
 
-/// Four float32 numbers that volume_filter.hpp takes for one.
+/// Four float32 numbers as a number type for the templates of volume_filter.hpp.
 struct Lanes {
   hn::Vec<LaneTag> v;
 
@@ -34,7 +34,7 @@ struct Lanes {
   friend Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.v, b.v)); }
 };
 
-/// Four samples that follow each other.
+/// Four successive samples.
 template <class T>
 Lanes read_four(const T* samples) {
   const LaneTag d;
@@ -46,10 +46,10 @@ Lanes read_four(const T* samples) {
   }
 }
 
-/// Positions of a row, one lane per axis; the fourth has no meaning.
+/// Positions of the voxels of a row, one lane per axis; the fourth lane is not used.
 class RowWalk {
  public:
-  /// @param around  samples that the filter reads on either side of a position
+  /// @param around  number of samples that the filter reads on either side of a position
   template <class T>
   RowWalk(const SourceView<T>& source, const RowMap& map, int around, int j, int k) {
     const LaneTag d;
@@ -64,7 +64,7 @@ class RowWalk {
     last_ = hn::LoadU(LaneIntTag(), last);
   }
 
-  /// Goes to voxel i. True where all samples around it exist and all of them have weight.
+  /// Moves to voxel i. @returns whether all samples around it exist and all have a weight
   bool move_to(int i) {
     const LaneTag d;
     const LaneIntTag di;
@@ -92,8 +92,8 @@ class RowWalk {
   hn::Vec<LaneIntTag> whole_, first_, last_;
 };
 
-/// blended() of volume_filter.hpp for taps that all exist: equal bits.
-/// @param samples  the lower neighbour
+/// blended() of volume_filter.hpp for taps that all exist, with equal bits.
+/// @param samples  at the lower neighbour
 template <Filter filter, class Sample>
 float blended_lanes(const Sample* samples,
                     std::ptrdiff_t up,
@@ -112,7 +112,7 @@ float blended_lanes(const Sample* samples,
   const Sample* first = samples - (taps / 2 - 1) * (1 + up + far);
   Lanes along_y[taps];
   for (int i = 0; i < taps; ++i) along_y[i] = Lanes(static_cast<double>(weight[i][1]));
-  // Of six taps the last four follow in a vector of their own, of which two count.
+  // Of six taps a second vector holds the last four; only its last two lanes are used.
   Lanes column(0.0), column_end(0.0);
   for (int z = 0; z < taps; ++z, first += far) {
     Lanes part(0.0), part_end(0.0);
@@ -133,7 +133,7 @@ float blended_lanes(const Sample* samples,
   return near + sum;
 }
 
-/// One voxel whose neighbours all exist, one component.
+/// The sample of one voxel whose neighbours all exist; one component.
 template <class T>
 T sample_lanes(const SourceView<T>& source, Filter filter, const RowWalk& at) {
   const std::ptrdiff_t up = source.dims[0], far = up * source.dims[1];
@@ -161,7 +161,7 @@ T sample_lanes(const SourceView<T>& source, Filter filter, const RowWalk& at) {
   return finished(source, value, 0);
 }
 
-/// Any voxel (i, j, k) of the row.
+/// Samples and stores voxel (i, j, k), with any number of components.
 template <class Real, class T>
 void sample_one(
     const RasterJob<T>& job, const SourceMap<Real>& map, int i, int j, int k, std::int64_t row) {
@@ -176,7 +176,7 @@ void for_voxels(unsigned bits, const Store& store) {
   for (; bits != 0; bits &= bits - 1) store(std::countr_zero(bits));
 }
 
-/// The voxels `bits` of row (j, k) with the bits of store_wide_sample().
+/// Writes the voxels `bits` of row (j, k), with the results of store_wide_sample().
 template <class T>
 void write_filtered(
     const RasterJob<T>& job, const RowMap& row_map, unsigned bits, int j, int k, std::int64_t row) {

@@ -24,13 +24,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// How the voxels that a tetrahedron owns in a cell are sampled.
 enum class RowKind {
-  inner,  ///< a vector of float32 positions, none near the source's rim
-  rim,    ///< the same, but positions may lie outside and neighbours are clamped
-  alone,  ///< voxel by voxel: steep maps, hexahedra, float64, huge sources
+  inner,  ///< in vectors of float32 positions; all neighbours are in the source
+  rim,    ///< in vectors; positions may lie outside the source and neighbours are clamped
+  alone,  ///< voxel by voxel: steep maps, hexahedra, float64, sources of 2^31 voxels or more
   copied  ///< moved by whole voxels
 };
 
-/// Where a job's source may be read by vectors; three axes, and a fourth that never objects.
+/// Bounds of the positions at which a job's source may be read in vectors. One entry per axis; the
+/// fourth pads to four lanes, and every position passes it.
 struct SourceBounds {
   template <class T>
   explicit SourceBounds(const RasterJob<T>& job) {
@@ -38,10 +39,10 @@ struct SourceBounds {
     const double voxels = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
     is_vectored =
         sizeof(ArithmeticOf<T>) == 4 && voxels <= std::numeric_limits<std::int32_t>::max();
-    // Eight bytes are read where two neighbours along x are wanted, or both of these and, by fours,
-    // components behind them: up to `spare` voxels more.
+    // A read of two neighbours along x takes eight bytes, a read of components takes four at a
+    // time: either may extend up to `spare` voxels beyond the second neighbour.
     const int spare = source.components == 1 ? 8 / static_cast<int>(sizeof(T)) - 1 : 2;
-    // Narrow sources have them only in several rows or slices.
+    // In narrow sources these voxels extend over several rows or slices.
     constexpr double slack = 0.51;  // nearest rounds up
     double voxels_per_step = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,13 +55,13 @@ struct SourceBounds {
   }
 
   bool is_vectored;
-  double origin[4] = {0, 0, 0, 0};      ///< of what the view holds
-  double inner_low[4] = {0, 0, 0, -1};  ///< above and below these no neighbour is clamped
+  double origin[4] = {0, 0, 0, 0};      ///< first voxel that the view holds
+  double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbour is clamped
   double inner_high[4] = {0, 0, 0, 1};
-  double end[4] = {0, 0, 0, -1};  ///< beyond these on all axes a read may pass the source's end
+  double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
 };
 
-/// The map of one tetrahedron seen from one cell, as make_source_map() has it: equal bits.
+/// The map of one tetrahedron relative to one cell, with the bits of make_source_map().
 class RowSource {
  public:
   template <class T>
@@ -88,7 +89,8 @@ class RowSource {
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// From a voxel's samples to two that rows to come will need, about.
+  /// Distances in memory from a voxel's samples to two places that the next rows read, for
+  /// prefetching.
   std::int64_t ahead() const { return ahead_; }
   std::int64_t ahead_too() const { return ahead_too_; }
 
@@ -116,8 +118,8 @@ class RowSource {
         hn::Store(hn::DemoteTo(df, step), df, axis[a] + lane);
       }
       start = hn::Add(start, hn::LoadU(d, setup_->map[3] + lane));
-      const auto farthest = hn::Set(d, max_whole);
-      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      const auto limit = hn::Set(d, max_whole);
+      const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
       hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
       const auto local = hn::Sub(floor, hn::LoadU(d, bounds.origin + lane));
       hn::Store(hn::DemoteTo(di, local), di, whole + lane);
@@ -129,8 +131,9 @@ class RowSource {
     if (!meets_end) kind_ = is_inner ? RowKind::inner : RowKind::rim;
   }
 
-  /// Rows along lines of the source lack the lines above theirs, in the next slice. Rows across
-  /// lines sweep the source from one line of cells to the next: they look as far, and a row more.
+  /// Sets the prefetch distances. Rows that run along lines of the source next read lines of the
+  /// next slice. Rows that run across lines next read where the neighbouring line of cells does,
+  /// one row further.
   void look_ahead(std::int64_t line, std::int64_t slice, int components) {
     const hn::FixedTag<float, 4> d;
     const hn::RebindToSigned<decltype(d)> di;
@@ -153,11 +156,11 @@ class RowSource {
   std::int64_t ahead_too_ = 0;
 };
 
-/// Voxels of one row of a cell that one source serves.
+/// Voxels of one row of a cell that one tetrahedron owns.
 struct RowRun {
-  std::int32_t source;  ///< position in the line's sources
-  std::uint16_t cell;   ///< of the line
-  std::uint16_t bits;   ///< voxels, 8 at most
+  std::int32_t source;  ///< index of its RowSource in the line
+  std::uint16_t cell;   ///< number in the line
+  std::uint16_t bits;   ///< bit i: voxel i of the row, 8 at most
 };
 
 }  // namespace HWY_NAMESPACE

@@ -1,5 +1,5 @@
 /// @file row_store-inl.hpp
-/// Puts values into a row of the output: samples rounded to the pixel type, and copies.
+/// Stores values in a row of the output: samples rounded to the pixel type, and copies.
 /// Included once per vector instruction set (the name and the toggled guard are Highway's
 /// convention).
 #if defined(TETWARP_ROW_STORE_INL) == defined(HWY_TARGET_TOGGLE)
@@ -57,7 +57,7 @@ inline void store_values(const float* values, unsigned bits, T* out) {
   }
 }
 
-/// Copies entries, those that follow each other on both sides in one go.
+/// Copies entries; merges copies whose source and destination both follow the previous ones.
 template <class T>
 class RunCopier {
  public:
@@ -80,7 +80,8 @@ class RunCopier {
   std::int64_t count_ = 0;
 };
 
-/// The voxels `bits` of a row moved by whole voxels: copied where the source has them.
+/// Writes the voxels `bits` of a row that moved by whole voxels: copies, and the background outside
+/// of the source.
 template <class T>
 inline void copy_run(const RasterJob<T>& job,
                      const RowSource& source,

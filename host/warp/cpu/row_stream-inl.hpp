@@ -1,7 +1,7 @@
 /// @file row_stream-inl.hpp
-/// Rows of the output on their way to memory, past the caches: nobody reads them soon, and their
-/// lines need not be fetched first. Included once per vector instruction set (the name and the
-/// toggled guard are Highway's convention).
+/// Stores of rows of the output that bypass the caches: the rows are not read again soon, and their
+/// cache lines need not be loaded before they are written. Included once per vector instruction set
+/// (the name and the toggled guard are Highway's convention).
 #if defined(TETWARP_ROW_STREAM_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_STREAM_INL
 #undef TETWARP_ROW_STREAM_INL
@@ -22,12 +22,13 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Takes rows one by one; those that follow each other in memory share their cache lines.
+/// Collects rows one by one and writes whole cache lines; rows that follow each other in memory are
+/// joined.
 template <class T>
 class RowStream {
  public:
-  /// @param longest  samples of a row, at most
-  /// @param margin   samples in front of a row that may be pointed at, but are not written
+  /// @param longest  largest number of samples of a row
+  /// @param margin   samples before a row that pointers may refer to; they are not written
   RowStream(std::ptrdiff_t longest, std::ptrdiff_t margin)
       : margin_((margin + per_line - 1) / per_line * per_line),
         storage_(hwy::AllocateAligned<T>(static_cast<std::size_t>(margin_ + enough + longest))),
@@ -37,7 +38,7 @@ class RowStream {
   RowStream(const RowStream&) = delete;
   RowStream& operator=(const RowStream&) = delete;
 
-  /// Where the samples go that belong at `out`, until end_row().
+  /// @returns where to write the samples that belong at `out`; valid until end_row()
   T* begin_row(T* out) {
     if (out != to_ + size_) {
       flush();
@@ -49,13 +50,13 @@ class RowStream {
     return lines_ + size_;
   }
 
-  /// The row has `count` samples.
+  /// Ends a row of `count` samples.
   void end_row(std::ptrdiff_t count) {
     size_ += count;
     if (size_ >= enough) write_lines();
   }
 
-  /// Nothing is left behind.
+  /// Writes all that is left.
   void flush() {
     if (is_aligned_) write_lines();
     std::copy(lines_ + skipped_, lines_ + size_, to_ + skipped_);
@@ -66,14 +67,14 @@ class RowStream {
  private:
   static constexpr std::size_t line_bytes = 64;
   static constexpr std::ptrdiff_t per_line = line_bytes / sizeof(T);
-  static constexpr std::ptrdiff_t enough = 8 * per_line;  ///< less is not worth the start
+  static constexpr std::ptrdiff_t enough = 8 * per_line;  ///< samples to collect before writing
 
-  /// Whole cache lines leave.
+  /// Writes the whole cache lines collected so far.
   void write_lines() {
     if (!is_aligned_) return flush();
     if (size_ < per_line) return;
     std::ptrdiff_t done = 0;
-    if (skipped_ > 0) {  // a line that others write, too
+    if (skipped_ > 0) {  // a line that other threads may write, too
       std::copy(lines_ + skipped_, lines_ + per_line, to_ + skipped_);
       done = per_line;
       skipped_ = 0;
@@ -92,10 +93,10 @@ class RowStream {
 
   std::ptrdiff_t margin_;
   hwy::AlignedFreeUniquePtr<T[]> storage_;
-  T* lines_;                    ///< what has not left yet
+  T* lines_;                    ///< samples not written yet
   T* to_ = nullptr;             ///< where lines_[0] belongs, the start of a cache line
   std::ptrdiff_t size_ = 0;     ///< samples in lines_
-  std::ptrdiff_t skipped_ = 0;  ///< of these in front, not ours
+  std::ptrdiff_t skipped_ = 0;  ///< of these the first ones, which are not of a row
   bool is_aligned_ = true;      ///< else `to_` is not the start of a line
 };
 

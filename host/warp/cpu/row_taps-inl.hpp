@@ -1,9 +1,9 @@
 /// @file row_taps-inl.hpp
-/// Where the voxels of a row are sampled: offsets and weights, eight voxels a unit. Included once
-/// per vector instruction set (the name and the toggled guard are Highway's convention).
+/// The samples that the voxels of a row read: offsets and weights, eight voxels per unit. Included
+/// once per vector instruction set (the name and the toggled guard are Highway's convention).
 ///
-/// A row is done in two passes, so that neither waits for the other's results: this one fills a
-/// buffer of taps, row_vector-inl.hpp reads the source and blends.
+/// A row is computed in two passes, so that the arithmetic does not wait for memory: this one fills
+/// a buffer of taps, row_vector-inl.hpp reads the source and blends.
 #if defined(TETWARP_ROW_TAPS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_TAPS_INL
 #undef TETWARP_ROW_TAPS_INL
@@ -29,20 +29,22 @@ using RowIntTag = hn::RebindToSigned<RowTag>;
 
 /// Eight voxels of a row: one row of one cell.
 struct RowUnit {
-  std::uint16_t cell;   ///< of the line
+  std::uint16_t cell;   ///< number in the line
   std::uint8_t bits;    ///< voxels to write
   std::uint8_t inside;  ///< of these, inside the source
 };
 
-/// Taps of up to `row_units` units. Without Rim all lines of a voxel are at the same distances.
+/// Taps of up to `row_units` units.
+/// @tparam Rim  neighbours may be clamped, so that every voxel needs the offsets of its four lines;
+///              otherwise these are at fixed distances from the first
 template <bool Rim>
 struct RowTaps {
   static constexpr int row_units = 16;
 
   int count = 0;
   RowUnit unit[row_units];
-  /// Of the lower neighbour along x [voxel], on lines (y, z) or with Rim (y, z), (y+1, z),
-  /// (y, z+1), (y+1, z+1).
+  /// Offset of the lower neighbour along x on line (y, z), with Rim also on (y+1, z), (y, z+1) and
+  /// (y+1, z+1) [voxel].
   alignas(64) std::int32_t offset[Rim ? 4 : 1][cell_edge * row_units];
   alignas(64) float fraction[3][cell_edge * row_units];
 };
@@ -59,11 +61,11 @@ inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
   return unsigned{part[0]} << lane;
 }
 
-/// Positions of some voxels of a row, in two parts as in SourceMap.
+/// Positions of a vector of voxels, as local and whole parts like in SourceMap.
 template <bool Rim>
 struct RowPositions {
   hn::Vec<RowTag> local[3];
-  hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis, or without Rim RowSource::origin()
+  hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis; without Rim RowSource::origin()
 };
 
 /// Local positions at the start of row (j, k), the first sums of local_position().

@@ -2,8 +2,8 @@
 /// Samples of a row as vectors: float32 arithmetic, one component. Included once per vector
 /// instruction set (the name and the toggled guard are Highway's convention).
 ///
-/// A 64-bit lane holds the two neighbours along x of one voxel, fetched together; the blends along
-/// y and z work on both at once, in the order of volume_sample.hpp: equal bits.
+/// A 64-bit lane holds the two neighbours along x of one voxel, loaded together; the blends along y
+/// and z process both, in the order of volume_sample.hpp: equal bits.
 #if defined(TETWARP_ROW_VECTOR_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_VECTOR_INL
 #undef TETWARP_ROW_VECTOR_INL
@@ -28,8 +28,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using PairTag = hn::CappedTag<std::uint64_t, 4>;  ///< one x-pair of samples per lane
 using PairFloatTag = hn::Repartition<float, PairTag>;
 
-/// Eight bytes from each of N samples on. Loads and shuffles: half the time of a gather on the
-/// processors measured, and they exist everywhere.
+/// Eight bytes from each of N samples on, by loads and shuffles: half the time of a gather
+/// instruction on the processors measured.
 template <std::size_t N, class T>
 HWY_INLINE hn::Vec<hn::Simd<std::uint64_t, N, 0>> load_words(const T* samples,
                                                              const std::int32_t* offset) {
@@ -50,7 +50,8 @@ HWY_INLINE hn::Vec<PairFloatTag> read_pairs(const T* samples, const std::int32_t
   if constexpr (std::is_same_v<T, float>) {
     return hn::BitCast(df, words);
   } else {
-    // The two samples move to the high ends of 32-bit lanes, and back down with their sign.
+    // Moves the two samples to the high ends of 32-bit lanes, then shifts them down with their
+    // sign.
     const hn::Repartition<std::uint8_t, PairTag> d8;
     using Wide = std::conditional_t<std::is_signed_v<T>, std::int32_t, std::uint32_t>;
     const hn::Repartition<Wide, PairTag> dw;
@@ -72,7 +73,7 @@ HWY_INLINE V lerp_lanes(V f, V a, V b) {
   return hn::IfThenElse(hn::Gt(f, hn::Zero(hn::DFromV<V>())), between, a);
 }
 
-/// Each float of some twice, for both samples of a pair.
+/// Successive floats, each twice: once per sample of a pair.
 HWY_INLINE hn::Vec<PairFloatTag> both(const float* from) {
   const PairTag d;
   const hn::Rebind<std::uint32_t, PairTag> half;

@@ -1,7 +1,8 @@
 /// @file row_wide-inl.hpp
-/// Samples of a row in float64 arithmetic, voxel by voxel, one lane per axis of the source: wide
-/// pixel types, steep maps. Included once per vector instruction set (the name and the toggled
-/// guard are Highway's convention).
+/// Samples of a row voxel by voxel, for rows that vectors of voxels cannot compute: 32-bit and
+/// wider integers, float64 and steep maps, in float64 with one lane per axis of the source.
+/// Included once per vector instruction set (the name and the toggled guard are Highway's
+/// convention).
 #if defined(TETWARP_ROW_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_WIDE_INL
 #undef TETWARP_ROW_WIDE_INL
@@ -27,8 +28,9 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Positions of row (j, k) of a cell and their neighbours, as SourceMap<double>, local_position()
-/// and tap_of() have them: equal bits. The fourth lane never objects.
+/// Positions and neighbours of the voxels of row (j, k) of a cell, with the bits of
+/// SourceMap<double>, local_position() and tap_of(). The fourth lane is padding, and every position
+/// passes it.
 class WideRow {
  public:
   template <class T>
@@ -49,8 +51,8 @@ class WideRow {
         start = a == 0 ? part : hn::Add(start, part);
       }
       start = hn::Add(start, hn::LoadU(d, tet.map[3] + lane));
-      const auto farthest = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
-      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(farthest)), farthest));
+      const auto limit = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
+      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
       const auto of_row = hn::Mul(hn::LoadU(d, tet.map[1] + lane), hn::Set(d, double(j)));
       const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
       const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
@@ -66,7 +68,7 @@ class WideRow {
     }
   }
 
-  /// Finds the neighbours of voxel i. False where it lies outside the source.
+  /// Finds the neighbours of voxel i. @returns whether it lies inside the source
   bool move_to(int i) {
     bool inside = true;
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
@@ -88,7 +90,7 @@ class WideRow {
 
   alignas(32) double fraction[4];
   alignas(16) std::int32_t voxel[4];  ///< lower neighbour
-  alignas(16) std::int32_t upper[4];  ///< 1 where the upper neighbour is another, else 0
+  alignas(16) std::int32_t upper[4];  ///< distance to the upper neighbour: 1, at the boundary 0
 
  private:
   using Tag = hn::CappedTag<double, 4>;
@@ -104,7 +106,7 @@ class WideRow {
   alignas(32) double last_[4] = {0, 0, 0, 0};
 };
 
-/// The voxels `bits` of row (j, k) one by one, float64 positions.
+/// Writes the voxels `bits` of row (j, k) in float64.
 template <class T>
 inline void sample_wide(const RasterJob<T>& job,
                         const RowSource& source,
@@ -127,7 +129,7 @@ inline void sample_wide(const RasterJob<T>& job,
     }
     const T* samples =
         view.data + taps.voxel[0] * components + taps.voxel[1] * up + taps.voxel[2] * far;
-    if (n % (cell_edge / 2) == 0) {  // as add_unit() does
+    if (n % (cell_edge / 2) == 0) {  // prefetch, as add_unit() does
       hwy::Prefetch(samples + source.ahead());
       hwy::Prefetch(samples + source.ahead_too());
     }
@@ -153,7 +155,8 @@ inline void sample_wide(const RasterJob<T>& job,
   }
 }
 
-/// The same in float32, as it serves sources whose end or size keeps vectors away.
+/// The same in float32, for affine maps at the end of a source or of sources of 2^31 voxels or
+/// more.
 template <class T>
 inline void sample_narrow(const RasterJob<T>& job,
                           const RowSource& source,
@@ -170,7 +173,7 @@ inline void sample_narrow(const RasterJob<T>& job,
   }
 }
 
-/// Either, as pixel type and map demand.
+/// Writes the voxels `bits` of a row of RowKind::alone.
 template <class T>
 inline void sample_alone(const RasterJob<T>& job,
                          const RowSource& source,

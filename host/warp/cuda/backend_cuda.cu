@@ -1,5 +1,5 @@
 /// @file backend_cuda.cu
-/// Back end cuda: the pipeline on a device.
+/// Back end cuda: device queries, and the pipeline on a device.
 #include "host/warp/cuda/cell_raster_cuda.cuh"
 
 namespace tetwarp {

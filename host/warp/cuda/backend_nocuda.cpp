@@ -1,5 +1,5 @@
 /// @file backend_nocuda.cpp
-/// Back end cuda of a build without the CUDA toolkit: it says so.
+/// Back end cuda of a build without the CUDA toolkit: never usable.
 #include <tetwarp/error.hpp>
 
 #include "host/base/warp_backend.hpp"

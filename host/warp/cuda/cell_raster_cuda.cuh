@@ -1,5 +1,5 @@
 /// @file cell_raster_cuda.cuh
-/// Stage "raster" on a device: one block per cell; counts are added by the kernel.
+/// Stage "raster" on a device: one block per cell.
 /// @see cell_raster.cuh
 #pragma once
 #include "host/warp/warp_pipeline.hpp"
