@@ -1,5 +1,5 @@
 /// @file test_cli_rules.cpp
-/// What voxels get beyond plain samples, by the command.
+/// Options of the command for intensities, vectors and tensors.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

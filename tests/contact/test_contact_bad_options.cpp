@@ -1,5 +1,5 @@
 /// @file test_contact_bad_options.cpp
-/// Options out of range are named before anything is solved; the ends of the ranges are not.
+/// Options out of range throw before anything is solved; the ends of the ranges are accepted.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -20,7 +20,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct OptionsCase {
   const char* name;
   ContactOptions options;
-  const char* named;  ///< how the complaint starts; good options: empty
+  const char* named;  ///< how the message starts; good options: empty
 };
 
 class ContactBadOptions : public ::testing::TestWithParam<OptionsCase> {};
@@ -82,7 +82,7 @@ TEST_P(ContactBadOptions, AreNamedInOneLine) {
   EXPECT_EQ(solved, made);
 }
 
-/// The reference is as strict.
+/// Back end reference throws the same.
 TEST_P(ContactBadOptions, AreNamedByTheReferenceToo) {
   auto [name, options, named] = GetParam();
   const std::string made = complaint([&] { ContactSolver{options}; });

@@ -1,5 +1,5 @@
 /// @file test_contact_linear.cpp
-/// Conjugate gradients on a coupled system: how exact they are when they say so.
+/// Conjugate gradients on a coupled system: their error estimate bounds the error.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -82,9 +82,9 @@ TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
   }
 }
 
-/// From well to badly conditioned, at every question; a rough solve before has shown the smallest
-/// eigenvalue.
-TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
+/// From well to badly conditioned, at every estimate; a rough solve before has estimated the
+/// smallest eigenvalue.
+TEST(CoupledLinear, EstimatesTheErrorFromAboveWithinAHundredfold) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};
   for (const LinearCase& c : cases) {
@@ -112,7 +112,7 @@ TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   }
 }
 
-TEST(CoupledLinear, StopsWhereItIsToldTo) {
+TEST(CoupledLinear, StopsWhenTheCallbackReturnsTrue) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
   CpuContactExec exec(1);
@@ -124,7 +124,7 @@ TEST(CoupledLinear, StopsWhereItIsToldTo) {
   EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
 
-TEST(CoupledLinear, DoesNotBlameTheSystemForSquaresThatUnderflow) {
+TEST(CoupledLinear, AcceptsLoadsWhoseSquaresUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);

@@ -1,5 +1,5 @@
 /// @file fuzz_values.hpp
-/// Damages what an HDF5 file says without damaging how it says it.
+/// Damages the values in an HDF5 file and keeps its structure valid.
 #pragma once
 #include <hdf5.h>
 

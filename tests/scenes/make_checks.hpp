@@ -1,5 +1,5 @@
 /// @file make_checks.hpp
-/// What the tests of lattices, deformations, the phantom and pictures share.
+/// Helpers of the tests of lattices, deformations, the phantom and pictures.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ inline Mesh lattice_of(const Volume& volume, int cells, std::optional<double> th
   return make_lattice_mesh(volume, {.cells = cells, .threshold = threshold});
 }
 
-/// What std::invalid_argument says when it is thrown.
+/// The text of the std::invalid_argument that `call` throws, empty when it throws none.
 template <class Call>
 std::string message_of(Call&& call) {
   try {

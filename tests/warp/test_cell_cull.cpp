@@ -94,7 +94,7 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   EXPECT_EQ(far[13], rejected_pair);
 }
 
-TYPED_TEST(CellCull, NeverChangesWhoIsInsideAWholeOrACutGrid) {
+TYPED_TEST(CellCull, NeverChangesOwnersInAWholeOrACutGrid) {
   const auto scenes = scenes::adversarial_scenes(32);
   std::int64_t rejected = 0, accepted = 0;
   for (std::size_t s = 0; s < 2 * scenes.size(); ++s) {
@@ -211,7 +211,7 @@ TEST(CellVerdicts, RejectCellsThatASmallTetrahedronMisses) {
   }
 }
 
-/// Where masks ran out of room nothing is known: the pair is kept, the step comes again.
+/// Pairs without masks, because their buffer was too small, are kept; the step then runs again.
 TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
   const StageInput input = wedge_tet();
   const Stages<TypeParam> stages = this->run(input);

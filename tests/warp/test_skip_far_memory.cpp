@@ -1,6 +1,7 @@
 /// @file test_skip_far_memory.cpp
-/// Series on an executor whose memory is not the caller's, as a device's is not: only the slices
-/// and rows that a step touches come home, and buffers are trusted until they prove too small.
+/// Series on an executor whose memory is separate from the caller's, as a device's is: only the
+/// slices and rows that a step changes are copied back, and a step whose buffers are too small runs
+/// again with larger ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,10 +43,10 @@ class FarExec : public CpuExec {
     *delivered_ += from.size * static_cast<std::int64_t>(sizeof(T));
   }
 
-  /// As to memory that is not page-locked: parts of an output are sent when they are known.
+  /// As for memory that is not page-locked: parts of an output are copied one by one.
   bool delivers_beside(const void*) const { return false; }
 
-  /// Adds the bytes that come home to `bytes` from now on.
+  /// From now on adds the bytes that are copied back to `bytes`.
   void count_in(std::int64_t& bytes) { delivered_ = &bytes; }
 
  private:
@@ -63,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          ::testing::Values("waved", "outside", "aligned", "other_grid"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
+TEST_P(FarMemory, KeepsTheResultFromStepToStepAndCopiesBackWhatChanged) {
   const scenes::Scene scene = scenes::adversarial_scene(GetParam(), 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16, 2),
                                        scenes::wavy_volume(scene.source_grid, PixelType::float64)};

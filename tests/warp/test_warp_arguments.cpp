@@ -1,5 +1,6 @@
 /// @file test_warp_arguments.cpp
-/// Bad arguments are named, one sentence each; progress is told, and may stop a step.
+/// Bad arguments throw with one sentence that names them; progress is reported and can cancel a
+/// step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +50,7 @@ struct Call {
   }
 };
 
-TEST(WarpArguments, AGoodCallIsNotComplainedAbout) {
+TEST(WarpArguments, GoodOnesThrowNothing) {
   EXPECT_EQ(Call().complaint(), "");
 }
 
@@ -240,7 +241,7 @@ TEST(WarpArguments, OneNewVolumeCannotHoldSeveralSources) {
             "step into a new volume: the Warper has several sources");
 }
 
-TEST(WarpArguments, CudaWithoutADeviceSaysWhy) {
+TEST(WarpArguments, CudaWithoutADeviceGivesTheReason) {
   const BackendStatus status = cuda_status(0);
   if (status.usable) GTEST_SKIP() << "there is " << status.device;
   Call call;

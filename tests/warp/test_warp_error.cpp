@@ -56,8 +56,7 @@ TEST_P(WarpPosition, StaysWithin5e6VoxelAtHalfAMillionTetrahedra) {
   EXPECT_GT(errors.voxels, 200000);
 }
 
-/// Tetrahedra of every shape. Found: rounding 4e-4 voxel, 0.29 of its bound, which is thus no idle
-/// one.
+/// Tetrahedra of every shape. Found: rounding 4e-4 voxel, 0.29 of its bound.
 TEST_P(WarpPosition, IsTheQuantumOverTheSmallestAltitude) {
   const Grid grid = scenes::unit_grid(40, 40, 40);
   scenes::Scene scene = {"soup", {}, {}, grid, grid};

@@ -112,7 +112,8 @@ TEST(WarpQuantities, FollowAShear) {
 }
 
 /// Waved meshes, some of them turned inside out; float32 and integers, footprints and densities.
-/// The judge's rotation is as good as the gap between singular values, which slivers lack.
+/// The reference's rotation is as accurate as the gap between singular values, which is tiny in
+/// slivers.
 TEST(WarpQuantities, AreTheReference) {
   for (const char* name : {"waved", "oblique", "other_grid"}) {
     const scenes::Scene scene = scenes::adversarial_scene(name, 14);
