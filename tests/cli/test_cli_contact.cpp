@@ -1,5 +1,5 @@
 /// @file test_cli_contact.cpp
-/// `tetwarp contact`: what it writes, prints and returns.
+/// `tetwarp contact`: what it writes, says and returns.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 /// @file test_cli_ranks.cpp
-/// `mpirun -n 3 tetwarp warp`: ranks share outputs and blocks; errors are printed once.
+/// `mpirun -n 3 tetwarp warp`: outputs and blocks shared out, errors told once.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file test_cli_resume.cpp
-/// --resume, interruption and full disks: a file under its final name is complete and correct.
+/// --resume, interruption and full disks: what stands under a final name is complete and right.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/inotify.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// An old time stamp, so that a rewritten file differs from a kept one without waiting.
+/// An old time stamp, so that a rewritten file is told from a kept one without waiting.
 const fs::file_time_type long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
 
 /// A scene with out_0000 ... out_0003 written an hour ago.

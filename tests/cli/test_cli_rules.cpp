@@ -1,5 +1,5 @@
 /// @file test_cli_rules.cpp
-/// Options of the command for intensities, vectors and tensors.
+/// What voxels get beyond plain samples, by the command.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 /// @file test_cli_skip.cpp
-/// Work that the command leaves out is reported and does not change its files.
+/// What the command leaves out, what it says about it, and that nothing else changes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

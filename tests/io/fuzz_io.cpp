@@ -3,7 +3,8 @@
 ///
 /// Damages good files, by bytes and by values, and reads them with every reader. Success or an
 /// IoError is fine; a crash, a hang, another exception or a large allocation is a failure. Files
-/// are read in forked children, so that a crash can be counted, apart from those inside HDF5.
+/// are read in forked children, so that a crash can be counted, and told apart when it is HDF5's
+/// own.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <sys/mman.h>
@@ -46,8 +47,7 @@ struct Counts {
   std::int64_t read = 0;
 };
 
-/// Ends the child. The crash counts for the library of the first frame that is neither the C
-/// library's nor a sanitizer's.
+/// Ends the child: the first frame that is neither the C library's nor a sanitizer's is to blame.
 void on_crash(int) {
   std::array<void*, 64> frames{};
   const int count = backtrace(frames.data(), static_cast<int>(frames.size()));

@@ -1,5 +1,5 @@
 /// @file fuzz_memory.cpp
-/// Fails on allocations out of proportion to the file: all sizes read from files pass through here.
+/// An end to allocations out of all proportion: sizes that files ask for all pass through here.
 #include "tests/io/fuzz_memory.hpp"
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
 /// @file fuzz_values.hpp
-/// Damages the values in an HDF5 file and keeps its structure valid.
+/// Damages what an HDF5 file says without damaging how it says it.
 #pragma once
 #include <hdf5.h>
 

@@ -1,5 +1,5 @@
 /// @file test_io_checkpoint.cpp
-/// Simulations that are written, read and continued have the bits of uninterrupted ones.
+/// Simulations that stop, are written and read, and go on as if nothing had happened.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -18,7 +18,7 @@ using Edit = std::function<void(Hdf5Editor&)>;
 using Int = std::int32_t;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A change to a good file, and the message that reading it must give.
+/// A change to a good file, and what reading it must tell.
 struct Damage {
   Edit edit;
   std::string dataset;

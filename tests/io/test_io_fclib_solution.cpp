@@ -1,5 +1,5 @@
 /// @file test_io_fclib_solution.cpp
-/// The other parts of an FCLIB file: texts, guesses, solutions.
+/// What stands around the problem in an FCLIB file: texts, guesses, solutions.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ class FclibSolution : public testing::Test {
   std::string file = folder / "problem.hdf5";
 };
 
-TEST_F(FclibSolution, ReadsTextsGuessesAndSolutions) {
+TEST_F(FclibSolution, TellsWhatStandsAroundTheProblem) {
   write_contact_problem(file, adhesive_problem(), "two points", "one on the other");
 
   const ContactFileHeader header = read_contact_header(file);
