@@ -83,7 +83,7 @@ TEST(CoupledJudge, SeesAnIslandAsIfItWereAlone) {
 }
 
 /// Contacts far below, or as near as can be without being pushed: there is nothing to iterate.
-TEST(CoupledJudge, MovesBodiesFreelyThatNoContactHolds) {
+TEST(CoupledJudge, LetsBodiesGoThatNoContactHolds) {
   for (const double offset : {100.0, 0.0}) {
     ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30, .glue = {}});
     for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {

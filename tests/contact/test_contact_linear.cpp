@@ -84,7 +84,7 @@ TEST(CoupledLinear, LeavesTheShareOfTheErrorAskedFor) {
 
 /// From well to badly conditioned, at every estimate; a rough solve before has estimated the
 /// smallest eigenvalue.
-TEST(CoupledLinear, EstimatesTheErrorFromAboveWithinAHundredfold) {
+TEST(CoupledLinear, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};
   for (const LinearCase& c : cases) {
@@ -112,7 +112,7 @@ TEST(CoupledLinear, EstimatesTheErrorFromAboveWithinAHundredfold) {
   }
 }
 
-TEST(CoupledLinear, StopsWhenTheCallbackReturnsTrue) {
+TEST(CoupledLinear, StopsWhereItIsToldTo) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = c.matrix.llt().solve(c.goal);
   CpuContactExec exec(1);
@@ -124,7 +124,7 @@ TEST(CoupledLinear, StopsWhenTheCallbackReturnsTrue) {
   EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
 
-TEST(CoupledLinear, AcceptsLoadsWhoseSquaresUnderflow) {
+TEST(CoupledLinear, DoesNotBlameTheSystemForSquaresThatUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);

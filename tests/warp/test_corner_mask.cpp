@@ -75,13 +75,8 @@ TYPED_TEST(CornerMask, IsNeverWrongAndSeldomUndecided) {
 }
 
 TYPED_TEST(CornerMask, IsTheSameAloneAndInAList) {
-  scenes::Scene scene = scenes::adversarial_scene("rotated", 24);
-  const auto tets = scene.mesh.tets;
   for (const std::int64_t size : tricky_sizes) {
-    scene.mesh.tets.clear();
-    for (std::size_t t = 0; t < static_cast<std::size_t>(size); ++t) {
-      scene.mesh.tets.push_back(tets[t * 7 % tets.size()]);
-    }
+    const scenes::Scene scene = scene_of_tets(size);
     const Stages<TypeParam> stages = this->run(input_of(scene));
     const auto setups = this->download(stages.setups);
     std::vector<std::uint16_t> expected;

@@ -58,6 +58,21 @@ StepReport step(StepQueue& far, const std::vector<Point3>& positions, const Warp
   return far.finish();
 }
 
+/// Steps of a region on far memory; `bytes` counts what is copied back.
+StepQueue far_queue(const std::vector<Volume>& sources,
+                    const scenes::Scene& scene,
+                    const Region& region,
+                    std::int64_t& bytes) {
+  WarpPlan plan;
+  plan.sources = {sources.begin(), sources.end()};
+  plan.mesh = scene.mesh;
+  plan.output_grid = scene.output_grid;
+  plan.region = region;
+  FarExec exec(1);
+  exec.count_in(bytes);
+  return StepQueue(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+}
+
 class FarMemory : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          FarMemory,
@@ -70,15 +85,8 @@ TEST_P(FarMemory, KeepsTheResultFromStepToStepAndCopiesBackWhatChanged) {
                                        scenes::wavy_volume(scene.source_grid, PixelType::float64)};
   for (const Region& region :
        {Region{{0, 0, 0}, scene.output_grid.dims}, Region{{3, 5, 1}, {33, 30, 34}}}) {
-    WarpPlan plan;
-    plan.sources = {sources.begin(), sources.end()};
-    plan.mesh = scene.mesh;
-    plan.output_grid = scene.output_grid;
-    plan.region = region;
-    FarExec exec(1);
     std::int64_t bytes = 0;
-    exec.count_in(bytes);
-    StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+    StepQueue far = far_queue(sources, scene, region, bytes);
     WarpOptions options;
     options.backend = Backend::cpu;
     options.region = region;
@@ -117,15 +125,8 @@ TEST_P(FarMemory, KeepsTheResultFromStepToStepAndCopiesBackWhatChanged) {
 TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::float32)};
-  WarpPlan plan;
-  plan.sources = {sources.begin(), sources.end()};
-  plan.mesh = scene.mesh;
-  plan.output_grid = scene.output_grid;
-  plan.region = {{0, 0, 0}, scene.output_grid.dims};
-  FarExec exec(1);
   std::int64_t bytes = 0;
-  exec.count_in(bytes);
-  StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+  StepQueue far = far_queue(sources, scene, {{0, 0, 0}, scene.output_grid.dims}, bytes);
   WarpOptions options;
   options.backend = Backend::cpu;
   Series anew(sources, scene, options), out(sources, scene, options);
