@@ -1,6 +1,6 @@
 # Target `bundle`: a folder with the programs and the shared libraries that they need besides glibc,
 # to be copied to a machine that has only a CUDA driver.
-set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_contact_tests)
+set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_device_tests)
 if(TETWARP_IO)
   list(APPEND tetwarp_bundled tetwarp_command)
 endif()

@@ -1,7 +1,7 @@
-# Tests of files, of the command and of the benchmark's scripts; needs tetwarp::io.
+# Tests of files, of the command and of the benchmarks; needs tetwarp::io.
 # ---- files, private code included -------------------------------------------------------------
 if(NOT BUILD_SHARED_LIBS)
-  tetwarp_add_tests(tetwarp_io_tests LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
+  tetwarp_add_tests(tetwarp_io_tests UNITY 3 LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
     tests/io/test_io_blocks.cpp
     tests/io/test_io_vtkhdf_volume.cpp
@@ -49,29 +49,28 @@ if(TETWARP_PYTHON)
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 
-# ---- the command and the example in the README ---------------------------------------------
-tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json
-  SOURCES
+# ---- the command ------------------------------------------------------------------------------
+# tetwarp_add_cli_tests(PROGRAM SOURCE...): tests that start the command.
+function(tetwarp_add_cli_tests program)
+  tetwarp_add_tests(${program} UNITY 3
+    LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json SOURCES ${ARGN})
+  target_compile_definitions(${program} PRIVATE
+    TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"
+    TETWARP_MPIRUN="$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
+  add_dependencies(${program} tetwarp_command)
+endfunction()
+tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_batch.cpp
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp
   tests/cli/test_cli_fields.cpp
-  tests/cli/test_cli_memory.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
   tests/cli/test_cli_skip.cpp
   tests/cli/test_cli_tools.cpp)
-target_compile_definitions(tetwarp_cli_tests PRIVATE
-  TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"
-  TETWARP_MPIRUN="$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
-add_dependencies(tetwarp_cli_tests tetwarp_command)
 tetwarp_discover(tetwarp_cli_tests cli)
-
-add_executable(example_quickstart tests/example_quickstart.cpp)
-target_link_libraries(example_quickstart PRIVATE tetwarp_io tetwarp_options)
-add_test(NAME example_quickstart COMMAND example_quickstart
-  WORKING_DIRECTORY ${PROJECT_BINARY_DIR})
-set_tests_properties(example_quickstart PROPERTIES LABELS cli)
+tetwarp_add_cli_tests(tetwarp_cli_memory_tests tests/cli/test_cli_memory.cpp)
+tetwarp_discover(tetwarp_cli_memory_tests cli long)

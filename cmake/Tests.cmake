@@ -1,4 +1,12 @@
-# All tests, run by ctest: `ctest -L parity` and so on chooses by label.
+# All tests, run by ctest: `ctest -L parity` and so on chooses by label. Labels go by program:
+#   unit       functions, stages and whole warps and contact problems
+#   reference  coverage and values against back end reference
+#   parity     back end cuda, emulated or on a device, against cpu
+#   simt       kernels on the emulated device
+#   stress     the bounds that the documentation states, on inputs at the limits
+#   io, cli    files, the command
+#   install    an installed tree
+#   long       takes more than a few seconds each: left out by `./dev test`, run by `./dev check`
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
@@ -10,39 +18,65 @@ add_library(tetwarp_scenes STATIC
   tests/scenes/elastic_block.cpp
   tests/scenes/rigid_bodies.cpp
   tests/scenes/scenes.cpp)
-target_include_directories(tetwarp_scenes PRIVATE ${PROJECT_SOURCE_DIR})
-target_link_libraries(tetwarp_scenes PRIVATE
-  tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
 target_precompile_headers(tetwarp_scenes PRIVATE
   <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
-# As programs are compiled, or they could not use its headers. What tests compute by themselves is
-# little: -O3 would take longer to compile than it saves.
-set_target_properties(tetwarp_scenes PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-set(tetwarp_test_options $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
-target_compile_options(tetwarp_scenes PRIVATE ${tetwarp_test_options})
 
-# tetwarp_add_tests(PROGRAM [LIBRARIES ...] SOURCES ...)
+# What programs share: how they are compiled. Tests compute little themselves: -O3 would take longer
+# to compile than it saves.
+function(tetwarp_test_target target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE
+    tetwarp ${ARGN} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
+  target_compile_options(${target} PRIVATE
+    $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  if(NOT target STREQUAL tetwarp_scenes)
+    target_precompile_headers(${target} REUSE_FROM tetwarp_scenes)
+  endif()
+endfunction()
+tetwarp_test_target(tetwarp_scenes)
+
+# tetwarp_add_tests(PROGRAM [UNITY count] [LIBRARIES ...] SOURCES ...)
+# UNITY: so many files are compiled together, which saves parsing and instantiating headers again.
 function(tetwarp_add_tests program)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LIBRARIES;SOURCES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "UNITY" "LIBRARIES;SOURCES")
   add_executable(${program} ${arg_SOURCES})
-  target_include_directories(${program} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${program} PRIVATE tetwarp_scenes
-    tetwarp ${arg_LIBRARIES} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
-  target_compile_options(${program} PRIVATE ${tetwarp_test_options})
-  target_precompile_headers(${program} REUSE_FROM tetwarp_scenes)
-  set_target_properties(${program} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  tetwarp_test_target(${program} tetwarp_scenes ${arg_LIBRARIES})
+  if(arg_UNITY)
+    set_target_properties(${program} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${arg_UNITY})
+  endif()
 endfunction()
 
-# tetwarp_discover(PROGRAM LABEL [FILTER gtest-filter] [PROPERTIES ...])
-function(tetwarp_discover program label)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "FILTER" "PROPERTIES")
-  gtest_discover_tests(${program} TEST_FILTER "${arg_FILTER}" DISCOVERY_TIMEOUT 120
-    NO_PRETTY_TYPES NO_PRETTY_VALUES PROPERTIES LABELS ${label} TIMEOUT 300 ${arg_PROPERTIES})
+# tetwarp_discover(PROGRAM LABEL...): all tests of a program carry the same labels. Where they run on
+# a device, those named after back end cuda run one at a time.
+function(tetwarp_discover program)
+  set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES
+    PROPERTIES TIMEOUT 300 LABELS "${ARGN}")
+  if(tetwarp_device_tests)
+    gtest_discover_tests(${program} TEST_FILTER "-*/cuda*:*_cuda" ${options})
+    gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda" ${options} RESOURCE_LOCK gpu)
+  else()
+    gtest_discover_tests(${program} ${options})
+  endif()
 endfunction()
 
 # ---- stages and whole warps. They reach private code, which a shared library hides ------------
 if(NOT BUILD_SHARED_LIBS)
+  # Stages run on a device as well where nvcc compiles their tests, which takes it a minute.
+  set(TETWARP_DEVICE_TESTS AUTO CACHE STRING "tests on a CUDA device: AUTO, ON or OFF")
+  set(tetwarp_device_tests OFF)
+  if(TETWARP_HAS_CUDA)
+    execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_device OUTPUT_QUIET ERROR_QUIET)
+    if(TETWARP_DEVICE_TESTS STREQUAL "ON" OR TETWARP_BUNDLE OR
+       (TETWARP_DEVICE_TESTS STREQUAL "AUTO" AND "${no_device}" STREQUAL "0"))
+      set(tetwarp_device_tests ON)
+    else()
+      add_test(NAME tests_on_device COMMAND ${CMAKE_COMMAND} -E echo
+        "skipped: no CUDA device answered when the build was configured (TETWARP_DEVICE_TESTS=ON)")
+      set_tests_properties(tests_on_device PROPERTIES LABELS parity SKIP_REGULAR_EXPRESSION skipped)
+    endif()
+  endif()
   set(tetwarp_stage_tests
     tests/base/test_exec.cpp
     tests/warp/test_node_quantize.cpp
@@ -56,81 +90,51 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_volume_prefilter.cpp
     tests/warp/test_volume_range.cpp
     tests/warp/test_volume_uniform.cpp)
-  # By nvcc they also run on a device, which takes it a minute: where there is one, or will be.
-  set(TETWARP_DEVICE_TESTS AUTO CACHE STRING "stages on a CUDA device: AUTO, ON or OFF")
-  set(tetwarp_stage_kind cpp)
-  if(TETWARP_HAS_CUDA)
-    execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_device OUTPUT_QUIET ERROR_QUIET)
-    if(TETWARP_DEVICE_TESTS STREQUAL "ON" OR TETWARP_BUNDLE OR
-       (TETWARP_DEVICE_TESTS STREQUAL "AUTO" AND "${no_device}" STREQUAL "0"))
-      set(tetwarp_stage_kind cu)
-    else()
-      add_test(NAME stages_on_device COMMAND ${CMAKE_COMMAND} -E echo
-        "skipped: no CUDA device answered when the build was configured (TETWARP_DEVICE_TESTS=ON)")
-      set_tests_properties(stages_on_device PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION skipped)
-    endif()
-  endif()
-  # Two units of six files: nvcc parses GoogleTest thrice per unit, for seconds.
+  # Two units of six files: nvcc parses GoogleTest three times per unit, which takes seconds.
   foreach(first 0 6)
     list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
     list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
     list(JOIN unit "\n" TETWARP_UNIT)
-    set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.${tetwarp_stage_kind})
+    set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cpp)
+    if(tetwarp_device_tests)
+      set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
+    endif()
     file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
     list(APPEND tetwarp_stage_units ${file})
   endforeach()
-  set(tetwarp_stage_tests ${tetwarp_stage_units})
-  # Compiled once for two programs; in one of them cuda is emulated. Of loops over the back ends that
-  # answer that one is run by ctest, the other is for devices.
-  add_library(tetwarp_backend_tests OBJECT
-    tests/warp/test_blocks.cpp
-    tests/warp/test_parity.cpp
-    tests/warp/test_warp_antialias.cpp
-    tests/warp/test_warp_fields.cpp
-    tests/warp/test_warp_hexahedra.cpp
-    tests/warp/test_warp_in_flight.cpp
-    tests/warp/test_warp_intensity.cpp
-    tests/warp/test_warp_quantities.cpp)
-  target_include_directories(tetwarp_backend_tests PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(tetwarp_backend_tests PRIVATE
-    tetwarp tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
-  target_compile_options(tetwarp_backend_tests PRIVATE ${tetwarp_test_options})
-  target_precompile_headers(tetwarp_backend_tests REUSE_FROM tetwarp_scenes)
-  set_target_properties(tetwarp_backend_tests PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  set_source_files_properties(${tetwarp_stage_units} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
-  tetwarp_add_tests(tetwarp_tests LIBRARIES nlohmann_json::nlohmann_json SOURCES
-    ${tetwarp_stage_tests}
+  tetwarp_add_tests(tetwarp_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
+    ${tetwarp_stage_units}
+    tests/base/test_report.cpp
+    tests/make/test_deform_mesh.cpp
+    tests/make/test_lattice_mesh.cpp
+    tests/make/test_phantom.cpp
+    tests/make/test_render_volume.cpp
     tests/warp/test_convex_part.cpp
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
+    tests/warp/test_output_edges.cpp
+    tests/warp/test_skip_constant.cpp
+    tests/warp/test_skip_far_memory.cpp
+    tests/warp/test_skip_unchanged.cpp
+    tests/warp/test_source_end.cpp
     tests/warp/test_volume_filter.cpp
     tests/warp/test_volume_label.cpp
     tests/warp/test_volume_sample.cpp
-    tests/make/test_lattice_mesh.cpp
-    tests/make/test_deform_mesh.cpp
-    tests/warp/test_output_edges.cpp
-    tests/make/test_phantom.cpp
-    tests/make/test_render_volume.cpp
-    tests/base/test_report.cpp
-    tests/warp/test_skip_constant.cpp
-    tests/warp/test_skip_far_memory.cpp
-    tests/warp/test_source_end.cpp
-    tests/warp/test_skip_unchanged.cpp
     tests/warp/test_warp.cpp
     tests/warp/test_warp_arguments.cpp
     tests/warp/test_warp_filters.cpp
-    tests/warp/test_warp_invariance.cpp
-    tests/warp/test_warp_values.cpp
-    tests/warp/test_coverage.cpp
-    $<TARGET_OBJECTS:tetwarp_backend_tests>)
+    tests/warp/test_warp_invariance.cpp)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
   endif()
-  tetwarp_discover(tetwarp_tests unit FILTER "-*cuda*:*Cuda*:*Parity*:*Coverage*:WarpAntialias*:WarpIntensity*:WarpQuantities*")
-  tetwarp_discover(tetwarp_tests unit FILTER "*cuda*:*Cuda*:-*Parity*:*Coverage*"
-    PROPERTIES RESOURCE_LOCK gpu)
-  tetwarp_discover(tetwarp_tests parity FILTER "*Parity*" PROPERTIES RESOURCE_LOCK gpu)
-  tetwarp_discover(tetwarp_tests reference FILTER "*Coverage*")
+  tetwarp_discover(tetwarp_tests unit)
+
+  tetwarp_add_tests(tetwarp_reference_tests SOURCES
+    tests/warp/test_coverage.cpp
+    tests/warp/test_warp_values.cpp)
+  tetwarp_discover(tetwarp_reference_tests reference)
 
   tetwarp_add_tests(tetwarp_stress_tests SOURCES
     tests/warp/test_warp_error.cpp
@@ -138,53 +142,43 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_stress_data.cpp
     tests/warp/test_warp_stress_grids.cpp
     tests/warp/test_warp_stress_size.cpp)
-  tetwarp_discover(tetwarp_stress_tests stress FILTER "-*/cuda")
-  tetwarp_discover(tetwarp_stress_tests stress FILTER "*/cuda" PROPERTIES RESOURCE_LOCK gpu)
+  tetwarp_discover(tetwarp_stress_tests stress long)
 
-  tetwarp_add_tests(tetwarp_contact_tests SOURCES
-    tests/contact/test_body_relax.cpp
-    tests/contact/test_contact.cpp
+  # Three files at a time; those that include kernels stand together at the end, so that a change of
+  # a kernel compiles few units.
+  tetwarp_add_tests(tetwarp_contact_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     tests/contact/test_contact_acceptance.cpp
-    tests/contact/test_contact_adhesion.cpp
+    tests/contact/test_contact_associated.cpp
     tests/contact/test_contact_bad_options.cpp
+    tests/contact/test_contact_coupled.cpp
+    tests/contact/test_contact_limits.cpp
+    tests/contact/test_contact_newton.cpp
+    tests/contact/test_contact_reference.cpp
+    tests/contact/test_contact_report.cpp
+    tests/contact/test_contact_threads.cpp
+    tests/contact/test_contact.cpp
+    tests/contact/test_contact_reference_limits.cpp
+    tests/contact/test_contact_tracker.cpp
+    tests/contact/test_body_relax.cpp
+    tests/contact/test_contact_adhesion.cpp
+    tests/contact/test_lorentz_cone.cpp
     tests/contact/test_contact_bound.cpp
     tests/contact/test_contact_color.cpp
-    tests/contact/test_contact_coupled.cpp
-    tests/contact/test_contact_cuda.cpp
     tests/contact/test_contact_law.cpp
-    tests/contact/test_contact_limits.cpp
     tests/contact/test_contact_linear.cpp
-    tests/contact/test_contact_associated.cpp
-    tests/contact/test_contact_newton.cpp
-    tests/contact/test_lorentz_cone.cpp
     tests/contact/test_contact_outer.cpp
     tests/contact/test_contact_problem.cpp
-    tests/contact/test_contact_reference.cpp
-    tests/contact/test_contact_reference_limits.cpp
-    tests/contact/test_contact_report.cpp
     tests/contact/test_contact_residual.cpp
     tests/contact/test_contact_skip.cpp
     tests/contact/test_contact_solver.cpp
-    tests/contact/test_contact_sweep.cpp
-    tests/contact/test_contact_threads.cpp
-    tests/contact/test_contact_tracker.cpp)
-  # Four files at a time: what they include and instantiate costs more than they do.
-  set_target_properties(tetwarp_contact_tests PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 4)
-  tetwarp_discover(tetwarp_contact_tests unit FILTER "-*Cuda*")
-  tetwarp_discover(tetwarp_contact_tests unit FILTER "*Cuda*" PROPERTIES RESOURCE_LOCK gpu)
+    tests/contact/test_contact_sweep.cpp)
+  tetwarp_discover(tetwarp_contact_tests unit)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
     tests/contact/test_contact_stress.cpp
     tests/contact/test_contact_stress_invariance.cpp
     tests/contact/test_contact_stress_stacks.cpp)
-  tetwarp_discover(tetwarp_contact_stress_tests stress)
-
-  add_executable(example_contact tests/example_contact.cpp)
-  target_include_directories(example_contact PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(example_contact PRIVATE
-    tetwarp_scenes tetwarp tetwarp_options Eigen3::Eigen)
-  add_test(NAME example_contact COMMAND example_contact)
-  set_tests_properties(example_contact PROPERTIES LABELS unit)
+  tetwarp_discover(tetwarp_contact_stress_tests stress long)
 
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
@@ -194,17 +188,32 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emu/test_contact_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
-  # Back end cuda on an emulated device: whole warps and contacts through the public calls.
+  # Every back end through the public calls, compiled once for two programs: in one of them back end
+  # cuda is the emulated device, in the other a real one.
+  add_library(tetwarp_backend_tests OBJECT
+    tests/contact/test_contact_cuda.cpp
+    tests/warp/test_blocks.cpp
+    tests/warp/test_parity.cpp
+    tests/warp/test_warp_antialias.cpp
+    tests/warp/test_warp_fields.cpp
+    tests/warp/test_warp_hexahedra.cpp
+    tests/warp/test_warp_in_flight.cpp
+    tests/warp/test_warp_intensity.cpp
+    tests/warp/test_warp_quantities.cpp)
+  tetwarp_test_target(tetwarp_backend_tests)
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emu/emulated_backend.cpp
     tests/emu/emulated_contact.cpp
     tests/emu/test_contact_emulated.cpp
-    tests/contact/test_contact_cuda.cpp
     tests/emu/test_warp_emulated.cpp
     tests/emu/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
-  tetwarp_discover(tetwarp_emulated_tests simt
-    FILTER "*Emulated*:WarpAntialias*:WarpIntensity*:WarpQuantities*:*ContactCuda*:*InFlight*/cuda:*Hexahedra*/cuda:*Blocks*/cuda:*WarpFields*/cuda:*Parity.Owners*:*Parity.Steps*/waved*:*Parity.Filters*/waved*")
+  tetwarp_discover(tetwarp_emulated_tests parity)
+  if(tetwarp_device_tests)
+    tetwarp_add_tests(tetwarp_device_tests SOURCES $<TARGET_OBJECTS:tetwarp_backend_tests>)
+    gtest_discover_tests(tetwarp_device_tests DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES
+      NO_PRETTY_VALUES PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
+  endif()
 
   # What benchmarks rest on: floors, the truth they check against, the judgement of times.
   find_package(fmt REQUIRED)
@@ -244,12 +253,12 @@ if(TETWARP_PYTHON)
   set_tests_properties(lint_folders PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 
-# ---- a stranger's project finds and links what was installed ----------------------------------
+# ---- the examples build and run with what was installed ---------------------------------------
 if(NOT TETWARP_BUNDLE)
   add_test(NAME install COMMAND ${CMAKE_COMMAND}
-    -DBUILD=${PROJECT_BINARY_DIR} -DCONFIG=$<CONFIG> -DWITH_IO=${TETWARP_IO}
-    -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER} "-DCXX_FLAGS=${CMAKE_CXX_FLAGS}"
-    -DCUDA_ROOT=${CUDAToolkit_TARGET_DIR}
+    -DBUILD=${PROJECT_BINARY_DIR} -DEXAMPLES=${PROJECT_SOURCE_DIR}/examples -DCONFIG=$<CONFIG>
+    -DWITH_IO=${TETWARP_IO} -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER}
+    "-DCXX_FLAGS=${CMAKE_CXX_FLAGS}" -DCUDA_ROOT=${CUDAToolkit_TARGET_DIR}
     -P ${PROJECT_SOURCE_DIR}/tests/install/run_install_test.cmake)
   set_tests_properties(install PROPERTIES LABELS install TIMEOUT 300)
 endif()

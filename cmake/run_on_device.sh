@@ -21,18 +21,20 @@ run() {
   fi
 }
 nvidia-smi >"$results/device.txt" 2>&1 || echo "no nvidia-smi: tests of back end cuda may skip"
-for program in tetwarp_tests tetwarp_stress_tests tetwarp_contact_tests; do
+for program in tetwarp_tests tetwarp_stress_tests tetwarp_device_tests; do
   run "$program" "$here/$program" --gtest_output="xml:$results/$program.xml"
 done
 if command -v compute-sanitizer >/dev/null 2>&1; then
-  small='*/cuda.*:*InFlight*/cuda:*Parity.Owners*waved*:*Parity.Owners*folded*'
+  small='*InFlight*/cuda:*Parity.Owners*waved*:*Parity.Owners*folded*'
   for tool in memcheck racecheck synccheck; do
-    run "$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
-      "$here/tetwarp_tests" --gtest_filter="$small"
+    run "stages-$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
+      "$here/tetwarp_tests" --gtest_filter='*/cuda.*'
+    run "warp-$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
+      "$here/tetwarp_device_tests" --gtest_filter="$small"
   done
   for tool in memcheck racecheck; do
     run "contact-$tool" compute-sanitizer --tool "$tool" --error-exitcode 1 \
-      "$here/tetwarp_contact_tests" --gtest_filter='*Cuda*'
+      "$here/tetwarp_device_tests" --gtest_filter='*ContactCuda*'
   done
 else
   echo "left out memory and race checks: no compute-sanitizer"

@@ -1,5 +1,5 @@
 /// @file test_exec.cpp
-/// The operations a pipeline is made of do the same on every executor.
+/// The operations of a pipeline give the same results on every executor.
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -65,7 +65,7 @@ TYPED_TEST(Executor, ForEachVisitsEveryIndexOnce) {
   }
 }
 
-TYPED_TEST(Executor, ForEachItemKnowsItsSegmentAndPlace) {
+TYPED_TEST(Executor, ForEachItemPassesSegmentAndPlace) {
   for (const std::int64_t segment_count : {1, 31, 32, 33, 1025, 9000}) {
     std::vector<std::int64_t> offsets = {0}, segments, locals;
     for (const std::int64_t length : uneven_lengths(segment_count)) {

@@ -57,7 +57,7 @@ TEST(Report, HasTheseFieldsAndNoOthers) {
   EXPECT_EQ(names_of(json["steps"][0]["timings"]), names_of(json["timings"]));
 }
 
-TEST(Report, SaysWhatRanAndWhere) {
+TEST(Report, NamesWhatRanAndWhere) {
   const Json json = Json::parse(to_json(report_of_two_steps()));
 
   EXPECT_EQ(json["version"], TETWARP_VERSION);

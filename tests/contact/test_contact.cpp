@@ -1,5 +1,5 @@
 /// @file test_contact.cpp
-/// Whole solves: every method against the reference, and what must not change a result.
+/// Whole solves: every method against the reference, and changes that must not affect a result.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -223,7 +223,7 @@ TEST(ContactAdhesion, KeepsTheGapWhereNoBondForms) {
   }
 }
 
-TEST(ContactAdhesion, LetsGoBeyondTenOnsetsOrBelowAThousandthInTraction) {
+TEST(ContactAdhesion, DebondsBeyondTenOnsetsOrBelowAThousandthInTraction) {
   const Event faint_pull{.intensity = 5e-4, .normal_impulse = -1e-9, .end_gap = {onset, 0, 0}};
   Event faint_push = faint_pull;
   faint_push.normal_impulse = 1e-9;

@@ -1,6 +1,6 @@
 /// @file test_contact_associated.cpp
-/// Associated friction: the interior point method finds impulses in their cones, velocities in the
-/// dual ones, and nothing between the two.
+/// Associated friction: the interior point method finds impulses in their cones and velocities in
+/// the dual cones, orthogonal to each other.
 #include <gtest/gtest.h>
 
 #include <algorithm>

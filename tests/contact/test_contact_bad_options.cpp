@@ -1,15 +1,15 @@
 /// @file test_contact_bad_options.cpp
-/// Options out of range are named before anything is solved; the ends of the ranges are not.
+/// Options out of range throw before anything is solved; the ends of the ranges are accepted.
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
+
+#include "tests/scenes/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -20,7 +20,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct OptionsCase {
   const char* name;
   ContactOptions options;
-  const char* named;  ///< how the complaint starts; good options: empty
+  const char* named;  ///< how the message starts; good options: empty
 };
 
 class ContactBadOptions : public ::testing::TestWithParam<OptionsCase> {};
@@ -52,16 +52,6 @@ INSTANTIATE_TEST_SUITE_P(Of, ContactBadOptions, ::testing::ValuesIn(cases), [](c
   return std::string(info.param.name);
 });
 
-/// The text of the std::invalid_argument that `body` throws, empty when it throws none.
-std::string complaint(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return {};
-}
-
 /// A contact at rest.
 ContactProblem quiet_contact() {
   ContactProblem problem;
@@ -73,8 +63,8 @@ ContactProblem quiet_contact() {
 
 TEST_P(ContactBadOptions, AreNamedInOneLine) {
   const auto& [name, options, named] = GetParam();
-  const std::string made = complaint([&] { ContactSolver{options}; });
-  const std::string solved = complaint([&] { solve_contacts(quiet_contact(), options); });
+  const std::string made = message_of([&] { ContactSolver{options}; });
+  const std::string solved = message_of([&] { solve_contacts(quiet_contact(), options); });
 
   EXPECT_EQ(made.empty(), std::string(named).empty()) << made;
   EXPECT_EQ(made.find(named), 0U) << made;
@@ -82,13 +72,13 @@ TEST_P(ContactBadOptions, AreNamedInOneLine) {
   EXPECT_EQ(solved, made);
 }
 
-/// The reference is as strict.
+/// Back end reference throws the same.
 TEST_P(ContactBadOptions, AreNamedByTheReferenceToo) {
   auto [name, options, named] = GetParam();
-  const std::string made = complaint([&] { ContactSolver{options}; });
+  const std::string made = message_of([&] { ContactSolver{options}; });
   options.backend = Backend::reference;
 
-  EXPECT_EQ(complaint([&] { solve_contacts(quiet_contact(), options); }), made);
+  EXPECT_EQ(message_of([&] { solve_contacts(quiet_contact(), options); }), made);
 }
 
 TEST(ContactBadDevice, IsACudaError) {

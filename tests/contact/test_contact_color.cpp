@@ -1,5 +1,5 @@
 /// @file test_contact_color.cpp
-/// Contacts of one color can be solved side by side, and nobody's turn changes the colors.
+/// Contacts of one color share no body, and the colors do not depend on the order of threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -176,7 +176,7 @@ TEST(ContactColor, ContactsAreSortedByIslandThenColorThenIndex) {
   EXPECT_EQ(order.color_start, starts);
 }
 
-/// Ten bodies on one floor: the floor has no dofs and brings no conflict, the links between the
+/// Ten bodies on one floor: the floor has no dofs and causes no conflict, the links between the
 /// bodies do.
 TEST(ContactColor, BodiesOnOneFloorDoNotConflict) {
   std::mt19937 random(54);

@@ -1,6 +1,6 @@
 /// @file test_contact_coupled.cpp
-/// What coupled bodies are said to have converged to has: its bound holds, and bodies that no
-/// contact holds move as they should.
+/// Coupled bodies that are reported as converged are within the tolerance, and bodies without
+/// contacts move freely.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST(ResidualEstimator, WhatIsCalledConvergedIsWithinTheTolerance) {
   }
 }
 
-/// Nothing but its offsets asks for impulses.
+/// Impulses come from the velocity offsets alone.
 ContactProblem slab_at_rest(const scenes::ElasticSlab& choice) {
   ContactProblem problem = scenes::elastic_slab(choice);
   std::fill(problem.load.begin(), problem.load.end(), 0.0);
@@ -78,7 +78,7 @@ ContactProblem slab_at_rest(const scenes::ElasticSlab& choice) {
   return problem;
 }
 
-/// Bodies at rest show nothing of A.
+/// The velocities of bodies at rest give no information on A.
 TEST(ResidualEstimator, BoundsTheErrorOfBodiesAtRest) {
   const ContactProblem problem = slab_at_rest(
       {.cubes = {6, 5, 2}, .contacts = 30, .young = 2e5, .friction = 1, .glue = {4e8, 1}});
@@ -135,7 +135,7 @@ TEST(ResidualEstimator, LetsBodiesGoThatNoContactHolds) {
   }
 }
 
-/// Springs much stiffer than the bodies they hold feel errors that the energy hardly knows.
+/// Springs much stiffer than their bodies react to errors that hardly change the energy.
 TEST(ResidualEstimator, IsRightAboutStiffGlueOnSoftBodies) {
   for (const double young : {3e4, 2e5, 3e6}) {
     for (const double glue : {1e8, 1e9}) {

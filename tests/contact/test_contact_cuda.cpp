@@ -1,7 +1,6 @@
 /// @file test_contact_cuda.cpp
-/// Back end cuda of the contact solver through the public calls: what it solves and what it
-/// reports, held against the back end cpu and judged by the residual. Runs on a device, where there
-/// is one, and on the emulated one.
+/// Back end cuda of the contact solver through the public calls: solutions and reports against back
+/// end cpu and by their residual. Runs on a device, where there is one, and on the emulated one.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -29,7 +28,7 @@ ContactOptions on_device(ContactOptions options) {
   return options;
 }
 
-/// Solves on the device and judges what it finds on the host.
+/// Solves on the device and computes the residual on the host.
 ContactSolution expect_solved(const ContactProblem& problem,
                               const ContactOptions& options,
                               const std::string& what) {
@@ -213,7 +212,7 @@ TEST_F(ContactCuda, ContradictionsAreFoundAndClamped) {
   EXPECT_EQ(solution.report.status, ContactStatus::infeasible);
 }
 
-/// Islands and colors are found there, too.
+/// Islands and colors are found on the device as well.
 TEST_F(ContactCuda, HasTheStructureOfTheHost) {
   const std::unique_ptr<ContactDevice> device = make_contact_device(0);
   for (const ContactProblem& problem :

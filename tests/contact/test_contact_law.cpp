@@ -1,5 +1,6 @@
 /// @file test_contact_law.cpp
-/// The answer of one contact, against solutions made up first and against the laws word by word.
+/// The solution of one contact, against constructed solutions and against each condition of the
+/// laws.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,7 +53,7 @@ class ContactLaw : public ::testing::Test {
     c.kind = ContactKind::adhesive;
     return c;
   }
-  /// Visits the contact until its impulse stands still.
+  /// Solves the contact again and again until its impulse does not change.
   std::array<T, 3> solve(const ContactConstants<T>& c,
                          ContactSwitches switches,
                          const Vector& free,

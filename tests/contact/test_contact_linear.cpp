@@ -1,5 +1,5 @@
 /// @file test_contact_linear.cpp
-/// Conjugate gradients on a coupled system: how exact they are when they say so.
+/// Conjugate gradients on a coupled system: their error estimate bounds the error.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -82,8 +82,8 @@ TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
   }
 }
 
-/// From well to badly conditioned, at every question; a rough solve before has shown the smallest
-/// eigenvalue.
+/// From well to badly conditioned, at every estimate; a rough solve before has estimated the
+/// smallest eigenvalue.
 TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};

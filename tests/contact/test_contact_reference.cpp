@@ -259,7 +259,7 @@ TEST(ContactReference, FindsTheOneVelocityThatFits) {
   EXPECT_NEAR(solution.body_velocity[0], 1, 1e-12);
 }
 
-TEST(ContactFeasible, TellsSqueezedFromLooseContactsWhateverTheUnits) {
+TEST(ContactFeasible, SeparatesSqueezedFromLooseContactsInAnyUnits) {
   for (const double unit : {1e-6, 1.0, 1e6}) {
     for (const double gap : {-1.0, -1e-3, 0.0, 1e-3}) {
       ContactProblem problem = point_between_walls(gap, 0.5);

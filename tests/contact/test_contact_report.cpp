@@ -92,7 +92,7 @@ TEST(ContactReport, MixesUpNoField) {
   EXPECT_EQ(json["timings"]["total"], 6.25);
 }
 
-TEST(ContactReport, SaysWhatRanAndHowItEnded) {
+TEST(ContactReport, NamesWhatRanAndHowItEnded) {
   const Json json = Json::parse(to_json(counting_report()));
 
   EXPECT_EQ(json["version"], "1.2.3");

@@ -48,7 +48,7 @@ TEST(ContactResidual, MeasuresNoImpulseAtAllAsOne) {
   }
 }
 
-TEST(ContactResidual, KnowsThePulledSpringUnderEveryLaw) {
+TEST(ContactResidual, HasTheResidualOfAPulledSpringUnderEveryLaw) {
   ContactProblem problem = single_contact({1, 0, 0}, 0.5);
   problem.adhesion = bond(0.25);
   const std::vector impulse{-0.2, 0.0, 0.0};  // -kappa u0 / (1 + kappa)
@@ -189,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(CoupledBy, GlobalResidual, testing::Values(0.0, 0.3), [
   return info.param == 0 ? std::string("Nothing") : std::string("Links");
 });
 
-TEST(ContactResidual, VelocitiesNobodyCausedHideNoWrongImpulse) {
+TEST(ContactResidual, VelocitiesWithoutImpulsesHideNoWrongImpulse) {
   // Falling bodies without impulses, presented with velocities of bodies at rest.
   std::mt19937 random(12);
   ContactProblem problem = samples::random_global(random, 2, 6, 0, 0.4);

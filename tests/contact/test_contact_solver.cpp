@@ -124,7 +124,7 @@ TEST(ContactSolver, IslandsTogetherHaveTheVelocitiesOfEachAlone) {
   EXPECT_LE(relative_distance(solution.velocity, expected), 1e-7);
 }
 
-/// A point that two walls leave less room than it has, and a free one beside it.
+/// A point between two walls that are closer than it is thick, and a free point beside it.
 TEST(ContactSolver, ASqueezedBodyEndsInfeasibleAndFiniteWithinTheBudget) {
   ContactProblem problem;
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(9, 6);
@@ -183,7 +183,7 @@ TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
 }
 
 /// Bodies that A couples start in float32 and end, where that is not enough, in float64.
-TEST(ContactSolver, IteratesInFloat32FirstWhenAskedTo) {
+TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
   ContactOptions options = {.max_sweeps = 100000, .coupling = ContactCoupling::iterated};
   for (const double tolerance : {1e-3, 1e-9}) {

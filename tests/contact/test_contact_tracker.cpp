@@ -1,5 +1,5 @@
 /// @file test_contact_tracker.cpp
-/// What contacts remember: by key, by place, as long as they adhere.
+/// The tracker's records: matched by key, by position, and kept as long as a contact adheres.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr double dt = 0.01;
 constexpr double area = 1e-4;
 constexpr double stiffness = 1e6;
 
-/// Glue that holds from the first touch and never lets go.
+/// Glue that bonds at the first touch and never debonds.
 ContactTrackerOptions glue(double match_distance = 0) {
   ContactTrackerOptions options;
   options.materials = {{.friction = 0.5, .stiffness = stiffness, .initial_intensity = 1}};

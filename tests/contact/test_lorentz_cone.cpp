@@ -1,6 +1,6 @@
 /// @file test_lorentz_cone.cpp
-/// The algebra of Lorentz cones: products undone, boundaries met, scalings that make two points
-/// one.
+/// The algebra of Lorentz cones: inverse products, steps to the boundary, scalings that map two
+/// points to the same one.
 #include <gtest/gtest.h>
 
 #include <cmath>

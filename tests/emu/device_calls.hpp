@@ -11,27 +11,29 @@
 
 namespace tetwarp::test {
 
+using DeviceCall = simt::ApiCall;
+
 class DeviceCalls {
  public:
   explicit DeviceCalls(std::string calls) : calls_(std::move(calls)) {}
 
-  std::int64_t count(simt::ApiCall call) const {
+  std::int64_t count(DeviceCall call) const {
     return std::count(calls_.begin(), calls_.end(), static_cast<char>(call));
   }
 
   /// Position of the first such call; the number of all calls where there is none.
-  std::int64_t first(simt::ApiCall call) const {
+  std::int64_t first(DeviceCall call) const {
     return std::find(calls_.begin(), calls_.end(), static_cast<char>(call)) - calls_.begin();
   }
 
   /// Position of the last such call, -1 where there is none.
-  std::int64_t last(simt::ApiCall call) const {
+  std::int64_t last(DeviceCall call) const {
     return calls_.rend() - std::find(calls_.rbegin(), calls_.rend(), static_cast<char>(call)) - 1;
   }
 
   bool operator==(const DeviceCalls&) const = default;
 
-  /// One letter per call, as simt::ApiCall defines them.
+  /// One letter per call, as DeviceCall defines them.
   friend std::ostream& operator<<(std::ostream& out, const DeviceCalls& calls) {
     return out << calls.calls_;
   }

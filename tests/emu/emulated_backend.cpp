@@ -1,6 +1,6 @@
 /// @file emulated_backend.cpp
-/// Back end cuda on the emulated device: the very executor, pipeline and kernels of the real one;
-/// scan, selection and sort, which are CUB's there, by the standard library.
+/// Back end cuda on the emulated device: executor, pipeline and kernels are those of the real one;
+/// scan, selection and sort, which are CUB's there, use the standard library.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -23,7 +23,7 @@ void enqueue(cudaStream_t stream, Work&& work) {
   simt::Device::only().run_eager();
 }
 
-/// Like CUB's, the primitives want scratch memory that grows with their input.
+/// Like CUB's, the primitives take scratch memory that grows with their input.
 void take_scratch(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
   scratch.reserve(256 + count / 32);
 }

@@ -1,5 +1,5 @@
 /// @file emulated_contact.cpp
-/// The contact solver's device on the emulated one: the very executors and kernels.
+/// The contact solver's device on the emulated one, with the executors and kernels of the real one.
 #include "host/contact/cuda/contact_cuda.cuh"
 
 namespace tetwarp {

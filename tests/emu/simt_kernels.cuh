@@ -74,7 +74,7 @@ __global__ void shuffle_kernel(int* broadcast, int* up, int* down, int* crossed)
   crossed[lane] = __shfl_xor_sync(all_lanes, lane, 5, 8);
 }
 
-/// Half-warps that exchange a different number of times before they meet.
+/// Half-warps that exchange a different number of times before the common barrier.
 __global__ void half_warp_kernel(int* out) {
   const int lane = static_cast<int>(threadIdx.x);
   int value = lane;

@@ -1,5 +1,5 @@
 /// @file test_affine_simt.cpp
-/// The sampling floor of a device, emulated, samples what its map says, whatever the layout.
+/// The benchmark's sampling kernel, emulated, samples at the positions of its map in every layout.
 #include <gtest/gtest.h>
 
 #include <algorithm>

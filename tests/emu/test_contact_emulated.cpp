@@ -39,13 +39,13 @@ TEST(ContactEmulated, ASolverThatGoesOnAllocatesNothing) {
       {make_elastic_problem({}), elastic}};
   for (const auto& [problem, options] : cases) {
     ContactSolver solver(options);
-    EXPECT_GT(calls_of(solver, problem).count(simt::ApiCall::allocate), 10);
+    EXPECT_GT(calls_of(solver, problem).count(DeviceCall::allocate), 10);
 
     const DeviceCalls calls = calls_of(solver, problem);
 
-    EXPECT_EQ(calls.count(simt::ApiCall::allocate), 0);
-    EXPECT_EQ(calls.count(simt::ApiCall::release), 0);
-    EXPECT_GT(calls.count(simt::ApiCall::launch), 5);
+    EXPECT_EQ(calls.count(DeviceCall::allocate), 0);
+    EXPECT_EQ(calls.count(DeviceCall::release), 0);
+    EXPECT_GT(calls.count(DeviceCall::launch), 5);
   }
 }
 
@@ -60,7 +60,7 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
   const DeviceCalls short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
 
   EXPECT_EQ(short_solve, long_solve);  // whatever the number of sweeps
-  EXPECT_LE(long_solve.count(simt::ApiCall::launch), 12);
+  EXPECT_LE(long_solve.count(DeviceCall::launch), 12);
 }
 
 TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {

@@ -222,7 +222,7 @@ TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
   }
 }
 
-/// Rounding ends every progress towards no error at all.
+/// With a tolerance of zero rounding stops the progress.
 TEST(ContactIslandSimt, AnIslandThatGetsNoBetterGivesUp) {
   const SweepScene scene(scenes::random_local({.seed = 11, .contacts = 20}), false);
   IslandSolves<float> solves(scene, {ContactMethod::automatic, 0, 100000},

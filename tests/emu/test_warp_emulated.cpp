@@ -31,17 +31,16 @@ std::vector<Point3> shaken(const scenes::Scene& scene, int step) {
                        static_cast<std::uint64_t>(step));
 }
 
-using simt::ApiCall;
-
 /// The host queues at least 15 calls, none of which allocates or releases, then waits; after the
 /// first wait it only copies results to the host.
 void expect_one_sequence(const DeviceCalls& calls) {
-  EXPECT_EQ(calls.count(ApiCall::allocate), 0) << calls;
-  EXPECT_EQ(calls.count(ApiCall::release), 0) << calls;
-  ASSERT_GT(calls.count(ApiCall::wait), 0) << calls;
-  EXPECT_GT(calls.first(ApiCall::wait), 15) << calls;
-  for (const ApiCall work : {ApiCall::launch, ApiCall::fill, ApiCall::copy_to_device, ApiCall::copy_within}) {
-    EXPECT_LT(calls.last(work), calls.first(ApiCall::wait)) << calls;
+  EXPECT_EQ(calls.count(DeviceCall::allocate), 0) << calls;
+  EXPECT_EQ(calls.count(DeviceCall::release), 0) << calls;
+  ASSERT_GT(calls.count(DeviceCall::wait), 0) << calls;
+  EXPECT_GT(calls.first(DeviceCall::wait), 15) << calls;
+  for (const DeviceCall work : {DeviceCall::launch, DeviceCall::fill, DeviceCall::copy_to_device,
+                                DeviceCall::copy_within}) {
+    EXPECT_LT(calls.last(work), calls.first(DeviceCall::wait)) << calls;
   }
 }
 
@@ -53,7 +52,7 @@ TEST(WarpEmulated, StepsAfterTheFirstNeitherAllocateNorWaitInBetween) {
       Series series(sources, scene, on_device(updates));
       take_calls();
       series.step(scene.deformed, holds_previous);
-      EXPECT_GT(take_calls().count(ApiCall::allocate), 0);
+      EXPECT_GT(take_calls().count(DeviceCall::allocate), 0);
       for (int step = 1; step < 6; ++step) {
         series.step(shaken(scene, step), holds_previous);
 
@@ -98,7 +97,7 @@ TEST(WarpEmulated, OutputsOnTheDeviceCostOneSmallCopy) {
 
     const DeviceCalls calls = take_calls();
     expect_one_sequence(calls);
-    EXPECT_EQ(calls.count(ApiCall::copy_to_host), 1) << calls;
+    EXPECT_EQ(calls.count(DeviceCall::copy_to_host), 1) << calls;
   }
   cudaFree(output);
 }
@@ -118,7 +117,7 @@ TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
   const DeviceCalls calls = take_calls();
   anew.step(scene.deformed);
 
-  EXPECT_GT(calls.count(ApiCall::allocate), 0) << calls;
+  EXPECT_GT(calls.count(DeviceCall::allocate), 0) << calls;
   EXPECT_TRUE(series.has_bits_of(anew));
 }
 

@@ -17,8 +17,6 @@
 namespace tetwarp::test {
 namespace {
 
-using simt::ApiCall;
-
 /// The streams of the only Warper, in the order of their creation.
 enum StreamNumber { compute_stream, upload_stream, download_stream };
 
@@ -93,12 +91,12 @@ TEST_F(EmulatedOverlap, KernelsAreLaunchedBeforeTheLastStepIsDownloaded) {
 
     const DeviceCalls calls = take_calls();
     if (s > 2) {
-      EXPECT_EQ(calls.count(ApiCall::allocate), 0) << calls;
-      EXPECT_EQ(calls.count(ApiCall::release), 0) << calls;
-      EXPECT_EQ(calls.count(ApiCall::wait), 1) << calls;
-      EXPECT_EQ(calls.first(ApiCall::copy_to_device), 0) << calls;
-      EXPECT_LT(calls.first(ApiCall::wait), calls.first(ApiCall::launch)) << calls;
-      EXPECT_EQ(calls.count(ApiCall::copy_to_host), 1 + 6) << calls;  // counters and outputs
+      EXPECT_EQ(calls.count(DeviceCall::allocate), 0) << calls;
+      EXPECT_EQ(calls.count(DeviceCall::release), 0) << calls;
+      EXPECT_EQ(calls.count(DeviceCall::wait), 1) << calls;
+      EXPECT_EQ(calls.first(DeviceCall::copy_to_device), 0) << calls;
+      EXPECT_LT(calls.first(DeviceCall::wait), calls.first(DeviceCall::launch)) << calls;
+      EXPECT_EQ(calls.count(DeviceCall::copy_to_host), 1 + 6) << calls;  // counters and outputs
     }
     if (s == 0) continue;
     EXPECT_TRUE(buffers[(s + 1) % 2].bits() == before) << "the step before is downloaded already";

@@ -1,5 +1,5 @@
-# Installs the build in BUILD, then configures, builds and runs a project that has only the
-# installed files to go by.
+# Installs the build in BUILD, then configures, builds and runs the programs in EXAMPLES, which see
+# nothing but the installed files.
 cmake_minimum_required(VERSION 3.22)
 set(root ${BUILD}/install_test)
 file(REMOVE_RECURSE ${root})
@@ -9,11 +9,11 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --config ${CONFIG} --prefix ${root}/prefix)
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${root}/consumer -G ${GENERATOR}
+run(${CMAKE_COMMAND} -S ${EXAMPLES} -B ${root}/examples -G ${GENERATOR}
   -DCMAKE_BUILD_TYPE=${CONFIG} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS}
-  -DCMAKE_PREFIX_PATH=${root}/prefix -DCUDAToolkit_ROOT=${CUDA_ROOT} -DWITH_IO=${WITH_IO})
-run(${CMAKE_COMMAND} --build ${root}/consumer --config ${CONFIG})
-run(${CMAKE_COMMAND} -E chdir ${root} ${root}/consumer/consumer)
+  -DCMAKE_PREFIX_PATH=${root}/prefix -DCUDAToolkit_ROOT=${CUDA_ROOT})
+run(${CMAKE_COMMAND} --build ${root}/examples --config ${CONFIG})
+run(${CMAKE_CTEST_COMMAND} --test-dir ${root}/examples -C ${CONFIG} --verbose)
 if(WITH_IO)
   run(${CMAKE_COMMAND} -E chdir ${root} ${root}/prefix/bin/tetwarp --version)
 endif()

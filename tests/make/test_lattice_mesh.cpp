@@ -137,16 +137,6 @@ TEST(Lattice, CoversEveryVoxelToItsCorners) {
 
 template <class T>
 class LatticeOf : public ::testing::Test {};
-using PixelTypes = ::testing::Types<std::uint8_t,
-                                    std::int8_t,
-                                    std::uint16_t,
-                                    std::int16_t,
-                                    std::uint32_t,
-                                    std::int32_t,
-                                    std::uint64_t,
-                                    std::int64_t,
-                                    float,
-                                    double>;
 TYPED_TEST_SUITE(LatticeOf, PixelTypes);
 
 TYPED_TEST(LatticeOf, DropsEmptyCellsAndKeepsForeground) {

@@ -1,5 +1,5 @@
 /// @file contact_files.hpp
-/// Small contact problems, and what a file of them holds, read with HDF5 alone.
+/// Small contact problems, and access to their files by HDF5 alone.
 #pragma once
 #include <hdf5.h>
 
@@ -52,7 +52,7 @@ inline ContactProblem sliding_point(double friction = 0.3) {
   return problem;
 }
 
-/// Two contacts that feel each other, not quite symmetrically, as in recorded files.
+/// Two coupled contacts whose matrix is not quite symmetric, as in recorded files.
 inline ContactProblem local_problem() {
   ContactProblem problem;
   problem.delassus = sparse({{2, 0.25, 0, 0.5, 0, 0},

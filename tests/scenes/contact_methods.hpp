@@ -41,7 +41,7 @@ inline ContactOptions iterated(ContactMethod method = ContactMethod::automatic) 
   return {.method = method, .tolerance = 1e-8, .coupling = ContactCoupling::iterated};
 }
 
-/// Two problems in global form, with block starts or without, that know nothing of each other.
+/// Two problems in global form, with block starts or without, joined without any coupling.
 inline ContactProblem joined(ContactProblem a, const ContactProblem& b) {
   const std::int64_t dofs = a.dof_count();
   const auto append = [&](SparseMatrix& to, const SparseMatrix& from) {

@@ -83,7 +83,7 @@ inline std::vector<double> random_kappa(std::mt19937& random, std::int64_t conta
   return kappa;
 }
 
-/// Local problem of contacts that all feel each other.
+/// Local problem in which all contacts are coupled.
 inline ContactProblem random_local(std::mt19937& random,
                                    std::int64_t contacts,
                                    double friction,

@@ -57,7 +57,7 @@ struct SpherePacking {
   std::int64_t edge = 6;  ///< spheres along each edge of the lattice
   double friction = 0.3;
   double kept = 1;  ///< share of the possible contacts
-  double gaps = 1;  ///< of what the distances say; 0: all touch
+  double gaps = 1;  ///< factor of the gaps between surfaces; 0: all touch
   double time_step = 0.01;
   Glue glue = {};
 };

@@ -1,5 +1,5 @@
 /// @file contact_sweeps.hpp
-/// Contact sweeps on the host, contact by contact, as what devices are held against.
+/// Contact sweeps on the host, contact by contact, to compare devices with.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -47,7 +47,7 @@ inline ContactProblem first_contacts(ContactProblem problem, std::int64_t count)
   return problem;
 }
 
-/// What the host makes of one island.
+/// Results of the host for one island.
 template <class T>
 struct HostSweeps {
   std::vector<T> impulse;  ///< [3 contacts of the island]

@@ -1,5 +1,6 @@
 /// @file contact_transforms.hpp
-/// The same contact problem said differently: in other orders, in a mirror, in other units.
+/// Transforms of a contact problem that leave its solution the same: other orders, a mirror image,
+/// other units.
 #pragma once
 #include <cstdint>
 #include <vector>

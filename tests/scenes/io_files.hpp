@@ -14,6 +14,8 @@
 
 #include <tetwarp/io.hpp>
 
+#include "tests/scenes/message_of.hpp"
+
 namespace tetwarp::test {
 
 /// A folder of its own, removed at the end.
@@ -187,12 +189,7 @@ class Hdf5Editor {
 /// The line of the IoError that `body` throws; empty when it throws none.
 template <class Body>
 std::string io_error(const Body& body) {
-  try {
-    body();
-  } catch (const IoError& error) {
-    return error.what();
-  }
-  return {};
+  return message_of<IoError>(body);
 }
 
 }  // namespace tetwarp::test

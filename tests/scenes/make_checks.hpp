@@ -1,5 +1,5 @@
 /// @file make_checks.hpp
-/// What the tests of lattices, deformations, the phantom and pictures share.
+/// Helpers of the tests of lattices, deformations, the phantom and pictures.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -7,11 +7,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <tetwarp/make.hpp>
 #include <utility>
 #include <vector>
+
+#include "tests/scenes/message_of.hpp"
 
 namespace tetwarp::make_checks {
 
@@ -55,16 +56,7 @@ inline Mesh lattice_of(const Volume& volume, int cells, std::optional<double> th
   return make_lattice_mesh(volume, {.cells = cells, .threshold = threshold});
 }
 
-/// What std::invalid_argument says when it is thrown.
-template <class Call>
-std::string message_of(Call&& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
+using test::message_of;
 
 inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;

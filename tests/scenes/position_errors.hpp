@@ -100,7 +100,7 @@ struct PositionErrors {
   double evaluation_share = 0;
   double rounding = 0;  ///< that map against the map of the nodes as given
   double rounding_share = 0;
-  std::int64_t strays = 0;  ///< voxels that are not inside their owner
+  std::int64_t strays = 0;  ///< voxels outside their owner
   std::int64_t voxels = 0;  ///< that were looked at
 };
 

@@ -39,7 +39,7 @@ inline Volume wave_volume(const Grid& grid, PixelType type, std::size_t axis) {
   return volume;
 }
 
-/// A warped wave per axis, and who owns the voxels.
+/// A warped wave per axis, and the owners of the voxels.
 struct Probed {
   PixelType type;
   std::array<std::int64_t, 3> begin;  ///< first voxel of the output, in the output grid

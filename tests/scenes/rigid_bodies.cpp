@@ -25,7 +25,7 @@ Matrix3d world_inertia(const RigidBox& box) {
 }
 
 /// Spin after a step of free tumbling: I (w - w0) + dt w x I w = 0 in world axes of the start.
-/// Multiplied by w this says that the energy cannot grow.
+/// Multiplied by w this shows that the energy cannot grow.
 Vector3d tumbled_spin(const Matrix3d& inertia, const Vector3d& start, double time_step) {
   Vector3d spin = start;
   for (int iteration = 0; iteration < 20; ++iteration) {

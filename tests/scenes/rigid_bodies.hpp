@@ -2,8 +2,8 @@
 /// A small simulation of rigid boxes on planes and on each other, stepped implicitly.
 ///
 /// Each step finds the contacts, sets up  A v = J^T r + b  with A the masses and inertias, solves
-/// it with the contact laws, moves the bodies with the velocities found, and lets the tracker
-/// follow bonds. Boxes touch with points on their z faces: planes with all of them, each other with
+/// it with the contact laws, moves the bodies with the velocities found, and has the tracker follow
+/// bonds. Boxes touch with points on their z faces: planes with all of them, each other with
 /// those of the smaller face on the larger.
 #pragma once
 #include <Eigen/Geometry>

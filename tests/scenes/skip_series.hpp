@@ -1,5 +1,6 @@
 /// @file skip_series.hpp
-/// Series of steps in which parts of a mesh move, and a Warper that writes each over the last.
+/// Series of steps in which parts of a mesh move, and a Warper that writes each step over the one
+/// before.
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 /// @file solid_scenes.hpp
-/// Boxes filled with tetrahedra whose deformed hull is known exactly, so that holes and spills can
-/// be told without asking any back end.
+/// Boxes filled with tetrahedra whose deformed hull is known exactly, so that voxels
+/// missed inside and covered outside can be counted without any back end.
 #pragma once
 #include <algorithm>
 #include <array>

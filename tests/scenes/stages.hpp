@@ -1,9 +1,11 @@
 /// @file stages.hpp
 /// The stages of the warp run one after another on an executor, their results kept for inspection.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "host/warp/geometry.hpp"
@@ -66,6 +68,16 @@ inline StageInput input_of(const scenes::Scene& scene, std::optional<Region> reg
     input.deformed.push_back(quantized(geometry.output_index, p.data(), geometry.frame.origin));
   }
   return input;
+}
+
+/// A rotated scene of `count` tetrahedra, many of them the same.
+inline scenes::Scene scene_of_tets(std::int64_t count) {
+  scenes::Scene scene = scenes::adversarial_scene("rotated", 24);
+  const std::vector<std::array<std::int32_t, 4>> tets = std::exchange(scene.mesh.tets, {});
+  for (std::size_t t = 0; t < static_cast<std::size_t>(count); ++t) {
+    scene.mesh.tets.push_back(tets[t * 7 % tets.size()]);
+  }
+  return scene;
 }
 
 /// Every stage up to the sorted pairs.

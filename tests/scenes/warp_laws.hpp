@@ -1,6 +1,6 @@
 /// @file warp_laws.hpp
-/// What every warp must keep, however hard the scene: positions within their bounds, no hole, no
-/// spill, no double, owners by the definition.
+/// Laws of every warp: positions within their bounds, no voxel inside the mesh without owner, none
+/// outside with one, none with two, owners by the definition.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ class WarpLaws : public EachBackend {
     EXPECT_GT(errors.voxels, 0);
   }
 
-  /// All laws; every `stride`-th voxel is held to its position.
+  /// All laws; positions are checked in every `stride`-th voxel.
   PositionErrors expect_laws(const Solid& solid,
                              PixelType type,
                              WarpOptions options = {},

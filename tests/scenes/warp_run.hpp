@@ -1,5 +1,5 @@
 /// @file warp_run.hpp
-/// One call that warps and keeps everything a test looks at.
+/// One call that warps and keeps all outputs.
 #pragma once
 #include <cmath>
 #include <cstdint>

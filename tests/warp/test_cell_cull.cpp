@@ -94,7 +94,7 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   EXPECT_EQ(far[13], rejected_pair);
 }
 
-TYPED_TEST(CellCull, NeverChangesWhoIsInsideAWholeOrACutGrid) {
+TYPED_TEST(CellCull, NeverChangesOwnersInAWholeOrACutGrid) {
   const auto scenes = scenes::adversarial_scenes(32);
   std::int64_t rejected = 0, accepted = 0;
   for (std::size_t s = 0; s < 2 * scenes.size(); ++s) {
@@ -149,13 +149,8 @@ TYPED_TEST(CellCull, GivesOnlyVerdictsThatAreSwitchedOn) {
 }
 
 TYPED_TEST(CellCull, HasAPairPerCellForAnyNumberOfTetrahedra) {
-  scenes::Scene scene = scenes::adversarial_scene("rotated", 24);
-  const auto tets = scene.mesh.tets;
   for (const std::int64_t size : tricky_sizes) {
-    scene.mesh.tets.clear();
-    for (std::size_t t = 0; t < static_cast<std::size_t>(size); ++t) {
-      scene.mesh.tets.push_back(tets[t * 7 % tets.size()]);
-    }
+    const scenes::Scene scene = scene_of_tets(size);
     const StageInput input = input_of(scene);
     const Stages<TypeParam> stages = this->run(input, {.reject = false, .accept = false});
     std::vector<CellPair> expected;
@@ -211,7 +206,7 @@ TEST(CellVerdicts, RejectCellsThatASmallTetrahedronMisses) {
   }
 }
 
-/// Where masks ran out of room nothing is known: the pair is kept, the step comes again.
+/// Pairs without masks, because their buffer was too small, are kept; the step then runs again.
 TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
   const StageInput input = wedge_tet();
   const Stages<TypeParam> stages = this->run(input);

@@ -1,5 +1,5 @@
 /// @file test_cell_merge.cpp
-/// Pairs brought up to date are the pairs that a step from scratch would make.
+/// Updated pairs are the pairs that a step from scratch makes.
 #include <algorithm>
 #include <cstdint>
 #include <utility>

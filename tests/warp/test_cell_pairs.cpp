@@ -85,7 +85,7 @@ TYPED_TEST(CellPairs, KeepATetrahedronACellAndAVerdictInOneWord) {
   EXPECT_FALSE(is_accepted(make_pair(0xfffffffe, 0x7fffffff, false)));
 }
 
-/// Cell 2 holds tetrahedra 0, 1, 3 and 4; 1 and 4 are accepted, so 3 and 4 have no say.
+/// Cell 2 holds tetrahedra 0, 1, 3 and 4; 1 and 4 are accepted, so 3 and 4 are dropped.
 TYPED_TEST(CellPairs, EndACellBehindItsFirstAcceptedTetrahedron) {
   const std::vector<CellPair> candidates = {
       make_pair(2, 0, false), make_pair(5, 0, false), make_pair(2, 1, true), rejected_pair,

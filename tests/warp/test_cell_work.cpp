@@ -103,7 +103,7 @@ TYPED_TEST(CellWork, SamplesCellsThatReachTheEndOfTheSource) {
   EXPECT_EQ(this->run(wide_tet(-0.55), uniform_volume(40, 1)).constant_count, 16);
 }
 
-TYPED_TEST(CellWork, KeepsCellsThatNobodyTouched) {
+TYPED_TEST(CellWork, KeepsCellsThatNoMovedTetrahedronTouches) {
   std::vector<std::uint8_t> touched(20, 0);
   touched[3] = touched[7] = 1;
 

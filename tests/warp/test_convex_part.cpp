@@ -1,5 +1,6 @@
 /// @file test_convex_part.cpp
-/// Voxels cut by planes: the two sides make the whole, however planes and faces coincide.
+/// Voxels cut by planes: the volumes of both sides add up to the whole, also where planes and faces
+/// coincide.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file test_hex_split.cpp
-/// Hexahedra split into tetrahedra: whole, without overlap, and alike on shared faces.
+/// Hexahedra split into tetrahedra: without gap or overlap, and with equal cuts on shared faces.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

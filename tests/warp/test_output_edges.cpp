@@ -1,5 +1,5 @@
 /// @file test_output_edges.cpp
-/// The output is somebody else's memory: nothing beside it is written, wherever it begins.
+/// No byte beside the output is written, at any alignment of the output.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 /// @file test_parity.cpp
 /// cuda against cpu through the public calls: decisions bit for bit, values within a few ulp.
-/// Stage by stage the suites X/cuda hold the kernels to the same tests as X/cpu.
+/// (The suites X/cuda run the tests of each stage on the kernels.)
 #include <gtest/gtest.h>
 
 #include <algorithm>

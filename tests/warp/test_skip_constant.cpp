@@ -79,7 +79,7 @@ TEST(SkipConstant, GivesTheBitsOfSamplingForEveryPixelType) {
   }
 }
 
-/// Extremes of a type survive their detour through the arithmetic of sampling.
+/// The extremes of a type are unchanged by the arithmetic of sampling.
 TEST(SkipConstant, GivesTheBitsOfSamplingForExtremeValues) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 40);
   for (const PixelType type : all_types) {
@@ -109,7 +109,8 @@ TEST(SkipConstant, LeavesNaNInfinitiesAndNegativeZerosToTheSampler) {
   }
 }
 
-/// Wider filters see farther, and a spline's coefficients take some voxels to settle.
+/// Wider filters read more samples, and a spline's coefficients take some voxels to become
+/// constant.
 TEST(SkipConstant, GivesTheBitsOfSamplingForEveryFilter) {
   for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos}) {
     const scenes::Scene scene =
@@ -125,8 +126,8 @@ TEST(SkipConstant, GivesTheBitsOfSamplingForEveryFilter) {
   EXPECT_GT(expect_same({labels}, scene, {.filter = Filter::labels}), 0);
 }
 
-/// A source with air next to one without: each is looked at for itself, the first is counted.
-TEST(SkipConstant, JudgesEverySourceForItself) {
+/// One source with air and one without: each is tested on its own, the first is counted.
+TEST(SkipConstant, TreatsEverySourceOnItsOwn) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 56);
   const Volume airy = airy_volume(scene.source_grid, PixelType::int16);
   const Volume wavy = scenes::wavy_volume(scene.source_grid, PixelType::float32);

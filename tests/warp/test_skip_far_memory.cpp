@@ -1,6 +1,7 @@
 /// @file test_skip_far_memory.cpp
-/// Series on an executor whose memory is not the caller's, as a device's is not: only the slices
-/// and rows that a step touches come home, and buffers are trusted until they prove too small.
+/// Series on an executor whose memory is separate from the caller's, as a device's is: only the
+/// slices and rows that a step changes are copied back, and a step whose buffers are too small runs
+/// again with larger ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,10 +43,10 @@ class FarExec : public CpuExec {
     *downloaded_ += from.size * static_cast<std::int64_t>(sizeof(T));
   }
 
-  /// As to memory that is not page-locked: parts of an output are sent when they are known.
+  /// As for memory that is not page-locked: parts of an output are copied one by one.
   bool downloads_async(const void*) const { return false; }
 
-  /// Adds the bytes that come home to `bytes` from now on.
+  /// From now on adds the bytes that are copied back to `bytes`.
   void count_in(std::int64_t& bytes) { downloaded_ = &bytes; }
 
  private:
@@ -57,27 +58,35 @@ StepReport step(StepQueue& far, const std::vector<Point3>& positions, const Warp
   return far.finish();
 }
 
+/// Steps of a region on far memory; `bytes` counts what is copied back.
+StepQueue far_queue(const std::vector<Volume>& sources,
+                    const scenes::Scene& scene,
+                    const Region& region,
+                    std::int64_t& bytes) {
+  WarpPlan plan;
+  plan.sources = {sources.begin(), sources.end()};
+  plan.mesh = scene.mesh;
+  plan.output_grid = scene.output_grid;
+  plan.region = region;
+  FarExec exec(1);
+  exec.count_in(bytes);
+  return StepQueue(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+}
+
 class FarMemory : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          FarMemory,
                          ::testing::Values("waved", "outside", "aligned", "other_grid"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
+TEST_P(FarMemory, KeepsTheResultFromStepToStepAndCopiesBackWhatChanged) {
   const scenes::Scene scene = scenes::adversarial_scene(GetParam(), 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::int16, 2),
                                        scenes::wavy_volume(scene.source_grid, PixelType::float64)};
   for (const Region& region :
        {Region{{0, 0, 0}, scene.output_grid.dims}, Region{{3, 5, 1}, {33, 30, 34}}}) {
-    WarpPlan plan;
-    plan.sources = {sources.begin(), sources.end()};
-    plan.mesh = scene.mesh;
-    plan.output_grid = scene.output_grid;
-    plan.region = region;
-    FarExec exec(1);
     std::int64_t bytes = 0;
-    exec.count_in(bytes);
-    StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+    StepQueue far = far_queue(sources, scene, region, bytes);
     WarpOptions options;
     options.backend = Backend::cpu;
     options.region = region;
@@ -116,15 +125,8 @@ TEST_P(FarMemory, HoldsTheResultFromStepToStepAndSendsHomeWhatChanged) {
 TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 40);
   const std::vector<Volume> sources = {scenes::wavy_volume(scene.source_grid, PixelType::float32)};
-  WarpPlan plan;
-  plan.sources = {sources.begin(), sources.end()};
-  plan.mesh = scene.mesh;
-  plan.output_grid = scene.output_grid;
-  plan.region = {{0, 0, 0}, scene.output_grid.dims};
-  FarExec exec(1);
   std::int64_t bytes = 0;
-  exec.count_in(bytes);
-  StepQueue far(std::make_unique<WarpPipeline<FarExec>>(plan, std::move(exec)));
+  StepQueue far = far_queue(sources, scene, {{0, 0, 0}, scene.output_grid.dims}, bytes);
   WarpOptions options;
   options.backend = Backend::cpu;
   Series anew(sources, scene, options), out(sources, scene, options);

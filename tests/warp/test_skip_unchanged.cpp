@@ -124,8 +124,8 @@ TEST_P(SkipUnchanged, BuffersThatDoNotHoldTheStepBeforeAreWrittenWhole) {
   EXPECT_GT(unchanged_tets, 0);
 }
 
-/// Every other step finds what the step before the last has left; kept cells are still those that
-/// have not changed since then, also where the targets are the same now and then.
+/// Every step writes over the result of the step before the last; kept cells are those that have
+/// not changed since then, also where some steps use the same target as the step before.
 TEST_P(SkipUnchanged, TargetsInTurnsKeepWhatHasNotChangedSince) {
   const std::vector<Volume> sources = sources_of(scene());
   Series updated(sources, scene(), options(true)), anew(sources, scene(), options(false));
@@ -140,7 +140,7 @@ TEST_P(SkipUnchanged, TargetsInTurnsKeepWhatHasNotChangedSince) {
   EXPECT_LT(inside_tests, inside_tests_anew);
 }
 
-/// What a kept cell held is there afterwards: marks put there by force survive.
+/// Kept cells are not written: values that the test puts there stay.
 TEST_P(SkipUnchanged, KeptCellsAreNotWritten) {
   if (backend() == Backend::cuda) GTEST_SKIP() << "the device keeps its own copy of the result";
   const std::vector<Volume> sources = sources_of(scene());

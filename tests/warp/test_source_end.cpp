@@ -1,5 +1,5 @@
 /// @file test_source_end.cpp
-/// The source is somebody else's memory: nothing behind its last sample is read.
+/// No byte behind the last sample of the source is read.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <unistd.h>

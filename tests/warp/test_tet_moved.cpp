@@ -86,7 +86,7 @@ TYPED_TEST(TetMoved, TakesMovedTetrahedraOutOfTheClassCounts) {
   EXPECT_EQ(found.classes, std::vector<std::int64_t>(tet_class_count, 0));
 }
 
-/// Entries of tetrahedra that stay keep what they held.
+/// Entries of tetrahedra that have not moved are not written.
 TYPED_TEST(TetMoved, SetsUpMovedTetrahedraAndNoOthers) {
   const StageInput input = waved_input();
   StageInput now = input;

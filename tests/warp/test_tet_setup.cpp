@@ -199,13 +199,8 @@ TYPED_TEST(TetSetupStage, SortsOutWhatIsInvertedFlatBadOrTooLarge) {
 
 /// The same bits wherever a tetrahedron stands in the list.
 TYPED_TEST(TetSetupStage, TreatsEveryTetrahedronAlone) {
-  scenes::Scene scene = scenes::adversarial_scene("rotated", 24);
-  const auto source = scene.mesh.tets;
   for (const std::int64_t size : tricky_sizes) {
-    scene.mesh.tets.clear();
-    for (std::size_t t = 0; t < static_cast<std::size_t>(size); ++t) {
-      scene.mesh.tets.push_back(source[t * 7 % source.size()]);
-    }
+    scenes::Scene scene = scene_of_tets(size);
     std::vector<TetSetup> forward = this->download(this->run(input_of(scene)).setups);
     std::ranges::reverse(scene.mesh.tets);
     const std::vector<TetSetup> backward = this->download(this->run(input_of(scene)).setups);

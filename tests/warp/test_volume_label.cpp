@@ -39,7 +39,7 @@ TEST(VolumeLabel, ALabelWithoutWeightNeverWins) {
   EXPECT_EQ(winner({-9, 5, -9, 6, -9, 5, -9, 6}, {1, 0.4, 0.4}), 5);
 }
 
-TEST(VolumeLabel, TellsLabelsApartThatFloat64DoesNot) {
+TEST(VolumeLabel, SeparatesLabelsThatFloat64Cannot) {
   const std::int64_t large = std::int64_t{1} << 60;
   const std::array<std::int64_t, 8> labels = {large, large + 1, large, large + 1,
                                               large, large + 1, large, large + 1};

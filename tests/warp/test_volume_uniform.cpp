@@ -1,5 +1,5 @@
 /// @file test_volume_uniform.cpp
-/// A reach is a promise: every sample of a cube of blocks has the same bits.
+/// Every sample within the reach found for a block has the same bits.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -91,7 +91,7 @@ TYPED_TEST(VolumeUniform, SeesEverySampleOfABlock) {
   }
 }
 
-TYPED_TEST(VolumeUniform, TellsBlocksOfDifferentValuesApart) {
+TYPED_TEST(VolumeUniform, SeparatesBlocksOfDifferentValues) {
   Samples<float> samples(48, 8, 8, 3);
   for (int i = 24; i < 48; ++i) {
     for (int v = 0; v < 64; ++v) samples.at(i, v % 8, v / 8) = 4;

@@ -190,7 +190,7 @@ TEST(Warp, ASampleThatIsNotANumberReachesOnlyWhatBlendsIt) {
   }
 }
 
-/// 2^53 + 1 and its neighbors have no float64: a detour through one would show.
+/// 2^53 + 1 and its neighbors have no float64, so a conversion to it would change them.
 TEST(Warp, NearestKeepsWideIntegersExact) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   Volume source = make_volume(scene.source_grid, PixelType::uint64);
@@ -233,7 +233,7 @@ TEST(Warp, IntegersRoundHalfToEven) {
   }
 }
 
-/// Sources of fewer bytes than a machine word, seen enlarged.
+/// Sources of fewer bytes than a machine word, enlarged.
 TEST(Warp, TheSmallestSourcesAreSampledLikeOthers) {
   for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::float32}) {
     for (const Grid& grid : {scenes::unit_grid(1, 1, 1), scenes::unit_grid(2, 1, 1),
@@ -257,7 +257,7 @@ TEST(Warp, TheSmallestSourcesAreSampledLikeOthers) {
   }
 }
 
-/// Ends of the range survive interpolation among themselves.
+/// Interpolation between equal samples at the end of the range gives that sample.
 TEST(Warp, IntegersSaturate) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint32}) {

@@ -20,7 +20,7 @@ class InFlight : public EachBackend {
                                        scenes::wavy_volume(scene.source_grid, PixelType::float32)};
   const WarpOptions options = {.backend = GetParam()};
 
-  /// As shaken as `step` says.
+  /// Node positions that differ for each `step`.
   std::vector<Point3> shaken(std::uint64_t step) const {
     return scenes::waved(scene.deformed, 0.3 * scene.output_grid.spacing[0], step);
   }
@@ -39,8 +39,8 @@ TEST_P(InFlight, StepsHaveTheBitsOfStepsOneByOne) {
   }
 }
 
-/// The second of four steps has a node too far away, which only computing finds.
-TEST_P(InFlight, AnErrorIsToldOnceByTheStepThatHasIt) {
+/// The second of four steps has a node too far away, which is found only while it is computed.
+TEST_P(InFlight, AnErrorIsThrownOnceByItsOwnStep) {
   Steps steps = {shaken(1), shaken(2), shaken(3), shaken(4)};
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
   steps[1].front()[0] = 1e300;

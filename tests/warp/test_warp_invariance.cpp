@@ -1,5 +1,5 @@
 /// @file test_warp_invariance.cpp
-/// What must not change the bits of a warp: threads, batches, regions, skipped work, company.
+/// The bits of a warp do not depend on threads, batches, regions, skipped work or other sources.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/scenes/affine_scenes.hpp"
+#include "tests/scenes/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -112,7 +113,8 @@ TEST(WarpQuantities, FollowAShear) {
 }
 
 /// Waved meshes, some of them turned inside out; float32 and integers, footprints and densities.
-/// The judge's rotation is as good as the gap between singular values, which slivers lack.
+/// The reference's rotation is as accurate as the gap between singular values, which is tiny in
+/// slivers.
 TEST(WarpQuantities, AreTheReference) {
   for (const char* name : {"waved", "oblique", "other_grid"}) {
     const scenes::Scene scene = scenes::adversarial_scene(name, 14);
@@ -168,13 +170,9 @@ TEST(WarpQuantities, StayFiniteWhereATetrahedronIsInsideOutOrNearlyFlat) {
 TEST(WarpQuantities, AreRefusedWhereTheyCannotBe) {
   const Grid grid = scenes::unit_grid(4, 4, 4);
   const auto complaint = [&](PixelType type, int components, const WarpOptions& options) {
-    try {
-      const scenes::Scene scene = affine_scene(grid, grid, Matrix::Identity());
-      warp(make_volume(grid, type, components), scene.mesh, scene.deformed, options);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    const scenes::Scene scene = affine_scene(grid, grid, Matrix::Identity());
+    return message_of(
+        [&] { warp(make_volume(grid, type, components), scene.mesh, scene.deformed, options); });
   };
   EXPECT_EQ(complaint(PixelType::float32, 1, {.filter = Filter::nearest, .antialias = true}),
             "antialias: averages samples, which nearest and labels must not; use another filter");

@@ -1,6 +1,6 @@
 /// @file test_warp_stress.cpp
-/// Shapes that break naive warps: slivers, inverted, flat and folded tetrahedra. The laws hold for
-/// them as for others. Numbers behind "found" are the largest seen on cpu.
+/// Difficult shapes: slivers, inverted, flat and folded tetrahedra keep the same laws. Numbers
+/// behind "found" are the largest seen on cpu.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ TEST_P(WarpStress, FlatTetrahedraOwnNothingAndLeaveNoHole) {
   found("evaluation", expect_laws(solid, PixelType::float32).evaluation);
 }
 
-/// Inner nodes thrown about by one and a half cells: many tetrahedra are inverted, and a third
+/// Inner nodes moved at random by one and a half cells: many tetrahedra are inverted, and a third
 /// of the voxels lie in several. The lowest owns, and the hull has no hole whatever happens inside.
 TEST_P(WarpStress, FoldsLeaveNoHoleAndKeepPositions) {
   const Grid grid = scenes::unit_grid(40, 40, 40);

@@ -1,6 +1,6 @@
 /// @file test_warp_stress_data.cpp
-/// Samples that break naive warps: NaN, infinities, denormals, the ends of every range. They stay
-/// where they belong. Numbers behind "found" are the largest seen on cpu.
+/// Difficult samples: NaN, infinities, denormals and the ends of every range affect only the voxels
+/// that read them. Numbers behind "found" are the largest seen on cpu.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file test_warp_stress_grids.cpp
-/// Grids that break naive warps: tiny and huge units, far from zero, a thousand times finer along
+/// Difficult grids: tiny and huge units, far from zero, a thousand times finer along
 /// one axis. Numbers behind "found" are the largest seen on cpu.
 #include <gtest/gtest.h>
 

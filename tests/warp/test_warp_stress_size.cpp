@@ -1,5 +1,5 @@
 /// @file test_warp_stress_size.cpp
-/// Sizes that break naive warps: axes of one voxel and of 65,536 and a million, meshes of one
+/// Difficult sizes: axes of one voxel and of 65,536 and a million, meshes of one
 /// tetrahedron and of two million. Numbers behind "found" are the largest seen on cpu.
 #include <gtest/gtest.h>
 
