@@ -1,8 +1,9 @@
 /// @file extra_outputs.hpp
-/// The arrays that `tetwarp warp --outputs` writes beside the warped ones, in one table.
+/// The arrays that `tetwarp warp --outputs` writes in addition to the warped ones, in one table.
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 
@@ -10,31 +11,44 @@
 
 namespace tetwarp::cli {
 
-/// One of them.
+/// An extra output: its word on the command line, its samples, and its member of WarpTarget.
 struct ExtraOutput {
-  const char* word;  ///< for --outputs
+  const char* word;
   PixelType type;
   int components;
+  void (*set)(WarpTarget& target, void* samples);  ///< samples fit the grid of the array
 
   /// Name of the array.
   std::string array() const { return std::string("tetwarp_") + word; }
 };
 
-inline constexpr std::array extra_outputs{ExtraOutput{"mask", PixelType::uint8, 1},
-                                          ExtraOutput{"tet", PixelType::int32, 1},
-                                          ExtraOutput{"displacement", PixelType::float32, 3},
-                                          ExtraOutput{"jacobian", PixelType::float32, 1},
-                                          ExtraOutput{"gradient", PixelType::float32, 9},
-                                          ExtraOutput{"strain", PixelType::float32, 6},
-                                          ExtraOutput{"forward", PixelType::float32, 3}};
+/// The entry of a member of FieldTarget.
+template <float* FieldTarget::*member>
+constexpr ExtraOutput field_output(const char* word, int components) {
+  return {word, PixelType::float32, components, [](WarpTarget& target, void* samples) {
+            target.fields.*member = static_cast<float*>(samples);
+          }};
+}
 
-/// Those that are wanted, by their places in the table.
+inline constexpr std::array extra_outputs{
+    ExtraOutput{"mask", PixelType::uint8, 1,
+                [](WarpTarget& target, void* samples) {
+                  target.mask = static_cast<std::uint8_t*>(samples);
+                }},
+    ExtraOutput{"tet", PixelType::int32, 1,
+                [](WarpTarget& target, void* samples) {
+                  target.owner = static_cast<std::int32_t*>(samples);
+                }},
+    field_output<&FieldTarget::displacement>("displacement", 3),
+    field_output<&FieldTarget::jacobian>("jacobian", 1),
+    field_output<&FieldTarget::gradient>("gradient", 9),
+    field_output<&FieldTarget::strain>("strain", 6),
+    field_output<&FieldTarget::forward>("forward", 3)};
+
+/// The wanted ones, as indices in the table.
 using ExtraChoice = std::set<std::size_t>;
 
-/// The place in the table of an output that lies on the source's grid.
-inline constexpr std::size_t forward_output = 6;
-
-/// Has a step write output `number` to `samples`, which fit its grid.
-void set_extra_output(WarpTarget& target, std::size_t number, void* samples);
+/// Index of "forward", the only one on the grid of the source.
+inline constexpr std::size_t forward_output = extra_outputs.size() - 1;
 
 }  // namespace tetwarp::cli

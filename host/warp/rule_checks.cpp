@@ -1,6 +1,7 @@
 /// @file rule_checks.cpp
 #include "host/warp/rule_checks.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,25 @@
 namespace tetwarp {
 
 namespace {
+
+void check_filter(const VolumeView& source, Filter filter) {
+  const std::string type = std::string("source: ") + name_of(source.type);
+  if (filter == Filter::labels) {
+    if (!is_integer(source.type)) {
+      throw std::invalid_argument(type + " holds no labels; use another filter or integers");
+    }
+    if (source.components != 1) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, labels have one; use the nearest filter");
+    }
+    return;
+  }
+  const bool wide = is_integer(source.type) && size_of(source.type) == 8;
+  if (wide && filter != Filter::nearest) {
+    throw std::invalid_argument(type +
+                                " cannot be interpolated without loss; use the nearest filter");
+  }
+}
 
 /// Components that a quantity has; 0: any number.
 int components_of(Quantity quantity) {
@@ -51,6 +71,26 @@ void check_conservative(const WarpOptions& options) {
 
 }  // namespace
 
+void check_source_rules(const VolumeView& source, Quantity quantity, const WarpOptions& options) {
+  check_filter(source, options.filter);
+  if (is_integer(source.type) && !std::isfinite(options.background)) {
+    throw std::invalid_argument(std::string("background: not a finite number, which ") +
+                                name_of(source.type) + " cannot hold");
+  }
+  check_quantity(source, quantity);
+  if (options.intensity == Intensity::conservative && source.window) {
+    throw std::invalid_argument(
+        "source: totals are kept of all of it, a window has a part; use density");
+  }
+  const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
+  const bool is_wide = is_integer(source.type) && size_of(source.type) == 8;
+  if (computes && (is_wide || options.filter == Filter::labels)) {
+    throw std::invalid_argument(
+        std::string("source: ") + (is_wide ? name_of(source.type) : "labels") +
+        " cannot be scaled or turned; leave out intensity and quantities, or use another type");
+  }
+}
+
 void check_rules(std::span<const VolumeView> sources, const WarpOptions& options) {
   const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
   if (options.antialias && !blends) {
@@ -66,18 +106,7 @@ void check_rules(std::span<const VolumeView> sources, const WarpOptions& options
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];
-    check_quantity(sources[s], quantity);
-    if (options.intensity == Intensity::conservative && sources[s].window) {
-      throw std::invalid_argument(
-          "source: totals are kept of all of it, a window has a part; use density");
-    }
-    const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
-    const bool is_wide = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
-    if (computes && (is_wide || options.filter == Filter::labels)) {
-      throw std::invalid_argument(
-          std::string("source: ") + (is_wide ? name_of(sources[s].type) : "labels") +
-          " cannot be scaled or turned; leave out intensity and quantities, or use another type");
-    }
+    check_source_rules(sources[s], quantity, options);
   }
 }
 

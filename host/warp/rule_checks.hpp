@@ -1,5 +1,5 @@
 /// @file rule_checks.hpp
-/// Whether options that give voxels more than plain samples go with sources and with each other.
+/// Whether options go with the types of the sources and with each other. Samples are not read.
 #pragma once
 #include <span>
 
@@ -7,7 +7,12 @@
 
 namespace tetwarp {
 
-/// Throws std::invalid_argument, naming the option and what would do.
+/// Checks the options for one source, whose data may be null.
+/// @throws std::invalid_argument that names the option and a remedy
+void check_source_rules(const VolumeView& source, Quantity quantity, const WarpOptions& options);
+
+/// Checks the options for all sources and with each other.
+/// @throws std::invalid_argument as above
 void check_rules(std::span<const VolumeView> sources, const WarpOptions& options);
 
 }  // namespace tetwarp

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/names.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
@@ -148,15 +150,22 @@ class TemporalVolumeWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Shapes of the chunks in which an array is stored.
+enum class ChunkShape {
+  rows,   ///< for arrays that are written whole: as write_volumes() stores them
+  bricks  ///< for arrays that are written in blocks: nearly cubes, edges by block_step()
+};
+
 /// Writes a VTKHDF ImageData file whose arrays come in regions: a static one, or a temporal one
-/// step by step. Chunks are bricks, so that regions of any proportions end where chunks do.
+/// step by step.
 class BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
                     const Grid& grid,
                     const std::vector<ArrayHeader>& arrays,
                     const VolumeWriteOptions& options,
-                    bool is_temporal);
+                    bool is_temporal,
+                    ChunkShape chunks = ChunkShape::bricks);
   BlockVolumeWriter(BlockVolumeWriter&&) noexcept;
   ~BlockVolumeWriter();  ///< without finish(): removes the temporary file
 
@@ -165,7 +174,8 @@ class BlockVolumeWriter {
   void repeat_step(double time);
 
   /// Writes a region of an array.
-  /// @param region   begins and ends at multiples of block_step(), or at the grid's end
+  /// @param region   with ChunkShape::rows the whole grid; else begins and ends at multiples of
+  ///                 block_step(), or at the grid's end
   /// @param samples  [k][j][i][component] of the region
   void write(std::size_t array, const Region& region, const void* samples);
 
@@ -197,9 +207,11 @@ Volume read_nifti(const std::string& path);
 
 /// Axes in which a NIfTI file holds samples that are vectors.
 enum class NiftiVectors {
-  world,  ///< those of the samples
-  lps     ///< x and y turned round: a displacement field as ITK and ANTs read it
+  world,  ///< those of the samples: the world axes of the volume
+  lps     ///< x and y negated: a displacement field as ITK and ANTs read it
 };
+template <>
+std::span<const EnumName<NiftiVectors>> names_of();
 
 /// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a
 /// rotation). Samples of several components get the intent code VECTOR.
@@ -231,6 +243,8 @@ enum class ContactStart {
   zero,   ///< `impulse_guess` stays empty
   stored  ///< the impulses of /solution or, when there are none or all are zero, of /guesses/1
 };
+template <>
+std::span<const EnumName<ContactStart>> names_of();
 
 /// Reads a contact problem in FCLIB's HDF5 format, checked by check_problem(): /fclib_local (W, q,
 /// mu) or /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets, and,
@@ -261,10 +275,20 @@ std::int64_t write_contact_solution(const std::string& path,
                                     const ContactSolution& solution,
                                     const AdhesionStep* adhesion_next = nullptr);
 
-/// Kinds of files that info and the checks of swapped arguments tell apart.
-enum class FileKind { volume, mesh, other_vtkhdf, contact_problem, hdf5, nifti, unknown };
+/// Kinds of files; name_of() gives a noun for messages: "volume", "contact problem".
+enum class FileKind {
+  volume,           ///< VTKHDF ImageData
+  mesh,             ///< VTKHDF UnstructuredGrid
+  other_vtkhdf,     ///< VTKHDF of another Type
+  contact_problem,  ///< FCLIB
+  hdf5,             ///< any other HDF5 file, also a damaged one
+  nifti,            ///< NIfTI-1 in a single file, plain or gzip
+  unknown
+};
+template <>
+std::span<const EnumName<FileKind>> names_of();
 
-/// What a file is, by content. Throws IoError only when it cannot be opened.
+/// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 FileKind kind_of(const std::string& path);
 
 }  // namespace tetwarp
