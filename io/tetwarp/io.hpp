@@ -44,7 +44,7 @@ struct VolumeHeader {
 /// Reads the header of a VTKHDF ImageData file.
 VolumeHeader read_volume_header(const std::string& path);
 
-/// Reads one array of a VTKHDF ImageData file.
+/// Reads an array of a VTKHDF ImageData file.
 /// @param array  its name; empty: the first array by name
 /// @param step   from 0, of a temporal file; a static file has step 0 only
 Volume read_volume(const std::string& path, const std::string& array = {}, std::int64_t step = 0);
@@ -127,8 +127,8 @@ struct WrittenFile {
   std::int64_t chunks_background = 0;  ///< of these, not stored: they hold only the background
 };
 
-/// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
-/// An axis of one sample is an error: VTK crashes on such files.
+/// Writes a static VTKHDF ImageData file, Version [1,0], of volumes that share a grid. An axis of
+/// one sample is an error: VTK crashes on such files.
 WrittenFile write_volumes(const std::string& path,
                           const std::vector<const Volume*>& volumes,
                           const VolumeWriteOptions& options = {});
@@ -145,7 +145,6 @@ class TemporalVolumeWriter {
 
   /// Appends a step equal to the last one: its samples are not stored again.
   void repeat(double time);
-
   /// Flushes and moves the file to its name.
   WrittenFile finish();
 
@@ -214,7 +213,7 @@ Volume read_nifti(const std::string& path);
 
 /// Axes in which a NIfTI file holds samples that are vectors.
 enum class NiftiVectors {
-  world,  ///< those of the samples: the world axes of the volume
+  world,  ///< the world axes of the volume
   lps     ///< x and y negated: a displacement field as ITK and ANTs read it
 };
 template <>
