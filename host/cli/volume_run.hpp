@@ -31,14 +31,15 @@ inline std::size_t bytes_of(const ArrayHeader& array, const Region& region) {
 
 /// All references must outlive it. The arrays of the output files do not depend on the blocks.
 ///
-/// The calling thread computes and waits; everything that touches files runs on one other thread,
-/// or on this one while the other has nothing to do. Blocks are shared out among ranks in turns;
-/// the root writes.
+/// The calling thread computes. A second thread reads and writes files; the calling thread does so
+/// only while the second one is idle. Ranks take blocks in turns and the root writes them.
 ///
-/// Whole volume: sources stay in memory, one Warper does all steps and its outputs are reused, so
-/// that it can skip what did not change. A step is written while the next one is computed; on a
-/// device the next one is begun before the copy of this one to the host.
-/// Blocks: of each a window of the source is read, and a Warper made for it. Steps do not overlap.
+/// A whole volume: sources stay in memory, one Warper computes all steps, and its outputs are
+/// reused, so that it can skip what did not change. A step is written while the next one is
+/// computed; on a device the next one is begun before the copy of this one to the host.
+/// Several blocks: for each one a window of the sources is read and a Warper made. A block is
+/// written and the window of the one after is read while the next one is computed; steps do not
+/// overlap.
 class VolumeRun {
  public:
   VolumeRun(const WarpArguments& arguments,
@@ -148,14 +149,14 @@ class VolumeRun {
   std::vector<PageLock> locks_;         ///< of kept_, where a device copies to them
   std::shared_ptr<Samples> sent_;       ///< on their way to the root
   std::optional<BlockMesh> part_mesh_;  ///< nodes and cells of the block that is computed
-  std::optional<Warper> warper_;        ///< its end waits for steps in flight
 
   std::shared_ptr<Step> last_;    ///< the last step that was begun
   std::optional<Part> begun_;     ///< not computed yet
   std::optional<Part> computed_;  ///< not being written yet
   Part writing_part_;
   std::future<void> writing_;
-  IoThread files_;  ///< last: its end waits for the task at work, which uses all above
+  std::optional<Warper> warper_;  ///< destroyed before the outputs: waits for steps in flight
+  IoThread files_;  ///< destroyed first: waits for its task, which uses the other members
 };
 
 }  // namespace tetwarp::cli

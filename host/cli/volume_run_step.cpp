@@ -1,5 +1,5 @@
 /// @file volume_run_step.cpp
-/// The blocks of a step: windows of the sources are read, blocks computed.
+/// The blocks of a step are read and computed.
 #include <algorithm>
 #include <future>
 #include <utility>
@@ -77,10 +77,10 @@ void VolumeRun::run_blocks(const std::shared_ptr<Step>& step) {
   finish_writing();
 }
 
-/// Of a block; the sources of a whole volume are there already.
+/// Begins to read the windows of a block; a whole volume has its sources in memory.
 std::future<VolumeRun::Windows> VolumeRun::begin_reading(const Step& step, std::size_t block) {
   if (is_whole_ || block >= step.plan.blocks.size()) return {};
-  return files_.run([this, &window = step.plan.blocks[block].source] {
+  return files_.run([this, window = step.plan.blocks[block].source] {
     const Stopwatch watch;
     Windows windows{read_windows(window)};
     windows.seconds = watch.seconds();
@@ -88,7 +88,7 @@ std::future<VolumeRun::Windows> VolumeRun::begin_reading(const Step& step, std::
   });
 }
 
-/// Begins a block, finishes the one before and, unless steps overlap, this one.
+/// Begins a block, finishes the previous one and, unless steps overlap, this one.
 void VolumeRun::compute(Part part, const WarpBlock& block, const Samples& windows) {
   if (!is_whole_ || !warper_) make_warper(block, windows);
   part.outputs = outputs_for(part.region);
@@ -152,8 +152,8 @@ void VolumeRun::make_warper(const WarpBlock& block, const Samples& windows) {
   result_.report.position_quantum = report.position_quantum;
 }
 
-/// New memory for a block; for a whole volume what the step before the last wrote to, or the last
-/// where no step is written beside another.
+/// New memory for a block. For a whole volume the two sets of kept_ in turns, or a single one where
+/// a step is not computed before the previous one is written.
 std::shared_ptr<VolumeRun::Samples> VolumeRun::outputs_for(const Region& region) {
   if (!is_whole_) return std::make_shared<Samples>(make_outputs(region));
   if (writes_beside_) now_ = 1 - now_;
