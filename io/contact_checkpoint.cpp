@@ -17,7 +17,7 @@ namespace {
 constexpr const char* root_name = "tetwarp_checkpoint";
 constexpr std::int64_t newest_version = 1;
 
-/// Members of a record that are numbers, one or several.
+/// A member of a record of one or three numbers, and its name in the file.
 struct Member {
   const char* name;
   double ContactRecord::*number = nullptr;

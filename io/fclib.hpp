@@ -1,5 +1,5 @@
 /// @file fclib.hpp
-/// The parts of an FCLIB file: where things stand in it, numbers, texts and matrices.
+/// The parts of an FCLIB file: paths, numbers, texts and matrices.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tetwarp::fclib {
 
-/// Where the vectors of AdhesionState stand in /adhesion.
+/// A vector of AdhesionState and its name in /adhesion.
 struct AdhesionVector {
   const char* name;
   std::vector<double> AdhesionState::*member;
@@ -34,13 +34,13 @@ inline constexpr std::array<AdhesionVector, 9> adhesion_vectors = {{
 /// it.
 std::string path_of(const std::string& field, bool is_local);
 
-/// A number of rows or entries that a file must have, and why.
+/// A number of rows or entries that a file must have, and the reason, for messages.
 struct Expected {
   std::int64_t count = 0;
   std::string reason;  ///< "three per contact"
 };
 
-// ---- numbers and texts: fclib_numbers.cpp --------------------------------------------------
+// ---- numbers and texts: fclib_numbers.cpp ----
 
 /// Elements of a dataset of numbers, whatever its shape. Throws IoError beyond 2^31 - 1, the
 /// largest number of rows that can be indexed.
@@ -72,13 +72,13 @@ void write_reals(const h5::Object& parent,
                  const std::vector<double>& values);
 void write_text(const h5::Object& parent, const std::string& name, const std::string& text);
 
-// ---- matrices: fclib_matrix.cpp --------------------------------------------------------------
+// ---- matrices: fclib_matrix.cpp ----
 
-/// A matrix as it stands in the file or its transpose.
+/// A matrix as the file stores it, or its transpose.
 enum class Orientation { plain, transposed };
 
-/// Reads a matrix stored by columns, by rows or as triplets. `rows` and `columns` are those in the
-/// file; nothing is allocated before they and all indices' counts were compared with them.
+/// Reads a matrix stored by columns, by rows or as triplets. `rows` and `columns` are those of the
+/// stored matrix; they are checked before anything is allocated.
 SparseMatrix read_matrix(const h5::Object& parent,
                          const std::string& name,
                          const Expected& rows,

@@ -39,7 +39,7 @@ void check_dimension(const h5::Object& root) {
                     (dimension == 2 ? "; write the 2D problem with a second tangent" : ""));
 }
 
-/// Equality constraints are refused unless there are none of them.
+/// Throws IoError on equality constraints; an empty group of them is accepted.
 void check_no_equalities(const h5::Object& root, const std::string& name) {
   if (!h5::has_child(root, name)) return;
   const h5::Object group = h5::open_group(root, name);
@@ -113,7 +113,7 @@ std::vector<double> read_start(const h5::Object& file, std::int64_t contacts) {
     const h5::Object group = h5::open_group(file, path);
     if (!h5::has_child(group, "r")) continue;
     impulse = fclib::read_reals(group, "r", rows_of(contacts));
-    // Recorded files often hold a solution that nobody filled in.
+    // Files recorded by programs often hold a /solution of zeros; guesses are then better.
     if (std::any_of(impulse.begin(), impulse.end(), [](double r) { return r != 0; })) break;
   }
   if (impulse.empty() && contacts > 0) {

@@ -1,6 +1,6 @@
 /// @file fclib_matrix.cpp
 /// Matrices of FCLIB files, in CSparse's three storages: `nz` = -1 by columns, -2 by rows, else the
-/// number of triplets. Arrays may be longer than what they hold.
+/// number of triplets. Arrays may be longer than the number of entries.
 #include <algorithm>
 #include <tetwarp/error.hpp>
 #include <utility>
@@ -35,7 +35,7 @@ void check_edges(const h5::Object& group, const Expected& rows, const Expected& 
              (is_transposed ? "; store its transpose" : ""));
 }
 
-/// Cuts an array to the entries it must hold.
+/// Cuts an array to `count` entries. Throws IoError when it has fewer.
 template <class T>
 void keep_first(const h5::Object& group,
                 const std::string& name,
@@ -67,7 +67,7 @@ void check_indices(const h5::Object& group,
                     ", expected 0 to " + std::to_string(limit - 1) + "; indices count from 0");
 }
 
-/// The line of every entry, from the first entry of every line.
+/// The line (row or column) of every entry, from the offsets of the lines in `p`.
 std::vector<std::int64_t> lines_of(const h5::Object& group, std::int64_t line_count) {
   const std::vector<std::int64_t> start = read_integers(group, "p");
   const auto refuse = [&group](const std::string& problem) {
@@ -111,7 +111,7 @@ Triplets read_triplets(const h5::Object& group, std::int64_t rows, std::int64_t 
   const auto count = static_cast<std::int64_t>(entries.column.size());
   keep_first(group, "i", entries.row, count);
   keep_first(group, "x", entries.value, count);
-  // FCLIB's text says that triplets keep rows in p; its writers keep them in i, as CSparse does.
+  // FCLIB's documentation says that triplets have rows in p; its writers put them in i, as CSparse.
   const bool has_rows_in_p =
       nz >= 0 && !(are_below(entries.row, rows) && are_below(entries.column, columns)) &&
       are_below(entries.row, columns) && are_below(entries.column, rows);
@@ -122,7 +122,7 @@ Triplets read_triplets(const h5::Object& group, std::int64_t rows, std::int64_t 
   return entries;
 }
 
-/// Entries of a row keep their order.
+/// To rows; the entries of a row keep their order.
 SparseMatrix compress(const Triplets& entries, std::int64_t rows, std::int64_t columns) {
   SparseMatrix matrix;
   matrix.rows = rows;

@@ -1,5 +1,5 @@
 /// @file fclib_numbers.cpp
-/// Numbers and texts of FCLIB files. Shapes are not looked at: other programs store one number as a
+/// Numbers and texts of FCLIB files. Shapes of datasets are ignored: programs store one number as a
 /// scalar or as [1], and three per contact as [3 n] or [n][3].
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ h5::Dataset open_integers(const h5::Object& parent, const std::string& name) {
   return dataset;
 }
 
-/// Indices in messages are the file's own; those of a matrix change when it is sorted by rows.
+/// Checked here, where an index is that in the file: sorting a matrix by rows changes indices.
 std::vector<double> read_finite(const h5::Dataset& dataset) {
   std::vector<double> values = read_all<double>(dataset, H5T_NATIVE_DOUBLE);
   const auto bad = std::find_if_not(values.begin(), values.end(),

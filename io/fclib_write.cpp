@@ -1,5 +1,5 @@
 /// @file fclib_write.cpp
-/// Writing FCLIB files that FCLIB's own readers open, problems and solutions.
+/// Writes problems and solutions as FCLIB files that FCLIB's own readers accept.
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -28,14 +28,14 @@ void copy_bytes(const std::string& from, const FinishedFile& to) {
   }
 }
 
-/// A file in the making, removed unless finish() is reached.
+/// A file that is being written; removed unless finish() is called.
 class FclibOutput {
  public:
   explicit FclibOutput(const std::string& path)
       : finished_(path), file_(h5::create_file(path, finished_.temporary(), disk_)) {}
 
-  /// Begins with all that the file `original` holds. Copied byte by byte: H5Ocopy would walk, and
-  /// crash in, damaged parts that nobody has asked for.
+  /// Begins with a copy of the file `original`, byte by byte: H5Ocopy would also read parts that
+  /// are not needed and crash where they are damaged.
   FclibOutput(const std::string& path, const std::string& original)
       : finished_(path), file_{path, "", {}} {
     copy_bytes(original, finished_);
@@ -76,10 +76,10 @@ void write_problem(const h5::Object& root, const ContactProblem& problem) {
     write_reals(vectors, "q", problem.free_velocity);
   } else {
     fclib::write_matrix(root, "M", problem.system, Orientation::plain);
-    // A problem without contacts may come without a Jacobian; FCLIB wants its edges all the same.
-    const bool is_touched = problem.contact_count() > 0;
-    const SparseMatrix untouched{0, problem.dof_count(), {0}, {}, {}};
-    fclib::write_matrix(root, "H", is_touched ? problem.jacobian : untouched,
+    // A problem without contacts may lack a Jacobian; FCLIB needs its sizes all the same.
+    const bool has_contacts = problem.contact_count() > 0;
+    const SparseMatrix empty_jacobian{0, problem.dof_count(), {0}, {}, {}};
+    fclib::write_matrix(root, "H", has_contacts ? problem.jacobian : empty_jacobian,
                         Orientation::transposed);
     write_reals(vectors, "f", problem.load);
     write_reals(vectors, "w", problem.velocity_offset);

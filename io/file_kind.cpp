@@ -22,7 +22,7 @@ FileKind hdf5_kind(const std::string& path) {
     if (type == "UnstructuredGrid") return FileKind::mesh;
     return FileKind::other_vtkhdf;
   } catch (const IoError&) {
-    return FileKind::hdf5;  // it has the signature; what is damaged is told when it is read
+    return FileKind::hdf5;  // it has the signature; reading it names the damage
   }
 }
 

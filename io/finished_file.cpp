@@ -17,7 +17,7 @@ namespace {
 
 enum class SlotState { empty, changing, listed };
 
-/// One entry of the list a signal handler walks: fixed storage, published by `state`.
+/// An entry of the list that a signal handler reads: fixed storage, valid when `state` is listed.
 struct Slot {
   std::atomic<SlotState> state{SlotState::empty};
   std::array<char, 4096> name{};
@@ -98,7 +98,7 @@ std::int64_t FinishedFile::finish() {
   }
   temporary_.clear();
   unlist_name(slot_);
-  // The name, too, should survive a power cut; folders that cannot be flushed are no error.
+  // Flushes the new name as well; a folder that cannot be flushed is not an error.
   const std::string folder = folder_of(path_);
   const int parent = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (parent >= 0) {

@@ -1,5 +1,5 @@
 /// @file finished_file.hpp
-/// Files that stand under their name only when they are complete.
+/// Files that get their name only when they are complete.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,13 +7,14 @@
 
 namespace tetwarp {
 
-/// A file in the making: a temporary name in the folder of `path`, moved to `path` by finish().
+/// A file that is being written under a temporary name in the folder of `path`; finish() renames
+/// it.
 ///
-/// The temporary name is `.<pid>.<count>.tmp.<name>`, so that the extension stays; it is created
-/// empty and exclusively, so that a folder nobody may write to is found out before any work.
+/// The temporary name is `.<pid>.<count>.tmp.<name>`, which keeps the extension. The constructor
+/// creates it empty, so that a folder without write permission is found before any work.
 class FinishedFile {
  public:
-  /// Throws IoError when the folder cannot be written to or `path` is there and not a plain file.
+  /// Throws IoError when the folder cannot be written to or `path` exists and is not a plain file.
   explicit FinishedFile(const std::string& path);
   FinishedFile(const FinishedFile&) = delete;
   FinishedFile& operator=(const FinishedFile&) = delete;
@@ -22,10 +23,10 @@ class FinishedFile {
   /// The name as the caller gave it, for messages.
   const std::string& path() const { return path_; }
 
-  /// The name to write to meanwhile.
+  /// The temporary name, to write to.
   const std::string& temporary() const { return temporary_; }
 
-  /// Flushes the closed temporary to the disk and renames it. Throws IoError.
+  /// Flushes the temporary file, which must be closed, to the disk and renames it. Throws IoError.
   /// @returns bytes of the file
   std::int64_t finish();
 
@@ -39,8 +40,8 @@ class FinishedFile {
 /// @returns bytes of the file
 std::int64_t write_finished_file(const std::string& path, std::string_view content);
 
-/// Removes the temporaries of all files in the making of this process, for exits that unwind no
-/// stack. Async-signal-safe. The first 64 files at a time with names under 4096 bytes are known.
+/// Removes the temporary files of this process, for exits that run no destructors.
+/// Async-signal-safe. Knows up to 64 files at a time, with names below 4096 bytes.
 void remove_unfinished_files() noexcept;
 
 }  // namespace tetwarp

@@ -1,6 +1,6 @@
 /// @file gmsh_library.hpp
-/// Gmsh's C functions, loaded when the first mesh is read: it brings some hundred libraries along,
-/// whose start every run of a program would pay for.
+/// Gmsh's C functions, loaded when the first mesh is read: it depends on about a hundred libraries,
+/// which would slow down the start of every program that links them.
 #pragma once
 #include <dlfcn.h>
 #include <gmshc.h>
@@ -32,7 +32,8 @@ class GmshLibrary {
     function<decltype(gmshFinalize)>("gmshFinalize")(&error);
   }
 
-  /// Calls a function by its name with all arguments but the last, which tells of errors.
+  /// Calls a function by its name with all arguments except for the last, the error code.
+  /// Throws IoError when it fails.
   template <class Function, class... Arguments>
   void call(const char* name, Arguments... arguments) const {
     int error = 0;
@@ -40,7 +41,7 @@ class GmshLibrary {
     if (error != 0) throw IoError(path_, "", "Gmsh cannot read it: " + last_error());
   }
 
-  /// Takes memory back that a call has made.
+  /// Frees memory that a call has allocated.
   void free(void* memory) const { function<decltype(gmshFree)>("gmshFree")(memory); }
 
  private:
@@ -60,7 +61,8 @@ class GmshLibrary {
     return reinterpret_cast<Function*>(address);
   }
 
-  /// Without reading anybody's configuration; later versions ask for one number more.
+  /// Initializes Gmsh without the configuration files of the user. Later versions have one more
+  /// parameter.
   template <class Function>
   static void start(Function* initialize) {
     int error = 0;

@@ -1,5 +1,5 @@
 /// @file h5.cpp
-/// What reading and writing share: error texts, types, memory.
+/// Error texts, types and the check of memory.
 #include "io/h5.hpp"
 
 #include <tetwarp/error.hpp>
@@ -11,7 +11,7 @@ namespace tetwarp::h5 {
 namespace {
 
 herr_t keep_first(unsigned depth, const H5E_error2_t* error, void* text) {
-  // Walked upward, the stack begins with the call that failed first.
+  // Upward, the first entry is that of the innermost call.
   if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
   return 0;
 }
@@ -30,7 +30,7 @@ Silence::~Silence() {
 std::string last_reason() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
-  // Failed system calls come with times and addresses; what the system said is enough.
+  // Of failed system calls only the error message is kept, without times and addresses.
   const std::string marker = "error message = '";
   if (const std::size_t begin = text.find(marker); begin != std::string::npos) {
     text = text.substr(begin + marker.size());
@@ -57,7 +57,7 @@ void check_memory(const std::string& file, const std::string& name, double bytes
   throw IoError(file, name,
                 "needs " + bytes_text(bytes) + " of memory, this machine has " +
                     bytes_text(available) +
-                    " left; crop or resample the data, or mend the sizes "
+                    " left; crop or resample the data, or correct the sizes "
                     "if they are wrong");
 }
 

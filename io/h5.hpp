@@ -13,7 +13,7 @@
 
 namespace tetwarp::h5 {
 
-/// Keeps HDF5 from printing while it lives; the caller's setting comes back afterwards.
+/// Turns off error messages that HDF5 prints, until the destructor restores the setting.
 class Silence {
  public:
   Silence();
@@ -42,7 +42,7 @@ class Handle {
   }
   ~Handle() { close(); }
 
-  /// False when HDF5 could not write what it still held.
+  /// @returns false when HDF5 could not write the rest of its buffers
   bool close() { return id_ < 0 || close_(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
 
   explicit operator bool() const { return id_ >= 0; }
@@ -53,13 +53,13 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Throws IoError unless this machine can hold `bytes` more.
+/// Throws IoError unless `bytes` of memory are available. @param name  of the dataset
 void check_memory(const std::string& file, const std::string& name, double bytes);
 
-/// The innermost reason of HDF5's last failure in this thread, in one line; empty: none known.
+/// The innermost error text of HDF5's last failure in this thread, in one line; empty: none.
 std::string last_reason();
 
-/// An open file, group or dataset, and what messages call it.
+/// An open file, group or dataset, with its name for messages.
 struct Object {
   std::string file;  ///< path as the caller gave it
   std::string name;  ///< path inside the file, "/VTKHDF/Points"; empty: the file itself
@@ -83,11 +83,10 @@ struct Dataset : Object {
   std::int64_t rows() const { return dims.empty() ? 0 : dims[0]; }
 };
 
-// ---- reading: h5_read.cpp
-// ------------------------------------------------------------------------
+// ---- reading: h5_read.cpp ----
 
-/// False for a type of numbers with bits outside their bytes: HDF5 would convert them on the stack,
-/// unchecked.
+/// False for a number type of a damaged file whose bits lie outside its bytes: HDF5 would convert
+/// it without a check, beyond the end of its buffer.
 bool is_sound(const Handle& type);
 
 /// Opens a file for reading. Throws IoError when it is missing, no HDF5 or damaged.
@@ -131,8 +130,7 @@ std::vector<std::int64_t> read_integers(const Dataset& dataset);
 /// Reads a dataset of numbers of shape [n] or [n][1].
 std::vector<double> read_reals(const Dataset& dataset);
 
-// ---- attributes: h5_attribute.cpp
-// -------------------------------------------------------------------
+// ---- attributes: h5_attribute.cpp ----
 
 bool has_attribute(const Object& object, const std::string& name);
 
@@ -149,8 +147,7 @@ std::vector<std::int64_t> read_integer_attribute(const Object& object,
 /// Reads a string attribute of fixed or variable length. Throws IoError when there is none.
 std::string read_text_attribute(const Object& object, const std::string& name);
 
-// ---- writing: h5_write.cpp
-// -----------------------------------------------------------------------
+// ---- writing: h5_write.cpp ----
 
 Object create_group(const Object& parent, const std::string& name);
 

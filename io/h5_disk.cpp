@@ -17,11 +17,11 @@ namespace tetwarp::h5 {
 
 namespace {
 
-/// HDF5 sees the first member alone.
+/// HDF5 knows the first member only.
 struct DiskFile {
   H5FD_t base;
   int descriptor;
-  haddr_t allocated;  // end of what HDF5 has given out
+  haddr_t allocated;  // end of the address space that HDF5 has allocated
   haddr_t end;        // end of what was written
   Disk* disk;         // null: for reading only
 };

@@ -1,5 +1,5 @@
 /// @file memory.hpp
-/// How much memory an input may take.
+/// Memory of this machine and of this process.
 #pragma once
 #include <string>
 
@@ -11,7 +11,7 @@ double available_memory();
 /// Bytes that this process holds in memory now.
 double resident_memory();
 
-/// "1.5 GiB".
+/// A size for messages: "1.5 GiB".
 std::string bytes_text(double bytes);
 
 }  // namespace tetwarp

@@ -16,10 +16,10 @@ namespace {
 constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
 constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
 
-/// Places of nodes in the mesh by Gmsh's tags.
+/// From Gmsh's tags of nodes to their indices in the mesh.
 using Places = std::unordered_map<std::size_t, std::size_t>;
 
-/// What does not begin like a mesh Gmsh would run as a script.
+/// Gmsh would run a file that does not begin like a mesh as a script.
 void check_format(const std::string& path) {
   std::string line;
   std::getline(std::ifstream(path) >> std::ws, line);
@@ -80,7 +80,7 @@ void add_cells(const std::string& path,
   }
 }
 
-/// One step of node data: every node must have it.
+/// Adds one step of node data, which every node must have.
 void add_step(const std::string& path,
               const GmshLibrary& gmsh,
               int view,

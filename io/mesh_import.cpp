@@ -1,5 +1,5 @@
 /// @file mesh_import.cpp
-/// Foreign meshes: which reader, which cells, which array.
+/// Choice of reader, cells and array for meshes of other programs.
 #include "io/mesh_import.hpp"
 
 #include <algorithm>

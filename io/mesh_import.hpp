@@ -1,5 +1,5 @@
 /// @file mesh_import.hpp
-/// What the readers of foreign meshes share.
+/// Shared by the readers of meshes of other programs.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace tetwarp {
 
-/// One per library; where it is missing, a function that says so.
+/// One reader per library; in a build without the library it throws an IoError that says so.
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
 
-/// A kind of cell, as a format calls it.
+/// A kind of cell.
 struct CellKind {
-  std::string name;
+  std::string name;  ///< in the format's words
   int dimension;
   int kept_nodes;  ///< 4 of a tetrahedron, 8 of a hexahedron, 0 of others
 };
@@ -30,7 +30,7 @@ void leave_out_cell(const std::string& path,
 
 /// Adds a cell that is kept, counts one of fewer dimensions.
 /// @param number   of the cell in its file
-/// @param node_at  its nodes by their places in the mesh, in VTK's order: node_at(0) and so on
+/// @param node_at  function from 0, 1 ... in VTK's order of nodes to an index in the mesh
 /// @throws IoError on other cells of three dimensions
 template <class NodeAt>
 void add_cell(const std::string& path,
@@ -51,7 +51,7 @@ void add_cell(const std::string& path,
   }
 }
 
-/// The array of displacements among those of a file; nothing: the file has none.
+/// The name of the array of displacements in a file; nothing: the file has none.
 /// @throws IoError when one was asked for that is not there
 std::optional<std::string> choose_displacement(const std::string& path,
                                                const std::vector<std::string>& names,

@@ -21,7 +21,7 @@ namespace tetwarp {
 
 namespace {
 
-/// VTK prints what goes wrong, several lines of it, unless it is told not to.
+/// Turns off the warnings and errors that VTK prints.
 class QuietVtk {
  public:
   QuietVtk() { vtkObject::GlobalWarningDisplayOff(); }
@@ -83,7 +83,7 @@ void check_grid(const std::string& path, vtkUnstructuredGrid* grid) {
                 "holds no unstructured grid that VTK can read: damaged, or of another kind");
 }
 
-/// The first step makes the mesh, every step a displacement where there is one.
+/// Takes the mesh from the first step, and from every step its displacement if there is one.
 void add_step(const std::string& path,
               vtkUnstructuredGrid& grid,
               double time,
@@ -117,7 +117,7 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
   return mesh;
 }
 
-/// The times of steps do not get through VTK's reader: they are numbered.
+/// VTK's reader does not pass on the times of steps: times are 0, 1 and so on.
 ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkXMLUnstructuredGridReader> reader;
   ImportedMesh mesh;

@@ -144,8 +144,8 @@ NiftiHeader read_nifti_header(const std::string& path) {
   header.components = raw.values.dim[0] >= 5 ? raw.values.dim[5] : 1;
   header.is_swapped = raw.is_swapped;
 
-  nifti_set_debug_level(0);  // the library prints its troubles otherwise
-  // Without a name of a kind it knows, the library refuses; it opens nothing here.
+  nifti_set_debug_level(0);  // else the library prints errors
+  // The library needs a name with an extension that it knows; it opens no file here.
   const std::unique_ptr<nifti_image, void (*)(nifti_image*)> image(
       nifti_convert_nhdr2nim(raw.values, "volume.nii"), nifti_image_free);
   if (!image) throw IoError(path, "", "damaged NIfTI header");

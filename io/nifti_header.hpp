@@ -28,19 +28,19 @@ class NiftiStream {
   bool write(const void* in, std::size_t bytes) { return znzwrite(in, 1, bytes, file_) == bytes; }
   bool seek(std::int64_t offset) { return znzseek(file_, offset, SEEK_SET) >= 0; }
 
-  /// False when what was still held back could not be written.
+  /// @returns false when the rest of the buffers could not be written
   bool close() { return file_ == nullptr || znzclose(file_) == 0; }
 
  private:
   znzFile file_;
 };
 
-/// What a NIfTI file says about its samples.
+/// The header of a NIfTI file.
 struct NiftiHeader {
   Grid grid;
   PixelType type = PixelType::float32;  ///< as stored
   int components = 1;
-  bool is_swapped = false;  ///< samples are in the other byte order
+  bool is_swapped = false;  ///< samples are in the byte order that is not this machine's
   double slope = 1;         ///< value = slope * sample + intercept
   double intercept = 0;
   std::int64_t data_offset = 352;  ///< first sample [byte], uncompressed
@@ -55,7 +55,7 @@ bool has_nifti_header(const std::string& path);
 /// Reads and checks the header. Throws IoError.
 NiftiHeader read_nifti_header(const std::string& path);
 
-/// The header of a file that holds `volume`. Throws IoError about `path` when NIfTI-1 cannot.
+/// The header of a file for `volume`. Throws IoError about `path` when NIfTI-1 cannot hold it.
 nifti_1_header make_nifti_header(const std::string& path, const Volume& volume);
 
 }  // namespace tetwarp

@@ -55,7 +55,7 @@ void copy_strided(const std::byte* in,
   }
 }
 
-/// Turns round the samples of a slice of floats.
+/// Negates the samples of a slice of floats.
 template <class T>
 void negate(std::vector<std::byte>& slice) {
   for (std::size_t at = 0; at < slice.size(); at += sizeof(T)) {
@@ -119,7 +119,7 @@ Volume read_nifti(const std::string& path) {
   const auto slices = static_cast<std::size_t>(header.grid.dims[2]);
   const auto components = static_cast<std::size_t>(header.components);
   std::vector<std::byte> slice(slice_voxels * size);
-  // The file holds whole components one after the other.
+  // The file stores one component after the other.
   for (std::size_t c = 0; c < components; ++c) {
     for (std::size_t k = 0; k < slices && is_good; ++k) {
       is_good = stream.read(slice.data(), slice.size());

@@ -11,7 +11,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::int64_t chunk_bytes = std::int64_t{256} << 10;
-constexpr std::int64_t longest_row_bytes = std::int64_t{1} << 20;
+constexpr std::int64_t max_row_bytes = std::int64_t{1} << 20;
 
 template <class T>
 std::vector<std::byte> bytes_of(T value) {
@@ -27,7 +27,7 @@ std::vector<std::byte> integer_bytes(double value) {
   if (rounded <= static_cast<double>(std::numeric_limits<T>::min())) {
     return bytes_of(std::numeric_limits<T>::min());
   }
-  // The largest 64-bit integers are no doubles: their limit rounds up, out of range.
+  // The largest 64-bit integer is not a double: converted it rounds up, out of range.
   if (rounded >= static_cast<double>(std::numeric_limits<T>::max())) {
     return bytes_of(std::numeric_limits<T>::max());
   }
@@ -50,7 +50,7 @@ std::vector<hsize_t> file_shape(const std::array<std::int64_t, 3>& xyz,
 
 std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,
                                       std::int64_t voxel_bytes) {
-  const std::int64_t x = std::min(dims[0], longest_row_bytes / voxel_bytes);
+  const std::int64_t x = std::min(dims[0], max_row_bytes / voxel_bytes);
   const std::int64_t rows = std::max<std::int64_t>(1, chunk_bytes / (x * voxel_bytes));
   const std::int64_t y = std::min(dims[1], rows);
   return {x, y, std::min(dims[2], std::max<std::int64_t>(1, rows / y))};

@@ -9,7 +9,7 @@ namespace tetwarp {
 
 namespace {
 
-/// Before the file is created: nothing is left behind.
+/// Checks arguments before the file is created.
 std::string checked(const std::string& path,
                     const Grid& grid,
                     const std::vector<ArrayHeader>& arrays,
@@ -106,7 +106,7 @@ void ImageFile::write_steps() {
     h5::write_dataset(offsets, array.name, H5T_STD_I64LE, H5T_NATIVE_INT64, {&count, 1},
                       rows_.data());
   }
-  // Readers count on everything that NSteps announces: it comes last.
+  // Readers take a file with NSteps for complete: it is written last.
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
 

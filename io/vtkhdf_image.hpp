@@ -1,5 +1,5 @@
 /// @file vtkhdf_image.hpp
-/// A VTKHDF ImageData file in the making, static of Version [1,0] or temporal of Version [2,0].
+/// A VTKHDF ImageData file that is being written: static, Version [1,0], or temporal, [2,0].
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace tetwarp {
 /// Throws IoError unless the compression level is 0 to 9.
 void check_compression(const std::string& path, const VolumeWriteOptions& options);
 
-/// Takes the samples of its arrays region by region.
+/// Writes the samples of its arrays region by region.
 class ImageFile {
  public:
   /// Creates the file under a temporary name, its arrays empty.
@@ -43,7 +43,7 @@ class ImageFile {
   /// @param samples  [k][j][i][component] of the region
   void write(std::size_t array, const Region& region, const void* samples);
 
-  /// Writes what tells of the steps, flushes and moves the file to its name.
+  /// Writes the group of steps, flushes and moves the file to its name.
   WrittenFile finish();
 
  private:

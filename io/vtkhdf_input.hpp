@@ -1,5 +1,5 @@
 /// @file vtkhdf_input.hpp
-/// What VTKHDF volumes and meshes share: the root group, its type, time steps and their offsets.
+/// Shared by readers of VTKHDF volumes and meshes: root group, type, time steps and offsets.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -18,7 +18,7 @@ struct VtkhdfInput {
 
   bool is_temporal() const { return static_cast<bool>(steps.handle); }
 
-  /// Throws IoError unless `step` is one of the file's (0 in static files).
+  /// Throws IoError unless the file has this step (0 in static files).
   void check_step(std::int64_t step) const;
 };
 

@@ -21,7 +21,7 @@ void check_node_count(const h5::Object& about, std::size_t found, std::size_t ex
   about.fail("has " + std::to_string(found) + " nodes, the mesh has " + std::to_string(expected));
 }
 
-/// The topology of two steps is one when their cells and connectivity are the same rows.
+/// Two steps have the same topology when their cells and connectivity are the same rows.
 bool is_same_topology(const std::vector<MeshPart>& a, std::vector<MeshPart> b) {
   if (a.size() != b.size()) return false;
   for (std::size_t part = 0; part < a.size(); ++part) b[part].first_node = a[part].first_node;

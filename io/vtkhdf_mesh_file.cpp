@@ -167,7 +167,7 @@ std::vector<Point3> MeshFile::read_rows(const h5::Dataset& dataset,
   for (std::size_t node = 0; node < rows.size(); ++node) {
     for (const double coordinate : rows[node]) {
       if (!std::isfinite(coordinate)) {
-        dataset.fail("node " + std::to_string(node) + " is not finite, mend or remove it");
+        dataset.fail("node " + std::to_string(node) + " is not finite, correct or remove it");
       }
     }
   }
@@ -179,7 +179,7 @@ std::vector<Point3> MeshFile::read_points(std::int64_t step) const {
 }
 
 std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
-  // Without offsets of its own an array follows the points.
+  // An array without offsets has those of the points.
   const std::int64_t shift =
       displacement_offsets_.empty()
           ? 0

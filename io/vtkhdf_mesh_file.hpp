@@ -1,6 +1,5 @@
 /// @file vtkhdf_mesh_file.hpp
-/// Where the parts of each step lie in a VTKHDF UnstructuredGrid, and their rows read into one
-/// mesh.
+/// A VTKHDF UnstructuredGrid: the rows of the parts of each step, read into one mesh.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +13,7 @@
 
 namespace tetwarp {
 
-/// First rows of one part of one step, and how many.
+/// The rows of one part of one step: first row and number in each dataset.
 struct MeshPart {
   std::int64_t node_count = 0;
   std::int64_t cell_count = 0;
@@ -27,7 +26,7 @@ struct MeshPart {
   bool operator==(const MeshPart&) const = default;
 };
 
-/// Cells of a step by their kinds, node indices counted through the parts.
+/// Cells of a step by kind. Node indices continue from part to part.
 struct MeshCells {
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 8>> hexes;
@@ -51,7 +50,7 @@ class MeshFile {
   MeshCells read_cells(std::int64_t step) const;
 
  private:
-  /// Steps/<name> of a step; 0 in static files and where the file says nothing.
+  /// Steps/<name> of a step; 0 in static files and where the file has no such dataset.
   std::int64_t offset_of(const std::vector<std::int64_t>& offsets, std::int64_t step) const;
   std::vector<Point3> read_rows(const h5::Dataset& dataset,
                                 const std::vector<MeshPart>& parts,

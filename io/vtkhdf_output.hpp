@@ -1,5 +1,5 @@
 /// @file vtkhdf_output.hpp
-/// The frame of every VTKHDF file that is written.
+/// Shared by writers of VTKHDF files: temporary file, root group, attributes, closing.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// A VTKHDF file in the making, removed unless finish() is reached.
+/// A VTKHDF file that is being written; removed unless finish() is called.
 class VtkhdfOutput {
  public:
   /// Creates /VTKHDF with Version ([2,0] when temporal, else [1,0]) and Type. Throws IoError.
@@ -17,7 +17,7 @@ class VtkhdfOutput {
 
   const h5::Object& root() const { return root_; }
 
-  /// Throws IoError about `object` when the disk has refused a write: no need to go on.
+  /// Throws IoError about `object` when a write has failed.
   void check_disk(const h5::Object& object) const { disk_.check(object); }
 
   /// Closes, flushes and renames. Everything else that is open in the file must be closed before.

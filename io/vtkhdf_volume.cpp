@@ -96,7 +96,7 @@ std::vector<std::string> numeric_arrays(const VtkhdfInput& file) {
   return names;
 }
 
-/// Where a step of an array lies on its time axis.
+/// The row of the time axis that holds a step of an array.
 std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int64_t step) {
   const std::vector<std::int64_t> offsets = read_point_data_offsets(file, array.header.name);
   const std::int64_t row = offsets.empty() ? step : offsets[static_cast<std::size_t>(step)];

@@ -17,6 +17,13 @@ std::int64_t voxel_bytes(const ArrayHeader& array) {
   return array.components * static_cast<std::int64_t>(size_of(array.type));
 }
 
+std::vector<Edges> row_chunks(const Grid& grid, const std::vector<ArrayHeader>& arrays) {
+  std::vector<Edges> chunks;
+  for (const ArrayHeader& array : arrays)
+    chunks.push_back(row_chunk(grid.dims, voxel_bytes(array)));
+  return chunks;
+}
+
 std::vector<ArrayHeader> headers_of(const std::string& path,
                                     const std::vector<const Volume*>& volumes) {
   std::vector<ArrayHeader> headers;
@@ -46,11 +53,8 @@ std::unique_ptr<ImageFile> create_image(const std::string& path,
                                         bool is_temporal) {
   const std::vector<ArrayHeader> headers = headers_of(path, volumes);
   const Grid grid = volumes.empty() ? Grid{} : volumes.front()->grid;
-  std::vector<Edges> chunks;
-  for (const ArrayHeader& header : headers) {
-    chunks.push_back(row_chunk(grid.dims, voxel_bytes(header)));
-  }
-  return std::make_unique<ImageFile>(path, grid, headers, chunks, options, is_temporal);
+  return std::make_unique<ImageFile>(path, grid, headers, row_chunks(grid, headers), options,
+                                     is_temporal);
 }
 
 void write_all(ImageFile& file, const std::vector<const Volume*>& volumes) {
@@ -129,10 +133,13 @@ BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
                                      const Grid& grid,
                                      const std::vector<ArrayHeader>& arrays,
                                      const VolumeWriteOptions& options,
-                                     bool is_temporal) {
+                                     bool is_temporal,
+                                     ChunkShape chunks) {
   const h5::Silence silence;
-  const std::vector<Edges> chunks(arrays.size(), block_step(grid, arrays));
-  state_.reset(new State{ImageFile(path, grid, arrays, chunks, options, is_temporal)});
+  const std::vector<Edges> edges =
+      chunks == ChunkShape::rows ? row_chunks(grid, arrays)
+                                 : std::vector<Edges>(arrays.size(), block_step(grid, arrays));
+  state_.reset(new State{ImageFile(path, grid, arrays, edges, options, is_temporal)});
 }
 
 BlockVolumeWriter::BlockVolumeWriter(BlockVolumeWriter&&) noexcept = default;

@@ -1,5 +1,5 @@
 /// @file array_checks.hpp
-/// Whether arrays can be what the arguments say they are.
+/// Whether the arrays of a volume go with the arguments of a warp.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,10 +10,12 @@
 
 namespace tetwarp::cli {
 
-/// Vectors and tensors are among the arrays, have their components, and what is to be computed of
-/// an array can be. Throws IoError.
-void check_quantities(const std::string& path,
-                      const std::vector<ArrayHeader>& arrays,
-                      const WarpArguments& arguments);
+/// Checks the arrays of a volume file against the arguments: --vectors and --tensors name some of
+/// them, their types go with the options, and their names are not those of extra outputs.
+/// Throws IoError.
+void check_arrays(const std::string& path,
+                  const Grid& grid,
+                  const std::vector<ArrayHeader>& arrays,
+                  const WarpArguments& arguments);
 
 }  // namespace tetwarp::cli

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What happened to the jobs so far.
+/// Results of the jobs so far.
 struct Outcome {
   int done = 0;
   int failed = 0;
@@ -29,8 +29,8 @@ struct Outcome {
   Json reports = Json::array();
 };
 
-/// The files a job will write. A job that cannot be planned yet, because an earlier one makes its
-/// input, is known by the output it names.
+/// The files that a job will write. Where planning fails, e.g. because an earlier job makes the
+/// input, the output that the job names.
 std::vector<std::string> files_written(const BatchJob& job) {
   if (!job.error.empty()) return {};
   std::vector<std::string> files;
@@ -100,7 +100,7 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
 }  // namespace
 
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
-  const PoliteInterrupts polite;
+  const InterruptFlag interrupts_set_a_flag;
   const std::vector<BatchJob> jobs = read_batch(shared.batch, defaults);
   check_collisions(jobs, shared);
   Outcome outcome;

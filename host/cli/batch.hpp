@@ -10,22 +10,23 @@
 
 namespace tetwarp::cli {
 
-/// One job of a batch file: arguments, or why there are none.
+/// One job of a batch file: its arguments, or an error.
 struct BatchJob {
   WarpArguments arguments;
-  std::string error;  ///< empty when the job was understood
+  std::string error;  ///< empty: the arguments are valid
 };
 
 /// Reads a batch file. Relative paths in it start at its folder.
 /// @param defaults  options as given on the command line, for jobs that do not set them
-/// @throws IoError  when the file is no JSON or holds no list of jobs; an error inside a job stays
-/// there
+/// @throws IoError  when the file is not JSON or holds no list of jobs; an error inside a job is
+///                  stored in that job
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults);
 
-/// Runs every job that can run, reports the others, writes the report. Throws IoError before
-/// anything is written when the file cannot be read or two jobs write one file.
-/// @param shared    what was said on the command line
-/// @param defaults  the same, as parsed words
+/// Runs the jobs one after the other; a job that fails is reported and the next one runs. Writes
+/// the report of the batch. Throws IoError before anything is written when the file cannot be read
+/// or two jobs write one file.
+/// @param shared    arguments of the command line
+/// @param defaults  the options of the command line as CLI11 parsed them
 /// @returns exit code: 0, 1 when a job failed, 130 when interrupted
 int run_batch(const WarpArguments& shared, const CLI::App& defaults);
 

@@ -1,5 +1,5 @@
 /// @file batch_file.cpp
-/// From a batch file to arguments: a job becomes the words one would type, parsed like those.
+/// Reads a batch file: each job becomes the words of a command line, parsed like one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,20 +19,20 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// The words of one option or positional, ready to be parsed.
+/// Words of a command line.
 using Words = std::vector<std::string>;
 
-/// Options of the whole batch, which no job has.
+/// Options of the whole batch; a job may not have them.
 const Words batch_options{"help", "batch", "quiet"};
 
-/// Options of array names, which may hold commas.
+/// Options whose values are names of arrays, which may hold commas.
 const Words name_options{"array", "vectors", "tensors"};
 
 bool is_one_of(const std::string& word, const Words& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Words of an option's values: repeated where a value may hold commas, else one comma list.
+/// The words of an option: repeated where a value may hold commas, else with one comma list.
 Words option_words(const std::string& name, const Words& values) {
   if (!is_one_of(name, name_options)) return {"--" + name + "=" + CLI::detail::join(values, ",")};
   Words words;
@@ -133,7 +133,7 @@ Json read_json(const std::string& path) {
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
-    throw IoError(path, position_text(text, error.byte), "no valid JSON here; mend it");
+    throw IoError(path, position_text(text, error.byte), "no valid JSON here; correct it");
   }
 }
 

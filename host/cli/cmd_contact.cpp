@@ -23,7 +23,7 @@ namespace {
 constexpr int infeasible_exit_code = 1;
 constexpr int not_converged_exit_code = 3;
 
-/// Seconds outside the solver.
+/// Seconds for files.
 struct FileSeconds {
   double read = 0;
   double write = 0;
@@ -46,7 +46,7 @@ ContactProblem read_problem(const ContactArguments& arguments) {
   return problem;
 }
 
-/// A problem that passed the reader's checks can still turn out unsolvable when it is factorized.
+/// Adds the file to errors that only factorizing finds, e.g. a singular matrix.
 ContactSolution solve(ContactSolver& solver,
                       const ContactProblem& problem,
                       const ContactArguments& arguments) {
@@ -83,8 +83,8 @@ void print_summary(const ContactArguments& arguments, const ContactReport& repor
              arguments.output);
 }
 
-/// The line on standard error and the exit code of a solve that did not end well.
-int complain(const ContactArguments& arguments, const ContactReport& report) {
+/// Prints a line on standard error unless the solve converged. @returns the exit code
+int report_failure(const ContactArguments& arguments, const ContactReport& report) {
   if (report.status == ContactStatus::converged) return 0;
   const bool is_infeasible = report.status == ContactStatus::infeasible;
   const std::string reason = report.status_reason.empty() ? "" : " (" + report.status_reason + ")";
@@ -111,7 +111,7 @@ int run_contact(const ContactArguments& arguments) {
   seconds.write = writing.seconds();
   if (!arguments.report.empty()) write_report(arguments.report, solution.report, seconds);
   if (!arguments.quiet) print_summary(arguments, solution.report);
-  return complain(arguments, solution.report);
+  return report_failure(arguments, solution.report);
 }
 
 }  // namespace

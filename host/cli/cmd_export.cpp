@@ -14,8 +14,6 @@ namespace tetwarp::cli {
 
 namespace {
 
-const Choices<NiftiVectors> vector_axes{{"world", NiftiVectors::world}, {"lps", NiftiVectors::lps}};
-
 struct ExportArguments {
   std::string input;
   std::string output;
@@ -24,7 +22,7 @@ struct ExportArguments {
   std::optional<NiftiVectors> vectors;
 };
 
-/// What --vectors was given, else what the array is made for.
+/// --vectors, or without it LPS for displacement fields of the warp, which ITK and ANTs read.
 NiftiVectors vectors_of(const ExportArguments& arguments, const Volume& volume) {
   const bool is_field = volume.name == "tetwarp_displacement" || volume.name == "tetwarp_forward";
   return arguments.vectors.value_or(is_field ? NiftiVectors::lps : NiftiVectors::world);
@@ -65,7 +63,7 @@ void add_export_command(CLI::App& app, Run& run) {
       ->add_option_function<std::string>(
           "--vectors",
           [arguments](const std::string& word) {
-            arguments->vectors = meaning_of("--vectors", word, vector_axes);
+            arguments->vectors = meaning_of("--vectors", word, choices_of<NiftiVectors>());
           },
           "axes of vectors: as they are, or those of ITK and ANTs, x and y turned round [lps for "
           "tetwarp_displacement and tetwarp_forward, else world]")

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,10 +10,10 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
+#include "host/base/pixel_dispatch.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
-#include "host/cli/pixel_range.hpp"
 
 namespace tetwarp::cli {
 
@@ -32,6 +33,20 @@ Json times_json(const std::vector<double>& times) {
   return json;
 }
 
+/// Adds the smallest and the largest sample, NaN left out; null when there is no other.
+void add_range(Json& json, const Volume& volume) {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+  with_pixel_type(volume.type, [&]<class T>(T) {
+    for (const T sample : volume.samples<T>()) {
+      // fmin and fmax prefer the number over a NaN.
+      low = std::fmin(low, static_cast<double>(sample));
+      high = std::fmax(high, static_cast<double>(sample));
+    }
+  });
+  json["min"] = low;
+  json["max"] = high;
+}
+
 Json volume_json(const InfoArguments& arguments) {
   const VolumeHeader header = read_volume_header(arguments.file);
   Json json{{"kind", "volume"},
@@ -42,11 +57,7 @@ Json volume_json(const InfoArguments& arguments) {
   json.update(times_json(header.times));
   for (const ArrayHeader& array : header.arrays) {
     Json entry{{"type", name_of(array.type)}, {"components", array.components}};
-    if (arguments.stats) {
-      const PixelRange range = range_of(read_volume(arguments.file, array.name));
-      entry["min"] = range.min;
-      entry["max"] = range.max;
-    }
+    if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
     json["arrays"][array.name] = entry;
   }
   if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
@@ -84,11 +95,7 @@ Json nifti_json(const InfoArguments& arguments) {
             {"direction", volume.grid.direction},
             {"type", name_of(volume.type)},
             {"components", volume.components}};
-  if (arguments.stats) {
-    const PixelRange range = range_of(volume);
-    json["min"] = range.min;
-    json["max"] = range.max;
-  }
+  if (arguments.stats) add_range(json, volume);
   return json;
 }
 
@@ -160,7 +167,7 @@ int run_info(const InfoArguments& arguments) {
       break;
     default:
       throw IoError(arguments.file, "",
-                    std::string("is ") + name_of(kind) +
+                    std::string("is a ") + name_of(kind) +
                         "; info reads VTKHDF volumes, VTKHDF meshes, NIfTI images and FCLIB "
                         "contact problems");
   }

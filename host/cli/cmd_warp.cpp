@@ -14,7 +14,7 @@ namespace tetwarp::cli {
 
 namespace {
 
-/// CUDA devices that answer.
+/// Number of usable CUDA devices.
 int device_count() {
   int count = 0;
   while (cuda_status(count).usable) ++count;

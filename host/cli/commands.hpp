@@ -1,6 +1,6 @@
 /// @file commands.hpp
-/// The subcommands. Each function declares one on `app`; when the user has chosen it, parsing
-/// leaves in `run` what it does.
+/// The subcommands. Each function declares one on `app`; parsing a command line that chooses it
+/// stores in `run` the function to call.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <functional>

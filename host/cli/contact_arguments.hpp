@@ -1,5 +1,5 @@
 /// @file contact_arguments.hpp
-/// Everything a user can say to `tetwarp contact`.
+/// The arguments of `tetwarp contact`.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tetwarp::cli {
 
-/// Syntax is checked, files are not looked at.
+/// Their syntax is checked; files are not read.
 struct ContactArguments {
   std::string problem;
   std::string output;

@@ -8,7 +8,7 @@ namespace tetwarp::cli {
 
 namespace {
 
-/// CLI11's help with a usage line written by hand: positionals of a varying number need words.
+/// Help of CLI11 with a given usage line: its own cannot express "VOLUME... MESH".
 class UsageFormatter : public CLI::Formatter {
  public:
   explicit UsageFormatter(std::string synopsis) : synopsis_(std::move(synopsis)) {
@@ -16,7 +16,7 @@ class UsageFormatter : public CLI::Formatter {
   }
 
   std::string make_usage(const CLI::App* app, std::string name) const override {
-    // CLI11 passes the name with its parents when help is asked for on the command line.
+    // For --help CLI11 passes the names of the command and its parents, else nothing.
     return "Usage: " + (name.empty() ? "tetwarp " + app->get_name() : name) + " " + synopsis_ +
            "\n";
   }

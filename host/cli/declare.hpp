@@ -1,5 +1,5 @@
 /// @file declare.hpp
-/// What CLI11 lacks to declare this command's options: usage lines, words, one-line messages.
+/// Additions to CLI11: usage lines, options that take words, one-line messages.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -25,16 +25,16 @@ std::string one_line(const std::string& text);
 /// "a, b, c".
 std::string listed(const std::vector<std::string>& words);
 
-/// Checks of numbers whose help shows no range.
+/// Validators of numbers that add nothing to the help.
 CLI::Validator between(int low, int high);
 CLI::Validator at_least_zero();
-CLI::Validator above_zero();  // infinity is
+CLI::Validator above_zero();  // accepts infinity
 
-/// Words with their meaning, in the order in which help shows them.
+/// Words and their values, in the order in which help shows them.
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// All words of a public enum.
+/// The words of an enum that names_of() knows.
 template <class T>
 Choices<T> choices_of() {
   Choices<T> choices;
@@ -42,7 +42,7 @@ Choices<T> choices_of() {
   return choices;
 }
 
-/// The words alone.
+/// The words without their values.
 template <class T>
 std::vector<std::string> words_of(const Choices<T>& choices) {
   std::vector<std::string> words;
@@ -50,7 +50,7 @@ std::vector<std::string> words_of(const Choices<T>& choices) {
   return words;
 }
 
-/// The meaning of `word`. Throws CLI::ValidationError listing the words.
+/// The value of `word`. Throws CLI::ValidationError that lists the words.
 template <class T>
 T meaning_of(const std::string& option, const std::string& word, const Choices<T>& choices) {
   const auto found = std::find_if(choices.begin(), choices.end(),
@@ -78,7 +78,7 @@ CLI::Option* add_choice(CLI::App& app,
       ->type_name(CLI::detail::join(words_of(choices), "|"));
 }
 
-/// Declares an option that takes a comma list of words, each of which is handed to `apply`.
+/// Declares an option that takes a comma list of words; calls `apply` with the value of each.
 template <class T, class Apply>
 void add_word_list(CLI::App& app,
                    const std::string& option,

@@ -7,8 +7,8 @@
 
 namespace tetwarp::cli {
 
-/// Writes the mesh with `step_count` steps of displacement at the times s / (step_count - 1), so
-/// that the first step is rest and the last one the full amount; a single step is at time 1.
+/// Writes the mesh with `step_count` steps of displacement at times 0 (rest) to 1 (the full
+/// amount); a single step is at time 1.
 void write_deformed_mesh(const std::string& path,
                          const Mesh& mesh,
                          const DeformOptions& options,

@@ -53,28 +53,8 @@ void check_kind(const std::string& path, FileKind wanted, const std::string& rem
   if (kind != wanted) {
     throw IoError(
         path, "",
-        std::string("is ") + name_of(kind) + ", expected " + name_of(wanted) + "; " + remedy);
+        std::string("is a ") + name_of(kind) + ", expected a " + name_of(wanted) + "; " + remedy);
   }
-}
-
-const char* name_of(FileKind kind) {
-  switch (kind) {
-    case FileKind::volume:
-      return "a volume";
-    case FileKind::mesh:
-      return "a mesh";
-    case FileKind::other_vtkhdf:
-      return "another kind of VTKHDF file";
-    case FileKind::contact_problem:
-      return "a contact problem";
-    case FileKind::hdf5:
-      return "another kind of HDF5 file";
-    case FileKind::nifti:
-      return "a NIfTI image";
-    case FileKind::unknown:
-      break;
-  }
-  return "a file of unknown kind";
 }
 
 std::string canonical_path(const std::string& path) {

@@ -1,6 +1,6 @@
 /// @file fingerprint.hpp
-/// A 64-bit hash of everything that determines an output file, so that --resume can tell whether a
-/// file that exists is the one that would be written again.
+/// A 64-bit hash of everything that determines an output file: --resume keeps an existing file that
+/// has the same.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,11 +14,11 @@
 
 namespace tetwarp::cli {
 
-/// FNV-1a with its 64-bit constants, taken over 64-bit words instead of bytes for speed, with a
-/// shift after each multiplication that brings high bits down again. Every item is preceded by its
-/// size, so that no two sequences of items run together. It guards against accidents, not attacks.
+/// FNV-1a with its 64-bit constants, over 64-bit words instead of bytes for speed, with a shift
+/// after each multiplication that mixes high bits into low ones. The size of an item is hashed
+/// before it, so that different sequences of items give different hashes. Not a cryptographic hash.
 ///
-/// Equal on little-endian machines; a value type, so that a common beginning is hashed once.
+/// The same on all little-endian machines. Copies continue independently from a common beginning.
 class Fingerprint {
  public:
   void add(std::span<const std::byte> bytes);
@@ -39,14 +39,14 @@ class Fingerprint {
 
   void add(const Grid& grid);
 
-  /// What values depend on; not the region.
-  /// @pre  options.output_grid is there
+  /// The options that output values depend on; not the region.
+  /// @pre  options.output_grid has a value
   void add(const WarpOptions& options);
 
   /// Name, type, grid and samples.
   void add(const Volume& volume);
 
-  /// The same for samples that come in parts, in the order of memory.
+  /// The same for samples that come in parts, in the order of memory: begin(), add_part(), end().
   void begin(const ArrayHeader& array, const Grid& grid);
   void add_part(std::span<const std::byte> bytes);
   void end();
@@ -57,7 +57,7 @@ class Fingerprint {
  private:
   void mix(std::uint64_t word);
 
-  std::uint64_t rest_ = 0;      ///< of the parts so far: bytes that are no whole word yet
+  std::uint64_t rest_ = 0;      ///< bytes of the parts so far that are not a whole word yet
   std::size_t rest_bytes_ = 0;  ///< fewer than eight
   std::uint64_t hash_ = 0xcbf29ce484222325;
 };

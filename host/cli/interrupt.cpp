@@ -13,11 +13,11 @@ namespace tetwarp::cli {
 namespace {
 
 volatile std::sig_atomic_t flag = 0;
-volatile std::sig_atomic_t polite = 0;  // scopes that ask for politeness
+volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
 
-// Only async-signal-safe calls.
+// Makes async-signal-safe calls only.
 void handle(int) {
-  if (polite > 0 && flag == 0) {
+  if (flag_scopes > 0 && flag == 0) {
     flag = 1;
     return;
   }
@@ -36,15 +36,15 @@ void install_interrupt_handlers() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void leave_at_once() {
-  polite = -1'000'000;  // more than scopes will ever ask for
+void exit_on_first_signal() {
+  flag_scopes = -1'000'000;  // stays below zero whatever is added by scopes
 }
 
-PoliteInterrupts::PoliteInterrupts() {
-  polite = polite + 1;
+InterruptFlag::InterruptFlag() {
+  flag_scopes = flag_scopes + 1;
 }
-PoliteInterrupts::~PoliteInterrupts() {
-  polite = polite - 1;
+InterruptFlag::~InterruptFlag() {
+  flag_scopes = flag_scopes - 1;
 }
 
 bool is_interrupted() {

@@ -1,6 +1,6 @@
 /// @file interrupt.hpp
-/// Ctrl-C and SIGTERM. Unless a scope asks for politeness the command leaves at once, with exit
-/// code 130 and without temporary files.
+/// Ctrl-C and SIGTERM. The command removes its temporary files and exits with code 130: at the next
+/// check of a flag while an InterruptFlag exists, at once elsewhere.
 #pragma once
 
 namespace tetwarp::cli {
@@ -8,20 +8,20 @@ namespace tetwarp::cli {
 /// Exit code after SIGINT or SIGTERM.
 constexpr int interrupted_exit_code = 130;
 
-/// Installs the handlers. Also ignores SIGXFSZ: a file size limit then is a write error like a full
-/// disk, with a message and a clean-up.
+/// Installs the handlers. Also ignores SIGXFSZ: beyond a file size limit writes then fail as on a
+/// full disk, with a message, and temporary files are removed.
 void install_interrupt_handlers();
 
-/// From now on the first signal is the last: politeness is for one process alone.
-void leave_at_once();
+/// From now on the first signal ends the process at once, whether or not an InterruptFlag exists.
+void exit_on_first_signal();
 
-/// While one exists the first signal only sets a flag; a second one leaves at once all the same.
-class PoliteInterrupts {
+/// While one exists the first signal only sets a flag; the second ends the process at once.
+class InterruptFlag {
  public:
-  PoliteInterrupts();
-  ~PoliteInterrupts();
-  PoliteInterrupts(const PoliteInterrupts&) = delete;
-  PoliteInterrupts& operator=(const PoliteInterrupts&) = delete;
+  InterruptFlag();
+  ~InterruptFlag();
+  InterruptFlag(const InterruptFlag&) = delete;
+  InterruptFlag& operator=(const InterruptFlag&) = delete;
 };
 
 /// True once a signal has set the flag.

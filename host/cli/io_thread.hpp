@@ -1,6 +1,6 @@
 /// @file io_thread.hpp
-/// One thread for everything that touches files, in the order it was asked for: HDF5 need not be
-/// built for threads.
+/// One thread that runs tasks on files in the order of their calls. HDF5 may be built without
+/// support for threads: two threads must not call it at the same time.
 #pragma once
 #include <condition_variable>
 #include <deque>
@@ -13,7 +13,7 @@
 
 namespace tetwarp::cli {
 
-/// Its end waits for the task at work and drops those that have not begun.
+/// The destructor waits for the task that runs and drops those that have not begun.
 class IoThread {
  public:
   IoThread() : thread_([this] { work(); }) {}
@@ -29,7 +29,7 @@ class IoThread {
     thread_.join();
   }
 
-  /// Asks for a task; the future has its result, or throws what it threw.
+  /// Queues a task. The future has its result or throws its exception.
   template <class Task>
   auto run(Task&& task) {
     using Result = std::invoke_result_t<Task>;
@@ -62,7 +62,7 @@ class IoThread {
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
   bool is_ending_ = false;
-  std::thread thread_;  ///< last: it uses all above
+  std::thread thread_;  ///< last member: it uses the others
 };
 
 }  // namespace tetwarp::cli

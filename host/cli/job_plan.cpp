@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "host/base/region_grid.hpp"
 #include "host/cli/array_checks.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
@@ -40,7 +40,7 @@ void check_kinds(const WarpArguments& arguments) {
   check_kind(arguments.mesh_file(), FileKind::mesh, order);
 }
 
-/// The arrays to warp: those asked for, else all but this command's own extra outputs.
+/// The arrays to warp: those of --array, else all except extra outputs of an earlier warp.
 std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
                                        const WarpArguments& arguments,
                                        const std::string& path) {
@@ -64,47 +64,9 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
   return chosen;
 }
 
-void check_filter(const std::string& path, const ArrayHeader& array, Filter filter) {
-  if (filter == Filter::nearest) return;
-  const char* const type = name_of(array.type);
-  if (filter != Filter::labels && is_integer(array.type) && size_of(array.type) == 8) {
-    throw IoError(
-        path, array.name,
-        fmt::format("{} samples cannot be interpolated; use --filter nearest or labels", type));
-  }
-  if (filter == Filter::labels && !is_integer(array.type)) {
-    throw IoError(
-        path, array.name,
-        fmt::format("{} samples are no labels; choose others with --array, or a --filter", type));
-  }
-  if (filter == Filter::labels && array.components != 1) {
-    throw IoError(path, array.name,
-                  fmt::format("labels have one component, these samples {}; choose others with "
-                              "--array, or a --filter",
-                              array.components));
-  }
-}
-
-void check_arrays(const VolumePlan& plan, const WarpArguments& arguments) {
-  check_quantities(plan.path, plan.arrays, arguments);
-  for (const ArrayHeader& array : plan.arrays) {
-    check_filter(plan.path, array, arguments.warp.filter);
-    if (is_integer(array.type) && !std::isfinite(arguments.warp.background)) {
-      throw IoError(plan.path, array.name,
-                    fmt::format("{} samples cannot hold --background {}; give a finite value",
-                                name_of(array.type), arguments.warp.background));
-    }
-    for (const std::size_t e : arguments.extra) {
-      if (array.name == extra_outputs[e].array()) {
-        throw IoError(plan.path, array.name,
-                      "an extra output has this name; leave out one of them");
-      }
-    }
-  }
-}
-
-/// True when writing beside the computing of a step saves time: a device computes, or a processor
-/// has nothing to do, or deflating keeps a single one busy. Else both would only share processors.
+/// True when writing a step while the next one is computed saves time: on a device, with fewer
+/// threads than processors, or with compression, which uses one thread. Else computing and writing
+/// would compete for the same processors.
 bool leaves_time(Backend backend, const WarpArguments& arguments) {
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = arguments.warp.threads > 0 ? arguments.warp.threads : processors;
@@ -122,7 +84,7 @@ void check_axes(const VolumePlan& plan) {
   }
 }
 
-/// One output per step: `output` itself for a single one, else its stem with the step's number.
+/// One file per step: `output` for a single file, else its stem with the number of the step.
 std::vector<std::string> output_names(const fs::path& output,
                                       const std::vector<std::int64_t>& steps,
                                       bool temporal) {
@@ -154,9 +116,14 @@ VolumePlan plan_volume(const std::string& path,
   plan.path = path;
   plan.arrays = choose_arrays(header, arguments, path);
   plan.source_grid = header.grid;
-  check_arrays(plan, arguments);
+  check_arrays(path, plan.source_grid, plan.arrays, arguments);
   plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
-  plan.written_grid = cut_grid(plan.output_grid, arguments.warp.region);
+  try {
+    const Region region = checked_region(plan.output_grid, arguments.warp.region);
+    plan.written_grid = grid_of_region(plan.output_grid, region);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "", fmt::format("--roi: {}", error.what()));
+  }
   check_axes(plan);
   if (arguments.extra.contains(forward_output) && plan.output_grid != plan.source_grid) {
     throw std::invalid_argument(path +
@@ -165,14 +132,15 @@ VolumePlan plan_volume(const std::string& path,
   }
   plan.writes_beside =
       plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
-  // On processors beginning a step is computing it: the write of the one before starts first.
+  // On the cpu begin_step() computes the whole step, so the previous one is finished and written
+  // first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.steps = steps;
   plan.outputs = output_names(output, steps, arguments.temporal);
   return plan;
 }
 
-/// The folder for several outputs is there and takes files, or can be made.
+/// Checks that the folder for several volumes can be written to, or made.
 void check_folder(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) {
@@ -184,7 +152,7 @@ void check_folder(const std::string& folder) {
   }
 }
 
-/// Every output and the report can be written, and no two of them are one file.
+/// Checks that outputs and report can be written and that no two of them are the same file.
 void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
   if (!plan.output_folder.empty()) check_folder(plan.output_folder);
   std::vector<std::string> outputs = plan.outputs();

@@ -1,6 +1,6 @@
 /// @file job_plan.hpp
 /// What a warp will read, compute and write. Making a plan finds every error that can be found
-/// without reading samples; nothing has been written by then.
+/// without reading samples, before anything is written.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -20,28 +20,28 @@ struct VolumePlan {
   Grid source_grid;
   Grid output_grid;  ///< before the region cuts it
   Grid written_grid;
-  std::vector<std::int64_t> steps;   ///< of the mesh; of several ranks each has its own
+  std::vector<std::int64_t> steps;   ///< of the mesh; of one rank where ranks share them out
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
-  double memory_limit = 0;           ///< to compute in blocks within it; 0: all fits
-  double memory = 0;                 ///< that all would take at once
-  bool writes_beside =
-      false;              ///< there is time and memory to write a step while the next is computed
-  bool overlaps = false;  ///< the next step is begun before a step is brought home and written
+  double memory_limit = 0;           ///< compute in blocks within so many bytes; 0: as a whole
+  double memory = 0;                 ///< of sources and outputs as a whole [byte]
+  bool writes_beside = false;        ///< write a step while the next one is computed
+  bool overlaps = false;  ///< begin a step before the previous one is copied back and written
 };
 
 /// A whole job.
 struct JobPlan {
   MeshReader mesh;
   std::vector<std::int64_t> steps;  ///< ascending
-  Backend backend;                  ///< cuda, cpu or reference
+  Backend backend;                  ///< never automatic
   std::string backend_reason;       ///< why this one
-  std::string output_folder;        ///< to create when missing; empty: none
+  std::string output_folder;        ///< created when missing; empty: a single volume
   std::vector<VolumePlan> volumes;
 
   std::vector<std::string> outputs() const;
 };
 
-/// Looks at every file and checks every argument. Throws std::invalid_argument, IoError, CudaError.
+/// Reads the headers of all files and checks all arguments. Throws std::invalid_argument, IoError,
+/// CudaError.
 JobPlan plan_job(const WarpArguments& arguments);
 
 }  // namespace tetwarp::cli

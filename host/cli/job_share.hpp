@@ -1,5 +1,5 @@
 /// @file job_share.hpp
-/// Which part of a job a rank does, and how the parts become one result.
+/// The part of a job that a rank does, and the sum of the results of all ranks.
 #pragma once
 #include <cstddef>
 
@@ -10,8 +10,8 @@
 
 namespace tetwarp::cli {
 
-/// Warps a volume, or this rank's share of it, in memory or in blocks.
-/// @param task  number of the volume's first output among those of the job
+/// Warps a volume, or the part of it that is this rank's.
+/// @param task  number of the volume's first output among the outputs of the job
 void run_volume(const WarpArguments& arguments,
                 const JobPlan& plan,
                 const VolumePlan& volume,
@@ -20,14 +20,14 @@ void run_volume(const WarpArguments& arguments,
                 ProgressBar& bar,
                 JobResult& result);
 
-/// Only says how, step by step.
+/// For --dry-run: adds a plan per step to the result.
 void plan_only(const WarpArguments& arguments,
                const JobPlan& plan,
                const VolumePlan& volume,
                ProgressBar& bar,
                JobResult& result);
 
-/// The root's result becomes that of all ranks; its steps come in the order of their numbers.
+/// Adds the results of all ranks to that of the root and sorts the steps by their numbers.
 void gather_results(const Ranks& ranks, JobResult& result);
 
 }  // namespace tetwarp::cli

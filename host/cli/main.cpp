@@ -26,11 +26,12 @@ namespace {
 constexpr int failed_exit_code = 1;
 constexpr int usage_exit_code = 2;
 
-/// What every rank finds wrong before they know each other is told by the first; the others end as
-/// if all were well, or mpirun would end the first before it has spoken.
-int complain(const std::string& problem, int exit_code, bool is_found_by_all = false) {
+/// Prints an error in one line. A usage error is found by all ranks before MPI_Init: rank 0 prints
+/// it and fails; the others return 0, since mpirun kills all ranks as soon as one has failed.
+/// @returns the exit code of this process
+int print_error(const std::string& problem, int exit_code, bool is_found_by_all = false) {
   if (is_found_by_all && launched_rank() > 0) return 0;
-  wait_for_turn();
+  delay_by_rank();
   fmt::print(stderr, "tetwarp: {}\n", one_line(problem));
   return exit_code;
 }
@@ -50,7 +51,7 @@ void declare(CLI::App& app, Run& run) {
   app.footer("tetwarp SUBCOMMAND --help shows options and an example.\nTo begin: tetwarp demo");
 }
 
-/// CLI11 would call a mistyped subcommand a missing one.
+/// Throws CLI::ValidationError on an unknown subcommand; CLI11 would report a missing one.
 void check_subcommand(const CLI::App& app, int argument_count, const char* const* arguments) {
   if (argument_count < 2 || arguments[1][0] == '-') return;
   std::vector<std::string> names;
@@ -61,12 +62,14 @@ void check_subcommand(const CLI::App& app, int argument_count, const char* const
   }
 }
 
-/// Help and version are no errors; everything else is told in one line with where to read on.
+/// Prints help or version, which CLI11 throws as errors too; for all others one line that names the
+/// help to read. @returns the exit code
 int handle_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "tetwarp" : "tetwarp " + chosen[0]->get_name();
-  return complain(fmt::format("{} (see {} --help)", error.what(), command), usage_exit_code, true);
+  return print_error(fmt::format("{} (see {} --help)", error.what(), command), usage_exit_code,
+                     true);
 }
 
 int run_main(int argument_count, const char* const* arguments) {
@@ -90,12 +93,12 @@ int guarded_main(int argument_count, const char* const* arguments) {
   try {
     return run_main(argument_count, arguments);
   } catch (const Cancelled&) {
-    return complain("interrupted", interrupted_exit_code);
+    return print_error("interrupted", interrupted_exit_code);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory; use a smaller problem or, for volumes, --roi or --dims",
-                    failed_exit_code);
+    return print_error("out of memory; use a smaller problem or, for volumes, --roi or --dims",
+                       failed_exit_code);
   } catch (const std::exception& error) {
-    return complain(error.what(), failed_exit_code);
+    return print_error(error.what(), failed_exit_code);
   }
 }
 
@@ -108,8 +111,8 @@ int main(int argument_count, char** arguments) {
   const int exit_code = tetwarp::cli::guarded_main(argument_count, arguments);
   if (exit_code == 0) return 0;
   tetwarp::cli::abort_ranks(exit_code);
-  // HDF5 1.10 crashes in its exit handler when a file could not be closed on a full disk. All our
-  // files are closed or removed by now.
+  // Skips exit handlers: that of HDF5 1.10 crashes when a file could not be closed on a full disk.
+  // All files are closed or removed by now.
   std::fflush(nullptr);
   std::_Exit(exit_code);
 }

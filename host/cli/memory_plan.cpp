@@ -11,7 +11,7 @@ namespace tetwarp::cli {
 
 namespace {
 
-/// Throws IoError unless the output may be made in blocks.
+/// Throws IoError unless the output can be computed in blocks.
 void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
   const std::string reason = needs_all_at_once(arguments);
   if (reason.empty()) return;
@@ -20,7 +20,7 @@ void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
                             bytes_text(plan.memory)));
 }
 
-/// What a filter holds of each sample beside it, when it needs most.
+/// Bytes per sample that a filter keeps in addition, at its peak.
 double filter_bytes(Filter filter, PixelType type) {
   if (filter != Filter::bspline) return 0;
   return size_of(type) <= 2 || type == PixelType::float32 ? 12 : 8;
@@ -59,7 +59,7 @@ bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
   const double bytes = source_bytes + output_bytes;
   plan.memory = bytes;
   if (arguments.memory > 0) {
-    // Lists of cells and tetrahedra, and what is there already.
+    // 1 % is for lists of cells and tetrahedra; the rest is in use already.
     const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
     if (bytes > limit) {
       plan.memory_limit = arguments.memory;

@@ -1,5 +1,5 @@
 /// @file memory_plan.hpp
-/// Whether memory holds a volume and its output at once.
+/// Whether a volume and its outputs fit in memory.
 #pragma once
 #include <string>
 
@@ -7,12 +7,12 @@
 
 namespace tetwarp::cli {
 
-/// Why an output cannot be made in blocks, and what would help; empty: it can.
+/// Why an output cannot be computed in blocks, with a remedy; empty: it can.
 std::string needs_all_at_once(const WarpArguments& arguments);
 
-/// Sets `memory` and `memory_limit` of a plan. Source, output and extra outputs must fit, or blocks
-/// of them where a limit is given. Throws std::invalid_argument, IoError.
-/// @returns whether the outputs fit once more
+/// Sets `memory` and `memory_limit` of a plan. Sources, outputs and extra outputs must fit in
+/// memory, with --memory at least block by block. Throws std::invalid_argument, IoError.
+/// @returns whether a second set of outputs fits, too
 bool plan_memory(VolumePlan& plan, const WarpArguments& arguments);
 
 }  // namespace tetwarp::cli

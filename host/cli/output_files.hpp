@@ -1,5 +1,5 @@
 /// @file output_files.hpp
-/// What makes an output file the one that is wanted: shared by the runs that write some.
+/// Options, fingerprints and counts of output files.
 #pragma once
 #include <string>
 
@@ -11,25 +11,25 @@
 
 namespace tetwarp::cli {
 
-/// For the Warper of a volume's arrays.
+/// Options of the Warper of a volume.
 WarpOptions warp_options(const WarpArguments& arguments,
                          const JobPlan& plan,
                          const VolumePlan& volume);
 
-/// Of everything that determines an output but the samples and the positions.
+/// Hash of everything that determines an output, except for samples and positions.
 Fingerprint fingerprint_of_options(const WarpArguments& arguments,
                                    const JobPlan& plan,
                                    const VolumePlan& volume);
 
-/// Whether --resume may keep a file.
+/// Whether --resume keeps a file: it is complete and has this fingerprint.
 bool is_up_to_date(const WarpArguments& arguments,
                    const std::string& output,
                    const Fingerprint& fingerprint);
 
 VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerprint& fingerprint);
 
-/// The report of a step that equals the last one: what describes its outputs stays, no work was
-/// done.
+/// Fills the report of a step that equals the last one: counts that describe the outputs are
+/// copied, counts of work stay zero.
 void repeat_report(const StepReport& last, StepReport& report);
 
 /// What a written file adds to a report.

@@ -1,8 +1,6 @@
 /// @file output_grid.cpp
 #include "host/cli/output_grid.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -99,25 +97,6 @@ Region parse_region(const std::string& text) {
     throw std::invalid_argument("'" + text + "' is no region i0:i1,j0:j1,k0:k1 of whole numbers");
   }
   return region;
-}
-
-Grid cut_grid(const Grid& grid, const std::optional<Region>& region) {
-  if (!region) return grid;
-  Grid cut = grid;
-  Point3 first{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::int64_t begin = region->begin[axis];
-    const std::int64_t end = region->end[axis];
-    if (begin < 0 || begin >= end || end > grid.dims[axis]) {
-      throw std::invalid_argument(fmt::format(
-          "--roi {}:{} along {} is not inside the output grid, which has voxels 0:{} there", begin,
-          end, "ijk"[axis], grid.dims[axis]));
-    }
-    cut.dims[axis] = end - begin;
-    first[axis] = static_cast<double>(begin);
-  }
-  cut.origin = grid.world_of(first);
-  return cut;
 }
 
 }  // namespace tetwarp::cli

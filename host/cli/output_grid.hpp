@@ -1,5 +1,5 @@
 /// @file output_grid.hpp
-/// The grid that a warp writes: what the user said, resolved against source and mesh.
+/// The output grid, from the options --grid, --dims, --origin, --spacing and --direction.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tetwarp::cli {
 
-/// What the user said.
+/// The options as they were given.
 struct GridChoice {
   std::string base = "same";  ///< "same", "bounds", or a volume file whose grid is taken
   std::optional<std::array<std::int64_t, 3>> dims;
@@ -21,18 +21,14 @@ struct GridChoice {
   std::optional<std::array<double, 9>> direction;
 };
 
-/// The grid that is meant. What is given explicitly replaces that part of the base.
+/// The base grid with those parts replaced that are given.
 /// Throws std::invalid_argument when the result is no valid grid.
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
                   const MeshReader& mesh,
                   const std::vector<std::int64_t>& steps);
 
-/// "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
+/// Reads "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
 Region parse_region(const std::string& text);
-
-/// `grid` cut to the region, its origin moved; all of it without one. Throws std::invalid_argument
-/// when the region leaves the grid.
-Grid cut_grid(const Grid& grid, const std::optional<Region>& region);
 
 }  // namespace tetwarp::cli

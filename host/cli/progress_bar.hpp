@@ -6,8 +6,9 @@
 
 namespace tetwarp::cli {
 
-/// One line on standard error, redrawn at most ten times a second and cleared at the end: share
-/// done, Mvoxel/s, steps/s, remaining time. Draws nothing when standard error is no terminal.
+/// One line on standard error, redrawn at most ten times a second and cleared by the destructor:
+/// share done, Mvoxel/s, steps/s, remaining time. Draws nothing when standard error is not a
+/// terminal.
 class ProgressBar {
  public:
   /// @param wanted      false: never draw

@@ -1,5 +1,5 @@
 /// @file ranks.cpp
-/// What mpirun tells its children before they say a word: Open MPI's and MPICH's names.
+/// Ranks before MPI_Init: environment variables that mpirun of Open MPI and of MPICH sets.
 #include "host/cli/ranks.hpp"
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace tetwarp::cli {
 
 namespace {
 
+/// The first of these environment variables that is set.
 int number_of(std::initializer_list<const char*> names, int otherwise) {
   for (const char* name : names) {
     const char* const text = std::getenv(name);
@@ -34,9 +35,10 @@ int launched_count() {
   return number_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}, 1);
 }
 
-void wait_for_turn() {
-  constexpr int longest = 20;
-  std::this_thread::sleep_for(std::min(launched_rank(), longest) * std::chrono::milliseconds(100));
+void delay_by_rank() {
+  constexpr int max_steps = 20;
+  std::this_thread::sleep_for(std::min(launched_rank(), max_steps) *
+                              std::chrono::milliseconds(100));
 }
 
 }  // namespace tetwarp::cli

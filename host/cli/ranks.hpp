@@ -4,33 +4,35 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace tetwarp::cli {
 
-/// Used by one thread at a time. What goes wrong in MPI ends all ranks.
+/// The ranks of a job and their messages. Used by one thread at a time. An error inside MPI ends
+/// all ranks.
 class Ranks {
  public:
-  /// One process alone: asks nobody.
+  /// One process alone; makes no MPI call.
   Ranks() = default;
 
-  /// All that mpirun has started together with this one; without mpirun one alone, and MPI is not
-  /// touched. Throws std::runtime_error when there are several and this build knows no MPI.
+  /// All processes that mpirun has started with this one; initializes MPI. Without mpirun one
+  /// process alone. Throws std::runtime_error when there are several and this build has no MPI.
   static Ranks start();
 
-  /// Says goodbye, once all is well: waits for the others.
+  /// Finalizes MPI after success: waits for the other ranks.
   void finish();
 
   int rank() const { return rank_; }
   int count() const { return count_; }
   bool is_root() const { return rank_ == 0; }
 
-  /// Waits until every rank is here.
-  void meet() const;
+  /// Waits until every rank has called this.
+  void wait_for_all() const;
 
-  /// The root's bytes, everywhere.
+  /// Copies the bytes of the root to every rank.
   void share(std::span<std::byte> bytes) const;
   template <class T>
   requires std::is_trivially_copyable_v<T> T shared(T value)
@@ -39,39 +41,40 @@ class Ranks {
     return value;
   }
 
-  /// The least of all ranks' numbers, everywhere.
-  double least(double number) const;
+  /// The smallest of the numbers of all ranks, at every rank.
+  double smallest(double number) const;
 
-  /// Begins to send to the root; the memory stays until finish_sending().
+  /// Begins to send to the root. The memory must not change until finish_sending().
   void send(std::span<const std::byte> bytes);
   void finish_sending();
-  /// Waits for what a rank sends.
+  /// Receives what a rank sends; waits for it.
   void receive(int from, std::span<std::byte> bytes) const;
 
-  /// Brings the bytes of every rank to the root, in the order of ranks; elsewhere nothing.
-  std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) const;
+  /// The texts of all ranks in their order, at the root; nothing at the others.
+  std::vector<std::string> gather(const std::string& text) const;
 
  private:
   Ranks(int rank, int count) : rank_(rank), count_(count) {}
 
   int rank_ = 0;
   int count_ = 1;
-  std::vector<int> sends_;  ///< under way, by the numbers that MPI has for Fortran
+  std::vector<int> sends_;  ///< MPI requests that are not finished, as Fortran handles
 };
 
-/// How many processes mpirun has started, by what it tells its children; 1 without.
+/// Number of processes that mpirun has started, from its environment variables; 1 without mpirun.
 int launched_count();
 
-/// Of this process among those of mpirun, by what mpirun tells its children; 0 without.
+/// Rank of this process, from the same source; 0 without mpirun.
 int launched_rank();
 
-/// The same among those on this machine.
+/// Rank among the processes on this machine, from the same source.
 int launched_local_rank();
 
-/// Lets lower ranks speak first: what several find wrong is then told by one, who ends the others.
-void wait_for_turn();
+/// Sleeps 0.1 s per rank, at most 2 s. Called before an error is printed: when several ranks find
+/// the same error, the lowest prints it and ends the others before they print.
+void delay_by_rank();
 
-/// Ends all ranks where there are several and this one is not done; else comes back.
+/// Ends all ranks between MPI_Init and MPI_Finalize; else does nothing.
 void abort_ranks(int exit_code);
 
 }  // namespace tetwarp::cli

@@ -1,5 +1,5 @@
 /// @file ranks_mpi.cpp
-/// Ranks by MPI. Its errors end the job by themselves: MPI_ERRORS_ARE_FATAL is the default.
+/// Ranks by MPI. Return codes are not checked: by default an error in MPI ends the job.
 #include <mpi.h>
 
 #include <algorithm>
@@ -12,13 +12,13 @@ namespace tetwarp::cli {
 
 namespace {
 
-constexpr std::size_t longest_message = std::size_t{1} << 30;  // counts are ints
+constexpr std::size_t max_message = std::size_t{1} << 30;  // [byte]; counts of MPI are ints
 
-/// part(begin, size) for parts that MPI can count.
+/// Calls part(begin, size) for parts of at most max_message bytes.
 template <class Part>
 void for_parts(std::size_t bytes, const Part& part) {
-  for (std::size_t begin = 0; begin < bytes; begin += longest_message) {
-    part(begin, static_cast<int>(std::min(longest_message, bytes - begin)));
+  for (std::size_t begin = 0; begin < bytes; begin += max_message) {
+    part(begin, static_cast<int>(std::min(max_message, bytes - begin)));
   }
 }
 
@@ -30,7 +30,7 @@ Ranks Ranks::start() {
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &count);
-  leave_at_once();  // mpirun waits a second before it kills
+  exit_on_first_signal();  // mpirun kills a second after SIGTERM
   return {rank, count};
 }
 
@@ -38,7 +38,7 @@ void Ranks::finish() {
   if (count_ > 1) MPI_Finalize();
 }
 
-void Ranks::meet() const {
+void Ranks::wait_for_all() const {
   if (count_ > 1) MPI_Barrier(MPI_COMM_WORLD);
 }
 
@@ -49,7 +49,7 @@ void Ranks::share(std::span<std::byte> bytes) const {
   });
 }
 
-double Ranks::least(double number) const {
+double Ranks::smallest(double number) const {
   if (count_ > 1) {
     MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
   }
@@ -78,22 +78,23 @@ void Ranks::receive(int from, std::span<std::byte> bytes) const {
   });
 }
 
-std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes) const {
-  if (count_ == 1) return {{bytes.begin(), bytes.end()}};
-  std::vector<std::vector<std::byte>> all;
+std::vector<std::string> Ranks::gather(const std::string& text) const {
+  if (count_ == 1) return {text};
+  std::uint64_t size = text.size();
   if (!is_root()) {
-    const std::uint64_t size = bytes.size();
     MPI_Send(&size, sizeof size, MPI_BYTE, 0, 1, MPI_COMM_WORLD);
-    MPI_Send(bytes.data(), static_cast<int>(size), MPI_BYTE, 0, 1, MPI_COMM_WORLD);
-    return all;
+    for_parts(text.size(), [&](std::size_t begin, int part) {
+      MPI_Send(text.data() + begin, part, MPI_BYTE, 0, 1, MPI_COMM_WORLD);
+    });
+    return {};
   }
-  all.emplace_back(bytes.begin(), bytes.end());
+  std::vector<std::string> all{text};
   for (int from = 1; from < count_; ++from) {
-    std::uint64_t size = 0;
     MPI_Recv(&size, sizeof size, MPI_BYTE, from, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    all.emplace_back(size);
-    MPI_Recv(all.back().data(), static_cast<int>(size), MPI_BYTE, from, 1, MPI_COMM_WORLD,
-             MPI_STATUS_IGNORE);
+    std::string& received = all.emplace_back(size, '\0');
+    for_parts(received.size(), [&](std::size_t begin, int part) {
+      MPI_Recv(received.data() + begin, part, MPI_BYTE, from, 1, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    });
   }
   return all;
 }

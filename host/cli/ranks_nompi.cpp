@@ -1,5 +1,5 @@
 /// @file ranks_nompi.cpp
-/// Ranks of a build without MPI: one.
+/// Ranks in a build without MPI: always one.
 #include <stdexcept>
 
 #include "host/cli/ranks.hpp"
@@ -15,16 +15,16 @@ Ranks Ranks::start() {
 }
 
 void Ranks::finish() {}
-void Ranks::meet() const {}
+void Ranks::wait_for_all() const {}
 void Ranks::share(std::span<std::byte>) const {}
-double Ranks::least(double number) const {
+double Ranks::smallest(double number) const {
   return number;
 }
 void Ranks::send(std::span<const std::byte>) {}
 void Ranks::finish_sending() {}
 void Ranks::receive(int, std::span<std::byte>) const {}
-std::vector<std::vector<std::byte>> Ranks::gather(std::span<const std::byte> bytes) const {
-  return {{bytes.begin(), bytes.end()}};
+std::vector<std::string> Ranks::gather(const std::string& text) const {
+  return {text};
 }
 void abort_ranks(int) {}
 

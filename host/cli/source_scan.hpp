@@ -1,5 +1,5 @@
 /// @file source_scan.hpp
-/// What must be known of a source before a part of it is warped, found in one pass over its file.
+/// One pass over a source that does not fit in memory: its fingerprint and range.
 #pragma once
 #include <vector>
 
@@ -9,10 +9,10 @@
 
 namespace tetwarp::cli {
 
-/// Adds a source as Fingerprint::add(Volume) does, holding at most `bytes` of it at a time, but one
-/// row at least.
-/// @returns least and largest sample per component, in turns, NaN left out, when `wants_range`;
-///          else nothing
+/// Adds a source to a fingerprint as Fingerprint::add(Volume) does. Holds at most `bytes` of it at
+/// a time, but at least one row.
+/// @returns smallest and largest sample of component 0, then of 1 and so on, NaN left out; empty
+///          unless `wants_range`
 std::vector<double> scan_source(const VolumeReader& source,
                                 double bytes,
                                 bool wants_range,

@@ -8,14 +8,14 @@
 
 namespace tetwarp::cli {
 
-/// A comma list of step numbers and half-open Python slices: "0:10:2", "-1", "0,3,8:". A set: order
-/// and repetition do not matter.
+/// A comma list of step numbers and of half-open slices as in Python: "0:10:2", "-1", "0,3,8:".
+/// Order and repetition do not matter.
 class StepSelection {
  public:
   /// Every step.
   StepSelection() : StepSelection(":") {}
 
-  /// Throws std::invalid_argument when `text` is neither.
+  /// Throws std::invalid_argument on anything else.
   explicit StepSelection(std::string text);
 
   /// The selected steps of `step_count`, ascending. Throws std::invalid_argument when a single
@@ -37,7 +37,7 @@ class StepSelection {
   std::vector<Item> items_;
 };
 
-/// All of `text` as a whole number, nothing otherwise.
+/// The whole number that `text` consists of; nothing when it is anything else.
 std::optional<std::int64_t> whole_number(const std::string& text);
 
 /// The parts of `text` between separators; at least one.

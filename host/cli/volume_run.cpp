@@ -1,18 +1,30 @@
 /// @file volume_run.cpp
+/// Sources, steps and files of a run.
 #include "host/cli/volume_run.hpp"
 
+#include <malloc.h>
+
+#include <algorithm>
 #include <utility>
 
+#include "host/base/warp_backend.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/output_files.hpp"
+#include "host/cli/source_scan.hpp"
 #include "host/cli/stopwatch.hpp"
+#include "io/memory.hpp"
+#include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
 
 namespace {
 
-std::int64_t bytes_of(const std::vector<Point3>& positions) {
-  return static_cast<std::int64_t>(positions.size() * sizeof(Point3));
+double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
+  double bytes = 0;
+  for (const ArrayHeader& array : arrays) {
+    bytes += array.components * static_cast<double>(size_of(array.type));
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -20,61 +32,119 @@ std::int64_t bytes_of(const std::vector<Point3>& positions) {
 VolumeRun::VolumeRun(const WarpArguments& arguments,
                      const JobPlan& plan,
                      const VolumePlan& volume,
+                     Ranks& ranks,
                      ProgressBar& bar,
                      JobResult& result)
-    : arguments_(arguments), plan_(plan), volume_(volume), bar_(bar), result_(result) {}
+    : arguments_(arguments),
+      plan_(plan),
+      volume_(volume),
+      ranks_(ranks),
+      bar_(bar),
+      result_(result),
+      options_(warp_options(arguments, plan, volume)),
+      region_(arguments.warp.region.value_or(Region{{0, 0, 0}, volume.output_grid.dims})),
+      is_whole_(volume.memory_limit == 0 && ranks.count() == 1),
+      writes_beside_(!is_whole_ || volume.writes_beside),
+      overlaps_(is_whole_ && volume.overlaps),
+      outputs_(volume.arrays) {
+  for (const std::size_t e : arguments.extra) {
+    const ExtraOutput& extra = extra_outputs[e];
+    outputs_.push_back({extra.array(), extra.type, extra.components});
+  }
+  if (is_whole_) return;
+  // glibc returns the memory of a block to the system when it is freed.
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  options_.skip.unchanged_tets = false;  // a block is not computed twice
+  for (const ArrayHeader& array : volume.arrays) {
+    readers_.emplace_back(volume.path, array.name, arguments.source_step);
+  }
+  planner_.emplace(volume.source_grid, plan.mesh.mesh(), options_);
+  fixed_bytes_ = fixed_bytes();
+}
 
 void VolumeRun::run() {
-  read_sources();
-  if (arguments_.temporal) {
-    write_temporal();
-  } else {
-    write_each_step();
-  }
-}
-
-void VolumeRun::read_sources() {
   const Stopwatch watch;
-  for (const ArrayHeader& array : volume_.arrays) {
-    stop_if_interrupted();
-    sources_.push_back(read_volume(volume_.path, array.name, arguments_.source_step));
-    result_.report.counts.bytes_read += static_cast<std::int64_t>(sources_.back().data.size());
-  }
+  const Fingerprint inputs = is_whole_ ? read_sources() : scan_sources();
   result_.report.timings.read += watch.seconds();
+  if (arguments_.temporal) {
+    run_temporal(inputs);
+  } else {
+    run_each_step(inputs);
+  }
 }
 
-void VolumeRun::write_each_step() {
-  const Fingerprint inputs = fingerprint_of_inputs();
-  for (std::size_t s = 0; s < volume_.steps.size(); ++s) {
+void VolumeRun::plan_only() {
+  for (const std::int64_t number : plan_.steps) {
     stop_if_interrupted();
-    finish_writing();
-    StepReport report;
-    report.step = volume_.steps[s];
-    std::vector<Point3> positions = read_positions(report.step, report);
-    Fingerprint fingerprint = inputs;
-    fingerprint.add(positions);
-    const std::string& output = volume_.outputs[s];
-    const bool skips = is_up_to_date(arguments_, output, fingerprint);
-    start_writing();
-    if (skips) {
-      finish_computing();
-      start_writing();
-      finish_writing();
-      ++result_.skipped;
-      finish_step(report);
+    StepPlan step{volume_.path, number, volume_.written_grid.dims};
+    if (is_whole_) {
+      step.memory = volume_.memory;
+      result_.plans.push_back(step);
       continue;
     }
-    const auto write = [&output, options = write_options(arguments_, fingerprint)](
-                           const StepReport&, const std::vector<const Volume*>& volumes) {
-      return write_volumes(output, volumes, options);
-    };
-    compute(std::move(positions), report, write);
+    const BlockPlan plan = plan_step(plan_.mesh.read_step(number));
+    step.blocks = std::ssize(plan.blocks);
+    for (const WarpBlock& block : plan.blocks) {
+      const std::int64_t window = block.source.voxel_count();
+      step.memory = std::max(step.memory, fixed_bytes_ + block.host_bytes);
+      step.largest_block = std::max(step.largest_block, block.output.voxel_count());
+      step.largest_window = std::max(step.largest_window, window);
+      step.bytes_read += static_cast<double>(window) * voxel_bytes(volume_.arrays);
+    }
+    result_.plans.push_back(step);
   }
-  write_the_rest();
 }
 
-void VolumeRun::write_temporal() {
-  Fingerprint fingerprint = fingerprint_of_inputs();
+/// Reads the sources of a whole volume.
+/// @returns what the outputs depend on, except for positions
+Fingerprint VolumeRun::read_sources() {
+  Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
+  for (const ArrayHeader& array : volume_.arrays) {
+    stop_if_interrupted();
+    Volume source = read_volume(volume_.path, array.name, arguments_.source_step);
+    result_.report.counts.bytes_read += static_cast<std::int64_t>(source.data.size());
+    fingerprint.add(source);
+    sources_.push_back(std::move(source));
+  }
+  return fingerprint;
+}
+
+/// Reads the sources part by part, for --resume and their ranges.
+/// @returns as read_sources(), at the root
+Fingerprint VolumeRun::scan_sources() {
+  Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
+  const bool wants_range = arguments_.warp.overshoot == Overshoot::clamp;
+  ranges_.resize(readers_.size());
+  if (!ranks_.is_root() && !wants_range) return fingerprint;
+  const double bytes = std::clamp(0.5 * limits().host, 1e6, 2.5e8);
+  for (std::size_t s = 0; s < readers_.size(); ++s) {
+    ranges_[s] = scan_source(readers_[s], bytes, wants_range, fingerprint);
+    result_.report.counts.bytes_read += static_cast<std::int64_t>(
+        bytes_of(volume_.arrays[s], {{0, 0, 0}, volume_.source_grid.dims}));
+  }
+  return fingerprint;
+}
+
+void VolumeRun::run_each_step(const Fingerprint& inputs) {
+  for (std::size_t s = 0; s < volume_.steps.size(); ++s) {
+    const std::shared_ptr<Step> step = read_step(volume_.steps[s]);
+    step->output = volume_.outputs[s];
+    step->fingerprint = inputs;
+    step->fingerprint.add(step->positions);
+    const bool keeps = may_keep(step->output, step->fingerprint);
+    start_writing();
+    if (keeps) {
+      finish_all();
+      finish_step(step->report);
+    } else {
+      run_step(step);
+    }
+  }
+  stop_if_interrupted();
+  finish_all();
+}
+
+void VolumeRun::run_temporal(Fingerprint fingerprint) {
   const std::vector<double>& times = plan_.mesh.header().times;
   for (const std::int64_t step : plan_.steps) {
     stop_if_interrupted();
@@ -82,165 +152,58 @@ void VolumeRun::write_temporal() {
     fingerprint.add(plan_.mesh.read_step(step));
   }
   const std::string& output = volume_.outputs.front();
-  if (is_up_to_date(arguments_, output, fingerprint)) {
-    ++result_.skipped;
-    return;
-  }
-  temporal_.emplace(output, write_options(arguments_, fingerprint));
-  for (const std::int64_t step : plan_.steps) {
-    stop_if_interrupted();
-    finish_writing();
-    StepReport report;
-    report.step = step;
-    std::vector<Point3> positions = read_positions(step, report);
+  if (may_keep(output, fingerprint)) return;
+  begin_file(output, fingerprint, true);
+  for (const std::int64_t number : plan_.steps) {
+    const std::shared_ptr<Step> step = read_step(number);
+    step->time = times[static_cast<std::size_t>(number)];
     start_writing();
-    const double time = times[static_cast<std::size_t>(step)];
-    const auto write = [this, time](const StepReport& step_report,
-                                    const std::vector<const Volume*>& volumes) {
-      const Counts& counts = step_report.counts;
-      const bool keeps_forward =
-          !arguments_.extra.contains(forward_output) || counts.tets_unchanged == counts.tetrahedra;
-      if (counts.steps_unchanged > 0 ||
-          (counts.cells > 0 && counts.cells_unchanged == counts.cells && keeps_forward)) {
-        temporal_->repeat(time);
-      } else {
-        temporal_->append(time, volumes);
-      }
-      return WrittenFile{};
-    };
-    compute(std::move(positions), report, write);
+    run_step(step);
   }
-  write_the_rest();
+  stop_if_interrupted();
+  finish_all();
   const Stopwatch watch;
-  result_.report.counts += counts_of(temporal_->finish());
+  if (!writer_) return;
+  result_.report.counts += counts_of(writer_->finish());
   result_.report.timings.write += watch.seconds();
   ++result_.written;
 }
 
-std::vector<Point3> VolumeRun::read_positions(std::int64_t step, StepReport& report) const {
-  const Stopwatch watch;
-  std::vector<Point3> positions = plan_.mesh.read_step(step);
-  report.timings.read = watch.seconds();
-  report.counts.bytes_read = bytes_of(positions);
-  return positions;
-}
-
-bool VolumeRun::equals_last_step(const std::vector<Point3>& positions) const {
-  return arguments_.warp.skip.unchanged_steps && positions == last_positions_;
-}
-
-void VolumeRun::compute(std::vector<Point3> positions, StepReport report, Write write) {
-  if (equals_last_step(positions)) {
-    finish_computing();
-    repeat_report(last_report_, report);
-    computed_ = Step{report, std::move(write), outputs_[now_].volumes()};
-    return;
-  }
-  if (!warper_) start_warper();
-  if (volume_.writes_beside) now_ = 1 - now_;
-  Outputs& outputs = outputs_[now_];
-  if (outputs.warped.empty()) make_outputs(outputs);
-  std::vector<void*> pointers;
-  for (Volume& volume : outputs.warped) pointers.push_back(volume.data.data());
-  WarpTarget target;
-  target.volumes = pointers;
-  target.holds_previous = true;
-  auto extra = outputs.extra.begin();
-  for (const std::size_t e : arguments_.extra) extra_outputs[e].set(target, (extra++)->data.data());
-  const auto step_voxels = static_cast<double>(volume_.written_grid.voxel_count());
-  const bool writes = writing_.valid();
-  const auto steps_done = static_cast<double>(result_.report.steps.size() + (writes ? 1 : 0));
-  const auto voxels_done = static_cast<double>(result_.report.counts.voxels +
-                                               (writes ? writing_report_.counts.voxels : 0));
-  const Progress progress = [&](double share) {
-    bar_.update(steps_done + share, voxels_done + share * step_voxels);
-    return !is_interrupted();
-  };
-  last_positions_.clear();  // an interrupted step leaves the outputs undefined
-  warper_->begin_step(positions, target, progress);
-  last_positions_ = std::move(positions);
-  finish_computing();
-  begun_ = Step{report, std::move(write), outputs.volumes()};
-  if (!volume_.overlaps) finish_computing();
-}
-
-/// Throws what went wrong with the step.
-void VolumeRun::finish_computing() {
-  if (!begun_) return;
-  Step step = *std::exchange(begun_, {});
-  const StepReport read = step.report;
-  step.report = warper_->finish_step();
-  step.report.step = read.step;
-  step.report.timings.read += read.timings.read;
-  step.report.counts.bytes_read += read.counts.bytes_read;
-  last_report_ = step.report;
-  computed_ = std::move(step);
-  if (volume_.overlaps) start_writing();
-}
-
-void VolumeRun::start_warper() {
-  const std::vector<VolumeView> views(sources_.begin(), sources_.end());
-  warper_.emplace(views, plan_.mesh.mesh(), warp_options(arguments_, plan_, volume_));
-  const Report& report = warper_->report();
-  result_.report.device = report.device;
-  result_.report.threads = report.threads;
-  result_.report.position_quantum = report.position_quantum;
-}
-
-void VolumeRun::make_outputs(Outputs& outputs) const {
-  const Grid& grid = warper_->output_grid();
-  for (const Volume& source : sources_) {
-    outputs.warped.push_back(make_volume(grid, source.type, source.components, source.name));
-  }
-  for (const std::size_t e : arguments_.extra) {
-    const ExtraOutput& extra = extra_outputs[e];
-    outputs.extra.push_back(make_volume(grid, extra.type, extra.components, extra.array()));
-  }
-  if (plan_.backend != Backend::cuda) return;
-  const auto lock = [&](Volume& volume) {
-    outputs.locks.emplace_back(volume.data.data(), volume.data.size());
-  };
-  for (Volume& volume : outputs.warped) lock(volume);
-  for (Volume& volume : outputs.extra) lock(volume);
-}
-
-std::vector<const Volume*> VolumeRun::Outputs::volumes() const {
-  std::vector<const Volume*> all;
-  for (const Volume& volume : warped) all.push_back(&volume);
-  for (const Volume& volume : extra) all.push_back(&volume);
-  return all;
-}
-
-void VolumeRun::start_writing() {
-  if (!computed_) return;
-  writing_report_ = computed_->report;
-  writing_ = std::async(std::launch::async, [step = *std::exchange(computed_, {})] {
-    const Stopwatch watch;
-    const WrittenFile file = step.write(step.report, step.volumes);
-    return Written{file, watch.seconds()};
-  });
-  if (!volume_.writes_beside) finish_writing();
-}
-
-/// Throws what the write threw.
-void VolumeRun::finish_writing() {
-  if (!writing_.valid()) return;
-  const Written written = writing_.get();
-  writing_report_.counts += counts_of(written.file);
-  writing_report_.timings.write = written.seconds;
-  if (!temporal_) ++result_.written;
-  finish_step(writing_report_);
-}
-
-void VolumeRun::write_the_rest() {
+/// Reads the positions of a step, when the thread for files has nothing to do.
+std::shared_ptr<VolumeRun::Step> VolumeRun::read_step(std::int64_t number) {
   stop_if_interrupted();
   finish_writing();
-  finish_computing();
-  start_writing();
-  finish_writing();
+  const auto step = std::make_shared<Step>();
+  step->report.step = number;
+  const Stopwatch watch;
+  step->positions = plan_.mesh.read_step(number);
+  step->report.timings.read = watch.seconds();
+  if (is_whole_) {
+    step->report.counts.bytes_read =
+        static_cast<std::int64_t>(step->positions.size() * sizeof(Point3));
+  }
+  return step;
 }
 
+/// Whether --resume keeps a file; the root decides.
+bool VolumeRun::may_keep(const std::string& output, const Fingerprint& fingerprint) {
+  const bool may =
+      ranks_.shared(ranks_.is_root() && is_up_to_date(arguments_, output, fingerprint));
+  if (may && ranks_.is_root()) ++result_.skipped;
+  return may;
+}
+
+void VolumeRun::begin_file(const std::string& output,
+                           const Fingerprint& fingerprint,
+                           bool is_temporal) {
+  if (!ranks_.is_root()) return;
+  writer_.emplace(output, volume_.written_grid, outputs_, write_options(arguments_, fingerprint),
+                  is_temporal, is_whole_ ? ChunkShape::rows : ChunkShape::bricks);
+}
+
+/// Adds a step that is complete to the report of the job.
 void VolumeRun::finish_step(const StepReport& report) {
+  if (!ranks_.is_root()) return;
   Report& total = result_.report;
   total.timings += report.timings;
   total.counts += report.counts;
@@ -249,10 +212,43 @@ void VolumeRun::finish_step(const StepReport& report) {
   bar_.update(static_cast<double>(total.steps.size()), static_cast<double>(total.counts.voxels));
 }
 
-Fingerprint VolumeRun::fingerprint_of_inputs() const {
-  Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
-  for (const Volume& source : sources_) fingerprint.add(source);
-  return fingerprint;
+double VolumeRun::fixed_bytes() const {
+  // What is there, the mesh included, and what planning, threads and files take: footprints, lists
+  // of tetrahedra, positions in several forms; chunks.
+  const MeshHeader& mesh = plan_.mesh.header();
+  double bytes = resident_memory() + 8e6 +
+                 160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
+                 120 * static_cast<double>(mesh.node_count);
+  for (const VolumeReader& reader : readers_) bytes += reader.chunk_bytes() + 1e6;
+  return bytes;
+}
+
+BlockLimits VolumeRun::limits() const {
+  BlockLimits limits;
+  if (volume_.memory_limit > 0) limits.host = volume_.memory_limit - fixed_bytes_;
+  if (plan_.backend == Backend::cuda) limits.device = 0.9 * free_device_memory(options_.device);
+  // With several blocks per rank the ranks finish at nearly the same time.
+  constexpr std::int64_t blocks_per_rank = 4;
+  if (ranks_.count() > 1) {
+    limits.max_voxels = volume_.written_grid.voxel_count() / (blocks_per_rank * ranks_.count()) + 1;
+  }
+  limits.source_voxel = voxel_bytes(volume_.arrays);
+  limits.output_voxel = voxel_bytes(outputs_);
+  limits.scratch_voxel = plan_.backend == Backend::reference ? 30 : 0;
+  limits.step = block_step(volume_.written_grid, outputs_);
+  return limits;
+}
+
+BlockPlan VolumeRun::plan_step(const std::vector<Point3>& positions) {
+  if (is_whole_) {
+    WarpBlock whole;
+    whole.output = region_;
+    return {{whole}};
+  }
+  BlockLimits common = limits();
+  common.host = ranks_.smallest(common.host);
+  common.device = ranks_.smallest(common.device);
+  return planner_->plan(positions, common);
 }
 
 }  // namespace tetwarp::cli

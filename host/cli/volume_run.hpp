@@ -1,93 +1,162 @@
 /// @file volume_run.hpp
-/// One volume file warped by every step of a plan; each step is written while the next is computed,
-/// on a device beside the copy home of the one between.
+/// One volume file warped by every step of a plan, block by block: reads, computes, writes, each
+/// beside the others. A volume that memory holds is a single block.
 #pragma once
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <tetwarp/blocks.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/page_lock.hpp>
 #include <tetwarp/warp.hpp>
 
 #include "host/cli/fingerprint.hpp"
+#include "host/cli/io_thread.hpp"
 #include "host/cli/job_plan.hpp"
 #include "host/cli/progress_bar.hpp"
+#include "host/cli/ranks.hpp"
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
 
-/// Holds the sources, the outputs and the Warper between steps. All references must outlive it.
+/// Bytes of an array over a region.
+inline std::size_t bytes_of(const ArrayHeader& array, const Region& region) {
+  return static_cast<std::size_t>(region.voxel_count() * array.components) * size_of(array.type);
+}
+
+/// All references must outlive it. The arrays of the output files do not depend on the blocks.
 ///
-/// Files are read between the writes, never beside one: HDF5 need not be built for threads.
+/// The calling thread computes. A second thread reads and writes files; the calling thread does so
+/// only while the second one is idle. Ranks take blocks in turns and the root writes them.
+///
+/// A whole volume: sources stay in memory, one Warper computes all steps, and its outputs are
+/// reused, so that it can skip what did not change. A step is written while the next one is
+/// computed; on a device the next one is begun before the copy of this one to the host.
+/// Several blocks: for each one a window of the sources is read and a Warper made. A block is
+/// written and the window of the one after is read while the next one is computed; steps do not
+/// overlap.
 class VolumeRun {
  public:
   VolumeRun(const WarpArguments& arguments,
             const JobPlan& plan,
             const VolumePlan& volume,
+            Ranks& ranks,
             ProgressBar& bar,
             JobResult& result);
 
   /// Reads, warps and writes; adds what was done to the result.
   void run();
 
- private:
-  using Write = std::function<WrittenFile(const StepReport&, const std::vector<const Volume*>&)>;
+  /// For --dry-run: adds a plan per step to the result.
+  void plan_only();
 
-  void read_sources();
-  void write_each_step();
-  void write_temporal();
-  std::vector<Point3> read_positions(std::int64_t step, StepReport& report) const;
-  bool equals_last_step(const std::vector<Point3>& positions) const;
-  void compute(std::vector<Point3> positions, StepReport report, Write write);
-  void finish_computing();
-  void start_warper();
+ private:
+  /// Samples of all arrays over one region.
+  using Samples = std::vector<std::unique_ptr<std::byte[]>>;
+
+  /// Windows of the sources and the seconds that reading them took.
+  struct Windows {
+    Samples samples;
+    double seconds = 0;
+  };
+
+  /// A step of the mesh on its way to its file.
+  struct Step {
+    std::vector<Point3> positions;
+    BlockPlan plan;
+    StepReport report;
+    double time = 0;            ///< of the step in a temporal file
+    std::string output;         ///< file of the step's own; empty in a temporal file
+    Fingerprint fingerprint{};  ///< of `output`
+    bool is_repeat = false;     ///< equals the step before: a temporal file stores no samples
+
+    // Of the thread for files, until the step is written.
+    Counts written{};
+    double write_seconds = 0;
+  };
+
+  /// A block of a step on its way to the file.
+  struct Part {
+    std::shared_ptr<Step> step;
+    Region region;                     ///< in the output grid
+    std::shared_ptr<Samples> outputs;  ///< null: the file stores none
+    bool is_first = true;              ///< of its step
+    bool is_last = true;
+  };
+
+  // volume_run.cpp: sources, steps and files.
+  Fingerprint read_sources();
+  Fingerprint scan_sources();
+  void run_each_step(const Fingerprint& inputs);
+  void run_temporal(Fingerprint fingerprint);
+  std::shared_ptr<Step> read_step(std::int64_t number);
+  bool may_keep(const std::string& output, const Fingerprint& fingerprint);
+  void begin_file(const std::string& output, const Fingerprint& fingerprint, bool is_temporal);
   void finish_step(const StepReport& report);
+  double fixed_bytes() const;
+  BlockLimits limits() const;
+  BlockPlan plan_step(const std::vector<Point3>& positions);
+
+  // volume_run_step.cpp: the blocks of a step are read and computed.
+  void run_step(const std::shared_ptr<Step>& step);
+  bool equals_last_step(const Step& step) const;
+  void repeat_step(const std::shared_ptr<Step>& step);
+  void run_blocks(const std::shared_ptr<Step>& step);
+  std::future<Windows> begin_reading(const Step& step, std::size_t block);
+  void compute(Part part, const WarpBlock& block, const Samples& windows);
+  void make_warper(const WarpBlock& block, const Samples& windows);
+  std::shared_ptr<Samples> outputs_for(const Region& region);
+  Progress progress_of(const Part& part) const;
+  Samples read_windows(const Region& window) const;
+  Samples make_outputs(const Region& region) const;
+
+  // volume_run_queue.cpp: blocks are finished, written or sent to the root.
+  void finish_computing();
   void start_writing();
   void finish_writing();
-  void write_the_rest();
-  Fingerprint fingerprint_of_inputs() const;
+  void finish_all();
+  void write(const Part& part);
+  void send(const Part& part);
+  std::shared_ptr<Samples> receive(const Region& region, int from) const;
+  void add_reports_of_others(StepReport& report) const;
 
   const WarpArguments& arguments_;
   const JobPlan& plan_;
   const VolumePlan& volume_;
+  Ranks& ranks_;
   ProgressBar& bar_;
   JobResult& result_;
-  std::vector<Volume> sources_;
-  std::vector<Point3> last_positions_;  ///< those of the last step that was begun
-  StepReport last_report_;              ///< of the last step that was computed
+  WarpOptions options_;
+  Region region_;                      ///< of the output grid: all that is computed
+  bool is_whole_;                      ///< one block, whose sources, Warper and outputs are kept
+  bool writes_beside_;                 ///< a block is written while the next is computed
+  bool overlaps_;                      ///< a step is begun before the one before is finished
+  std::vector<ArrayHeader> outputs_;   ///< warped arrays, then the extra ones
+  double fixed_bytes_ = 0;             ///< memory besides that of the blocks
+  std::vector<Volume> sources_;        ///< of a whole volume
+  std::vector<VolumeReader> readers_;  ///< of the sources of blocks
+  std::vector<std::vector<double>> ranges_;  ///< of these, for --overshoot clamp
+  std::optional<BlockPlanner> planner_;
+  std::optional<BlockVolumeWriter> writer_;  ///< of the root; used by the thread for files
 
-  /// What a step writes to.
-  struct Outputs {
-    std::vector<Volume> warped;   ///< as sources_, on the written grid
-    std::vector<Volume> extra;    ///< in the order of the table
-    std::vector<PageLock> locks;  ///< on a device, of all these
+  std::shared_ptr<Samples> kept_[2];    ///< outputs of a whole volume, used in turns
+  std::size_t now_ = 0;                 ///< those of the last step that was begun
+  std::vector<PageLock> locks_;         ///< of kept_, where a device copies to them
+  std::shared_ptr<Samples> sent_;       ///< on their way to the root
+  std::optional<BlockMesh> part_mesh_;  ///< nodes and cells of the block that is computed
 
-    std::vector<const Volume*> volumes() const;
-  };
-  /// A step, how it gets to its file, and from where.
-  struct Step {
-    StepReport report;  ///< of a step in flight: about what was read
-    Write write;
-    std::vector<const Volume*> volumes;
-  };
-  struct Written {
-    WrittenFile file;
-    double seconds;
-  };
-  void make_outputs(Outputs& outputs) const;
-
-  Outputs outputs_[2];
-  std::size_t now_ = 0;           ///< the outputs of the last step that was begun
-  std::optional<Warper> warper_;  ///< made for the first step; its end waits for steps in flight
-  std::optional<TemporalVolumeWriter> temporal_;
-  std::optional<Step> begun_;     ///< and not computed yet
-  std::optional<Step> computed_;  ///< and not written yet
-  StepReport writing_report_;
-  std::future<Written> writing_;  ///< last: its end waits for the write, which uses all above
+  std::shared_ptr<Step> last_;    ///< the last step that was begun
+  std::optional<Part> begun_;     ///< not computed yet
+  std::optional<Part> computed_;  ///< not being written yet
+  Part writing_part_;
+  std::future<void> writing_;
+  std::optional<Warper> warper_;  ///< destroyed before the outputs: waits for steps in flight
+  IoThread files_;  ///< destroyed first: waits for its task, which uses the other members
 };
 
 }  // namespace tetwarp::cli

@@ -20,14 +20,14 @@ const Choices<Quantity> tensor_laws{
     {name_of(Quantity::tensor), Quantity::tensor},
     {name_of(Quantity::principal_tensor), Quantity::principal_tensor}};
 
-/// Words of --outputs with their place in the table.
+/// Words of --outputs with their indices in the table.
 Choices<std::size_t> extra_choices() {
   Choices<std::size_t> choices;
   for (const ExtraOutput& extra : extra_outputs) choices.emplace_back(extra.word, choices.size());
   return choices;
 }
 
-/// Bytes of "512M", "4G", "1.5T", in units of 1024; of plain digits bytes.
+/// Bytes from "512M", "4G" or "1.5T" in powers of 1024, or from plain digits.
 double parse_bytes(const std::string& text) {
   const std::string units = "KMGT";
   std::size_t used = 0;
@@ -91,9 +91,9 @@ void add_quantities(CLI::App& app,
          [&quantities, option, laws](const std::vector<std::string>& texts) {
            for (const std::string& text : texts) {
              const std::size_t split = std::min(text.rfind('='), text.size());
-             const bool is_told = split < text.size();
+             const bool is_given = split < text.size();
              quantities[text.substr(0, split)] =
-                 is_told ? meaning_of(option, text.substr(split + 1), laws) : laws.front().second;
+                 is_given ? meaning_of(option, text.substr(split + 1), laws) : laws.front().second;
            }
          },
          description)
@@ -235,7 +235,7 @@ WarpArguments parse_warp_arguments(std::vector<std::string> words) {
   WarpArguments arguments;
   CLI::App app;
   declare_warp_options(app, arguments);
-  std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+  std::reverse(words.begin(), words.end());  // CLI11 expects the last word first
   app.parse(std::move(words));
   check_complete(arguments);
   return arguments;

@@ -1,5 +1,5 @@
 /// @file warp_arguments.hpp
-/// Everything a user can say to `tetwarp warp`: one declaration for command line and batch files.
+/// The arguments of `tetwarp warp`, declared once for command line and batch files.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace tetwarp::cli {
 
-/// Syntax is checked, files are not looked at.
+/// Their syntax is checked; files are not read.
 struct WarpArguments {
   std::vector<std::string> files;   ///< volumes, then the mesh
   std::string output;               ///< file, or folder for several volumes
@@ -30,7 +30,7 @@ struct WarpArguments {
   int compress = 0;
   bool temporal = false;
   bool resume = false;
-  double memory = 0;     ///< bytes that the process may take; 0: what there is
+  double memory = 0;     ///< limit of the process [byte]; 0: the available memory
   bool dry_run = false;  ///< plan only
   bool quiet = false;
   std::string report;
@@ -47,11 +47,11 @@ struct WarpArguments {
 /// Declares every option and binds it to `arguments`, which must outlive `app`.
 void declare_warp_options(CLI::App& app, WarpArguments& arguments);
 
-/// Throws CLI::ValidationError when volumes, mesh or output are missing, or when they stand beside
-/// --batch, or when options do not go together.
+/// Throws CLI::ValidationError when volumes, mesh or output are missing, are given with --batch, or
+/// when options contradict each other.
 void check_complete(const WarpArguments& arguments);
 
-/// Parses words as if they stood on the command line. Throws CLI::ParseError.
+/// Parses words as those of a command line. Throws CLI::ParseError.
 WarpArguments parse_warp_arguments(std::vector<std::string> words);
 
 }  // namespace tetwarp::cli

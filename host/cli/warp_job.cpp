@@ -19,7 +19,7 @@ namespace tetwarp::cli {
 
 namespace {
 
-/// Steps that the root shows, which are its own when whole outputs are shared out.
+/// Steps that the progress bar of the root counts: its own where ranks share out whole outputs.
 std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
   const std::size_t outputs = plan.outputs().size();
   const auto count = static_cast<std::size_t>(ranks.count());
@@ -40,11 +40,12 @@ std::string plan_text(const StepPlan& plan) {
 }  // namespace
 
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {
-  const PoliteInterrupts polite;
+  const InterruptFlag interrupts_set_a_flag;
   const Stopwatch watch;
   Ranks alone;
   Ranks& ranks = context.ranks == nullptr ? alone : *context.ranks;
-  if (!ranks.is_root()) ranks.meet();  // what is wrong with the job is told once
+  // The root plans first: an error in the plan ends all ranks before the others print it, too.
+  if (!ranks.is_root()) ranks.wait_for_all();
   const JobPlan plan = plan_job(arguments);
   JobResult result;
   result.outputs = plan.outputs();
@@ -55,7 +56,7 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
     if (!plan.output_folder.empty() && !arguments.dry_run) {
       std::filesystem::create_directory(plan.output_folder);
     }
-    ranks.meet();
+    ranks.wait_for_all();
   }
   {
     ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,

@@ -13,46 +13,46 @@
 
 namespace tetwarp::cli {
 
-/// Where a job runs in.
+/// Where a job runs.
 struct JobContext {
   std::string label = "warp";  ///< names the job in the progress bar
   bool shows_progress = true;
-  Ranks* ranks = nullptr;  ///< that share the job; null: one process does it
+  Ranks* ranks = nullptr;  ///< processes that share the job; null: one process
 };
 
-/// How one step would be done.
+/// The plan of one step, for --dry-run.
 struct StepPlan {
   std::string volume;
   std::int64_t step = 0;
   std::array<std::int64_t, 3> dims{};  ///< of the output
-  double memory = 0;                   ///< bytes at a time
-  std::int64_t blocks = 0;             ///< 0: all at once
+  double memory = 0;                   ///< peak [byte]
+  std::int64_t blocks = 0;             ///< 0: the whole output at once
   std::int64_t largest_block = 0;      ///< [voxel]
   std::int64_t largest_window = 0;     ///< of the source [voxel]
-  double bytes_read = 0;               ///< of the source
+  double bytes_read = 0;               ///< of the source [byte]
 };
 
 /// What a job did.
 struct JobResult {
   Report report;
   std::vector<std::string> outputs;  ///< of all steps and volumes, also those skipped
-  std::vector<StepPlan> plans;       ///< with --dry-run, which does no more
+  std::vector<StepPlan> plans;       ///< filled by --dry-run, which does nothing else
   std::int64_t written = 0;          ///< outputs written
   std::int64_t skipped = 0;          ///< outputs that --resume found complete and up to date
 };
 
-/// Plans the job, then reads, warps and writes step by step, reusing every buffer; writes the
-/// report last. Nothing is written unless the whole plan is sound. Throws std::invalid_argument,
-/// IoError, CudaError, Cancelled.
+/// Plans the job, then reads, warps and writes step by step; writes the report last. Nothing is
+/// written before all checks of the plan have passed. Throws std::invalid_argument, IoError,
+/// CudaError, Cancelled.
 ///
-/// Of several ranks each takes outputs of its own; of a volume with a single output, blocks of it,
-/// which the root writes. The result is complete at the root only.
+/// Several ranks share out the outputs; a single output they share out in blocks, which the root
+/// writes. The result is complete at the root only.
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context);
 
-/// The report with what only the command knows: "status", "outputs", "outputs_skipped".
+/// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped".
 std::string report_json(const JobResult& result);
 
-/// Two lines for people: the back end and why; what was done, how long it took and where it is.
+/// Two lines to print: the back end and why; outputs, covered voxels, seconds and file names.
 std::string summary(const JobResult& result);
 
 }  // namespace tetwarp::cli

@@ -1,6 +1,7 @@
 /// @file transform_checks.cpp
 #include "host/warp/transform_checks.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,25 @@
 namespace tetwarp {
 
 namespace {
+
+void check_filter(const VolumeView& source, Filter filter) {
+  const std::string type = std::string("source: ") + name_of(source.type);
+  if (filter == Filter::labels) {
+    if (!is_integer(source.type)) {
+      throw std::invalid_argument(type + " holds no labels; use another filter or integers");
+    }
+    if (source.components != 1) {
+      throw std::invalid_argument("source: " + std::to_string(source.components) +
+                                  " components, labels have one; use the nearest filter");
+    }
+    return;
+  }
+  const bool is_64_bit = is_integer(source.type) && size_of(source.type) == 8;
+  if (is_64_bit && filter != Filter::nearest) {
+    throw std::invalid_argument(type +
+                                " cannot be interpolated without loss; use the nearest filter");
+  }
+}
 
 /// Components that a quantity has; 0: any number.
 int components_of(Quantity quantity) {
@@ -51,6 +71,24 @@ void check_conservative(const WarpOptions& options) {
 
 }  // namespace
 
+void check_source_transform(const VolumeView& source,
+                            Quantity quantity,
+                            const WarpOptions& options) {
+  check_filter(source, options.filter);
+  if (is_integer(source.type) && !std::isfinite(options.background)) {
+    throw std::invalid_argument(std::string("background: not a finite number, which ") +
+                                name_of(source.type) + " cannot hold");
+  }
+  check_quantity(source, quantity);
+  const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
+  const bool is_64_bit = is_integer(source.type) && size_of(source.type) == 8;
+  if (computes && (is_64_bit || options.filter == Filter::labels)) {
+    throw std::invalid_argument(
+        std::string("source: ") + (is_64_bit ? name_of(source.type) : "labels") +
+        " cannot be scaled or turned; leave out intensity and quantities, or use another type");
+  }
+}
+
 void check_transforms(std::span<const VolumeView> sources, const WarpOptions& options) {
   const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
   if (options.antialias && !blends) {
@@ -66,14 +104,7 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];
-    check_quantity(sources[s], quantity);
-    const bool computes = options.intensity != Intensity::value || quantity != Quantity::components;
-    const bool is_64_bit = is_integer(sources[s].type) && size_of(sources[s].type) == 8;
-    if (computes && (is_64_bit || options.filter == Filter::labels)) {
-      throw std::invalid_argument(
-          std::string("source: ") + (is_64_bit ? name_of(sources[s].type) : "labels") +
-          " cannot be scaled or turned; leave out intensity and quantities, or use another type");
-    }
+    check_source_transform(sources[s], quantity, options);
   }
 }
 

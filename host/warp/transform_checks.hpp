@@ -1,5 +1,5 @@
 /// @file transform_checks.hpp
-/// Checks of the options that change samples: antialias, intensity and quantities.
+/// Whether options fit the types of the sources and each other. Samples are not read.
 #pragma once
 #include <span>
 
@@ -7,9 +7,14 @@
 
 namespace tetwarp {
 
-/// @throws std::invalid_argument when these options do not fit the sources or each other, naming
-/// the
-///                               option and an alternative
+/// Checks the options for one source, whose data may be null.
+/// @throws std::invalid_argument that names the option and a remedy
+void check_source_transform(const VolumeView& source,
+                            Quantity quantity,
+                            const WarpOptions& options);
+
+/// Checks the options for all sources and with each other.
+/// @throws std::invalid_argument as above
 void check_transforms(std::span<const VolumeView> sources, const WarpOptions& options);
 
 }  // namespace tetwarp

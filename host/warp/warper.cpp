@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/base/region_grid.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/warp/hex_split.hpp"
 #include "host/warp/step_queue.hpp"
@@ -19,25 +20,6 @@
 namespace tetwarp {
 
 namespace {
-
-void check_filter(const VolumeView& source, Filter filter) {
-  const std::string type = std::string("source: ") + name_of(source.type);
-  if (filter == Filter::labels) {
-    if (!is_integer(source.type)) {
-      throw std::invalid_argument(type + " holds no labels; use another filter or integers");
-    }
-    if (source.components != 1) {
-      throw std::invalid_argument("source: " + std::to_string(source.components) +
-                                  " components, labels have one; use the nearest filter");
-    }
-    return;
-  }
-  const bool is_64_bit = is_integer(source.type) && size_of(source.type) == 8;
-  if (is_64_bit && filter != Filter::nearest) {
-    throw std::invalid_argument(type +
-                                " cannot be interpolated without loss; use the nearest filter");
-  }
-}
 
 void check_ranges(const std::vector<VolumeView>& sources,
                   const std::vector<std::vector<double>>& ranges) {
@@ -85,39 +67,8 @@ void check_sources(const std::vector<VolumeView>& sources, const WarpOptions& op
                                   " components, expected 1 to 9");
     }
     if (source.data == nullptr) throw std::invalid_argument("source: no samples");
-    check_filter(source, options.filter);
-    if (is_integer(source.type) && !std::isfinite(options.background)) {
-      throw std::invalid_argument(std::string("background: not a finite number, which ") +
-                                  name_of(source.type) + " cannot hold");
-    }
   }
   check_window(sources, options);
-}
-
-Region checked_region(const Grid& grid, const WarpOptions& options) {
-  if (!options.region) return {{0, 0, 0}, grid.dims};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::int64_t begin = options.region->begin[axis], end = options.region->end[axis];
-    if (begin < 0 || begin >= end || end > grid.dims[axis]) {
-      throw std::invalid_argument(
-          "region: " + std::to_string(begin) + " to " + std::to_string(end) + " on axis " +
-          std::to_string(axis) + " is empty or not within 0 to " + std::to_string(grid.dims[axis]));
-    }
-  }
-  return *options.region;
-}
-
-Grid grid_of_region(const Grid& grid, const Region& region) {
-  Grid part = grid;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    part.dims[axis] = region.end[axis] - region.begin[axis];
-  }
-  if (region.begin != std::array<std::int64_t, 3>{0, 0, 0}) {
-    part.origin =
-        grid.world_of({static_cast<double>(region.begin[0]), static_cast<double>(region.begin[1]),
-                       static_cast<double>(region.begin[2])});
-  }
-  return part;
 }
 
 WarpPlan make_plan(std::span<const VolumeView> sources,
@@ -136,7 +87,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
       options.source_window ? options.source_window->region : Region{{0, 0, 0}, source_grid.dims};
   plan.output_grid = options.output_grid.value_or(source_grid);
   check_grid(plan.output_grid, "output grid");
-  plan.region = checked_region(plan.output_grid, options);
+  plan.region = checked_region(plan.output_grid, options.region);
   plan.target_grid = grid_of_region(plan.output_grid, plan.region);
   return plan;
 }

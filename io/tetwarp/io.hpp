@@ -1,15 +1,18 @@
 /// @file io.hpp
-/// Files: VTKHDF volumes and meshes (ParaView, VTK, PyVista), NIfTI volumes, PNG pictures, FCLIB
-/// contact problems.
+/// Files: VTKHDF volumes and meshes, NIfTI volumes, PNG pictures, FCLIB contact problems.
 ///
-/// Every failure is an IoError whose one line names file, dataset and remedy. Sizes are checked
-/// against the file and the machine's memory before anything is allocated. Writers write to a
-/// temporary name in the same folder and rename when complete: no half file stands under its name.
+/// Every function here throws IoError on failure; its one line names file, dataset and remedy.
+/// Sizes are checked against the file and the available memory before anything is allocated.
+/// Writers write to a temporary name in the same folder and rename the file when it is complete.
+/// Positions are in the length unit of the file.
+///
+/// HDF5 may be built without support for threads: call one function at a time.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,7 @@
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/names.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
@@ -33,22 +37,22 @@ struct ArrayHeader {
 
 /// What a volume file holds.
 struct VolumeHeader {
-  Grid grid;                        ///< WholeExtent's start is folded into the origin
-  std::vector<ArrayHeader> arrays;  ///< numeric point arrays, in the file's name order
-  std::vector<double> times;        ///< one per step; empty: static
+  Grid grid;                        ///< dims from 0; the start of WholeExtent moves the origin
+  std::vector<ArrayHeader> arrays;  ///< numeric point arrays, sorted by name
+  std::vector<double> times;        ///< one per step; empty: a static file
 };
 
 /// Reads the header of a VTKHDF ImageData file.
 TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path);
 
-/// Reads one array of a VTKHDF ImageData file.
-/// @param array  empty: the only or first array
-/// @param step   of a temporal file; static files have step 0 only
+/// Reads an array of a VTKHDF ImageData file.
+/// @param array  its name; empty: the first array by name
+/// @param step   from 0, of a temporal file; a static file has step 0 only
 TETWARP_IO_EXPORT Volume read_volume(const std::string& path,
                                      const std::string& array = {},
                                      std::int64_t step = 0);
 
-/// One array of a VTKHDF ImageData file, read region by region.
+/// One array of a VTKHDF ImageData file, read region by region, for volumes larger than memory.
 class TETWARP_IO_EXPORT VolumeReader {
  public:
   /// Arguments as of read_volume().
@@ -61,11 +65,12 @@ class TETWARP_IO_EXPORT VolumeReader {
   const Grid& grid() const;
   const ArrayHeader& array() const;
 
-  /// Bytes that HDF5 holds of the array while it reads: its largest chunk, unpacked and packed.
+  /// Memory that HDF5 uses while it reads: a chunk of the array before and after decompression
+  /// [byte].
   double chunk_bytes() const;
 
   /// Reads a region of the grid.
-  /// @param samples  out, [k][j][i][component]
+  /// @param samples  out, [k][j][i][component] of the region, in the type of array()
   void read(const Region& region, void* samples) const;
 
  private:
@@ -79,19 +84,20 @@ struct MeshHeader {
   std::int64_t tet_count = 0;
   std::int64_t hex_count = 0;
   std::vector<double> times;      ///< one per step; a static file has one step at time 0
-  bool has_displacement = false;  ///< deformed = rest + displacement, else points that move
+  bool has_displacement = false;  ///< deformed = rest + displacement; false: the points move
 };
 
 /// Choices of MeshReader.
 struct MeshReadOptions {
-  std::int64_t rest_step = 0;  ///< for points that move: the step that is rest
-  std::optional<std::string> rest_file =
-      {};  ///< rest positions from another mesh file with as many nodes
+  std::int64_t rest_step = 0;  ///< where points move: the step whose points are the rest positions
+  /// Another mesh file with as many nodes, whose points are the rest positions.
+  std::optional<std::string> rest_file = {};
 };
 
-/// A VTKHDF UnstructuredGrid of tetrahedra with its deformation, in this order of preference:
-/// point array `displacement` added to the rest points; points that move with the steps; the points
-/// of `rest_file` as rest and this file's points as deformed. Partitions are concatenated.
+/// A VTKHDF UnstructuredGrid of tetrahedra and hexahedra with its deformation. Deformed positions
+/// are the points plus the point array `displacement`, or, without that array, the points of the
+/// step. Rest positions are the points of `rest_step` or those of `rest_file`. Partitions are
+/// concatenated.
 class TETWARP_IO_EXPORT MeshReader {
  public:
   explicit MeshReader(const std::string& path, const MeshReadOptions& options = {});
@@ -99,9 +105,9 @@ class TETWARP_IO_EXPORT MeshReader {
   ~MeshReader();
 
   const MeshHeader& header() const;
-  const Mesh& mesh() const;  ///< rest positions and checked tetrahedra
+  const Mesh& mesh() const;  ///< rest positions and checked cells
 
-  /// Deformed node positions of one step. Throws IoError for a step that does not exist.
+  /// Deformed positions of one step, one per node [world].
   std::vector<Point3> read_step(std::int64_t step) const;
 
  private:
@@ -112,20 +118,20 @@ class TETWARP_IO_EXPORT MeshReader {
 /// How a volume file is stored.
 struct VolumeWriteOptions {
   int compress = 0;                    ///< deflate level 0 to 9 with shuffle; 0: none
-  double background = 0;               ///< fill value: chunks that hold nothing else are not stored
-  bool skip_background_chunks = true;  ///< false: every chunk is stored
+  double background = 0;               ///< fill value, which chunks that are not stored read as
+  bool skip_background_chunks = true;  ///< do not store chunks that hold only the background
   std::string fingerprint = {};  ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
 };
 
 /// A volume file that was written.
 struct WrittenFile {
-  std::int64_t bytes = 0;
+  std::int64_t bytes = 0;              ///< size of the file
   std::int64_t chunks = 0;             ///< of all arrays and steps
   std::int64_t chunks_background = 0;  ///< of these, not stored: they hold only the background
 };
 
-/// Writes one static VTKHDF ImageData file, Version [1,0], of volumes that share a grid.
-/// Throws IoError on an axis of one sample (VTK crashes on those) and on any write failure.
+/// Writes a static VTKHDF ImageData file, Version [1,0], of volumes that share a grid. An axis of
+/// one sample is an error: VTK crashes on such files.
 TETWARP_IO_EXPORT WrittenFile write_volumes(const std::string& path,
                                             const std::vector<const Volume*>& volumes,
                                             const VolumeWriteOptions& options = {});
@@ -137,12 +143,11 @@ class TETWARP_IO_EXPORT TemporalVolumeWriter {
   TemporalVolumeWriter(TemporalVolumeWriter&&) noexcept;
   ~TemporalVolumeWriter();  ///< without finish(): removes the temporary file
 
-  /// Appends a step. The same arrays in the same order each time.
+  /// Appends a step. All steps have the same arrays in the same order.
   void append(double time, const std::vector<const Volume*>& volumes);
 
-  /// Appends a step equal to the last one: its offset is repeated, its data are not stored twice.
+  /// Appends a step equal to the last one: its samples are not stored again.
   void repeat(double time);
-
   /// Flushes and moves the file to its name.
   WrittenFile finish();
 
@@ -151,24 +156,33 @@ class TETWARP_IO_EXPORT TemporalVolumeWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Shapes of the chunks in which an array is stored.
+enum class ChunkShape {
+  rows,   ///< for arrays that are written whole: as write_volumes() stores them
+  bricks  ///< for arrays that are written in blocks: nearly cubes, edges by block_step()
+};
+
 /// Writes a VTKHDF ImageData file whose arrays come in regions: a static one, or a temporal one
-/// step by step. Chunks are bricks, so that regions of any proportions end where chunks do.
+/// step by step.
 class TETWARP_IO_EXPORT BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
                     const Grid& grid,
                     const std::vector<ArrayHeader>& arrays,
                     const VolumeWriteOptions& options,
-                    bool is_temporal);
+                    bool is_temporal,
+                    ChunkShape chunks = ChunkShape::bricks);
   BlockVolumeWriter(BlockVolumeWriter&&) noexcept;
   ~BlockVolumeWriter();  ///< without finish(): removes the temporary file
 
-  /// Of temporal files: what is written next belongs to a new step, or: a step equal to the last.
+  /// In a temporal file: begins a step, to which all writes until the next call belong.
   void begin_step(double time);
+  /// In a temporal file: appends a step equal to the last one.
   void repeat_step(double time);
 
   /// Writes a region of an array.
-  /// @param region   begins and ends at multiples of block_step(), or at the grid's end
+  /// @param region   with ChunkShape::rows the whole grid; else begins and ends at multiples of
+  ///                 block_step(), or at the grid's end
   /// @param samples  [k][j][i][component] of the region
   void write(std::size_t array, const Region& region, const void* samples);
 
@@ -180,36 +194,40 @@ class TETWARP_IO_EXPORT BlockVolumeWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Edges of the bricks in which BlockVolumeWriter stores such arrays [voxel].
+/// Edges of the bricks in which BlockVolumeWriter stores arrays [voxel].
 TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
                                                          const std::vector<ArrayHeader>& arrays);
 
-/// Writes a mesh; `displacements` (one vector of displacements per step) may be empty.
+/// Writes a mesh as a VTKHDF UnstructuredGrid.
+/// @param displacements  deformed less rest position [world], per step, per node; may be empty
+/// @param times          one per step
 TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const Mesh& mesh,
                                   const std::vector<std::vector<Point3>>& displacements = {},
                                   const std::vector<double>& times = {});
 
-/// The fingerprint attribute of a complete file, nothing when there is no such file or attribute.
+/// The attribute `tetwarp_fingerprint` of a file; nothing when there is no such file or attribute.
 TETWARP_IO_EXPORT std::optional<std::string> read_fingerprint(const std::string& path);
 
-/// Reads a NIfTI file (.nii, .nii.gz); the affine (sform, else qform) becomes the grid. Positions
-/// keep NIfTI's RAS world. scl_slope and scl_inter other than 1 and 0 give float32 samples
-/// (float64 for float64). A shear in the sform that no grid can hold is an error.
-/// Axis `dim[4]` (time) must be 1; `dim[5]` becomes components.
+/// Reads a NIfTI file (.nii, .nii.gz). The affine map (sform, else qform) becomes the grid, in
+/// NIfTI's world: RAS, mm. With scl_slope and scl_inter other than 1 and 0 samples become float32
+/// (float64 stays). `dim[5]` gives the components; `dim[4]` (time) must be 1. A sform with a shear
+/// is an error: grids have no shear.
 TETWARP_IO_EXPORT Volume read_nifti(const std::string& path);
 
 /// Axes in which a NIfTI file holds samples that are vectors.
 enum class NiftiVectors {
-  world,  ///< those of the samples
-  lps     ///< x and y turned round: a displacement field as ITK and ANTs read it
+  world,  ///< the world axes of the volume
+  lps     ///< x and y negated: a displacement field as ITK and ANTs read it
 };
+template <>
+std::span<const EnumName<NiftiVectors>> names_of();
 
-/// Writes a NIfTI file; qform and sform both hold the grid (qform only when direction is a
-/// rotation). Samples of several components get the intent code VECTOR.
+/// Writes a NIfTI file. The sform holds the grid, and so does the qform when direction is a
+/// rotation. Samples of several components get the intent code VECTOR.
 ///
-/// NIfTI's world is RAS, that of ITK and ANTs LPS: they turn positions when they read a file, but
-/// not the samples of an image of vectors.
+/// NIfTI's world is RAS, that of ITK and ANTs is LPS: they convert positions when they read a file,
+/// but not the samples of an image of vectors.
 TETWARP_IO_EXPORT void write_nifti(const std::string& path,
                                    const Volume& volume,
                                    NiftiVectors vectors = NiftiVectors::world);
@@ -217,32 +235,34 @@ TETWARP_IO_EXPORT void write_nifti(const std::string& path,
 /// Writes an 8-bit RGB PNG.
 TETWARP_IO_EXPORT void write_png(const std::string& path, const Image& image);
 
-/// What an FCLIB file says around its problem.
+/// The parts of an FCLIB file besides its problem.
 struct ContactFileHeader {
   std::string title;
   std::string description;
-  std::int64_t guesses = 0;           ///< starting points, /guesses/1 and so on
-  bool has_solution = false;          ///< /solution/r is there; whose, and how good, is not said
-  std::optional<std::string> status;  ///< of a solution of ours, as name_of(ContactStatus)
-  std::optional<double> residual;     ///< eta of a solution of ours
+  std::int64_t guesses = 0;   ///< number of starting points: /guesses/1 and so on
+  bool has_solution = false;  ///< /solution/r exists, from any program, of any quality
+  std::optional<std::string>
+      status;                      ///< written by write_contact_solution(): name_of(ContactStatus)
+  std::optional<double> residual;  ///< eta, likewise
 };
 
-/// Reads what an FCLIB file says around its problem.
 TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);
 
-/// Where the iterations start.
+/// Impulses that the iterations start from.
 enum class ContactStart {
   zero,   ///< `impulse_guess` stays empty
   stored  ///< the impulses of /solution or, when there are none or all are zero, of /guesses/1
 };
+template <>
+std::span<const EnumName<ContactStart>> names_of();
 
-/// Reads a contact problem in FCLIB's HDF5 format, checked by check_problem(): /fclib_local (W, q,
-/// mu) or /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets, and,
-/// where they are there, /adhesion and /blocks. Numbers may be stored in any width, vectors in any
-/// shape.
+/// Reads a contact problem in FCLIB's HDF5 format and checks it by check_problem(): /fclib_local
+/// (W, q, mu) or /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets,
+/// and /adhesion and /blocks where the file has them. Numbers may be stored in any width, vectors
+/// in any shape. Units are those of ContactProblem.
 ///
-/// Three dimensions, no equality constraints (G, or V and R) and no rolling friction.
-/// In /adhesion a missing `intensity` is 0; other vectors that are missing stay empty.
+/// Not supported: two dimensions, equality constraints (G, or V and R), rolling friction.
+/// In /adhesion a missing `intensity` is 0; other missing vectors stay empty.
 TETWARP_IO_EXPORT ContactProblem read_contact_problem(const std::string& path,
                                                       ContactStart start = ContactStart::zero);
 
@@ -253,22 +273,32 @@ TETWARP_IO_EXPORT std::int64_t write_contact_problem(const std::string& path,
                                                      const std::string& title = {},
                                                      const std::string& description = {});
 
-/// Writes a complete FCLIB file: everything the problem's file holds, with this solution in place
-/// of its own and, when given, the adhesion of the next step.
+/// Writes a complete FCLIB file: a copy of the problem's file in which this solution replaces any
+/// other, with the adhesion of the next step when it is given.
 ///
 /// /solution/{r, u, v, residual_history} (no v in local form) has the attributes `converged` (1 or
 /// 0), `status`, `residual` (eta), `fclib_error` and `method`; /adhesion_next holds `intensity` and
-/// `gap`. Throws IoError when the solution is that of another problem.
+/// `gap`. A solution of another size than the problem is an error.
 /// @returns bytes of the file
 TETWARP_IO_EXPORT std::int64_t write_contact_solution(const std::string& path,
                                                       const std::string& problem_path,
                                                       const ContactSolution& solution,
                                                       const AdhesionStep* adhesion_next = nullptr);
 
-/// Kinds of files that info and the checks of swapped arguments tell apart.
-enum class FileKind { volume, mesh, other_vtkhdf, contact_problem, hdf5, nifti, unknown };
+/// Kinds of files; name_of() gives a noun for messages: "volume", "contact problem".
+enum class FileKind {
+  volume,           ///< VTKHDF ImageData
+  mesh,             ///< VTKHDF UnstructuredGrid
+  other_vtkhdf,     ///< VTKHDF of another Type
+  contact_problem,  ///< FCLIB
+  hdf5,             ///< any other HDF5 file, also a damaged one
+  nifti,            ///< NIfTI-1 in a single file, plain or gzip
+  unknown
+};
+template <>
+std::span<const EnumName<FileKind>> names_of();
 
-/// What a file is, by content. Throws IoError only when it cannot be opened.
+/// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);
 
 }  // namespace tetwarp

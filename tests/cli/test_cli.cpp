@@ -1,5 +1,5 @@
 /// @file test_cli.cpp
-/// The command: what each subcommand writes, prints and returns.
+/// The command: files, text and exit codes of each subcommand.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 /// @file test_cli_bad_input.cpp
-/// Bad arguments and bad files: one line that names the culprit, the right exit code, nothing
-/// written.
+/// Bad arguments and bad files: one line that names the argument or file, the exit code, and no
+/// output.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -79,7 +79,8 @@ TEST(BadInput, NamesTheFileThatCannotBeRead) {
            {{"render", "mesh.vtkhdf", "-o", "out.png"}, "is a mesh, expected a volume"},
            {warp_with({"--rest", "none.vtkhdf"}), "none.vtkhdf"},
            {warp_with({"--vectors", "flow"}), "--vectors names no array"},
-           {warp_with({"--tensors", "density=principal"}), "wants 6 components, the array has 1"},
+           {warp_with({"--tensors", "density=principal"}),
+            "density: quantities: a tensor has 6 components, the source 1"},
            {warp_with({"--grid", "none.vtkhdf"}), "none.vtkhdf"}}) {
     expect_refused(scene, refused, 1);
   }
@@ -157,17 +158,17 @@ TEST(BadInput, ListsWhatExistsWhenSomethingDoesNot) {
 
 TEST(BadInput, ChecksGridAndRegionBeforeAnyWork) {
   const Scene scene;
-  for (const Refused& refused :
-       std::vector<Refused>{{warp_with({"--roi", "0:13,0:10,0:8"}), "0:12"},
-                            {warp_with({"--roi=-1:3,0:10,0:8"}), "--roi -1:3 along i"},
-                            {warp_with({"--roi", "3:3,0:10,0:8"}), "--roi 3:3"},
-                            {warp_with({"--roi", "3:4,0:10,0:8"}), "single voxel along i"},
-                            {warp_with({"--dims", "0,4,4"}), "output grid"},
-                            {warp_with({"--dims", "100000,100000,100000"}), "TiB"},
-                            {warp_with({"--dims", "2000000000,2,2"}), "output grid"},
-                            {warp_with({"--spacing", "0,1,1"}), "spacing"},
-                            {warp_with({"--origin", "nan,0,0"}), "origin"},
-                            {warp_with({"--direction", "1,0,0,1,0,0,0,0,1"}), "direction"}}) {
+  for (const Refused& refused : std::vector<Refused>{
+           {warp_with({"--roi", "0:13,0:10,0:8"}), "not within 0 to 12"},
+           {warp_with({"--roi=-1:3,0:10,0:8"}), "--roi: region: -1 to 3 on axis 0"},
+           {warp_with({"--roi", "3:3,0:10,0:8"}), "3 to 3 on axis 0"},
+           {warp_with({"--roi", "3:4,0:10,0:8"}), "single voxel along i"},
+           {warp_with({"--dims", "0,4,4"}), "output grid"},
+           {warp_with({"--dims", "100000,100000,100000"}), "TiB"},
+           {warp_with({"--dims", "2000000000,2,2"}), "output grid"},
+           {warp_with({"--spacing", "0,1,1"}), "spacing"},
+           {warp_with({"--origin", "nan,0,0"}), "origin"},
+           {warp_with({"--direction", "1,0,0,1,0,0,0,0,1"}), "direction"}}) {
     expect_refused(scene, refused, 1);
   }
 }
@@ -178,20 +179,21 @@ TEST(BadInput, ChecksPixelTypesAgainstOptions) {
   write_volumes(scene / "wide.vtkhdf", {&wide});
   const Names warp_wide{"warp", "wide.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"};
 
-  expect_refused(scene, {warp_wide, "use --filter nearest"}, 1);
+  expect_refused(scene, {warp_wide, "use the nearest filter"}, 1);
 
   Names with_nan = warp_wide;
   with_nan.insert(with_nan.end(), {"--filter", "nearest", "--background", "nan"});
-  expect_refused(scene, {with_nan, "cannot hold --background nan"}, 1);
+  expect_refused(scene, {with_nan, "density: background: not a finite number"}, 1);
 }
 
 TEST(BadInput, RefusesLabelsThatAreNone) {
   const Scene scene;
-  expect_refused(scene, {warp_with({"--filter", "labels"}), "are no labels"}, 1);
+  expect_refused(
+      scene, {warp_with({"--filter", "labels"}), "density: source: float32 holds no labels"}, 1);
 
   Volume colors = make_volume(ramp_volume<float>().grid, PixelType::uint8, 3, "colors");
   write_volumes(scene / "volume.vtkhdf", {&colors});
-  expect_refused(scene, {warp_with({"--filter", "labels"}), "labels have one component"}, 1);
+  expect_refused(scene, {warp_with({"--filter", "labels"}), "components, labels have one"}, 1);
 }
 
 TEST(BadInput, RefusesAnExtraOutputWithTheNameOfAnArray) {

@@ -1,5 +1,5 @@
 /// @file test_cli_contact.cpp
-/// `tetwarp contact`: what it writes, says and returns.
+/// `tetwarp contact`: files, text and exit codes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 /// @file test_cli_contact_usage.cpp
-/// `tetwarp contact`: bad arguments and bad files give one line and leave nothing.
+/// `tetwarp contact`: bad arguments and bad files give one line and no output.
 #include <gtest/gtest.h>
 
 #include <string>

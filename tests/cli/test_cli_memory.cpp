@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 constexpr double mebibyte = 1 << 20;
 
-/// Writes nx x ny x nz samples of `components` components slab by slab: this process stays small.
+/// Writes nx x ny x nz samples of `components` components slab by slab, to use little memory.
 void write_large_volume(const std::string& path, const Grid& grid, PixelType type, int components) {
   const ArrayHeader header{"density", type, components};
   BlockVolumeWriter writer(path, grid, {header}, {}, false);
@@ -187,7 +187,7 @@ TEST(LargeVolume, FourTimesTheLimitKeepsToIt) {
   EXPECT_TRUE(holds_same(folder / "blocks.vtkhdf", folder / "whole.vtkhdf"));
 }
 
-/// A file of 2048^3 samples of which none was ever written: it takes no room.
+/// A file of 2048^3 samples that are all background: no chunk is stored.
 void write_header_only(const std::string& path, std::int64_t edge) {
   Grid grid = scenes::unit_grid(edge, edge, edge);
   BlockVolumeWriter(path, grid, {{"density", PixelType::float32, 1}}, {}, false).finish();

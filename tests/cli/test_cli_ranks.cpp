@@ -1,5 +1,5 @@
 /// @file test_cli_ranks.cpp
-/// `mpirun -n 3 tetwarp warp`: outputs and blocks shared out, errors told once.
+/// `mpirun -n 3 tetwarp warp`: outputs and blocks are shared out, errors printed once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,9 @@ class Ranks : public testing::Test {
     if (std::string(TETWARP_MPIRUN).empty()) GTEST_SKIP() << "this build knows no MPI";
   }
 
-  /// Open MPI 4.1's mpirun now and then waits for itself for ever, once all that it has started are
-  /// gone after one has failed (PMIx_server_finalize): it is killed and asked again. Ranks that
-  /// wait for each other do so every time, and fail the test.
+  /// mpirun of Open MPI 4.1 sometimes hangs in PMIx_server_finalize after a rank has failed and all
+  /// have ended. It is then killed and started again, up to three times. A deadlock of the ranks
+  /// would hang every time and fail the test.
   CommandResult run_three(Names words) const {
     words.insert(words.begin(), "warp");
     constexpr int was_killed = 137;

@@ -1,5 +1,5 @@
 /// @file test_cli_resume.cpp
-/// --resume, interruption and full disks: what stands under a final name is complete and right.
+/// --resume, interruption and full disks: a file under its final name is complete and correct.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/inotify.h>
@@ -115,14 +115,14 @@ TEST(Temporal, ResumesOnlyWhenEveryStepIsTheSame) {
   EXPECT_NE(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
 }
 
-/// A mesh with so many steps that the command is still at work when the test has seen it begin.
+/// A mesh with so many steps that the command still runs when the test has seen its first file.
 void write_long_mesh(const Scene& scene) {
   std::vector<double> voxels(20000);
   for (std::size_t s = 0; s < voxels.size(); ++s) voxels[s] = 1e-4 * static_cast<double>(s);
   write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts(voxels), voxels);
 }
 
-/// Sees the first file made in a folder after its construction.
+/// Watches a folder for the first file that is created after construction.
 class FolderWatch {
  public:
   explicit FolderWatch(const TemporaryFolder& folder) : notifier_(inotify_init()) {

@@ -1,5 +1,5 @@
 /// @file test_cli_rules.cpp
-/// What voxels get beyond plain samples, by the command.
+/// Intensity, vectors, tensors and averages by the command.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

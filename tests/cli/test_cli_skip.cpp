@@ -1,5 +1,5 @@
 /// @file test_cli_skip.cpp
-/// What the command leaves out, what it says about it, and that nothing else changes.
+/// Skipped work: its counts in the report, and outputs that do not depend on it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -2,9 +2,8 @@
 /// Usage: fuzz_io SECONDS SEED
 ///
 /// Damages good files, by bytes and by values, and reads them with every reader. Success or an
-/// IoError is fine; a crash, a hang, another exception or a large allocation is a failure. Files
-/// are read in forked children, so that a crash can be counted, and told apart when it is HDF5's
-/// own.
+/// IoError passes; a crash, a hang, another exception or a large allocation fails. Files are read
+/// in forked children, so that crashes can be counted; those inside HDF5 are counted apart.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <sys/mman.h>
@@ -37,7 +36,7 @@ using Clock = std::chrono::steady_clock;
 constexpr unsigned seconds_per_file = 5;
 constexpr std::int64_t files_per_child = 64;
 
-/// How a child ends when it is not by the last file.
+/// Exit codes of a child that ends before its last file.
 enum ExitCode { crash_in_hdf5 = 40, crash, wrong_exception };
 
 /// Written by the children, read by the parent.
@@ -47,7 +46,7 @@ struct Counts {
   std::int64_t read = 0;
 };
 
-/// Ends the child: the first frame that is neither the C library's nor a sanitizer's is to blame.
+/// Ends the child. The crash is attributed to the first frame outside the C library and sanitizers.
 void on_crash(int) {
   std::array<void*, 64> frames{};
   const int count = backtrace(frames.data(), static_cast<int>(frames.size()));
@@ -132,7 +131,7 @@ bool reads(const Body& body) {
   }
 }
 
-/// Every reader on one file; true when the reader of its kind took it.
+/// Runs every reader on one file. @returns true when the reader of its kind succeeded
 bool read_all(const std::string& path) {
   reads([&] { kind_of(path); });
   reads([&] { read_fingerprint(path); });

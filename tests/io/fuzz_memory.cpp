@@ -1,5 +1,5 @@
 /// @file fuzz_memory.cpp
-/// An end to allocations out of all proportion: sizes that files ask for all pass through here.
+/// Replaces the allocation functions: ends the program on requests far larger than its files.
 #include "tests/io/fuzz_memory.hpp"
 
 #include <unistd.h>

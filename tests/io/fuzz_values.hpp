@@ -1,5 +1,5 @@
 /// @file fuzz_values.hpp
-/// Damages what an HDF5 file says without damaging how it says it.
+/// Changes values, shapes and types inside an HDF5 file that stays valid HDF5.
 #pragma once
 #include <hdf5.h>
 
@@ -24,7 +24,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A number that a reader may trip over.
+/// A number that is likely to break a reader: negative, huge, not finite.
 inline double odd_number(Random& random) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr std::array numbers = {0.0,

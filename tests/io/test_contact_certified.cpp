@@ -54,8 +54,7 @@ double velocity_error(const ContactProblem& problem,
   return energy_norm(problem.system, minus(velocity, certified)) / size;
 }
 
-// ---- files
-// -----------------------------------------------------------------------------------------
+// ---- files ----
 
 struct Variant {
   const char* name;
@@ -129,8 +128,7 @@ TEST(Certified, EveryFileIsSolvedToItsVelocities) {
   }
 }
 
-// ---- elastic blocks
-// -----------------------------------------------------------------------------------
+// ---- elastic blocks ----
 
 ContactOptions plain_sweeps() {
   return {.method = ContactMethod::gauss_seidel, .tolerance = 1e-10, .max_sweeps = 5000};

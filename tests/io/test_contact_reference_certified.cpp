@@ -95,7 +95,7 @@ TEST_F(ReferenceCertified, SolutionsHaveNoResidual) {
 }
 
 TEST_F(ReferenceCertified, SmallProblemsAreSolvedToTheCertifiedVelocity) {
-  // Sweeps over larger stacks and packings take too long to be the judge of anything.
+  // The reference takes too long on larger stacks and packings.
   constexpr std::int64_t max_contacts = 32;
   int compared = 0;
   for (const Certificate& certificate : all_) {

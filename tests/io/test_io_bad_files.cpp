@@ -1,5 +1,5 @@
 /// @file test_io_bad_files.cpp
-/// Damaged, foreign and impossible files: each gives one line that names the trouble.
+/// Damaged and invalid files, and files of other formats: each gives one line that names the error.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 

@@ -1,5 +1,5 @@
 /// @file test_io_checkpoint.cpp
-/// Simulations that stop, are written and read, and go on as if nothing had happened.
+/// A simulation restored from a checkpoint gives the same bits as one that did not stop.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ ContactCheckpoint checkpoint_of(const RigidWorld& world) {
   return checkpoint;
 }
 
-/// A world whose memory comes from the checkpoint alone.
+/// A simulation whose state comes from the checkpoint only.
 RigidWorld restored(const ContactCheckpoint& checkpoint) {
   RigidWorld world = thrown_boxes();
   for (std::size_t b = 0; b < world.boxes.size(); ++b) {

@@ -1,5 +1,5 @@
 /// @file test_io_fclib_bad.cpp
-/// Damaged, foreign and impossible contact files: one line that names file and dataset.
+/// Damaged and invalid contact files: each gives one line that names file and dataset.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -18,7 +18,7 @@ using Edit = std::function<void(Hdf5Editor&)>;
 using Int = std::int32_t;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A change to a good file, and what reading it must tell.
+/// A change to a good file, and words that the error must hold.
 struct Damage {
   Edit edit;
   std::string dataset;
@@ -234,7 +234,7 @@ TEST_F(BadFclib, IsNamedWhenTheStartHasTheWrongLength) {
   EXPECT_TRUE(error.starts_with(file + ": /guesses/1/r: holds 3 numbers, expected 6")) << error;
 }
 
-/// A few bytes may claim any size; nothing of it is allocated.
+/// A small file may claim any size; reading it must not allocate that much.
 TEST_F(BadFclib, IsNamedWhenSizesAreAbsurd) {
   constexpr hsize_t huge = hsize_t{1} << 40;
   expect_errors(local_problem(),

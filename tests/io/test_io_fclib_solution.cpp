@@ -1,5 +1,5 @@
 /// @file test_io_fclib_solution.cpp
-/// What stands around the problem in an FCLIB file: texts, guesses, solutions.
+/// The parts of an FCLIB file besides the problem: texts, guesses, solutions.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -30,7 +30,7 @@ TEST_F(FclibSolution, TellsWhatStandsAroundTheProblem) {
   EXPECT_EQ(kind_of(file), FileKind::contact_problem);
 }
 
-/// What a solve of adhesive_problem() could have given.
+/// A solution for adhesive_problem() with made-up numbers.
 ContactSolution some_solution() {
   ContactSolution solution;
   solution.impulse = {1, 2, 3, 4, 5, 6};

@@ -27,7 +27,7 @@ hsize_t stored_bytes(const std::string& path, const char* name) {
   return bytes;
 }
 
-/// An image of 3 x 2 x 2 voxels in the words of another program.
+/// An image of 3 x 2 x 2 voxels as another program writes it.
 void write_foreign(const std::string& path, hid_t file_type) {
   std::vector<std::int32_t> values(12);
   std::iota(values.begin(), values.end(), 100);

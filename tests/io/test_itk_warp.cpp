@@ -1,5 +1,5 @@
 /// @file test_itk_warp.cpp
-/// Displacement fields as ITK reads them: its own filter, given ours, makes our warp.
+/// Displacement fields as ITK reads them: its filter gives the same warp.
 #include <gtest/gtest.h>
 #include <itkImage.h>
 #include <itkImageFileReader.h>

@@ -1,5 +1,5 @@
 /// @file test_mesh_import.cpp
-/// Meshes of other programs. Where a build lacks the library it says so, and tests skip.
+/// Meshes of other programs. In a build without the library the error is checked and tests skip.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -46,7 +46,7 @@ ALLOWED = {
         "host/reference/contact", *CONTACT],
     "io": ["io/tetwarp", "host/base", *BASE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],
-    "host/cli": ["io", "io/tetwarp", "host/base", *BASE],
+    "host/cli": ["io", "io/tetwarp", "host/base", "host/warp", *BASE],
 }
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
