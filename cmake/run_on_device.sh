@@ -1,8 +1,8 @@
 #!/bin/sh
 # All that a device has to say about this bundle, in one call: tests, memory and race checks, times.
 # Results go to FOLDER (default: results, beside this script). Ends with 1 when anything failed.
-# A peer program in Python, if one is given, is timed on the same device; bench/gpu_rows.py says
-# what it prints, and bench/table.py --gpu-peers FOLDER/gpu_peers.log puts it beside ours.
+# PEERS.py (bench/peers/gpu_samplers.py), if given, is timed on the same device; the option
+# --gpu-peers FOLDER/gpu_peers.log of `bench/report tables` puts its times beside ours.
 # usage: ./run_on_device.sh [FOLDER [PEERS.py]]
 here=$(cd "$(dirname "$0")" && pwd)
 results=${1:-$here/results}
