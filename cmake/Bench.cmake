@@ -69,3 +69,45 @@ if(TETWARP_IO)
 else()
   target_sources(tetwarp_bench PRIVATE bench/warp/chunks_rows_noio.cpp)
 endif()
+
+# tetwarp_bench_peers: other ways to warp, beside tetwarp. Floor and probe are written in AVX-512.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  find_package(nlohmann_json REQUIRED)
+  find_package(VTK 9 QUIET COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore
+    ImagingCore)
+  find_package(ITK 5 QUIET COMPONENTS ITKImageGrid)
+  set(TETWARP_PEER_VTK false)
+  set(TETWARP_PEER_ITK false)
+  add_executable(tetwarp_bench_peers
+    bench/measure/floors.cpp
+    bench/measure/program.cpp
+    bench/measure/row.cpp
+    bench/measure/timing.cpp
+    bench/peers/affine_floor.cpp
+    bench/peers/main.cpp
+    bench/peers/paper_method.cpp
+    bench/peers/peer.cpp
+    bench/peers/scanline_probe.cpp
+    bench/warp/truth.cpp
+    bench/warp/warp_job.cpp
+    bench/warp/workloads.cpp
+    tests/scenes/scenes.cpp)
+  if(VTK_FOUND)
+    set(TETWARP_PEER_VTK true)
+    target_sources(tetwarp_bench_peers PRIVATE bench/peers/vtk_locator.cpp)
+    target_link_libraries(tetwarp_bench_peers PRIVATE ${VTK_LIBRARIES})
+  endif()
+  if(ITK_FOUND)
+    set(TETWARP_PEER_ITK true)
+    target_sources(tetwarp_bench_peers PRIVATE bench/peers/itk_warp.cpp)
+    target_include_directories(tetwarp_bench_peers SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+    target_link_libraries(tetwarp_bench_peers PRIVATE ${ITK_LIBRARIES})
+  endif()
+  configure_file(bench/peers/found.hpp.in bench_info/bench/found.hpp @ONLY)
+  set_source_files_properties(bench/peers/affine_floor.cpp bench/peers/scanline_probe.cpp
+    PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mavx512vl;-mfma")
+  target_include_directories(tetwarp_bench_peers PRIVATE
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
+  target_link_libraries(tetwarp_bench_peers PRIVATE tetwarp tetwarp_hwy tetwarp_openmp
+    tetwarp_options benchmark::benchmark Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
+endif()
