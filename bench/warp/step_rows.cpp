@@ -4,7 +4,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -126,19 +125,10 @@ void count_accuracy(benchmark::State& state, const Accuracy& accuracy) {
   state.counters["doubles"] = static_cast<double>(accuracy.doubles);
 }
 
-/// The floor's map: that of the workload where it is one rotation, else a turn by five degrees.
 AffineJob floor_of(const StepCase& row, const Subject& subject, const Buffer& output) {
-  const bool turned = row.workload.deformation == Deformation::rotation;
-  const double angle = turned ? std::numbers::pi / 4 : std::numbers::pi / 36;
   const VolumeView& image = subject.job->source();
-  const Grid &source = image.grid, &target = subject.job->grid();
-  return {row.type,
-          row.filter,
-          source.dims,
-          target.dims,
-          image.data,
-          output.data(),
-          turned_about_middle(source, target, angle)};
+  return {row.type,   row.filter,    image.grid.dims,        subject.job->grid().dims,
+          image.data, output.data(), floor_map(row.workload)};
 }
 
 /// Compares with the counters of the stages, which are mean times on the device.

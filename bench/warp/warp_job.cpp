@@ -1,6 +1,7 @@
 /// @file warp_job.cpp
 #include "bench/warp/warp_job.hpp"
 
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -49,6 +50,13 @@ VolumeView Inputs::image(const Workload& workload, PixelType type, Image image, 
 Inputs& inputs() {
   static Inputs held;
   return held;
+}
+
+AffineRows floor_map(const Workload& workload) {
+  const bool is_rotation = workload.deformation == bench::Deformation::rotation;
+  const scenes::Scene& scene = inputs().scene(workload);
+  return turned_about_middle(scene.source_grid, scene.output_grid,
+                             std::numbers::pi / (is_rotation ? 4 : 36));
 }
 
 WarpJob::WarpJob(const scenes::Scene& scene,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "bench/measure/floors.hpp"
 #include "bench/warp/truth.hpp"
 #include "bench/warp/workloads.hpp"
 
@@ -30,6 +31,10 @@ class Inputs {
 
 /// The inputs of all rows of this program.
 Inputs& inputs();
+
+/// The sampling floor's map: that of the workload where it is one rotation, else a turn by five
+/// degrees.
+AffineRows floor_map(const Workload& workload);
 
 /// A Warper and the memory of its output.
 class WarpJob {
