@@ -1,8 +1,8 @@
-# tetwarp_bench: the measured rows, one program for all back ends.
+# Benchmarks: tetwarp_bench times warps on all back ends, tetwarp_bench_contact contact solvers.
 find_package(benchmark REQUIRED)
 find_package(fmt REQUIRED)
 
-# What results are worth nothing without: the commit and the flags that change code.
+# Written into every results file: the commit and the compiler flags that change code.
 execute_process(COMMAND git describe --always --dirty --abbrev=12 --exclude=*
   WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE TETWARP_COMMIT
   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
@@ -13,37 +13,32 @@ list(JOIN tetwarp_own_flags " " tetwarp_own_flags)
 string(TOUPPER "${CMAKE_BUILD_TYPE}" tetwarp_build_type)
 string(STRIP "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${tetwarp_build_type}} ${tetwarp_own_flags}"
   TETWARP_FLAGS)
-configure_file(bench/build_info.hpp.in bench_info/bench/build_info.hpp @ONLY)
+configure_file(bench/measure/build_info.hpp.in bench_info/bench/build_info.hpp @ONLY)
 
 add_executable(tetwarp_bench
-  bench/analytic.cpp
-  bench/bench_warp.cpp
-  bench/fields.cpp
-  bench/floors.cpp
-  bench/features.cpp
-  bench/labels.cpp
-  bench/measure.cpp
-  bench/overlap.cpp
-  bench/program.cpp
-  bench/region.cpp
-  bench/series.cpp
-  bench/timed_row.cpp
-  bench/timing.cpp
-  bench/truth.cpp
-  bench/warp_cases.cpp
-  bench/workloads.cpp
+  bench/measure/floors.cpp
+  bench/measure/program.cpp
+  bench/measure/row.cpp
+  bench/measure/timing.cpp
+  bench/warp/analytic_rows.cpp
+  bench/warp/features_rows.cpp
+  bench/warp/fields_rows.cpp
+  bench/warp/labels_rows.cpp
+  bench/warp/main.cpp
+  bench/warp/overlap_rows.cpp
+  bench/warp/region_rows.cpp
+  bench/warp/series_rows.cpp
+  bench/warp/step_cases.cpp
+  bench/warp/step_rows.cpp
+  bench/warp/truth.cpp
+  bench/warp/warp_job.cpp
+  bench/warp/workloads.cpp
   tests/scenes/scenes.cpp)
 if(TETWARP_HAS_CUDA)
-  target_sources(tetwarp_bench PRIVATE bench/device_floors.cu)
+  target_sources(tetwarp_bench PRIVATE bench/measure/device_floors.cu)
   target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
 else()
-  target_sources(tetwarp_bench PRIVATE bench/device_floors_nocuda.cpp)
-endif()
-if(TETWARP_IO)
-  target_sources(tetwarp_bench PRIVATE bench/chunks.cpp)
-  target_link_libraries(tetwarp_bench PRIVATE tetwarp_io)
-else()
-  target_sources(tetwarp_bench PRIVATE bench/chunks_noio.cpp)
+  target_sources(tetwarp_bench PRIVATE bench/measure/device_floors_nocuda.cpp)
 endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
@@ -51,16 +46,19 @@ target_link_libraries(tetwarp_bench PRIVATE
   tetwarp tetwarp_hwy tetwarp_openmp tetwarp_options
   benchmark::benchmark Eigen3::Eigen fmt::fmt)
 
-# tetwarp_bench_contact: the contact solver's; it reads recorded problems.
+# Rows that read or write files.
 if(TETWARP_IO)
+  target_sources(tetwarp_bench PRIVATE bench/warp/chunks_rows.cpp)
+  target_link_libraries(tetwarp_bench PRIVATE tetwarp_io)
+
   add_executable(tetwarp_bench_contact
-    bench/bench_contact.cpp
-    bench/contact_cases.cpp
-    bench/contact_judge.cpp
-    bench/contact_measure.cpp
-    bench/program.cpp
-    bench/timed_row.cpp
-    bench/timing.cpp
+    bench/contact/cases.cpp
+    bench/contact/main.cpp
+    bench/contact/rows.cpp
+    bench/contact/solution_check.cpp
+    bench/measure/program.cpp
+    bench/measure/row.cpp
+    bench/measure/timing.cpp
     tests/scenes/contact_scenes.cpp
     tests/scenes/contact_scenes_slab.cpp
     tests/scenes/scenes.cpp)
@@ -68,4 +66,48 @@ if(TETWARP_IO)
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
   target_link_libraries(tetwarp_bench_contact PRIVATE
     tetwarp_io tetwarp_options benchmark::benchmark fmt::fmt)
+else()
+  target_sources(tetwarp_bench PRIVATE bench/warp/chunks_rows_noio.cpp)
+endif()
+
+# tetwarp_bench_peers: other ways to warp, beside tetwarp. Floor and probe are written in AVX-512.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  find_package(nlohmann_json REQUIRED)
+  find_package(VTK 9 QUIET COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore
+    ImagingCore)
+  find_package(ITK 5 QUIET COMPONENTS ITKImageGrid)
+  set(TETWARP_PEER_VTK false)
+  set(TETWARP_PEER_ITK false)
+  add_executable(tetwarp_bench_peers
+    bench/measure/floors.cpp
+    bench/measure/program.cpp
+    bench/measure/row.cpp
+    bench/measure/timing.cpp
+    bench/peers/affine_floor.cpp
+    bench/peers/main.cpp
+    bench/peers/paper_method.cpp
+    bench/peers/peer.cpp
+    bench/peers/scanline_probe.cpp
+    bench/warp/truth.cpp
+    bench/warp/warp_job.cpp
+    bench/warp/workloads.cpp
+    tests/scenes/scenes.cpp)
+  if(VTK_FOUND)
+    set(TETWARP_PEER_VTK true)
+    target_sources(tetwarp_bench_peers PRIVATE bench/peers/vtk_locator.cpp)
+    target_link_libraries(tetwarp_bench_peers PRIVATE ${VTK_LIBRARIES})
+  endif()
+  if(ITK_FOUND)
+    set(TETWARP_PEER_ITK true)
+    target_sources(tetwarp_bench_peers PRIVATE bench/peers/itk_warp.cpp)
+    target_include_directories(tetwarp_bench_peers SYSTEM PRIVATE ${ITK_INCLUDE_DIRS})
+    target_link_libraries(tetwarp_bench_peers PRIVATE ${ITK_LIBRARIES})
+  endif()
+  configure_file(bench/peers/found.hpp.in bench_info/bench/found.hpp @ONLY)
+  set_source_files_properties(bench/peers/affine_floor.cpp bench/peers/scanline_probe.cpp
+    PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mavx512vl;-mfma")
+  target_include_directories(tetwarp_bench_peers PRIVATE
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
+  target_link_libraries(tetwarp_bench_peers PRIVATE tetwarp tetwarp_hwy tetwarp_openmp
+    tetwarp_options benchmark::benchmark Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
 endif()

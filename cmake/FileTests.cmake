@@ -21,10 +21,10 @@ if(NOT BUILD_SHARED_LIBS)
   include(cmake/ItkTests.cmake)
 endif()
 
-# What the contact benchmark rests on: the judge of results.
+# The check of results in the contact benchmark, and the names of its rows.
 tetwarp_add_tests(tetwarp_bench_contact_tests LIBRARIES tetwarp_io fmt::fmt SOURCES
-  bench/contact_cases.cpp
-  bench/contact_judge.cpp
+  bench/contact/cases.cpp
+  bench/contact/solution_check.cpp
   tests/bench/test_bench_contact.cpp)
 tetwarp_discover(tetwarp_bench_contact_tests unit)
 
@@ -41,11 +41,9 @@ if(TETWARP_PYTHON)
   add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
   set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
-  add_test(NAME bench_compare COMMAND ${TETWARP_PYTHON}
-    ${PROJECT_SOURCE_DIR}/bench/compare.py --self-test)
-  add_test(NAME bench_gpu_rows COMMAND ${TETWARP_PYTHON}
-    ${PROJECT_SOURCE_DIR}/bench/gpu_rows.py)
-  set_tests_properties(bench_compare bench_gpu_rows PROPERTIES
+  add_test(NAME bench_report COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/bench/report self-test)
+  set_tests_properties(bench_report PROPERTIES
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 

@@ -215,13 +215,13 @@ if(NOT BUILD_SHARED_LIBS)
       NO_PRETTY_VALUES PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
   endif()
 
-  # What benchmarks rest on: floors, the truth they check against, the judgement of times.
+  # The parts of the benchmarks that decide: floors, the truth for checks, which times count.
   find_package(fmt REQUIRED)
   tetwarp_add_tests(tetwarp_bench_tests LIBRARIES tetwarp_hwy fmt::fmt SOURCES
-    bench/floors.cpp
-    bench/timing.cpp
-    bench/truth.cpp
-    bench/workloads.cpp
+    bench/measure/floors.cpp
+    bench/measure/timing.cpp
+    bench/warp/truth.cpp
+    bench/warp/workloads.cpp
     tests/bench/test_bench.cpp)
   tetwarp_discover(tetwarp_bench_tests unit)
 endif()

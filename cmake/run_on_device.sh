@@ -1,8 +1,8 @@
 #!/bin/sh
 # Runs everything in this bundle that needs a CUDA device: tests, memory and race checks, timings.
 # Results go to FOLDER (default: results, beside this script). Ends with 1 when anything failed.
-# A peer program in Python, if given, is timed on the same device; its output goes to
-# FOLDER/gpu_peers.log, from which the benchmark report makes a column.
+# PEERS.py (bench/peers/gpu_samplers.py), if given, is timed on the same device; the option
+# --gpu-peers FOLDER/gpu_peers.log of `bench/report tables` puts its times beside ours.
 # usage: ./run_on_device.sh [FOLDER [PEERS.py]]
 here=$(cd "$(dirname "$0")" && pwd)
 results=${1:-$here/results}

@@ -22,12 +22,12 @@ Record record_of(const Json& json, const Fields& fields) {
 }
 
 /// Copies numbers of a list. JSON has null for those that are not finite.
-template <class Numbers>
-std::size_t copy_numbers(const Json& list, Numbers& numbers) {
+std::vector<double> numbers_of(const Json& list) {
+  std::vector<double> numbers(list.size());
   std::ranges::transform(list, numbers.begin(), [](const Json& number) {
     return number.is_null() ? std::numeric_limits<double>::quiet_NaN() : number.get<double>();
   });
-  return list.size();
+  return numbers;
 }
 
 StepReport step_of(const Json& json) {
@@ -36,8 +36,8 @@ StepReport step_of(const Json& json) {
   step.timings = record_of<Timings>(json.at("timings"), timing_fields);
   step.counts = record_of<Counts>(json.at("counts"), count_fields);
   if (json.contains("total_before")) {
-    step.totals.count = copy_numbers(json["total_before"], step.totals.before);
-    copy_numbers(json["total_after"], step.totals.after);
+    step.totals.before = numbers_of(json["total_before"]);
+    step.totals.after = numbers_of(json["total_after"]);
   }
   return step;
 }

@@ -1,5 +1,5 @@
 /// @file test_bench.cpp
-/// The judges of the benchmark: its truth, its checks, its floor and its clock.
+/// The truth, the checks, the sampling floor and the clock of the benchmarks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <tetwarp/warp.hpp>
 #include <vector>
 
-#include "bench/floors.hpp"
-#include "bench/timing.hpp"
-#include "bench/truth.hpp"
-#include "bench/workloads.hpp"
+#include "bench/measure/floors.hpp"
+#include "bench/measure/timing.hpp"
+#include "bench/warp/truth.hpp"
+#include "bench/warp/workloads.hpp"
 #include "tests/scenes/scenes.hpp"
 
 namespace tetwarp::bench {
@@ -58,7 +58,7 @@ Warped rotated_box(int components = 1) {
   throw std::logic_error("no scene named rotated");
 }
 
-TEST(BenchTruth, IsWhatTheReferenceSaysOfEveryVoxel) {
+TEST(BenchTruth, EqualsTheReferenceInEveryVoxel) {
   for (const scenes::Scene& scene : scenes::adversarial_scenes(16)) {
     const Warped warped(scene);
 
@@ -72,7 +72,7 @@ TEST(BenchTruth, IsWhatTheReferenceSaysOfEveryVoxel) {
   }
 }
 
-TEST(BenchTruth, SamplesVoxelsOfLargeVolumesOnTheSameTerms) {
+TEST(BenchTruth, SamplesLargeVolumesWithoutBias) {
   scenes::Scene scene = make_scene(waved(256, 40));
   const Truth truth = make_truth(scene);
   std::int64_t covered = 0;
@@ -115,7 +115,7 @@ TEST(BenchCheck, RefusesAPaintedVoxel) {
   EXPECT_TRUE(warped.is_refused());
 }
 
-TEST(BenchCheck, RefusesAVoxelThatAnotherTetrahedronWon) {
+TEST(BenchCheck, RefusesAVoxelWithAnotherOwner) {
   Warped warped = rotated_box();
   ++warped.owner[warped.first_voxel(true)];
 
@@ -169,7 +169,7 @@ TEST(BenchFloor, SamplesEveryVoxelThroughItsMap) {
             {type, filter, source.dims, output.dims, image.data(), result.data.data(), map}, order,
             2);
 
-        // As a truth of one tetrahedron, number 0, that covers what falls into the source.
+        // The truth of one tetrahedron, number 0, that covers all positions inside the source.
         Truth truth;
         std::vector<std::int32_t> owner;
         for (std::int64_t v = 0; v < output.voxel_count(); ++v) {
@@ -197,7 +197,7 @@ TEST(BenchFloor, SamplesEveryVoxelThroughItsMap) {
   }
 }
 
-TEST(BenchClock, KeepsEveryRepetitionWhereNoneIsJudged) {
+TEST(BenchClock, KeepsEveryRepetitionWithoutAMinimumOfBusyThreads) {
   int calls = 0;
   const std::function<void()> job = [&] { ++calls; };
 

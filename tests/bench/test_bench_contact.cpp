@@ -1,5 +1,5 @@
 /// @file test_bench_contact.cpp
-/// The judge of the contact benchmark, and the names of its rows.
+/// The check of results in the contact benchmark, and the names of its rows.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -7,8 +7,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "bench/contact_cases.hpp"
-#include "bench/contact_judge.hpp"
+#include "bench/contact/cases.hpp"
+#include "bench/contact/solution_check.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::bench {
@@ -20,46 +20,46 @@ struct Solved {
   ContactOptions options = {.measure = ContactMeasure::fclib, .tolerance = 1e-8};
   ContactSolution solution = solve_contacts(problem, options);
 
-  bool is_refused() const { return judge(problem, solution, options).fault.has_value(); }
+  bool is_refused() const { return check_solution(problem, solution, options).fault.has_value(); }
 };
 
-TEST(BenchContactJudge, AcceptsWhatTheSolverReached) {
+TEST(BenchSolutionCheck, AcceptsWhatTheSolverReached) {
   const Solved solved;
 
   EXPECT_TRUE(solved.solution.converged());
   EXPECT_FALSE(solved.is_refused());
-  EXPECT_LE(judge(solved.problem, solved.solution, solved.options).error, 1.01e-8);
+  EXPECT_LE(check_solution(solved.problem, solved.solution, solved.options).error, 1.01e-8);
 }
 
-TEST(BenchContactJudge, RefusesAnImpulseThatIsOff) {
+TEST(BenchSolutionCheck, RefusesAnImpulseThatIsOff) {
   Solved solved;
   solved.solution.impulse[0] *= 1.001;
 
   EXPECT_TRUE(solved.is_refused());
 }
 
-TEST(BenchContactJudge, RefusesVelocitiesOfOtherBodies) {
+TEST(BenchSolutionCheck, RefusesVelocitiesOfOtherBodies) {
   Solved solved;
   solved.solution.velocity[1] += 1e-6;
 
   EXPECT_TRUE(solved.is_refused());
 }
 
-TEST(BenchContactJudge, OfReportsBelievesTheirErrorsButNotTheRest) {
+TEST(BenchSolutionCheck, OfReportsUsesReportedErrorsAndChecksTheRest) {
   Solved solved;
-  EXPECT_FALSE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
-  EXPECT_EQ(judge_report(solved.problem, solved.solution, solved.options).error,
+  EXPECT_FALSE(check_report(solved.problem, solved.solution, solved.options).fault.has_value());
+  EXPECT_EQ(check_report(solved.problem, solved.solution, solved.options).error,
             solved.solution.report.residual.fclib);
 
   solved.solution.velocity[1] += 1e-6;
-  EXPECT_TRUE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
+  EXPECT_TRUE(check_report(solved.problem, solved.solution, solved.options).fault.has_value());
   solved.solution.velocity[1] -= 1e-6;
   solved.solution.report.residual.balance = 1e-6;
-  EXPECT_TRUE(judge_report(solved.problem, solved.solution, solved.options).fault.has_value());
+  EXPECT_TRUE(check_report(solved.problem, solved.solution, solved.options).fault.has_value());
 }
 
 /// Without friction a sliding box satisfies all contacts, however fast it slides.
-TEST(BenchContactJudge, RefusesMomentumFromNowhere) {
+TEST(BenchSolutionCheck, RefusesAResultOutOfBalance) {
   Solved solved{.problem = scenes::box_stack({.boxes = 1, .friction = 0})};
   const double push = 0.01;
   solved.solution.body_velocity[0] += push;
@@ -74,7 +74,7 @@ TEST(BenchContactJudge, RefusesMomentumFromNowhere) {
   EXPECT_TRUE(solved.is_refused());
 }
 
-TEST(BenchContactJudge, DoesNotBlameWhoSaysThatHeDidNotConverge) {
+TEST(BenchSolutionCheck, AcceptsAResultThatIsReportedAsNotConverged) {
   Solved solved;
   solved.options.max_sweeps = 1;
   solved.options.tolerance = 1e-14;

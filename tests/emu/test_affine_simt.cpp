@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "bench/affine_device.cuh"
+#include "bench/measure/affine_device.cuh"
 
 namespace tetwarp::bench {
 namespace {

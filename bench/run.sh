@@ -1,0 +1,73 @@
+# The work of `./dev bench`, whose functions and variables it uses.
+#
+# Writes times to build/bench/results, pictures to build/bench/plots and tables to
+# build/bench/results.md. --peers also measures other programs (see bench/peers/README.md);
+# --install installs what these need; other options go to the benchmark programs. Environment:
+#   TETWARP_FCLIB_DATA  folder of recorded contact problems (*.hdf5)
+#   TETWARP_PEERS       output of bench/peers/siconos_nsgs.py on this machine
+#   TETWARP_GPU_PEERS   output of bench/peers/gpu_samplers.py on this machine
+
+peer_packages=(libvtk9-dev libtbb-dev libinsighttoolkit5-dev python3-siconos python3-h5py
+  python3-scipy)
+
+run_bench() {
+  local folder=$root/build/bench python=/usr/bin/python3 status=0 with_peers=no argument results
+  local arguments=() wanted=("${packages[@]}" python3-matplotlib)
+  for argument in "$@"; do
+    case $argument in
+      --peers) with_peers=yes ;;
+      --install) wanted+=("${peer_packages[@]}") ;;
+      *) arguments+=("$argument") ;;
+    esac
+  done
+  install_packages "${wanted[@]}"
+  unset OMP_WAIT_POLICY  # threads may spin: nothing else should run meanwhile
+  [[ -x $python ]] || python=python3
+  results=$folder/results/$(date +%F)-$(machine_name)
+  configure "$folder" -DCMAKE_CUDA_ARCHITECTURES="$(cuda_architecture)" \
+    -DTETWARP_BENCH=ON -DTETWARP_TESTS=OFF
+  cmake --build "$folder" --target tetwarp_bench tetwarp_bench_contact
+  mkdir -p "$folder/results"
+  rm -f "$results".json "$results"-{contact,beside}.json "$folder/results.md"
+  "$folder/tetwarp_bench" --benchmark_out="$results.json" \
+    ${arguments[@]+"${arguments[@]}"} || status=$?
+  "$folder/tetwarp_bench_contact" --benchmark_out="$results-contact.json" \
+    ${arguments[@]+"${arguments[@]}"} || status=$?
+  export PYTHONDONTWRITEBYTECODE=1
+  [[ $with_peers == no ]] || bench_peers || status=$?
+  bench_report
+  return "$status"
+}
+
+# Other programs on the same problems.
+bench_peers() {
+  local problems=$folder/problems name
+  for name in "${peer_packages[@]}"; do
+    dpkg-query -W -f='${db:Status-Status}\n' "$name" 2>/dev/null | grep -qx installed ||
+      echo "missing: $name; its program is left out, --install installs it"
+  done
+  cmake --build "$folder" --target tetwarp_bench_peers
+  "$folder/tetwarp_bench_peers" "$results-beside.json" || return
+  "$python" -c 'import siconos.numerics, h5py, scipy' 2>/dev/null || return 0
+  "$folder/tetwarp_bench_contact" --export="$problems"
+  [[ -z ${TETWARP_FCLIB_DATA:-} ]] || cp "$TETWARP_FCLIB_DATA"/*.hdf5 "$problems"
+  "$python" "$root/bench/peers/siconos_nsgs.py" "$problems"/*.hdf5 | tee "$results-siconos.log"
+  TETWARP_PEERS=$results-siconos.log
+}
+
+# Tables and plots of the results files that were written.
+bench_report() {
+  local files=() logs=() file
+  [[ -z ${TETWARP_PEERS:-} ]] || logs+=(--peers "$TETWARP_PEERS")
+  for file in "$results".json "$results"-contact.json; do
+    [[ ! -s $file ]] || files+=("$file")
+  done
+  ((${#files[@]})) || return 0
+  "$python" "$root/bench/report" plots --folder "$folder/plots" ${logs[@]+"${logs[@]}"} \
+    "${files[@]}"
+  [[ ! -s $results-beside.json ]] || files+=("$results-beside.json")
+  [[ -z ${TETWARP_GPU_PEERS:-} ]] || logs+=(--gpu-peers "$TETWARP_GPU_PEERS")
+  "$python" "$root/bench/report" tables ${logs[@]+"${logs[@]}"} "${files[@]}" \
+    >"$folder/results.md"
+  printf '%s\n' "${files[@]}" "$folder/results.md"
+}
