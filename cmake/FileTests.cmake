@@ -49,6 +49,8 @@ if(TETWARP_PYTHON)
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 
+include(cmake/DocTests.cmake)
+
 # ---- the command and the example in the README ---------------------------------------------
 tetwarp_add_tests(tetwarp_cli_tests LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json
   SOURCES
