@@ -58,7 +58,8 @@ def read_page(root, path):
         if fence:
             block = Block(fence[1], number + 1)
             if block.language not in LANGUAGES:
-                page.errors.append(f"{number}: a block of '{fence[1]}', expected one of {LANGUAGES}")
+                languages = ", ".join(LANGUAGES)
+                page.errors.append(f"{number}: a block of '{fence[1]}', expected {languages}")
             block.not_run = (re.match(r"<!-- not run: (.*\S) -->$", comment) or ["", ""])[1]
             block.needs = (re.match(r"<!-- needs: (\S+) -->$", comment) or ["", ""])[1]
             page.blocks.append(block)

@@ -6,7 +6,8 @@
 
 Blocks of a page run in order in one empty folder, which holds head.nii.gz and labels.nii.gz; blocks
 of C++ are functions of PROGRAM. Checked as well: links, paths and options in inline code, sizes of
-pictures, and that docs/formats.md names every field of the reports that its commands write.
+pictures, that every option of the command is explained, and that docs/formats.md names every field
+of the reports that its commands write.
 """
 import argparse
 import json
@@ -69,8 +70,8 @@ def extract(root, output):
         + "  };\n  for (const auto& block : blocks) {\n"
         + "    if (block.name == words[1]) return block.run();\n  }\n"
         + '  std::fprintf(stderr, "no block %s\\n", words[1]);\n  return 2;\n'
-        + '} catch (const std::exception& error) {\n  std::fprintf(stderr, "%s\\n", error.what());\n'
-        + "  return 1;\n}\n",
+        + "} catch (const std::exception& error) {\n"
+        + '  std::fprintf(stderr, "%s\\n", error.what());\n  return 1;\n}\n',
         encoding="utf8",
     )
 
@@ -171,26 +172,42 @@ def link_errors(root, pages):
                 yield f"{page.name}:{line}: {target} has more than {LARGEST_PICTURE} bytes"
 
 
-def known_options(root, environment):
-    """Every --option of the command and of ./dev."""
-    def words_of(*words):
-        return subprocess.run(words, env=environment, capture_output=True, text=True).stdout
-
-    text = words_of("tetwarp", "--help") + words_of(str(root / "dev"), "help")
-    for name in re.findall(r"^  ([a-z]+) {2}", text, re.M):
-        text += words_of("tetwarp", name, "--help")
-    return set(re.findall(r"--[a-z][a-z-]*", text))
+def help_of(environment, *words):
+    return subprocess.run([*words], env=environment, capture_output=True, text=True).stdout
 
 
-def span_errors(root, pages, environment):
-    """Paths of sources and options that do not exist."""
-    options = known_options(root, environment)
+def options_in(text):
+    return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text))
+
+
+def command_options(environment):
+    """Every --option of the command."""
+    names = re.findall(r"^  ([a-z]+) {2}", help_of(environment, "tetwarp", "--help"), re.M)
+    texts = (help_of(environment, "tetwarp", name, "--help") for name in names)
+    return set().union(*map(options_in, texts))
+
+
+def option_errors(root, pages, environment):
+    """Options that do not exist, and options of the command that no page explains."""
+    known = command_options(environment)
+    of_dev = options_in(help_of(environment, str(root / "dev"), "help"))
     for page in pages:
         for line, span in page.spans:
             if re.match(r"(tetwarp |\./dev |--[a-z])", span):
-                for option in re.findall(r"(?<!\S)--[a-z][a-z-]*", span):
-                    if option not in options:
-                        yield f"{page.name}:{line}: no option {option}"
+                for option in sorted(options_in(span) - known - of_dev - {"--help", "--version"}):
+                    yield f"{page.name}:{line}: no option {option}"
+    explained = set().union(
+        *(options_in(span) for page in pages for _, span in page.spans),
+        *(options_in(block.text) for page in pages for block in page.blocks),
+    )
+    for option in sorted(known - explained - {"--help", "--output"}):
+        yield f"no page explains the option {option}"
+
+
+def path_errors(root, pages):
+    """Paths of sources that do not exist."""
+    for page in pages:
+        for line, span in page.spans:
             is_path = re.fullmatch(rf"({'|'.join(SOURCE_FOLDERS)})/[\w./-]*", span)
             is_pattern = re.search("NAME|ITEM", span)  # a name to choose
             if is_path and not is_pattern and not (root / span).exists():
@@ -229,12 +246,14 @@ def run(arguments):
         errors = runner.errors
         errors += field_errors(pages, runner)
     errors += link_errors(root, pages)
-    errors += span_errors(root, pages, runner.environment)
+    errors += option_errors(root, pages, runner.environment)
+    errors += path_errors(root, pages)
     for reason in runner.not_run:
         print(f"not run: {reason}")
     counts = ", ".join(f"{count} of {language}" for language, count in runner.counts.items())
     links = sum(len(page.links) for page in pages)
-    print(f"{len(pages)} pages, {links} links; blocks run: {counts}; not run: {len(runner.not_run)}")
+    print(f"{len(pages)} pages, {links} links; blocks run: {counts}")
+    print(f"not run: {len(runner.not_run)} of at most {MOST_NOT_RUN}")
     if len(runner.not_run) > MOST_NOT_RUN:
         errors.append(f"{len(runner.not_run)} blocks are not run, more than {MOST_NOT_RUN}")
     for error in errors:
