@@ -80,7 +80,7 @@ def extract(root, output):
 
 
 def environment_of(arguments):
-    bin_folder = arguments.command.parent
+    bin_folder = arguments.command.resolve().parent
     return os.environ | {
         "PATH": os.pathsep.join([str(bin_folder), os.environ.get("PATH", "")]),
         "OMP_WAIT_POLICY": "passive",
@@ -141,7 +141,7 @@ class Runner:
             words = ["bash", "-euo", "pipefail", "-c", block.text]
             return run_block(words, folder, self.environment, 3 if block.needs else 1)
         if block.language == "cpp":
-            words = [str(self.arguments.blocks), key_of(page, block)]
+            words = [str(self.arguments.blocks.resolve()), key_of(page, block)]
             return run_block(words, folder, self.environment, 1)
         if block.language == "json":
             try:
