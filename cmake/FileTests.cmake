@@ -47,6 +47,8 @@ if(TETWARP_PYTHON)
     LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
 endif()
 
+include(cmake/DocTests.cmake)
+
 # ---- the command ------------------------------------------------------------------------------
 # tetwarp_add_cli_tests(PROGRAM SOURCE...): tests that start the command.
 function(tetwarp_add_cli_tests program)

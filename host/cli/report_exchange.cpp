@@ -21,7 +21,7 @@ Record record_of(const Json& json, const Fields& fields) {
   return record;
 }
 
-/// Copies numbers of a list. JSON has null for those that are not finite.
+/// Numbers of a list. JSON has null for those that are not finite.
 std::vector<double> numbers_of(const Json& list) {
   std::vector<double> numbers(list.size());
   std::ranges::transform(list, numbers.begin(), [](const Json& number) {

@@ -1,0 +1,25 @@
+# Every command and block of code in README.md and docs/ is run; links are checked.
+if(NOT TETWARP_PYTHON)
+  add_test(NAME docs COMMAND ${CMAKE_COMMAND} -E echo "skipped: no python3")
+  set_tests_properties(docs PROPERTIES LABELS docs SKIP_REGULAR_EXPRESSION skipped)
+  return()
+endif()
+
+set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/contact
+  docs/cuda docs/formats docs/glossary docs/guide)
+list(TRANSFORM tetwarp_pages REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.md")
+set(tetwarp_docs_test ${TETWARP_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
+add_custom_command(OUTPUT docs_blocks.cpp
+  COMMAND ${tetwarp_docs_test} extract ${PROJECT_SOURCE_DIR} docs_blocks.cpp
+  DEPENDS ${tetwarp_pages} ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py
+    ${PROJECT_SOURCE_DIR}/tests/docs/pages.py
+  COMMENT "C++ blocks of the documentation")
+add_executable(docs_blocks ${PROJECT_BINARY_DIR}/docs_blocks.cpp)
+target_link_libraries(docs_blocks PRIVATE tetwarp_io)
+# Compiled once and run once: -O3 would take longer to compile than it saves.
+target_compile_options(docs_blocks PRIVATE $<$<CONFIG:Release>:-O0>)
+
+add_test(NAME docs COMMAND ${tetwarp_docs_test} run ${PROJECT_SOURCE_DIR}
+  --command $<TARGET_FILE:tetwarp_command> --blocks $<TARGET_FILE:docs_blocks>
+  "--mpirun=$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
+set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300)
