@@ -11,6 +11,7 @@ namespace tetwarp {
 
 /// One index = one component of part_voxels consecutive voxels; any order.
 struct VolumeSumBody {
+  static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   static constexpr std::int64_t part_voxels = 4096;
   NumberView volume;
   std::int64_t voxel_count;

@@ -135,7 +135,7 @@ struct BlockNeedBody {
 /// constant, to 0 for others.
 template <class T>
 struct BlockUniformBody {
-  static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
+  static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   SourceView<T> source;
   UniformMap map;
   View<std::uint8_t> reach;
@@ -175,7 +175,7 @@ struct BlockUniformBody {
 /// towards higher i, j and k have reach n and the same value.
 template <class T>
 struct BlockReachBody {
-  static constexpr int resident_blocks = 4;  ///< of 64 registers a thread: no spills
+  static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
   SourceView<T> source;
   UniformMap map;
   int n;
