@@ -57,7 +57,7 @@ std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan);
 BackendStatus cuda_status(int device);
 
 /// Free memory of CUDA device number `device` [byte]; 0 when it is not usable.
-double free_device_memory(int device);
+TETWARP_EXPORT double free_device_memory(int device);
 
 /// Page-locks host memory for CUDA devices. @returns whether it worked
 bool cuda_lock_pages(void* data, std::size_t bytes);

@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "host/base/warp_backend.hpp"
 #include "host/cli/batch.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
@@ -17,7 +16,7 @@ namespace {
 /// Number of usable CUDA devices.
 int device_count() {
   int count = 0;
-  while (cuda_status(count).usable) ++count;
+  while (available_backends(count).front().usable) ++count;
   return count;
 }
 

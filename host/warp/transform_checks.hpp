@@ -9,9 +9,9 @@ namespace tetwarp {
 
 /// Checks the options for one source, whose data may be null.
 /// @throws std::invalid_argument that names the option and a remedy
-void check_source_transform(const VolumeView& source,
-                            Quantity quantity,
-                            const WarpOptions& options);
+TETWARP_EXPORT void check_source_transform(const VolumeView& source,
+                                           Quantity quantity,
+                                           const WarpOptions& options);
 
 /// Checks the options for all sources and with each other.
 /// @throws std::invalid_argument as above
