@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <tetwarp/backend.hpp>
 
 #include "host/cli/batch.hpp"
 #include "host/cli/commands.hpp"
