@@ -139,7 +139,7 @@ TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {
 
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
-            "tetwarp: jobs/jobs.json: line 2, column 14: no valid JSON here; mend it\n");
+            "tetwarp: jobs/jobs.json: line 2, column 14: no valid JSON here; correct it\n");
 }
 
 TEST_F(Batch, RefusesAFileWithoutJobs) {
