@@ -229,7 +229,7 @@ endif()
 # ---- every public header compiles alone, without CUDA ------------------------------------------
 set(tetwarp_public_headers backend blocks choices contact contact_problem contact_tracker error make mesh names page_lock report tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers io mesh_import)
+  list(APPEND tetwarp_public_headers contact_io io mesh_import)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)

@@ -22,15 +22,15 @@ constexpr EnumName<FileKind> file_kind_names[] = {
 }  // namespace
 
 template <>
-std::span<const EnumName<NiftiVectors>> names_of() {
+TETWARP_IO_EXPORT std::span<const EnumName<NiftiVectors>> names_of() {
   return nifti_vectors_names;
 }
 template <>
-std::span<const EnumName<ContactStart>> names_of() {
+TETWARP_IO_EXPORT std::span<const EnumName<ContactStart>> names_of() {
   return contact_start_names;
 }
 template <>
-std::span<const EnumName<FileKind>> names_of() {
+TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of() {
   return file_kind_names;
 }
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include <tetwarp/contact.hpp>
+#include <tetwarp/contact_io.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/make.hpp>
@@ -221,7 +221,7 @@ enum class NiftiVectors {
   lps     ///< x and y negated: a displacement field as ITK and ANTs read it
 };
 template <>
-std::span<const EnumName<NiftiVectors>> names_of();
+TETWARP_IO_EXPORT std::span<const EnumName<NiftiVectors>> names_of();
 
 /// Writes a NIfTI file. The sform holds the grid, and so does the qform when direction is a
 /// rotation. Samples of several components get the intent code VECTOR.
@@ -235,56 +235,6 @@ TETWARP_IO_EXPORT void write_nifti(const std::string& path,
 /// Writes an 8-bit RGB PNG.
 TETWARP_IO_EXPORT void write_png(const std::string& path, const Image& image);
 
-/// The parts of an FCLIB file besides its problem.
-struct ContactFileHeader {
-  std::string title;
-  std::string description;
-  std::int64_t guesses = 0;   ///< number of starting points: /guesses/1 and so on
-  bool has_solution = false;  ///< /solution/r exists, from any program, of any quality
-  std::optional<std::string>
-      status;                      ///< written by write_contact_solution(): name_of(ContactStatus)
-  std::optional<double> residual;  ///< eta, likewise
-};
-
-TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);
-
-/// Impulses that the iterations start from.
-enum class ContactStart {
-  zero,   ///< `impulse_guess` stays empty
-  stored  ///< the impulses of /solution or, when there are none or all are zero, of /guesses/1
-};
-template <>
-std::span<const EnumName<ContactStart>> names_of();
-
-/// Reads a contact problem in FCLIB's HDF5 format and checks it by check_problem(): /fclib_local
-/// (W, q, mu) or /fclib_global (M, H, f, w, mu) with matrices by columns, by rows or as triplets,
-/// and /adhesion and /blocks where the file has them. Numbers may be stored in any width, vectors
-/// in any shape. Units are those of ContactProblem.
-///
-/// Not supported: two dimensions, equality constraints (G, or V and R), rolling friction.
-/// In /adhesion a missing `intensity` is 0; other missing vectors stay empty.
-TETWARP_IO_EXPORT ContactProblem read_contact_problem(const std::string& path,
-                                                      ContactStart start = ContactStart::zero);
-
-/// Writes a problem that check_problem() accepts as an FCLIB file; matrices by rows, H by columns.
-/// @returns bytes of the file
-TETWARP_IO_EXPORT std::int64_t write_contact_problem(const std::string& path,
-                                                     const ContactProblem& problem,
-                                                     const std::string& title = {},
-                                                     const std::string& description = {});
-
-/// Writes a complete FCLIB file: a copy of the problem's file in which this solution replaces any
-/// other, with the adhesion of the next step when it is given.
-///
-/// /solution/{r, u, v, residual_history} (no v in local form) has the attributes `converged` (1 or
-/// 0), `status`, `residual` (eta), `fclib_error` and `method`; /adhesion_next holds `intensity` and
-/// `gap`. A solution of another size than the problem is an error.
-/// @returns bytes of the file
-TETWARP_IO_EXPORT std::int64_t write_contact_solution(const std::string& path,
-                                                      const std::string& problem_path,
-                                                      const ContactSolution& solution,
-                                                      const AdhesionStep* adhesion_next = nullptr);
-
 /// Kinds of files; name_of() gives a noun for messages: "volume", "contact problem".
 enum class FileKind {
   volume,           ///< VTKHDF ImageData
@@ -296,7 +246,7 @@ enum class FileKind {
   unknown
 };
 template <>
-std::span<const EnumName<FileKind>> names_of();
+TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
 
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);

@@ -24,7 +24,7 @@ from small_images import write_images
 MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
 SECONDS = 60  # that a block may take
-SOURCE_FOLDERS = ("bench", "cmake", "docs", "host", "io", "kernels", "tests")
+SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "tests")
 
 
 def key_of(page, block):

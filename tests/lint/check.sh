@@ -88,7 +88,7 @@ check_host() { configure_host && cmake --build "$root/build/check-host"; }
 check_tidy() {
   has clang-tidy || { echo "left out: no clang-tidy"; return 0; }
   configure_host
-  source_files cpp | grep -v '^tests/install/' |
+  source_files cpp | grep -v '^examples/' |
     xargs -n 1 -P "$CMAKE_BUILD_PARALLEL_LEVEL" clang-tidy --quiet -p "$root/build/check-host"
 }
 
