@@ -73,4 +73,4 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_tools.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests tests/cli/test_cli_memory.cpp)
-tetwarp_discover(tetwarp_cli_memory_tests cli long)
+tetwarp_discover(tetwarp_cli_memory_tests long)

@@ -1,12 +1,12 @@
-# All tests, run by ctest: `ctest -L parity` and so on chooses by label. Labels go by program:
-#   unit       functions, stages and whole warps and contact problems
+# All tests, run by ctest: `ctest -L parity` and so on chooses by label. All tests of a program have one:
+#   unit       functions, stages, whole warps and contact problems
 #   reference  coverage and values against back end reference
 #   parity     back end cuda, emulated or on a device, against cpu
 #   simt       kernels on the emulated device
-#   stress     the bounds that the documentation states, on inputs at the limits
 #   io, cli    files, the command
-#   install    an installed tree
-#   long       takes more than a few seconds each: left out by `./dev test`, run by `./dev check`
+#   docs       commands, code and links of the documentation
+#   install    the examples, built with an installed tree
+#   long       inputs at the limits, large volumes: left out by `./dev test`, run by `./dev check`
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
@@ -48,11 +48,11 @@ function(tetwarp_add_tests program)
   endif()
 endfunction()
 
-# tetwarp_discover(PROGRAM LABEL...): all tests of a program carry the same labels. Where they run on
+# tetwarp_discover(PROGRAM LABEL): all tests of a program carry the same label. Where they run on
 # a device, those named after back end cuda run one at a time.
-function(tetwarp_discover program)
+function(tetwarp_discover program label)
   set(options DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES NO_PRETTY_VALUES
-    PROPERTIES TIMEOUT 300 LABELS "${ARGN}")
+    PROPERTIES TIMEOUT 300 LABELS ${label})
   if(tetwarp_device_tests)
     gtest_discover_tests(${program} TEST_FILTER "-*/cuda*:*_cuda" ${options})
     gtest_discover_tests(${program} TEST_FILTER "*/cuda*:*_cuda" ${options} RESOURCE_LOCK gpu)
@@ -142,7 +142,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_stress_data.cpp
     tests/warp/test_warp_stress_grids.cpp
     tests/warp/test_warp_stress_size.cpp)
-  tetwarp_discover(tetwarp_stress_tests stress long)
+  tetwarp_discover(tetwarp_stress_tests long)
 
   # Three files at a time; those that include kernels stand together at the end, so that a change of
   # a kernel compiles few units.
@@ -178,7 +178,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_stress.cpp
     tests/contact/test_contact_stress_invariance.cpp
     tests/contact/test_contact_stress_stacks.cpp)
-  tetwarp_discover(tetwarp_contact_stress_tests stress long)
+  tetwarp_discover(tetwarp_contact_stress_tests long)
 
   # A program of its own: the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
