@@ -66,6 +66,7 @@ StepQueue far_queue(const std::vector<Volume>& sources,
   WarpPlan plan;
   plan.sources = {sources.begin(), sources.end()};
   plan.mesh = scene.mesh;
+  plan.source_region = {{0, 0, 0}, sources.front().grid.dims};
   plan.output_grid = scene.output_grid;
   plan.region = region;
   FarExec exec(1);
