@@ -131,7 +131,8 @@ TEST_P(WarpFields, AreThoseOfAnAffineMotionAndZeroOutside) {
 /// To float32's rounding of the largest component, 1e-6 voxel of rounding being common to all.
 TEST_P(WarpFields, AreTheReference) {
   if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
-  for (const char* name : {"waved", "oblique", "slivers", "folded", "flat", "far", "other_grid"}) {
+  for (const char* name :
+       {"waved", "oblique", "slivers_1", "folded", "flat", "far", "other_grid"}) {
     SCOPED_TRACE(name);
     const scenes::Scene scene = scenes::adversarial_scene(name, 18);
     const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
