@@ -134,7 +134,7 @@ TEST(BadInput, RefusesALinkToAnInputAsOutput) {
 }
 
 TEST(BadInput, RefusesAFolderWithoutPermission) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  if (geteuid() == 0) GTEST_SKIP() << "root can write to any folder";
   const Scene scene;
   fs::create_directory(scene / "locked");
   fs::permissions(scene / "locked", fs::perms::owner_read | fs::perms::owner_exec);

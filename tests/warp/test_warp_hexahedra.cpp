@@ -81,7 +81,7 @@ double largest_difference(const Volume& a, const Volume& b) {
 /// Slopes of the float64 volume are below 1 per voxel; maps that differ from affine ones by less
 /// than four quanta may be taken for them. Found: 1.2e-8 and 3.6e-7.
 TEST_P(WarpHexahedra, AreTheReference) {
-  if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";
   for (const scenes::Scene& scene : {bent_scene(2.5), mixed_scene(2.5), bent_scene(0.01)}) {
     for (const Filter filter : {Filter::linear, Filter::cubic}) {
       for (const PixelType type : {PixelType::float64, PixelType::float32}) {
@@ -178,7 +178,8 @@ TEST_P(WarpHexahedra, CopyWhatMovesByWholeVoxelsAndOnlyThat) {
 
 /// A map that is affine over a hexahedron is that of each of its tetrahedra, and as quick.
 TEST_P(WarpHexahedra, GiveTheBitsOfTetrahedraUnderAffineMaps) {
-  if (GetParam() == Backend::reference) GTEST_SKIP() << "it inverts every map alike";
+  if (GetParam() == Backend::reference)
+    GTEST_SKIP() << "the reference inverts affine maps like curved ones";
   scenes::Scene scene = bent_scene(0);
   scene.deformed = scenes::rotated_45_45(scene.mesh.rest_positions, {12, 12, 12});
   const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float32);
@@ -205,7 +206,7 @@ TEST_P(WarpHexahedra, MoveAsAWholeInUpdates) {
 
 /// Fields change within a hexahedron; those of whole steps and of updates are the reference's.
 TEST_P(WarpHexahedra, HaveFieldsOfTheTrilinearMap) {
-  if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";
   const scenes::Scene scene = mixed_scene(2.5);
   const std::vector sources{scenes::wavy_volume(scene.source_grid, PixelType::uint8)};
   const std::vector<VolumeView> views(sources.begin(), sources.end());
@@ -243,7 +244,7 @@ TEST_P(WarpHexahedra, HaveFieldsOfTheTrilinearMap) {
 }
 
 TEST_P(WarpHexahedra, TurnAndAverageAsTheReferenceDoes) {
-  if (GetParam() == Backend::reference) GTEST_SKIP() << "it is the judge";
+  if (GetParam() == Backend::reference) GTEST_SKIP() << "the reference is not compared with itself";
   scenes::Scene scene = mixed_scene(2.5);
   for (Point3& p : scene.deformed) {
     for (double& x : p) x = 0.45 * x + 5;
