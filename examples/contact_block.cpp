@@ -14,7 +14,6 @@
 #include <vector>
 
 namespace {
-
 using tetwarp::Point3;
 
 constexpr double mass = 1;          // kg
@@ -89,7 +88,6 @@ const struct {
     {1.2, {6, 0, 0}, "pulled sideways"}, {1.3, {12, 0, 0}, "pulled harder: slides"},
     {1.6, {0, 0, 0}, "slows down"},      {1.8, {0, 0, weight + 3}, "lifted again: lets go"},
 };
-
 }  // namespace
 
 int main() {

@@ -13,7 +13,6 @@
 #include <tetwarp/tetwarp.hpp>
 
 namespace {
-
 void check(cudaError_t status) {
   if (status != cudaSuccess) throw std::runtime_error(cudaGetErrorString(status));
 }
@@ -33,7 +32,6 @@ class DeviceCopy {
  private:
   void* data_ = nullptr;
 };
-
 }  // namespace
 
 int main() {

@@ -12,9 +12,7 @@
 #include "io/h5_disk.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using fclib::Orientation;
 using fclib::write_integers;
 using fclib::write_reals;
@@ -148,7 +146,6 @@ void write_solution(const h5::Object& file, const ContactSolution& solution) {
   h5::write_scalar_attribute(group, "fclib_error", report.residual.fclib);
   if (!report.method.empty()) h5::write_text_attribute(group, "method", report.method);
 }
-
 }  // namespace
 
 std::int64_t write_contact_problem(const std::string& path,

@@ -5,9 +5,7 @@
 #include "io/nifti_header.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 FileKind hdf5_kind(const std::string& path) {
   try {
     const h5::Object file = h5::open_file(path);
@@ -25,7 +23,6 @@ FileKind hdf5_kind(const std::string& path) {
     return FileKind::hdf5;  // it has the signature; reading it names the damage
   }
 }
-
 }  // namespace
 
 FileKind kind_of(const std::string& path) {

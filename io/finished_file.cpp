@@ -12,9 +12,7 @@
 #include <tetwarp/error.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 enum class SlotState { empty, changing, listed };
 
 /// An entry of the list that a signal handler reads: fixed storage, valid when `state` is listed.
@@ -50,7 +48,6 @@ std::string folder_of(const std::string& path) {
 std::string reason() {
   return std::strerror(errno);
 }
-
 }  // namespace
 
 FinishedFile::FinishedFile(const std::string& path) : path_(path) {

@@ -12,9 +12,7 @@
 #include <tetwarp/error.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 static_assert(sizeof(nifti_1_header) == 348);
 
 constexpr std::pair<int, PixelType> datatypes[] = {
@@ -126,7 +124,6 @@ bool is_orthonormal(const Grid& grid) {
   }
   return true;
 }
-
 }  // namespace
 
 bool has_nifti_header(const std::string& path) {

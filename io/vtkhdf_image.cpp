@@ -6,9 +6,7 @@
 #include <stdexcept>
 
 namespace tetwarp {
-
 namespace {
-
 /// Checks arguments before the file is created.
 std::string checked(const std::string& path,
                     const Grid& grid,
@@ -40,7 +38,6 @@ std::string checked(const std::string& path,
   check_compression(path, options);
   return path;
 }
-
 }  // namespace
 
 void check_compression(const std::string& path, const VolumeWriteOptions& options) {

@@ -8,9 +8,7 @@
 #include "io/vtkhdf_image.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Edges = std::array<std::int64_t, 3>;
 
 std::int64_t voxel_bytes(const ArrayHeader& array) {
@@ -62,7 +60,6 @@ void write_all(ImageFile& file, const std::vector<const Volume*>& volumes) {
     file.write(array, {{0, 0, 0}, file.grid().dims}, volumes[array]->data.data());
   }
 }
-
 }  // namespace
 
 WrittenFile write_volumes(const std::string& path,

@@ -8,9 +8,7 @@
 #include "io/vtkhdf_output.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_hexahedron = 12;
 
@@ -120,7 +118,6 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
   write_integers(h5::create_group(steps, "PointDataOffsets"), "displacement", rows);
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
-
 }  // namespace
 
 void write_mesh(const std::string& path,

@@ -12,9 +12,7 @@
 #include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A packing has four to five contacts per sphere, fewer when small.
 ContactInput packing(const std::string& name, const scenes::SpherePacking& choice) {
   return {name, [choice] { return scenes::sphere_packing(choice); }};
@@ -214,7 +212,6 @@ const char* word_of(ContactMethod method) {
       return tetwarp::name_of(method);
   }
 }
-
 }  // namespace
 
 std::string name_of(const ContactCase& row) {

@@ -14,9 +14,7 @@
 #include "bench/measure/row.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// The problem of a row. Rows of one problem follow each other, so only the last one is kept.
 const ContactProblem& problem_of(const ContactInput& input) {
   static std::string name;
@@ -132,7 +130,6 @@ void run(benchmark::State& state, const ContactCase& row) {
   count_report(state, subject.solution().report);
   count_check(state, subject, check);
 }
-
 }  // namespace
 
 void add_contact_row(const ContactCase& row) {

@@ -4,11 +4,8 @@
 #include <utility>
 
 namespace tetwarp::bench {
-
 namespace {
-
 int refused = 0;
-
 }  // namespace
 
 void add_row(const std::string& name, std::function<void(benchmark::State&)> run) {

@@ -8,9 +8,7 @@
 #include <cstddef>
 
 namespace tetwarp::bench {
-
 namespace {
-
 struct Repetition {
   double wall;
   double busy;  ///< processors used
@@ -66,7 +64,6 @@ Timing timing_of(const std::vector<Repetition>& all, const Protocol& protocol) {
   timing.busy = quantile(busy, 0.5);
   return timing;
 }
-
 }  // namespace
 
 double seconds_of(const std::function<void()>& call) {

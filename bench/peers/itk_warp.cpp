@@ -7,9 +7,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 using FloatImage = itk::Image<float, 3>;
 using Field = itk::Image<itk::Vector<float, 3>, 3>;
 using Warp = itk::WarpImageFilter<FloatImage, FloatImage, Field>;
@@ -31,7 +29,6 @@ typename Image::Pointer image_over(typename Image::PixelType* pixels,
   image->GetPixelContainer()->SetImportPointer(pixels, count, false);
   return image;
 }
-
 }  // namespace
 
 PeerStep itk_warp(const PeerInput& input) {

@@ -22,7 +22,6 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace {
-
 using namespace tetwarp;
 using namespace tetwarp::bench;
 
@@ -143,7 +142,6 @@ std::string today() {
   std::strftime(text, sizeof text, "%F", std::localtime(&now));
   return text;
 }
-
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -15,9 +15,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr double pi = std::numbers::pi;
 constexpr double waves[3] = {3, 2, 4};  ///< per volume
 
@@ -159,7 +157,6 @@ void run_interpolation(
   state.counters["rms_error"] = errors.rms();
   state.counters["ns_per_covered"] = 1e9 * timing.median / static_cast<double>(job.covered());
 }
-
 }  // namespace
 
 void add_analytic_rows(const Selection& selection) {

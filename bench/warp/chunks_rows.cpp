@@ -11,9 +11,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 Volume warped(const Workload& workload, int threads) {
   WarpJob job(inputs().scene(workload), inputs().image(workload),
               {.backend = Backend::cpu, .threads = threads});
@@ -65,7 +63,6 @@ void run(benchmark::State& state, const Workload& workload, int threads) {
   state.counters["megabytes"] = megabytes(sparse.written());
   state.counters["whole_megabytes"] = megabytes(whole.written());
 }
-
 }  // namespace
 
 void add_chunk_rows(const Selection& selection) {

@@ -13,9 +13,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A job, and what its construction and first step cost.
 struct Subject {
   std::optional<WarpJob> job;
@@ -199,7 +197,6 @@ void run(benchmark::State& state, const StepCase& row) {
   if (!checked.is_right()) return;
   count_accuracy(state, checked.accuracy());
 }
-
 }  // namespace
 
 void add_step_rows(const Selection& selection) {

@@ -8,15 +8,12 @@
 #include <tetwarp/names.hpp>
 
 namespace tetwarp::bench {
-
 namespace {
-
 WarpOptions repeated(WarpOptions options, const scenes::Scene& scene) {
   options.output_grid = scene.output_grid;
   options.skip.unchanged_tets = false;
   return options;
 }
-
 }  // namespace
 
 const scenes::Scene& Inputs::scene(const Workload& workload) {

@@ -3,15 +3,12 @@
 #include <utility>
 
 namespace tetwarp {
-
 namespace {
-
 std::string line_of(const std::string& file,
                     const std::string& dataset,
                     const std::string& problem) {
   return file + ": " + (dataset.empty() ? "" : dataset + ": ") + problem;
 }
-
 }  // namespace
 
 IoError::IoError(std::string file, std::string dataset, const std::string& problem)

@@ -7,9 +7,7 @@
 #include "kernels/base/hex_view.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 template <std::size_t N>
 void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
                  std::size_t nodes,
@@ -25,7 +23,6 @@ void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
     }
   }
 }
-
 }  // namespace
 
 void check_mesh(const Mesh& mesh) {

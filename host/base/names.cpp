@@ -6,9 +6,7 @@
 #include <tetwarp/warp.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 constexpr EnumName<Backend> backend_names[] = {{Backend::automatic, "auto"},
                                                {Backend::cuda, "cuda"},
                                                {Backend::cpu, "cpu"},
@@ -61,7 +59,6 @@ constexpr EnumName<ContactStatus> contact_status_names[] = {
     {ContactStatus::infeasible, "infeasible"}};
 constexpr EnumName<AdhesionIntegrator> adhesion_integrator_names[] = {
     {AdhesionIntegrator::exact, "exact"}, {AdhesionIntegrator::explicit_euler, "explicit-euler"}};
-
 }  // namespace
 
 template <>

@@ -16,9 +16,7 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
 /// Results of the jobs so far.
@@ -96,7 +94,6 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     fail(outcome, name, report, one_line(error.what()));
   }
 }
-
 }  // namespace
 
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {

@@ -13,9 +13,7 @@
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
@@ -136,7 +134,6 @@ Json read_json(const std::string& path) {
     throw IoError(path, position_text(text, error.byte), "no valid JSON here; correct it");
   }
 }
-
 }  // namespace
 
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {

@@ -17,9 +17,7 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int infeasible_exit_code = 1;
 constexpr int not_converged_exit_code = 3;
 
@@ -113,7 +111,6 @@ int run_contact(const ContactArguments& arguments) {
   if (!arguments.quiet) print_summary(arguments, solution.report);
   return report_failure(arguments, solution.report);
 }
-
 }  // namespace
 
 void add_contact_command(CLI::App& app, Run& run) {

@@ -15,9 +15,7 @@
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 
 struct DemoArguments {
@@ -94,7 +92,6 @@ int run_demo(const DemoArguments& arguments) {
              result.outputs.front());
   return 0;
 }
-
 }  // namespace
 
 void add_demo_command(CLI::App& app, Run& run) {

@@ -11,9 +11,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 struct ExportArguments {
   std::string input;
   std::string output;
@@ -41,7 +39,6 @@ int run_export(const ExportArguments& arguments) {
              vectors == NiftiVectors::lps ? " as LPS displacements" : "", arguments.output);
   return 0;
 }
-
 }  // namespace
 
 void add_export_command(CLI::App& app, Run& run) {

@@ -11,9 +11,7 @@
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Number of usable CUDA devices.
 int device_count() {
   int count = 0;
@@ -31,7 +29,6 @@ int run_warp(WarpArguments arguments) {
   ranks.finish();
   return 0;
 }
-
 }  // namespace
 
 void add_warp_command(CLI::App& app, Run& run) {

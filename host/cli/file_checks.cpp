@@ -8,7 +8,6 @@
 #include <system_error>
 
 namespace tetwarp::cli {
-
 namespace fs = std::filesystem;
 
 void check_output_folder(const std::string& folder, const std::string& output) {

@@ -9,9 +9,7 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 volatile std::sig_atomic_t flag = 0;
 volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
 
@@ -24,7 +22,6 @@ void handle(int) {
   remove_unfinished_files();
   _exit(interrupted_exit_code);
 }
-
 }  // namespace
 
 void install_interrupt_handlers() {

@@ -17,9 +17,7 @@
 #include "host/cli/memory_plan.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 
 const std::string order = "the order is: tetwarp warp VOLUME... MESH -o OUT";
@@ -168,7 +166,6 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
     }
   }
 }
-
 }  // namespace
 
 std::vector<std::string> JobPlan::outputs() const {

@@ -12,9 +12,7 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// The plan with only the steps and outputs of this rank: outputs are dealt to ranks in turns.
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
@@ -27,7 +25,6 @@ VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   }
   return volume;
 }
-
 }  // namespace
 
 void run_volume(const WarpArguments& arguments,

@@ -20,9 +20,7 @@
 #include "host/cli/ranks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int failed_exit_code = 1;
 constexpr int usage_exit_code = 2;
 
@@ -101,9 +99,7 @@ int guarded_main(int argument_count, const char* const* arguments) {
     return print_error(error.what(), failed_exit_code);
   }
 }
-
 }  // namespace
-
 }  // namespace tetwarp::cli
 
 int main(int argument_count, char** arguments) {

@@ -8,9 +8,7 @@
 #include "io/memory.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Throws IoError unless the output can be computed in blocks.
 void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
   const std::string reason = needs_all_at_once(arguments);
@@ -25,7 +23,6 @@ double filter_bytes(Filter filter, PixelType type) {
   if (filter != Filter::bspline) return 0;
   return size_of(type) <= 2 || type == PixelType::float32 ? 12 : 8;
 }
-
 }  // namespace
 
 std::string needs_all_at_once(const WarpArguments& arguments) {

@@ -10,12 +10,9 @@
 #include <utility>
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int bar_width = 24;
 constexpr auto redraw_interval = std::chrono::milliseconds(100);
-
 }  // namespace
 
 ProgressBar::ProgressBar(bool wanted, std::string label, double step_count)

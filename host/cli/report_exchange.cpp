@@ -9,9 +9,7 @@
 #include "host/base/report_fields.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
 template <class Record, class Fields>
@@ -41,7 +39,6 @@ StepReport step_of(const Json& json) {
   }
   return step;
 }
-
 }  // namespace
 
 std::string text_of(const StepReport& step) {

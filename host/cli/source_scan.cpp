@@ -11,9 +11,7 @@
 #include "host/cli/interrupt.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 void widen(std::vector<double>& range, PixelType type, std::span<const std::byte> bytes) {
   with_pixel_type(type, [&]<class T>(T) {
     const std::span samples(reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
@@ -26,7 +24,6 @@ void widen(std::vector<double>& range, PixelType type, std::span<const std::byte
     }
   });
 }
-
 }  // namespace
 
 std::vector<double> scan_source(const VolumeReader& source,

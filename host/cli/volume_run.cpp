@@ -16,9 +16,7 @@
 #include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
   double bytes = 0;
   for (const ArrayHeader& array : arrays) {
@@ -26,7 +24,6 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
   }
   return bytes;
 }
-
 }  // namespace
 
 VolumeRun::VolumeRun(const WarpArguments& arguments,

@@ -8,9 +8,7 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// In the indices of a grid whose voxel 0 is voxel `origin` of the region's.
 Region moved(const Region& region, const std::array<std::int64_t, 3>& origin) {
   Region moved = region;
@@ -27,7 +25,6 @@ bool changes_nothing(const Counts& counts, const ExtraChoice& extra) {
       !extra.contains(forward_output) || counts.tets_unchanged == counts.tetrahedra;
   return counts.cells > 0 && counts.cells_unchanged == counts.cells && keeps_forward;
 }
-
 }  // namespace
 
 /// Throws what went wrong with the step.

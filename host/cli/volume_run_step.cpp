@@ -10,9 +10,7 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// A tetrahedron counts once, however many blocks it meets.
 void describe(const BlockPlan& plan, Counts& counts) {
   counts.blocks = std::ssize(plan.blocks);
@@ -20,7 +18,6 @@ void describe(const BlockPlan& plan, Counts& counts) {
   counts.inverted = plan.inverted;
   counts.flat = plan.flat;
 }
-
 }  // namespace
 
 void VolumeRun::run_step(const std::shared_ptr<Step>& step) {

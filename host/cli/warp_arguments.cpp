@@ -9,9 +9,7 @@
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 const Choices<Quantity> vector_laws{
     {name_of(Quantity::vector), Quantity::vector},
     {name_of(Quantity::covariant_vector), Quantity::covariant_vector},
@@ -203,7 +201,6 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--batch", arguments.batch, "run the jobs of a JSON file; options are defaults")
       ->type_name("FILE");
 }
-
 }  // namespace
 
 void declare_warp_options(CLI::App& app, WarpArguments& arguments) {

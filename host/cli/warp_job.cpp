@@ -16,9 +16,7 @@
 #include "io/memory.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Steps that the progress bar of the root counts: its own where ranks share out whole outputs.
 std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
   const std::size_t outputs = plan.outputs().size();
@@ -36,7 +34,6 @@ std::string plan_text(const StepPlan& plan) {
                             plan.blocks, plan.largest_block, plan.largest_window,
                             bytes_text(plan.bytes_read));
 }
-
 }  // namespace
 
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {

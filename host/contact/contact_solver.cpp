@@ -20,9 +20,7 @@
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
@@ -188,7 +186,6 @@ void fill_report(const EngineResult& result, ContactMeasure measure, ContactRepo
   const double residual = by_eta ? whole.eta() : whole.fclib();
   report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
 }
-
 }  // namespace
 
 std::pair<Backend, std::string> choose_contact_backend(Backend asked, int device) {

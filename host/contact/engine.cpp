@@ -10,9 +10,7 @@
 #include "host/contact/structure/extract.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Clock = std::chrono::steady_clock;
 
 /// Whether any normal offset is below -speed.
@@ -30,7 +28,6 @@ ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
   }
   return problem;
 }
-
 }  // namespace
 
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)

@@ -10,9 +10,7 @@
 #include "kernels/contact/contact_pipeline.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// The same contacts without friction and springs.
 ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   ContactSystem<double> bare = system;
@@ -35,7 +33,6 @@ double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::v
   pipeline.follow_impulses();
   return energy;
 }
-
 }  // namespace
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,

@@ -13,9 +13,7 @@
 #include "host/base/counter_hash.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using std::numbers::pi;
 
 /// Box of the rest positions, and the axes of a deformation: `along` is its axis, `side` and
@@ -159,7 +157,6 @@ void check_options(const DeformOptions& options, double time) {
     if (!std::isfinite(coordinate)) throw std::invalid_argument(where + "offset is not finite");
   }
 }
-
 }  // namespace
 
 std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& options, double time) {

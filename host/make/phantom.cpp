@@ -11,9 +11,7 @@
 #include "host/make/phantom_shapes.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr double skin_level = 0.42;
 constexpr double fat_level = 0.24;
 constexpr double muscle_level = 0.45;
@@ -156,7 +154,6 @@ Grid grid_of(const std::array<std::int64_t, 3>& dims) {
   }
   return grid;
 }
-
 }  // namespace
 
 Volume make_phantom(const std::array<std::int64_t, 3>& dims) {

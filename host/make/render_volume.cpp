@@ -13,9 +13,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr int largest_height = 4096;
 constexpr double largest_aspect = 8;           // width to height of a panel, or its inverse
 constexpr std::int64_t max_samples = 1 << 18;  // for the percentiles
@@ -208,7 +206,6 @@ void check_arguments(std::span<const Volume* const> volumes, const RenderOptions
                                 " is not below high " + std::to_string(*options.high));
   }
 }
-
 }  // namespace
 
 Image render(std::span<const Volume* const> volumes, const RenderOptions& options) {

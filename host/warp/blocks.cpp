@@ -16,9 +16,7 @@
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 std::string size_text(const Region& region) {
   std::string text;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,7 +61,6 @@ WarpPlan plan_of(const Grid& source, const Mesh& mesh, const WarpOptions& option
   plan.region = options.region.value_or(Region{{0, 0, 0}, plan.output_grid.dims});
   return plan;
 }
-
 }  // namespace
 
 struct BlockPlanner::State {

@@ -11,9 +11,7 @@
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 OutputFrame make_frame(const Region& region) {
   OutputFrame frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -79,7 +77,6 @@ std::string cell_name(const Mesh& mesh, std::size_t t) {
   if (t < alone) return "tetrahedron " + std::to_string(t);
   return "hexahedron " + std::to_string((t - alone) / tets_per_hex);
 }
-
 }  // namespace
 
 WarpGeometry make_geometry(const WarpPlan& plan) {

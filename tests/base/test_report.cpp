@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 std::set<std::string> names_of(const Json& object) {
@@ -133,6 +132,5 @@ TEST(Report, ListsTheBackendsOfThisMachine) {
   EXPECT_TRUE(backends[1].usable && backends[1].backend == Backend::cpu);
   EXPECT_TRUE(backends[2].usable && backends[2].backend == Backend::reference);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

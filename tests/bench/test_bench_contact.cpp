@@ -13,7 +13,6 @@
 
 namespace tetwarp::bench {
 namespace {
-
 /// A stack on two boxes, solved.
 struct Solved {
   ContactProblem problem = scenes::box_stack({.boxes = 2});
@@ -94,6 +93,5 @@ TEST(BenchContactCases, HaveNamesOfTheirOwn) {
     EXPECT_GT(names.size(), 50u);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::bench

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 /// The ramp moved by whole voxels along i, as the scene's mesh does it.
@@ -212,6 +211,5 @@ TEST(Cli, StepsBegunEarlyMakeTheSameFiles) {
     EXPECT_EQ(early["steps"][step]["step"], step);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

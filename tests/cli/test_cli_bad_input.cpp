@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 /// A command line that must fail, and words that its message must hold.
@@ -236,6 +235,5 @@ TEST(BadInput, RefusesATruncatedMesh) {
 
   expect_refused(scene, {warp_with({}), "mesh.vtkhdf"}, 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

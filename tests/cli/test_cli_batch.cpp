@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 /// A scene whose batch file is in a folder of its own, so that relative paths show.
@@ -152,6 +151,5 @@ TEST_F(Batch, RefusesAFileWithoutJobs) {
   }
   EXPECT_EQ(run_command(scene, {"warp", "--batch", "none.json"}).exit_code, 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

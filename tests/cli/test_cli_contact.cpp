@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 void expect_near(const std::vector<double>& actual, const std::vector<double>& expected) {
   ASSERT_EQ(actual.size(), expected.size());
   for (std::size_t i = 0; i < actual.size(); ++i) EXPECT_NEAR(actual[i], expected[i], 1e-5) << i;
@@ -209,6 +208,5 @@ TEST_F(ContactCommand, IsUnderstoodByInfo) {
   EXPECT_EQ(after["solution"], "converged");
   EXPECT_LE(after["residual"], 1e-6);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
@@ -225,6 +224,5 @@ TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
   EXPECT_LT(step["bytes_read"].get<double>(), 8 * voxels);
   EXPECT_EQ(folder.names(), (Names{"mesh.vtkhdf", "plan.json", "volume.vtkhdf"}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
@@ -138,6 +137,5 @@ TEST_F(Ranks, AreToldOnceWhatIsWrongWithAllOfThem) {
     EXPECT_EQ(scene.names(), scene.inputs);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

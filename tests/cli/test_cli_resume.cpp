@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 /// An old time stamp, so that a rewritten file is told from a kept one without waiting.
@@ -210,6 +209,5 @@ TEST(FullDisk, IsNoticedOnStandardOutput) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(result.has_one_line_error()) << result.err;
 }
-
 }  // namespace
 }  // namespace tetwarp::test

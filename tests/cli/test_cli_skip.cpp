@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 /// A folder with volume.vtkhdf, 48 voxels per axis, one array half and one all air, and mesh.vtkhdf
@@ -138,6 +137,5 @@ TEST(CliSkip, StoresTemporalStepsThatLookTheSameOnce) {
   EXPECT_EQ(std::filesystem::file_size(scene / "fast.vtkhdf") / samples, 3u);
   EXPECT_EQ(std::filesystem::file_size(scene / "slow.vtkhdf") / samples, 6u);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -256,6 +255,5 @@ TEST(BodyRelax, HasTheSameBitsInAnyOrderAndForAnyNumberOfThreads) {
   EXPECT_EQ(step(CpuContactExec(2)), one);
   EXPECT_EQ(step(CpuContactExec(3)), one);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

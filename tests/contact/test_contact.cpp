@@ -17,7 +17,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Numbers = std::vector<double>;
 
 // ---- against the reference
@@ -163,6 +162,5 @@ TEST_P(EachMethod, TheOrderOfContactsAndBodiesDoesNotMatter) {
     EXPECT_LE(relative_distance(solution.body_velocity, other.body_velocity), 1e-7);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

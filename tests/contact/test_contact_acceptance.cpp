@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class EachLaw : public ::testing::TestWithParam<FrictionLaw> {};
 using BlockAcceptance = EachLaw;
 INSTANTIATE_TEST_SUITE_P(Each,
@@ -203,6 +202,5 @@ TEST_P(BlockAcceptance, OrderMirrorAndUnitsChangeResidualsByRoundingOnly) {
     EXPECT_NEAR(eta_of(rescaled(original, 1, 1, factor)), eta, 1e-11 * eta);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

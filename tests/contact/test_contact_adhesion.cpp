@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double dt = 0.01;                          // s
 constexpr double area = 1e-4;                        // m^2
 constexpr double stiffness = 1e7;                    // N/m^3
@@ -295,6 +294,5 @@ TEST(ContactAdhesion, RefusesSizesThatDoNotMatch) {
   problem.adhesion.energy.push_back(1);
   EXPECT_THROW(evolve_adhesion(problem, solution), ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -129,6 +128,5 @@ TEST_P(Associated, LiftsByFrictionTimesSlip) {
 
   EXPECT_DOUBLE_EQ(lift(0), GetParam() == FrictionLaw::cone ? 2.5 : 3.5);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Constants = ContactConstants<double>;
 
 /// One contact that obeys its law, velocities near by, and its block, of which only a part is
@@ -85,6 +84,5 @@ TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastWhatIsSaid) {
   }
   EXPECT_GT(closest, 0.8);  // 0.8 / 0.978 where it is tightest
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Colors = std::vector<std::int32_t>;
 
 /// Another executor, passes counted.
@@ -240,6 +239,5 @@ TEST(ContactComponents, AChainIsOne) {
 
   EXPECT_EQ(lowest, std::vector<std::int32_t>(2001, 0));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

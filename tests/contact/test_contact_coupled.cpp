@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// The Delassus matrix of a condensed island, stored by blocks, is used like one stored by rows.
 TEST(DenseBlocks, HaveTheStructureAndNumbersOfTheSameMatrixByRows) {
   const ContactProblem dense =
@@ -155,6 +154,5 @@ TEST(ResidualEstimator, IsRightAboutStiffGlueOnSoftBodies) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::int64_t block_contacts = 2048;  ///< of kernels/contact/contact_block.cuh
 
 ContactOptions on_device(ContactOptions options) {
@@ -244,6 +243,5 @@ TEST_F(ContactCuda, EvolvesAdhesionAsTheHostDoes) {
     EXPECT_EQ(there.debonded, here.debonded);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

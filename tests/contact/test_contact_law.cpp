@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Wide = long double;
 using Vector = std::array<Wide, 3>;
 
@@ -261,6 +260,5 @@ TYPED_TEST(ContactLaw, TheDiscIsRoundAndTheBoxIsNot) {
   EXPECT_EQ(box[1], T(-0.5));
   EXPECT_EQ(box[2], T(-0.5));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

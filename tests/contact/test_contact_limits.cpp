@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 // ---- the limits of friction and adhesion, for both laws and both rules
 // ---------------------------
 
@@ -217,6 +216,5 @@ TEST(BondStrength, SlowOpeningCostsTheAdhesionEnergyAndFastOpeningMore) {
   EXPECT_GT(medium, slow + 0.05);
   EXPECT_GT(fast, medium + 0.3);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::VectorXd;
 
 /// A of a problem with one island, its places in the order of the structure, and a load.
@@ -151,6 +150,5 @@ TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   EXPECT_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) { return false; }),
                ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -23,7 +23,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Elastic nodes and bodies of six dofs that A couples and contacts link.
 ContactProblem mixture() {
   ContactProblem soft = make_elastic_problem({.cells = 2});
@@ -218,6 +217,5 @@ TEST(BlockJacobi, IsFollowedByCondensingWhereItFails) {
   EXPECT_TRUE(solution.report.method.starts_with("outer_anderson, "));
   EXPECT_EQ(solution.report.outer_iterations, 100);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

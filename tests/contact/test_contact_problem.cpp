@@ -12,7 +12,6 @@
 
 namespace tetwarp {
 namespace {
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -286,6 +285,5 @@ TEST(ContactProblem, BlocksAreUncoupledRangesOrNodes) {
 
   EXPECT_EQ(blocks_of(problem), (std::vector<std::int32_t>{0, 6, 7, 8, 9, 12, 15, 18, 21, 22}));
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -14,7 +14,6 @@
 
 namespace tetwarp {
 namespace {
-
 using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -284,6 +283,5 @@ TEST(ContactReference, RefusesWhatCheckRefuses) {
   EXPECT_THROW(solve_contacts_reference(samples::single_contact({-1, 0, 0}, -0.5)),
                ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -11,7 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
 using samples::bond;
 using samples::single_contact;
 
@@ -145,6 +144,5 @@ TEST(ReferenceSlide, AlongADiagonalEndsOnTheDiscOrTheSquare) {
   EXPECT_NEAR(pyramid[1], -0.5, exact);
   EXPECT_NEAR(pyramid[2], -0.5, exact);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 /// A report whose numbers all differ, in the order of its fields.
@@ -129,6 +128,5 @@ TEST(ContactReport, NamesTheStatuses) {
   EXPECT_STREQ(name_of(ContactStatus::not_converged), "not converged");
   EXPECT_STREQ(name_of(ContactStatus::infeasible), "infeasible");
 }
-
 }  // namespace
 }  // namespace tetwarp::test

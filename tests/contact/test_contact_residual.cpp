@@ -13,7 +13,6 @@
 
 namespace tetwarp {
 namespace {
-
 using samples::bond;
 using samples::list_of;
 using samples::single_contact;
@@ -251,6 +250,5 @@ TEST(ContactResidual, RefusesASystemThatOnlyItsBlocksMakeLookPositive) {
 
   EXPECT_THROW(residual_of(problem, std::vector<double>{0.0, 0.0, 0.0}, {}), ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double tolerance = 1e-10;
 
 using Switch = bool ContactSkipOptions::*;
@@ -196,6 +195,5 @@ TEST(ContactSkip, CoupledIslandsStayCondensedWhileTheSystemStays) {
     expect_agreement(with, without);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Numbers = std::vector<double>;
 
 /// Only cuda has to be asked for by name.
@@ -199,6 +198,5 @@ TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
     EXPECT_NE(coarse.impulse, fine.impulse) << tolerance;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

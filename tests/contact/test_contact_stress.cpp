@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 struct EnergyRun {
   double max_energy = 0;  ///< after the start, as a fraction of the energy at the start
   bool is_finite = true;
@@ -99,6 +98,5 @@ TEST(ContactStress, IntensitiesStayInRangeForAnyRates) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A step in which glued blocks are pulled, pressed and sheared.
 ContactCase busy_case(double friction, double ratio) {
   constexpr int count = 5;
@@ -117,6 +116,5 @@ TEST(ContactStress, PullOffForceDoesNotDependOnTheNumberOfContactPoints) {
     EXPECT_LT(force, 1.2);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 struct StackRun {
   double worst_eta = 0;
   double sink = 0;  ///< of the top block over its edge
@@ -58,6 +57,5 @@ TEST(ContactStress, StacksSolvedByFewSweepsStayFinite) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,7 +17,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 
 constexpr ContactOptions variants[] = {
@@ -180,6 +179,5 @@ TEST_P(ContactSweep, SkipsFrozenContactsAndCountsThem) {
   }
   EXPECT_GT(relative_distance(swept.impulse, std::vector<double>(21, 1e-300)), 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

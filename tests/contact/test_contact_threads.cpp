@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class ContactThreads : public ::testing::TestWithParam<ContactMethod> {
  protected:
   static void expect_same_bits_for_any_number(const ContactProblem& problem,
@@ -51,6 +50,5 @@ TEST_P(ContactThreads, TakeIslandsSideBySide) {
 
   expect_same_bits_for_any_number(problem, 1e-6, 2000);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

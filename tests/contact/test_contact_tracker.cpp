@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double dt = 0.01;
 constexpr double area = 1e-4;
 constexpr double stiffness = 1e6;
@@ -273,6 +272,5 @@ TEST(ContactTracker, RefusesWhatItCannotFollow) {
   EXPECT_THROW(ContactTracker{options}, std::invalid_argument);
   EXPECT_THROW(ContactTracker(glue(), {ContactRecord{.key = {1, 0, 0, 0}}}), std::invalid_argument);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

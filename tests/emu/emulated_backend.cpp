@@ -11,9 +11,7 @@
 #include "host/warp/cuda/cell_raster_cuda.cuh"
 
 namespace tetwarp {
-
 namespace {
-
 /// Work on a stream that is no kernel of ours.
 template <class Work>
 void enqueue(cudaStream_t stream, Work&& work) {
@@ -27,7 +25,6 @@ void enqueue(cudaStream_t stream, Work&& work) {
 void take_scratch(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
   scratch.reserve(256 + count / 32);
 }
-
 }  // namespace
 
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {

@@ -10,7 +10,6 @@
 
 namespace tetwarp::bench {
 namespace {
-
 constexpr int dims[3] = {19, 13, 11};
 constexpr double turn[3][4] = {{0.8, -0.6, 0.02, 6}, {0.6, 0.8, 0, -3}, {0, -0.1, 0.9, 0.3}};
 
@@ -93,6 +92,5 @@ TEST_P(AffineSimt, LayoutsHaveTheSameBitsAndEveryVoxelIsWritten) {
     EXPECT_EQ(std::count(output.begin(), output.end(), -1.0f), 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::bench

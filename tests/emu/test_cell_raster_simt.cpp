@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// What a raster job varies in.
 struct RasterCase {
   std::string scene = "waved";
@@ -288,6 +287,5 @@ TEST(CellRasterSimt, EveryVoxelIsWritten) {
   EXPECT_EQ(std::ranges::count(blocks.owner, -99), 0);
   EXPECT_EQ(std::ranges::count(blocks.mask, 0xee), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

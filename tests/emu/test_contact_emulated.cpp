@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 DeviceCalls calls_of(ContactSolver& solver, const ContactProblem& problem) {
   take_calls();
   EXPECT_TRUE(solver.solve(problem).converged());
@@ -72,6 +71,5 @@ TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {
     expect_same_bits(solver.solve(problem), first, "another order of threads");
   });
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 ContactSystem<double> system_in(const SweepScene& scene, double) {
   return scene.system;
 }
@@ -290,6 +289,5 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
     EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
   });
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp {
 namespace {
-
 std::vector<int> numbers(int count) {
   std::vector<int> values(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = i * 7919 % 1009;
@@ -197,6 +196,5 @@ TEST(Simt, RunsAgainAfterAFault) {
 
   EXPECT_EQ(sum_of<true>({1, 2, 3}), 6);
 }
-
 }  // namespace
 }  // namespace tetwarp

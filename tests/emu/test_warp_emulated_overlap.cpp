@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// The streams of the only Warper, in the order of their creation.
 enum StreamNumber { compute_stream, upload_stream, download_stream };
 
@@ -124,6 +123,5 @@ TEST_F(EmulatedOverlap, AFailedStepIsNotChargedToTheNext) {
   EXPECT_EQ(timings.setup, expected.setup);
   EXPECT_EQ(timings.raster, expected.raster);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -29,7 +29,6 @@
 #include "tests/scenes/io_files.hpp"
 
 namespace {
-
 using namespace tetwarp;
 using Clock = std::chrono::steady_clock;
 
@@ -242,7 +241,6 @@ bool fuzz(int seconds, std::uint64_t seed) {
   if (hdf5_crashes > 0) std::printf("%d crashes inside HDF5, not counted\n", hdf5_crashes);
   return failures == 0;
 }
-
 }  // namespace
 
 // Sanitizers end the child so that it is counted; HDF5 copes with allocations that are refused.

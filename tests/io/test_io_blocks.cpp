@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A region of a volume's samples, cut out by hand.
 std::vector<std::byte> cut_out(const Volume& volume, const Region& region) {
   const std::size_t voxel = static_cast<std::size_t>(volume.components) * size_of(volume.type);
@@ -139,6 +138,5 @@ TEST(IoBlocks, LeaveNothingUnlessFinished) {
   EXPECT_NE(io_error([&] { BlockVolumeWriter(folder / "a.vtkhdf", flat, {}, {}, false); }), "");
   EXPECT_EQ(folder.entry_count(), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

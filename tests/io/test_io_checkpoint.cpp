@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 WorldOptions sticky() {
   WorldOptions options;
   options.time_step = 2e-3;
@@ -170,6 +169,5 @@ TEST(Checkpoint, NamesWhatIsWrongWithAFile) {
   EXPECT_NE(error_after([&](Hdf5Editor& e) { e.remove(root); }).find("tetwarp_checkpoint"),
             std::string::npos);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

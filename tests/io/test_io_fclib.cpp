@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class Fclib : public testing::Test {
  protected:
   /// Writes W of local_problem() in another storage.
@@ -234,6 +233,5 @@ TEST_F(Fclib, RefusesToWriteAProblemThatCannotBeSolved) {
   EXPECT_TRUE(error.starts_with(file + ": /fclib_local/vectors/mu: friction[1]")) << error;
   EXPECT_EQ(folder.entry_count(), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

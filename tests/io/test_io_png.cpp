@@ -7,7 +7,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t b = at; b < at + 4; ++b) {
@@ -49,6 +48,5 @@ TEST(Png, NamesTheFolderThatIsMissing) {
 
   EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Mode = Hdf5Editor::Mode;
 
 constexpr PixelType all_types[] = {
@@ -262,6 +261,5 @@ TEST(VtkhdfVolume, IsToldApartFromAMeshByContent) {
   EXPECT_EQ(kind_of(folder / "t"), FileKind::unknown);
   EXPECT_THROW(kind_of(folder / "none"), IoError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

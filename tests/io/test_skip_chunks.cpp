@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// 64x64x80 float32 samples, 16 slices in a chunk, five chunks, one of them not all background.
 Volume mostly_background() {
   Grid grid;
@@ -52,6 +51,5 @@ TEST(SkipChunks, CountsOverArraysAndSteps) {
   EXPECT_EQ(file.chunks, 20);
   EXPECT_EQ(file.chunks_background, 16);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

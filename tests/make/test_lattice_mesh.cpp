@@ -16,7 +16,6 @@
 
 namespace tetwarp {
 namespace {
-
 using Eigen::Vector3d;
 using make_checks::contains;
 using make_checks::lattice_of;
@@ -197,6 +196,5 @@ TEST(Lattice, HexahedraAreItsCellsRightSideOut) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp

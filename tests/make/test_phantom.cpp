@@ -11,7 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
 using make_checks::lattice_of;
 using make_checks::smallest_volume;
 
@@ -128,6 +127,5 @@ TEST(Phantom, EveryDeformationKeepsItsLatticeRightSideOut) {
 TEST(Phantom, SixCellsMakeTheLatticeOfTheBenchmarks) {
   EXPECT_EQ(lattice_of(phantom(), 6).tets.size(), 720u);
 }
-
 }  // namespace
 }  // namespace tetwarp

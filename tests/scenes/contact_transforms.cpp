@@ -8,9 +8,7 @@
 #include <random>
 
 namespace tetwarp::test {
-
 namespace {
-
 constexpr std::array scalars = {&AdhesionState::area,
                                 &AdhesionState::stiffness,
                                 &AdhesionState::tangential_stiffness,
@@ -80,7 +78,6 @@ std::vector<double> repeated(const std::vector<double>& pattern, std::size_t siz
   for (std::size_t i = 0; i < size; ++i) result[i] = pattern[i % pattern.size()];
   return result;
 }
-
 }  // namespace
 
 ContactCase permuted(const ContactCase& original, std::uint64_t seed) {

@@ -18,7 +18,6 @@
 #include <vector>
 
 namespace tetwarp::test {
-
 namespace fs = std::filesystem;
 
 /// A folder of its own under the system's temporary folder, removed at the end.

@@ -14,7 +14,6 @@ namespace tetwarp::scenes {
 using namespace std::string_literals;
 
 namespace {
-
 constexpr double pi = 3.14159265358979323846;
 
 /// Maps index-space points of a grid to world.
@@ -56,7 +55,6 @@ Mesh soup(double n, int tets, std::uint64_t seed) {
   }
   return mesh;
 }
-
 }  // namespace
 
 double uniform(std::uint64_t seed, std::uint64_t index) {

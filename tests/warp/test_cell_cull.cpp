@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class CellCull : public EachExec<Exec> {
  protected:
@@ -222,6 +221,5 @@ TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
     EXPECT_EQ(found[c], make_pair(static_cast<std::int64_t>(c), 0, false));
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

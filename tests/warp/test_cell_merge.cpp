@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 /// What the stage gives.
@@ -156,6 +155,5 @@ TYPED_TEST(CellMerge, LeavesOutWhatHasNoRoom) {
   EXPECT_EQ(this->download(pair_count).front(), 4);
   EXPECT_EQ(this->ranges_of(ranges), (Ranges{{0, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 3}}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -8,7 +8,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// What the stage gives.
 struct SortedPairs {
   std::vector<CellPair> pairs;
@@ -127,6 +126,5 @@ TYPED_TEST(CellPairs, LeaveEveryCellEmptyWhenAllAreRejected) {
   for (const auto& [begin, end] : found.ranges) EXPECT_EQ(begin, end);
   EXPECT_EQ(found.accepted, 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class CellWork : public EachExec<Exec> {
  protected:
@@ -190,6 +189,5 @@ TYPED_TEST(CellWork, IsRightAboutEveryTap) {
   }
   EXPECT_GT(filled, 100);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

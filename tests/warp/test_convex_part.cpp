@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Plane = std::array<double, 4>;
 
 /// Numbers in [-1, 1), one after the other.
@@ -72,6 +71,5 @@ TEST(ConvexPart, CutsAddUpAndFit) {
   EXPECT_LE(edges, 84);
   EXPECT_GE(corners, 24);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

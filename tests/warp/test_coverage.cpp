@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::int64_t scene_size = 40;
 
 class Coverage : public EachScene<scene_size> {};
@@ -208,6 +207,5 @@ TEST(CoverageVolume, ConvergesToTheMeshVolumeAtFirstOrder) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Waves in the lower third, above them air of one value, and far up another.
 Volume airy_volume(const Grid& grid, PixelType type, int components = 1) {
   Volume volume = scenes::wavy_volume(grid, type, components);
@@ -168,6 +167,5 @@ TEST(SkipConstant, WorksWithUpdates) {
     EXPECT_GT(sum.cells_unchanged, 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

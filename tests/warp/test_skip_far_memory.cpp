@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Host threads on memory of their own.
 class FarExec : public CpuExec {
  public:
@@ -149,6 +148,5 @@ TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
     EXPECT_TRUE(out.has_bits_of(anew)) << scale;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Back end and name of a scene.
 using UpdateCase = std::tuple<Backend, std::string>;
 
@@ -247,6 +246,5 @@ TEST(SkipUnchangedSteps, LessThanAQuantumIsNoMotion) {
   EXPECT_GT(counts_near.tets_unchanged, counts_near.tetrahedra / 2);
   EXPECT_LT(counts_far.tets_unchanged, counts_far.tetrahedra);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

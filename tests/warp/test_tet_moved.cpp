@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class TetMoved : public EachExec<Exec> {
  protected:
@@ -114,6 +113,5 @@ TYPED_TEST(TetMoved, SetsUpMovedTetrahedraAndNoOthers) {
   }
   EXPECT_EQ(this->download(before.classes), this->download(after.classes));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

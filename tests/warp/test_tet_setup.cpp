@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class TetSetupStage : public EachExec<Exec> {
  protected:
@@ -238,6 +237,5 @@ TEST(SetPlanes, HaveTheSameBitsWithShortAndLongIntegers) {
     EXPECT_EQ(std::memcmp(at_anchor[0], at_anchor[1], sizeof(at_anchor[0])), 0) << n;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

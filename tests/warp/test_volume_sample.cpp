@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A small volume that owns its samples.
 template <class T>
 struct Samples {
@@ -199,6 +198,5 @@ TEST(VolumeSample, APositionBeyondAllVolumesIsOutside) {
     EXPECT_FALSE(tap_of(volume.view(), linear, map.whole, x).inside);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A volume of one value that owns its samples.
 template <class T>
 struct Samples {
@@ -177,6 +176,5 @@ TYPED_TEST(VolumeUniform, IsTheDefinition) {
   }
   for (const int count : seen) EXPECT_GT(count, 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

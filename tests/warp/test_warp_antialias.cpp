@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::array averaging_filters = {Filter::linear, Filter::cubic, Filter::bspline,
                                           Filter::lanczos};
 
@@ -136,6 +135,5 @@ TEST(WarpAntialias, HasTheSameBitsWhateverIsLeftOut) {
     EXPECT_GT(unchanged, 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double pi = 3.14159265358979323846;
 
 class WarpPosition : public WarpLaws {};
@@ -261,6 +260,5 @@ TEST_P(WarpCoverage, HasNoErrorWhateverTheMesh) {
     EXPECT_GT(errors.inside, 100000);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

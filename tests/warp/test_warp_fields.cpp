@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
 
@@ -201,6 +200,5 @@ TEST_P(WarpFields, DisplaceAsTheWarpDoesAndForwardIsTheInverse) {
   EXPECT_EQ(warped.fields.forward(), back.fields.displacement());
   EXPECT_EQ(warped.fields.displacement(), back.fields.forward());
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpFilters : public EachBackend {
  protected:
   Warped run(const Volume& source, const scenes::Scene& scene, WarpOptions options) {
@@ -221,6 +220,5 @@ TEST_P(WarpFilters, LabelTiesGoToTheLowest) {
     ASSERT_EQ(warped.volume.samples<std::int64_t>()[v], expected) << v;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

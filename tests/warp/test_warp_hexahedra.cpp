@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpHexahedra : public EachBackend {
  protected:
   Warped run(const Volume& source, const scenes::Scene& scene, WarpOptions options = {}) {
@@ -265,6 +264,5 @@ TEST_P(WarpHexahedra, AreCheckedBeforeUse) {
   EXPECT_EQ(message_of([&] { run(ramp(1, 0, 0), scene); }),
             "mesh: hexahedron 5 names node 1000, expected 0 to 79");
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class InFlight : public EachBackend {
  protected:
   const scenes::Scene scene = scenes::adversarial_scene("identity", 16);
@@ -96,6 +95,5 @@ TEST_P(InFlight, AWarperMayEndWithStepsInFlight) {
   }
   EXPECT_TRUE(a.bits() == expected[0]);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
 
@@ -243,6 +242,5 @@ TEST(WarpQuantities, AreCopiedUnderAWholeShift) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

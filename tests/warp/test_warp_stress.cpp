@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStress : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStress, each_backend, name_of_backend);
 
@@ -137,6 +136,5 @@ TEST_P(WarpStress, FoldsLeaveNoHoleAndKeepPositions) {
   EXPECT_GT(probed.counts.inverted, probed.counts.tetrahedra / 5);
   EXPECT_GT(probed.counts.folded, probed.counts.covered / 3);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressData : public EachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressData, each_backend, name_of_backend);
 
@@ -293,6 +292,5 @@ TEST_P(WarpStressData, AnOddBackgroundStaysOutside) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressGrids : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressGrids, each_backend, name_of_backend);
 
@@ -177,6 +176,5 @@ TEST_P(WarpStressGrids, SpacingRatiosOfAThousandKeepTheLaws) {
   }
   found("evaluation", worst);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressSize : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressSize, each_backend, name_of_backend);
 
@@ -154,6 +153,5 @@ TEST_P(WarpStressSize, TwoMillionTetrahedraKeepTheLaws) {
   EXPECT_TRUE(probed.owner == reference.owner);
   found("evaluation", errors.evaluation);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

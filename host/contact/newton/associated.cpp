@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 using lorentz::Vector;
 
 namespace {
-
 constexpr int iteration_limit = 60;
 constexpr double gap_goal = 1e-12;
 constexpr double step_share = 0.99;  ///< of the distance to the boundary of the cones
@@ -33,7 +32,6 @@ double compliance_of(const MeasuredContact& contact) {
 Index row_of(std::size_t c) {
   return 3 * static_cast<Index>(c);
 }
-
 }  // namespace
 
 AssociatedContact::AssociatedContact(const std::vector<MeasuredContact>& contacts,

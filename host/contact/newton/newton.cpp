@@ -21,7 +21,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 // All constants were found by trial on stacks, packings and problems recorded in other simulators,
 // also with fewer contacts, in other orders, and with other friction and loads.
 constexpr double first_epsilon = 1e-3;
@@ -235,7 +234,6 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
   }
   return false;
 }
-
 }  // namespace
 
 NewtonResult newton_polish(const ContactProblem& problem,

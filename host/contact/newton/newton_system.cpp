@@ -13,7 +13,6 @@ using Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
-
 /// With fewer unknowns a dense factorization is faster than a sparse one.
 constexpr Index dense_limit = 300;
 
@@ -36,7 +35,6 @@ Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
   matrix.makeCompressed();
   return matrix;
 }
-
 }  // namespace
 
 NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)

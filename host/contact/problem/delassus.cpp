@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
-
 VectorXd make_vector(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
@@ -74,7 +73,6 @@ class HalfSolve {
   std::vector<bool> is_reached_;
   std::vector<Index> reached_;
 };
-
 }  // namespace
 
 Delassus::Delassus(const ContactProblem& problem, double recovery_speed)

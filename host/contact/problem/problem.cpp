@@ -13,9 +13,7 @@
 #include "host/contact/problem/matrix.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr std::int64_t max_contacts = std::numeric_limits<std::int32_t>::max() / 3;
 
 std::string count(std::int64_t number) {
@@ -217,7 +215,6 @@ void check_adhesion(const ContactProblem& problem) {
     check_finite("adhesion.gap", adhesion.gap);
   }
 }
-
 }  // namespace
 
 void check_problem(const ContactProblem& problem) {

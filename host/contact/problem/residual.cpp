@@ -20,7 +20,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 struct Eta {
   double total = 0;
   double largest = 0;
@@ -81,7 +80,6 @@ VectorXd make_vector(std::span<const double> values, Index expected, const char*
   }
   return Eigen::Map<const VectorXd>(values.data(), size);
 }
-
 }  // namespace
 
 ContactResidual residual_of(const ContactProblem& problem,

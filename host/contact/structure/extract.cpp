@@ -6,9 +6,7 @@
 #include "host/contact/problem/matrix.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// The place of each item in a part; -1 for items that are not in it.
 std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::int32_t>& part) {
   std::vector<std::int32_t> place(index_of(count), -1);
@@ -36,7 +34,6 @@ SparseMatrix make_part(const SparseMatrix& matrix,
   }
   return part;
 }
-
 }  // namespace
 
 std::vector<double> gathered(const std::vector<double>& values,

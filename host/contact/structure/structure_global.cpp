@@ -8,9 +8,7 @@
 #include "host/contact/structure/structure_parts.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Blocks of dofs in the order of the problem, and their connections.
 struct Blocks {
   std::vector<std::int64_t> start;  ///< [blocks + 1], dofs
@@ -232,7 +230,6 @@ void fill_system(const ContactProblem& problem,
     for (const std::int32_t other : blocks.coupled.of(order[place])) entry_of[index_of(other)] = -1;
   }
 }
-
 }  // namespace
 
 void fill_global_structure(const ContactProblem& problem,

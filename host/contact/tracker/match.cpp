@@ -9,9 +9,7 @@
 #include "host/contact/tracker/geometry.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 struct Candidate {
   double squared_distance;
   std::size_t report;
@@ -28,7 +26,6 @@ using BodyPair = std::pair<std::int32_t, std::int32_t>;
 BodyPair bodies_of(const ContactKey& key) {
   return {key.body_a, key.body_b};
 }
-
 }  // namespace
 
 ReportedContact in_key_order(const ReportedContact& report) {

@@ -18,7 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
 /// State of one tangent of a closed contact.
 struct TangentMode {
   bool sticks = false;
@@ -115,7 +114,6 @@ class ModeSystem {
   MatrixXd matrix_;
   VectorXd right_;
 };
-
 }  // namespace
 
 double mode_count(const DenseContacts& contacts, const ContactOptions& options) {

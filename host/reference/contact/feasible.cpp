@@ -15,7 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
 /// min |matrix x - right| over x >= 0; returns the smallest |matrix x - right|.
 /// Source: Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23.
 double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) {
@@ -62,7 +61,6 @@ double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) 
   }
   return (matrix * x - right).norm();
 }
-
 }  // namespace
 
 bool is_feasible(const DenseContacts& contacts) {

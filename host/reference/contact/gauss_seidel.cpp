@@ -13,7 +13,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 constexpr double goal = 1e-12;
 constexpr std::int64_t sweeps_per_residual = 10;
 
@@ -42,7 +41,6 @@ bool sweep(const DenseContacts& contacts,
   }
   return has_changed;
 }
-
 }  // namespace
 
 SweptImpulses gauss_seidel(const DenseContacts& contacts,

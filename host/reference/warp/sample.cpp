@@ -4,9 +4,7 @@
 #include <numbers>
 
 namespace tetwarp::reference {
-
 namespace {
-
 /// sin(pi x) / (pi x)
 double sinc(double x) {
   if (x == 0) return 1;
@@ -52,7 +50,6 @@ void bridge_gaps(double* row, std::int64_t step, std::int64_t n) {
     if (is_gap(i)) row[i * step] = i < first ? leading : row[(i - 1) * step];
   }
 }
-
 }  // namespace
 
 double weight_of(Filter filter, double distance) {

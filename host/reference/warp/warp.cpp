@@ -23,9 +23,7 @@
 #include "host/reference/warp/sample.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using namespace reference;
 
 class ReferenceBackend : public WarpBackend {
@@ -246,7 +244,6 @@ class ReferenceBackend : public WarpBackend {
   Ownership owners_;
   std::vector<Rule> rules_;  ///< of every tetrahedron
 };
-
 }  // namespace
 
 std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan) {
