@@ -1,4 +1,3 @@
-/// @file file_kind.cpp
 #include <tetwarp/io.hpp>
 
 #include "io/h5.hpp"

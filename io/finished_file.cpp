@@ -1,4 +1,3 @@
-/// @file finished_file.cpp
 #include "io/finished_file.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,3 @@
-/// @file h5_disk.cpp
 #include "io/h5_disk.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,3 @@
-/// @file nifti_header.cpp
 #include "io/nifti_header.hpp"
 
 #include <sys/stat.h>

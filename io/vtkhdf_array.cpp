@@ -1,4 +1,3 @@
-/// @file vtkhdf_array.cpp
 #include "io/vtkhdf_array.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file vtkhdf_image.cpp
 #include "io/vtkhdf_image.hpp"
 
 #include <set>

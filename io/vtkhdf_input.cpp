@@ -1,4 +1,3 @@
-/// @file vtkhdf_input.cpp
 #include "io/vtkhdf_input.hpp"
 
 #include <tetwarp/io.hpp>

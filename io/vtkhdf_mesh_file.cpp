@@ -1,4 +1,3 @@
-/// @file vtkhdf_mesh_file.cpp
 #include "io/vtkhdf_mesh_file.hpp"
 
 #include <cmath>

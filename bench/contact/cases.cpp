@@ -1,4 +1,3 @@
-/// @file cases.cpp
 #include "bench/contact/cases.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file rows.cpp
 #include "bench/contact/rows.hpp"
 
 #include <fmt/format.h>

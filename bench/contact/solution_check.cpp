@@ -1,4 +1,3 @@
-/// @file solution_check.cpp
 #include "bench/contact/solution_check.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file device_floors.cu
 #include "bench/measure/device_floors.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file program.cpp
 #include "bench/measure/program.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,4 +1,3 @@
-/// @file row.cpp
 #include "bench/measure/row.hpp"
 
 #include <utility>

@@ -1,4 +1,3 @@
-/// @file timing.cpp
 #include "bench/measure/timing.hpp"
 
 #include <time.h>

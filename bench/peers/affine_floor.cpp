@@ -1,4 +1,3 @@
-/// @file affine_floor.cpp
 #include <algorithm>
 #include <cmath>
 

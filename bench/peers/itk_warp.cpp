@@ -1,4 +1,3 @@
-/// @file itk_warp.cpp
 #include <itkImage.h>
 #include <itkLinearInterpolateImageFunction.h>
 #include <itkMultiThreaderBase.h>

@@ -1,4 +1,3 @@
-/// @file paper_method.cpp
 #include <algorithm>
 #include <cmath>
 #include <vector>

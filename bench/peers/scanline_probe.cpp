@@ -1,4 +1,3 @@
-/// @file scanline_probe.cpp
 #include <algorithm>
 #include <cmath>
 #include <vector>

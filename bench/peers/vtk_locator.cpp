@@ -1,4 +1,3 @@
-/// @file vtk_locator.cpp
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkGenericCell.h>

@@ -1,4 +1,3 @@
-/// @file analytic_rows.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file chunks_rows.cpp
 #include <filesystem>
 #include <functional>
 #include <span>

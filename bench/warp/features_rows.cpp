@@ -1,4 +1,3 @@
-/// @file features_rows.cpp
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -1,4 +1,3 @@
-/// @file fields_rows.cpp
 #include <algorithm>
 #include <array>
 #include <cmath>

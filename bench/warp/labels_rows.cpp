@@ -1,4 +1,3 @@
-/// @file labels_rows.cpp
 #include <cmath>
 #include <cstdint>
 #include <functional>

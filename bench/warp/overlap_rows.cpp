@@ -1,4 +1,3 @@
-/// @file overlap_rows.cpp
 #include <array>
 #include <cstring>
 #include <functional>

@@ -1,4 +1,3 @@
-/// @file region_rows.cpp
 #include <cstring>
 #include <functional>
 #include <optional>

@@ -1,4 +1,3 @@
-/// @file series_rows.cpp
 #include <array>
 #include <cstring>
 #include <functional>

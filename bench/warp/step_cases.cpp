@@ -1,4 +1,3 @@
-/// @file step_cases.cpp
 #include "bench/warp/step_cases.hpp"
 
 #include <algorithm>

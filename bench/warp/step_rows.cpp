@@ -1,4 +1,3 @@
-/// @file step_rows.cpp
 #include <algorithm>
 #include <cstring>
 #include <functional>

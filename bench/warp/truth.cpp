@@ -1,4 +1,3 @@
-/// @file truth.cpp
 #include "bench/warp/truth.hpp"
 
 #include <fmt/format.h>

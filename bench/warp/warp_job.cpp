@@ -1,4 +1,3 @@
-/// @file warp_job.cpp
 #include "bench/warp/warp_job.hpp"
 
 #include <numbers>

@@ -1,4 +1,3 @@
-/// @file workloads.cpp
 #include "bench/warp/workloads.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file error.cpp
 #include <tetwarp/error.hpp>
 #include <utility>
 

@@ -1,4 +1,3 @@
-/// @file mesh.cpp
 #include <cmath>
 #include <stdexcept>
 #include <string>

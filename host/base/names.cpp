@@ -1,4 +1,3 @@
-/// @file names.cpp
 #include <tetwarp/backend.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/make.hpp>

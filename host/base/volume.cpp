@@ -1,4 +1,3 @@
-/// @file volume.cpp
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -1,4 +1,3 @@
-/// @file array_checks.cpp
 #include "host/cli/array_checks.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file batch.cpp
 #include "host/cli/batch.hpp"
 
 #include <fmt/format.h>

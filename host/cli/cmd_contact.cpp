@@ -1,4 +1,3 @@
-/// @file cmd_contact.cpp
 #include <fmt/format.h>
 
 #include <cstdio>

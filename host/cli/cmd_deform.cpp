@@ -1,4 +1,3 @@
-/// @file cmd_deform.cpp
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,3 @@
-/// @file cmd_demo.cpp
 #include <fmt/format.h>
 
 #include <array>

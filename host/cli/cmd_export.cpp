@@ -1,4 +1,3 @@
-/// @file cmd_export.cpp
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,4 +1,3 @@
-/// @file cmd_import.cpp
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,4 +1,3 @@
-/// @file cmd_info.cpp
 #include <fmt/format.h>
 
 #include <algorithm>

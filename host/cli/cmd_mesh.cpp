@@ -1,4 +1,3 @@
-/// @file cmd_mesh.cpp
 #include <fmt/format.h>
 
 #include <memory>

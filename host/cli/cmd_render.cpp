@@ -1,4 +1,3 @@
-/// @file cmd_render.cpp
 #include <fmt/format.h>
 
 #include <memory>

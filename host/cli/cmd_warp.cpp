@@ -1,4 +1,3 @@
-/// @file cmd_warp.cpp
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,4 +1,3 @@
-/// @file contact_arguments.cpp
 #include "host/cli/contact_arguments.hpp"
 
 #include <vector>

@@ -1,4 +1,3 @@
-/// @file declare.cpp
 #include "host/cli/declare.hpp"
 
 #include <cctype>

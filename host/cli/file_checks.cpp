@@ -1,4 +1,3 @@
-/// @file file_checks.cpp
 #include "host/cli/file_checks.hpp"
 
 #include <unistd.h>

@@ -1,4 +1,3 @@
-/// @file interrupt.cpp
 #include "host/cli/interrupt.hpp"
 
 #include <unistd.h>

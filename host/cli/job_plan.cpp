@@ -1,4 +1,3 @@
-/// @file job_plan.cpp
 #include "host/cli/job_plan.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file job_share.cpp
 #include "host/cli/job_share.hpp"
 
 #include <algorithm>

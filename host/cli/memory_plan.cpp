@@ -1,4 +1,3 @@
-/// @file memory_plan.cpp
 #include "host/cli/memory_plan.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file output_grid.cpp
 #include "host/cli/output_grid.hpp"
 
 #include <algorithm>

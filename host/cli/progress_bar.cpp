@@ -1,4 +1,3 @@
-/// @file progress_bar.cpp
 #include "host/cli/progress_bar.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-/// @file report_exchange.cpp
 #include "host/cli/report_exchange.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file source_scan.cpp
 #include "host/cli/source_scan.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file step_selection.cpp
 #include "host/cli/step_selection.hpp"
 
 #include <fmt/format.h>

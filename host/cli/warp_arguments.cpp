@@ -1,4 +1,3 @@
-/// @file warp_arguments.cpp
 #include "host/cli/warp_arguments.hpp"
 
 #include <algorithm>

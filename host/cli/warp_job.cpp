@@ -1,4 +1,3 @@
-/// @file warp_job.cpp
 #include "host/cli/warp_job.hpp"
 
 #include <fmt/format.h>

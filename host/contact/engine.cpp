@@ -1,4 +1,3 @@
-/// @file engine.cpp
 #include "host/contact/engine.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file feasibility.cpp
 #include "host/contact/feasibility.hpp"
 
 #include <algorithm>

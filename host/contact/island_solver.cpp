@@ -1,4 +1,3 @@
-/// @file island_solver.cpp
 #include "host/contact/island_solver.hpp"
 
 #include <algorithm>

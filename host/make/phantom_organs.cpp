@@ -1,4 +1,3 @@
-/// @file phantom_organs.cpp
 #include "host/make/phantom_organs.hpp"
 
 #include <algorithm>

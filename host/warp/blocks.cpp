@@ -1,4 +1,3 @@
-/// @file blocks.cpp
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

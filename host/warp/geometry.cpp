@@ -1,4 +1,3 @@
-/// @file geometry.cpp
 #include "host/warp/geometry.hpp"
 
 #include <stdexcept>

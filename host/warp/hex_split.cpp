@@ -1,4 +1,3 @@
-/// @file hex_split.cpp
 #include "host/warp/hex_split.hpp"
 
 #include <algorithm>

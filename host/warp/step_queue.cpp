@@ -1,4 +1,3 @@
-/// @file step_queue.cpp
 #include "host/warp/step_queue.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file transform_checks.cpp
 #include "host/warp/transform_checks.hpp"
 
 #include <cmath>

@@ -1,4 +1,3 @@
-/// @file test_contact_report.cpp
 #include <gtest/gtest.h>
 
 #include <cstdint>

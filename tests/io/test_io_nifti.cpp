@@ -1,4 +1,3 @@
-/// @file test_io_nifti.cpp
 #include <gtest/gtest.h>
 #include <nifti1.h>
 

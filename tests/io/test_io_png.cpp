@@ -1,4 +1,3 @@
-/// @file test_io_png.cpp
 #include <gtest/gtest.h>
 
 #include <cstddef>

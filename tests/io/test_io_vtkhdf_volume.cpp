@@ -1,4 +1,3 @@
-/// @file test_io_vtkhdf_volume.cpp
 #include <gtest/gtest.h>
 
 #include <algorithm>

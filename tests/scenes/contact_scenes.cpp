@@ -1,4 +1,3 @@
-/// @file contact_scenes.cpp
 #include "tests/scenes/contact_scenes.hpp"
 
 #include <algorithm>

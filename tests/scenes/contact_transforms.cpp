@@ -1,4 +1,3 @@
-/// @file contact_transforms.cpp
 #include "tests/scenes/contact_transforms.hpp"
 
 #include <algorithm>

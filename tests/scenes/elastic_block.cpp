@@ -1,4 +1,3 @@
-/// @file elastic_block.cpp
 #include "tests/scenes/elastic_block.hpp"
 
 #include <Eigen/Dense>

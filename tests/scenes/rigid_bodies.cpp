@@ -1,4 +1,3 @@
-/// @file rigid_bodies.cpp
 #include "tests/scenes/rigid_bodies.hpp"
 
 #include <algorithm>

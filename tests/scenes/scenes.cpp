@@ -1,4 +1,3 @@
-/// @file scenes.cpp
 #include "tests/scenes/scenes.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file associated.cpp
 #include "host/contact/newton/associated.hpp"
 
 #include <algorithm>

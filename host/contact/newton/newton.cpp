@@ -1,4 +1,3 @@
-/// @file newton.cpp
 #include "host/contact/newton/newton.hpp"
 
 #include <Eigen/Core>

@@ -1,4 +1,3 @@
-/// @file newton_system.cpp
 #include "host/contact/newton/newton_system.hpp"
 
 #include <cstddef>

@@ -1,4 +1,3 @@
-/// @file checks.cpp
 #include "host/contact/problem/checks.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,3 @@
-/// @file delassus.cpp
 #include "host/contact/problem/delassus.hpp"
 
 #include <algorithm>

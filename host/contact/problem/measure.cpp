@@ -1,4 +1,3 @@
-/// @file measure.cpp
 #include "host/contact/problem/measure.hpp"
 
 #include <algorithm>

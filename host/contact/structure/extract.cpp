@@ -1,4 +1,3 @@
-/// @file extract.cpp
 #include "host/contact/structure/extract.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file structure.cpp
 #include "host/contact/structure/structure.hpp"
 
 #include <algorithm>

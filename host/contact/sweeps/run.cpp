@@ -1,4 +1,3 @@
-/// @file run.cpp
 #include "host/contact/sweeps/run.hpp"
 
 namespace tetwarp {

@@ -1,4 +1,3 @@
-/// @file match.cpp
 #include "host/contact/tracker/match.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file tracker.cpp
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,3 @@
-/// @file contact.cpp
 #include "host/reference/contact/contact.hpp"
 
 #include <chrono>

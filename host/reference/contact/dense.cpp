@@ -1,4 +1,3 @@
-/// @file dense.cpp
 #include "host/reference/contact/dense.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,3 @@
-/// @file gauss_seidel.cpp
 #include "host/reference/contact/gauss_seidel.hpp"
 
 #include <algorithm>

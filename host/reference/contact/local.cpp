@@ -1,4 +1,3 @@
-/// @file local.cpp
 #include "host/reference/contact/local.hpp"
 
 #include <Eigen/LU>

@@ -1,4 +1,3 @@
-/// @file overlap.cpp
 #include "host/reference/warp/overlap.hpp"
 
 #include <algorithm>

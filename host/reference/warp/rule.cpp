@@ -1,4 +1,3 @@
-/// @file rule.cpp
 #include "host/reference/warp/rule.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-/// @file sample.cpp
 #include "host/reference/warp/sample.hpp"
 
 #include <numbers>
