@@ -54,7 +54,7 @@ struct TotalsBody {
   }
 };
 
-/// Sizes that the host knows of a step.
+/// Numbers of a report that do not depend on the step's counters.
 struct StepSizes {
   std::int64_t tets;
   std::int64_t tets_unchanged;
@@ -62,7 +62,6 @@ struct StepSizes {
   std::int64_t candidate_pairs;
 };
 
-/// Adds stage times by label.
 inline void add_stages(const StageTimes& times, Timings& timings) {
   timings.upload += times.of("warp/upload");
   timings.setup += times.of("warp/setup");

@@ -70,7 +70,7 @@ Box image_of(const Box& box, const Real (*linear)[3], const double* start) {
 }
 
 inline int clamped_int(std::int64_t value) {
-  constexpr std::int64_t far = std::int64_t{1} << 30;  // beyond any grid
+  constexpr std::int64_t far = std::int64_t{1} << 30;  // larger than any index of a grid
   return static_cast<int>(std::clamp(value, -far, far));
 }
 

@@ -20,7 +20,7 @@ namespace tetwarp {
 /// @param exec          threads and clock
 /// @param setups        from tet_setup, shape [tet_count]
 /// @param pair_offsets  first candidate pair of each tetrahedron, shape [tet_count + 1]
-/// @param switches      verdicts that may be given
+/// @param switches      verdicts that are used
 /// @param frame         the output
 /// @param pairs         out, one per candidate pair, `rejected_pair` where no voxel is inside
 ///

@@ -1,7 +1,6 @@
 /// @file row_components-inl.hpp
 /// Samples of a row for several components: float32 arithmetic, four components per vector.
-/// Included once per vector instruction set (the name and the toggled guard are Highway's
-/// convention).
+/// Included once per vector instruction set.
 #if defined(TETWARP_ROW_COMPONENTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_COMPONENTS_INL
 #undef TETWARP_ROW_COMPONENTS_INL

@@ -1,6 +1,6 @@
 /// @file row_source-inl.hpp
 /// The map of one tetrahedron over one cell, and the runs of a row that share an owner. Included
-/// once per vector instruction set (the name and the toggled guard are Highway's convention).
+/// once per vector instruction set.
 #if defined(TETWARP_ROW_SOURCE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_SOURCE_INL
 #undef TETWARP_ROW_SOURCE_INL
@@ -58,7 +58,7 @@ struct SourceBounds {
   double origin[4] = {0, 0, 0, 0};      ///< first voxel that the view holds
   double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbour is clamped
   double inner_high[4] = {0, 0, 0, 1};
-  double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
+  double end[4] = {0, 0, 0, -1};  ///< above it a read may extend past the end
 };
 
 /// The map of one tetrahedron relative to one cell, with the bits of make_source_map().
@@ -132,7 +132,7 @@ class RowSource {
   }
 
   /// Sets the prefetch distances. Rows that run along lines of the source next read lines of the
-  /// next slice. Rows that run across lines next read where the neighbouring line of cells does,
+  /// next slice. Rows that run across lines next read what the neighbouring line of cells reads,
   /// one row further.
   void look_ahead(std::int64_t line, std::int64_t slice, int components) {
     const hn::FixedTag<float, 4> d;

@@ -1,8 +1,7 @@
 /// @file row_wide-inl.hpp
 /// Samples of a row voxel by voxel, for rows that vectors of voxels cannot compute: 32-bit and
 /// wider integers, float64 and steep maps, in float64 with one lane per axis of the source.
-/// Included once per vector instruction set (the name and the toggled guard are Highway's
-/// convention).
+/// Included once per vector instruction set.
 #if defined(TETWARP_ROW_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_WIDE_INL
 #undef TETWARP_ROW_WIDE_INL
@@ -29,8 +28,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Positions and neighbours of the voxels of row (j, k) of a cell, with the bits of
-/// SourceMap<double>, local_position() and tap_of(). The fourth lane is padding, and every position
-/// passes it.
+/// SourceMap<double>, local_position() and tap_of(). The fourth lane is padding whose bounds accept
+/// every position.
 class WideRow {
  public:
   template <class T>
