@@ -18,7 +18,6 @@ namespace tetwarp::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-/// Results of the jobs so far.
 struct Outcome {
   int done = 0;
   int failed = 0;

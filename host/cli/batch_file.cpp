@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Words of a command line.
 using Words = std::vector<std::string>;
 
 /// Options of the whole batch; a job may not have them.
@@ -53,7 +52,6 @@ Words value_texts(const std::string& key, const Json& value) {
   return texts;
 }
 
-/// Turns one job into words.
 class JobReader {
  public:
   JobReader(fs::path folder, const CLI::App& defaults)

@@ -20,7 +20,6 @@ namespace {
 constexpr int infeasible_exit_code = 1;
 constexpr int not_converged_exit_code = 3;
 
-/// Seconds for files.
 struct FileSeconds {
   double read = 0;
   double write = 0;
@@ -43,7 +42,7 @@ ContactProblem read_problem(const ContactArguments& arguments) {
   return problem;
 }
 
-/// Adds the file to errors that only factorizing finds, e.g. a singular matrix.
+/// Adds the name of the file to errors that only a factorization finds, e.g. a singular matrix.
 ContactSolution solve(ContactSolver& solver,
                       const ContactProblem& problem,
                       const ContactArguments& arguments) {

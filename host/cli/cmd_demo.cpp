@@ -24,7 +24,6 @@ struct DemoArguments {
   int cells = 6;
 };
 
-/// The files of a demo.
 struct DemoFiles {
   explicit DemoFiles(const fs::path& folder)
       : volume((folder / "volume.vtkhdf").string()),

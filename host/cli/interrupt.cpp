@@ -33,7 +33,7 @@ void install_interrupt_handlers() {
 }
 
 void exit_on_first_signal() {
-  flag_scopes = -1'000'000;  // stays below zero whatever is added by scopes
+  flag_scopes = -1'000'000;  // far below zero: scopes cannot make it positive
 }
 
 InterruptFlag::InterruptFlag() {

@@ -62,8 +62,7 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
 }
 
 /// True when writing a step while the next one is computed saves time: on a device, with fewer
-/// threads than processors, or with compression, which uses one thread. Else computing and writing
-/// would compete for the same processors.
+/// threads than processors, or with compression, which uses one thread.
 bool leaves_time(Backend backend, const WarpArguments& arguments) {
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = arguments.warp.threads > 0 ? arguments.warp.threads : processors;

@@ -18,9 +18,9 @@ struct VolumePlan {
   std::string path;
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
   Grid source_grid;
-  Grid output_grid;  ///< before the region cuts it
+  Grid output_grid;  ///< without regard to the region
   Grid written_grid;
-  std::vector<std::int64_t> steps;   ///< of the mesh; of one rank where ranks share them out
+  std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
   double memory_limit = 0;           ///< compute in blocks within so many bytes; 0: as a whole
   double memory = 0;                 ///< of sources and outputs as a whole [byte]

@@ -12,7 +12,8 @@
 
 namespace tetwarp::cli {
 namespace {
-/// The plan with only the steps and outputs of this rank: outputs are dealt to ranks in turns.
+/// The plan with only the steps and outputs of this rank: outputs are assigned to ranks
+/// round-robin.
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
   const std::vector<std::string> outputs = std::exchange(volume.outputs, {});

@@ -55,7 +55,7 @@ bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
   const double bytes = source_bytes + output_bytes;
   plan.memory = bytes;
   if (arguments.memory > 0) {
-    // 1 % is for lists of cells and tetrahedra; the rest is in use already.
+    // 1 % is for lists of cells and tetrahedra; the memory of the process is in use already.
     const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
     if (bytes > limit) {
       plan.memory_limit = arguments.memory;

@@ -11,7 +11,7 @@ namespace tetwarp::cli {
 /// terminal.
 class ProgressBar {
  public:
-  /// @param wanted      false: never draw
+  /// @param wanted false: never draw
   /// @param label       shown first, e.g. "warp" or "job 3"
   /// @param step_count  steps of the whole job
   ProgressBar(bool wanted, std::string label, double step_count);

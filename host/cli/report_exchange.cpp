@@ -18,7 +18,7 @@ Record record_of(const Json& json, const Fields& fields) {
   return record;
 }
 
-/// Numbers of a list. JSON has null for those that are not finite.
+/// Numbers of a list; JSON stores those that are not finite as null.
 std::vector<double> numbers_of(const Json& list) {
   std::vector<double> numbers(list.size());
   std::ranges::transform(list, numbers.begin(), [](const Json& number) {

@@ -1,5 +1,5 @@
 /// @file volume_run_step.cpp
-/// The blocks of a step are read and computed.
+/// Reads and computes the blocks of a step.
 #include <algorithm>
 #include <future>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace tetwarp::cli {
 namespace {
-/// A tetrahedron counts once, however many blocks it meets.
+/// A tetrahedron counts once, independent of the number of its blocks.
 void describe(const BlockPlan& plan, Counts& counts) {
   counts.blocks = std::ssize(plan.blocks);
   counts.tetrahedra = plan.tetrahedra;

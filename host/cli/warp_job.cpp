@@ -16,7 +16,7 @@
 
 namespace tetwarp::cli {
 namespace {
-/// Steps that the progress bar of the root counts: its own where ranks share out whole outputs.
+/// Steps that the progress bar of the root counts: only its own if outputs are divided among ranks.
 std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
   const std::size_t outputs = plan.outputs().size();
   const auto count = static_cast<std::size_t>(ranks.count());

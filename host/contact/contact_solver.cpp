@@ -47,7 +47,7 @@ struct WholeResidual {
   ContactSums free;        ///< without impulses
   double free_square = 0;  ///< |q|^2
 
-  /// The share of an energy [J] in eta.
+  /// The part of eta that an energy [J] contributes.
   double eta_of(double square) const {
     const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
     return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;

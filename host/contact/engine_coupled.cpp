@@ -13,8 +13,8 @@
 
 namespace tetwarp {
 namespace {
-/// How a coupled island is solved: by at most so many outer iterations, and by condensing where
-/// these are 0 or do not converge.
+/// How a coupled island is solved: by at most `outer_iterations` outer iterations, and by
+/// condensing if these are 0 or do not converge.
 struct CoupledRoute {
   std::int64_t outer_iterations;
   bool condenses;

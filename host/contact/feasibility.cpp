@@ -39,8 +39,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactIsland& island,
                                               std::int64_t max_sweeps) {
   const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
-  // A distance counts as infinite if it is larger by this factor than what the contacts need
-  // singly.
+  // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
   const ContactSystem<double> bare = make_bare(system);
   const ContactNumbers<double> numbers = bare.numbers(structure.indices());

@@ -24,7 +24,7 @@ ContactSavings IslandSolver::set_problem(const ContactProblem& problem) {
   return savings;
 }
 
-/// The numbers on the host. With a device they are filled in only for what it leaves to the host.
+/// The numbers on the host. With a device they are set only if the host solves a part.
 ContactSystem<double>& IslandSolver::host_system() {
   ContactSavings counted;
   if (!has_host_system_) {
@@ -135,7 +135,7 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   run.run_to_budget(island);
   outcome.sums = run.measure(island);
   if (run.is_done(island, outcome.sums)) return;
-  polish(island, run, outcome);  // may converge from the better start
+  polish(island, run, outcome);  // this better start may converge
   outcome.sums = run.measure(island);
 }
 
@@ -144,7 +144,7 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
 void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome& outcome) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   ContactOptions options = options_;
-  options.tolerance /= 2;  // relative to this island; relative to the whole its error is smaller
+  options.tolerance /= 2;  // relative to this island, not to the whole problem
   double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
   std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
   const std::vector<double> swept = polished;

@@ -20,7 +20,7 @@ constexpr double step_share = 0.99;  ///< of the distance to the boundary of the
 /// Times the mean diagonal entry of the contact's block: a compliance added in the Newton steps
 /// only, without which redundant contacts make the equations singular close to the solution.
 constexpr double step_compliance = 1e-10;
-/// Below this relative gap the iteration ends after so many steps that do not improve the best.
+/// Below this relative gap the iteration ends after `idle_limit` steps without improvement.
 constexpr double rounding_gap = 1e-6;
 constexpr int idle_limit = 4;
 

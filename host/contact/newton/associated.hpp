@@ -1,5 +1,6 @@
 /// @file associated.hpp
-/// Contact with associated friction, the convex problem from which Newton's method gets starts.
+/// Contact with associated friction: a convex problem whose solution is a start for Newton's
+/// method.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

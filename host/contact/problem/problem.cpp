@@ -70,8 +70,8 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
          (!adhesion.empty() && adhesion.intensity[c] > 0 && !stiffness.empty() && stiffness[c] > 0);
 }
 
-/// Every normal row, and one tangential row where something resists sliding, must be moved by
-/// impulses.
+/// Impulses must change the velocity of every normal row and, where something resists sliding, of
+/// one tangential row.
 /// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or the largest entry of each
 ///                  row of J
 void check_diagonal(const ContactProblem& problem,

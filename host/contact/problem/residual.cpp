@@ -108,7 +108,7 @@ ContactResidual residual_of(const ContactProblem& problem,
   }
   Eta eta = eta_of(contacts, r, u, change, options);
   if (!body_velocity.empty()) {
-    // The velocities may not be those that the impulses cause; the larger error counts.
+    // The given velocities may differ from those of the impulses; the larger error counts.
     const Eta caused = eta_of(contacts, r, implied, change, options);
     if (caused.total > eta.total) eta = caused;
   }

@@ -56,8 +56,8 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
 }
 
 /// Sets the order of the contacts and the islands of `s`. Islands with contacts are numbered in the
-/// order of their first contact; blocks connected to no contact form the islands after them, or
-/// join the first one.
+/// order of their first contact; blocks connected to no contact are in the islands after them, or
+/// in the first one.
 /// @return the blocks, sorted by island
 std::vector<std::int32_t> order_blocks(const Blocks& blocks,
                                        const ContactSkipOptions& skip,

@@ -10,7 +10,7 @@
 
 namespace tetwarp::reference {
 
-/// u = B r + q and v = v_free + V r; rows go contact by contact: normal, tangent 1, tangent 2.
+/// u = B r + q and v = v_free + V r; rows are ordered by contact: normal, tangent 1, tangent 2.
 struct DenseContacts {
   Eigen::MatrixXd delassus;            ///< B, [3 contacts][3 contacts], 1/kg
   Eigen::VectorXd free_velocity;       ///< q, m/s, offset included
@@ -49,7 +49,7 @@ std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
 /// linear.
 double mode_count(const DenseContacts& contacts, const ContactOptions& options);
 
-/// Whether some impulses make every u_n >= 0.
+/// Whether impulses exist that make every u_n >= 0.
 bool is_feasible(const DenseContacts& contacts);
 
 }  // namespace tetwarp::reference

@@ -21,7 +21,7 @@ namespace {
 /// State of one tangent of a closed contact.
 struct TangentMode {
   bool sticks = false;
-  int slide = 0;   ///< sign of u where it slides; 0: no friction
+  int slide = 0;   ///< sign of u if it slides; 0: no friction
   int spring = 0;  ///< sign of u + o where the spring reduces the friction (rule restrictive)
 };
 

@@ -18,7 +18,6 @@
 
 namespace tetwarp::reference {
 
-/// Owners for one plan.
 class Ownership {
  public:
   /// The plan must outlive it.
@@ -42,7 +41,6 @@ class Ownership {
     }
   }
 
-  /// Nodes of a tetrahedron in an index space.
   Corners corners_of(std::int32_t t, const double* positions, const IndexSpace& space) const {
     Corners corners;
     for (std::size_t node = 0; node < 4; ++node) {

@@ -52,7 +52,6 @@ T stored(double value) {
   return static_cast<T>(value);
 }
 
-/// Samples of one source by one filter.
 template <class T>
 class Sampler {
  public:

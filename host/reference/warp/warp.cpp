@@ -1,7 +1,6 @@
 /// @file warp.cpp
-/// Back end reference: the warp straight from its definition. All voxels in the bounding box of
-/// every tetrahedron, owners by determinants in exact integers, values in float64; serial, without
-/// culling. It shares no code with the kernels that are tested against it.
+/// Back end reference: the warp straight from its definition, serially and without culling; values
+/// in float64. It shares no code with the kernels that are tested against it.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -140,7 +139,7 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// Of voxels outside the mesh, which get the source at their own position.
+  /// Rule of voxels outside the mesh, which sample the source at their own position.
   Rule outside_rule() const {
     Rule rule;
     rule.step = owners_.source.from_world * owners_.output.to_world;

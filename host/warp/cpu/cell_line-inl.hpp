@@ -283,7 +283,7 @@ class CellLine {
   std::vector<RowSource> sources_;  ///< one per pair that owns voxels of this line
   std::vector<FlatCells> flat_;     ///< ascending
   std::deque<std::array<T, max_components>> constants_;  ///< values computed from coefficients
-  bool lists_open_;                 ///< whether voxels without an owner need `flat_`
+  bool lists_open_;                 ///< voxels without an owner are added to `flat_`
   bool has_open_ = false;           ///< the line has voxels without an owner
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;

@@ -58,7 +58,7 @@ struct SourceBounds {
   double origin[4] = {0, 0, 0, 0};      ///< first voxel that the view holds
   double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbour is clamped
   double inner_high[4] = {0, 0, 0, 1};
-  double end[4] = {0, 0, 0, -1};  ///< above it a read may extend past the end
+  double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
 };
 
 /// The map of one tetrahedron relative to one cell, with the bits of make_source_map().
