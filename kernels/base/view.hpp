@@ -1,5 +1,6 @@
 /// @file view.hpp
-/// Arrays without ownership, and the integer geometry of the output grid: what stage bodies hold.
+/// Arrays without ownership, and the integer geometry of the output grid: the members of stage
+/// bodies.
 #pragma once
 #include <cstdint>
 #include <type_traits>

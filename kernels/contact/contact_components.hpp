@@ -88,7 +88,7 @@ struct CompressBody {
 /// @param lowest  out, [items]
 ///
 /// Determinism: the result does not depend on the order of execution. Cost: two passes over the
-/// lists; more if threads join long chains at the same time.
+/// lists; more if threads unite long chains at the same time.
 template <class Exec>
 void contact_components(Exec& exec,
                         View<const std::int64_t> start,

@@ -23,13 +23,13 @@ namespace tetwarp::simt {
 
 constexpr unsigned warp_size = 32;
 
-/// A kernel did something that is undefined on a GPU or would hang it.
+/// Error of a kernel whose behaviour is undefined on a GPU, or that would hang it.
 class Fault : public std::runtime_error {
  public:
   explicit Fault(const std::string& problem) : std::runtime_error("simt: " + problem) {}
 };
 
-/// Order in which threads run where CUDA does not define one.
+/// Order of threads where CUDA does not define one.
 enum class ThreadOrder { forward, reverse, shuffled };
 
 /// Order of threads, and the seed of the shuffled one.

@@ -49,7 +49,7 @@ class Fiber {
     to_fiber.came_back();
   }
 
-  /// To be called from inside the call: returns control to the caller of resume().
+  /// Called from inside the call: returns control to the caller of resume().
   void suspend() {
     const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
     swapcontext(&own_, &owner_);

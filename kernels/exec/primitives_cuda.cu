@@ -9,8 +9,8 @@
 
 namespace tetwarp {
 namespace {
-/// Makes the two calls that CUB needs: call(null, bytes) asks for the scratch size, the second
-/// works.
+/// Makes the two calls that CUB needs: call(null, bytes) returns the scratch size, the second does
+/// the work.
 template <class Call>
 void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& call) {
   std::size_t bytes = 0;
