@@ -1,9 +1,9 @@
 /// @file contact_block.cpp
 /// A block falls onto an adhesive floor, is lifted, pulled sideways and lifted again: it sticks,
-/// slides and lets go. Prints what happens; succeeds if all of it did.
+/// slides and separates. Prints each event; succeeds if all occurred.
 ///
-/// Each step: find contacts, let the tracker match them with those of the step before, build
-/// A v = J^T r + b, solve, move, and give the solution back to the tracker, which evolves adhesion.
+/// Each step: find contacts, match them by the tracker with those of the previous step, build A v =
+/// J^T r + b, solve, move, and pass the solution to the tracker, which updates the adhesion.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

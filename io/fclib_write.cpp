@@ -100,7 +100,7 @@ void write_adhesion(const h5::Object& file, const AdhesionState& adhesion) {
   }
 }
 
-/// FCLIB's reader of guesses wants the velocities too; a start from impulses has none.
+/// FCLIB's reader of guesses requires velocities too; a start from impulses has none.
 void write_guess(const h5::Object& file, const ContactProblem& problem) {
   const h5::Object guesses = h5::create_group(file, "guesses");
   write_integers(guesses, "number_of_guesses", {1});

@@ -19,7 +19,7 @@ FileKind hdf5_kind(const std::string& path) {
     if (type == "UnstructuredGrid") return FileKind::mesh;
     return FileKind::other_vtkhdf;
   } catch (const IoError&) {
-    return FileKind::hdf5;  // it has the signature; reading it names the damage
+    return FileKind::hdf5;  // it has the signature; a reader reports the damage
   }
 }
 }  // namespace

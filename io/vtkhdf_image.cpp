@@ -102,7 +102,7 @@ void ImageFile::write_steps() {
     h5::write_dataset(offsets, array.name, H5T_STD_I64LE, H5T_NATIVE_INT64, {&count, 1},
                       rows_.data());
   }
-  // Readers take a file with NSteps for complete: it is written last.
+  // NSteps is written last: readers treat a file with it as complete.
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
 

@@ -74,7 +74,7 @@ WrittenFile write_volumes(const std::string& path,
 struct TemporalVolumeWriter::State {
   std::string path;
   VolumeWriteOptions options;
-  std::unique_ptr<ImageFile> file;  // made by the first step, which knows the arrays
+  std::unique_ptr<ImageFile> file;  // created by the first step, which defines the arrays
 };
 
 TemporalVolumeWriter::TemporalVolumeWriter(const std::string& path,

@@ -112,7 +112,7 @@ Protocol protocol_for(double first_seconds) {
 
 void run(benchmark::State& state, const ContactCase& row) {
   static std::set<std::string> checked;
-  static std::set<std::string> given_up;  // a method that misses a tolerance misses tighter ones
+  static std::set<std::string> given_up;  // methods that have missed a tolerance
   if (given_up.contains(line_of(row))) {
     state.SkipWithError("left out: a looser tolerance was not reached");
     return;

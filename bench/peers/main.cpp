@@ -87,7 +87,7 @@ class Row {
   }
 
  private:
-  /// Rounds of floor and tetwarp in turn, so that both meet the same state of the machine.
+  /// Rounds of floor and tetwarp in turn, so that both run in the same state of the machine.
   void step_beside_floor() {
     const AffineJob floor{PixelType::float32,      Filter::linear, scene_.source_grid.dims,
                           scene_.output_grid.dims, source_.data,   output_.data(),

@@ -45,7 +45,7 @@ class Checked {
       : state_(state), row_(row), job_(*subject.job) {
     const auto voxels = static_cast<std::size_t>(job_.grid().voxel_count());
     owner_ = std::make_unique_for_overwrite<std::int32_t[]>(voxels);
-    // Bytes that the step does not write must not look like an earlier result.
+    // Bytes that the step does not write must differ from earlier results.
     std::memset(job_.output(), 0xa5, job_.output_bytes());
     std::memset(owner_.get(), 0xa5, voxels * sizeof(std::int32_t));
     counts_ = job_.step({.volumes = {}, .owner = owner_.get()}).counts;

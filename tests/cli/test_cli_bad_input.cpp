@@ -13,7 +13,7 @@ namespace tetwarp::test {
 namespace {
 using Names = std::vector<std::string>;
 
-/// A command line that must fail, and words that its message must hold.
+/// A command line that must fail, and words that its message must contain.
 struct Refused {
   Names words;
   std::string told;

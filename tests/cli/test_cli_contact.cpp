@@ -74,7 +74,7 @@ TEST_F(ContactCommand, WritesTheAdhesionOfTheNextStepWhenAsked) {
 
   EXPECT_EQ(solve({"--evolve"}).exit_code, 0);
 
-  // Nothing makes this adhesion grow or fade; its anchors moved apart by dt u.
+  // This adhesion neither bonds nor debonds; the gap of its anchors grew by dt u.
   expect_near(solved("adhesion_next/intensity"), {0.5});
   const std::vector<double> velocity = solved("solution/u");
   expect_near(solved("adhesion_next/gap"), {0.125 * velocity[0], 0, 0});

@@ -110,7 +110,8 @@ class MemoryLimit : public testing::Test {
     return Json::parse(text_of(folder / "report.json"));
   }
 
-  const std::string limit = "60M";  ///< source and outputs take as much, the process half of it
+  /// Source and outputs together take as much, the process without them half of it.
+  const std::string limit = "60M";
   TemporaryFolder folder;
 };
 

@@ -1,5 +1,5 @@
 /// @file test_cli_ranks.cpp
-/// `mpirun -n 3 tetwarp warp`: outputs and blocks are shared out, errors printed once.
+/// `mpirun -n 3 tetwarp warp`: outputs and blocks are divided among ranks, errors printed once.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -19,8 +19,7 @@ namespace tetwarp::test {
 namespace {
 using Numbers = std::vector<double>;
 
-// ---- against the reference
-// ---------------------------------------------------------------------------
+// ---- comparison with the reference
 
 using Variant = std::tuple<ContactMethod, FrictionLaw, AdhesionRule>;
 
@@ -78,7 +77,6 @@ TEST_P(ContactSolve, HasTheVelocitiesOfTheReferenceInGlobalForm) {
 }
 
 // ---- one method
-// --------------------------------------------------------------------------------------
 
 class EachMethod : public ::testing::TestWithParam<ContactMethod> {};
 INSTANTIATE_TEST_SUITE_P(By, EachMethod, ::testing::ValuesIn(methods), [](const auto& info) {

@@ -24,7 +24,7 @@ const double onset = std::sqrt(energy / stiffness);  // gap at which beta = 1 st
 
 using Gap3 = std::array<double, 3>;
 
-/// What happened to one contact in a solve.
+/// Result of one contact.
 struct Event {
   double intensity = 1;
   double normal_impulse = 0;
@@ -110,8 +110,8 @@ TEST(ContactAdhesion, ExactIntegratorAgreesWithAFineIntegration) {
   }
 }
 
-/// Pulled and pressed at once, with debonding from beta = 0.2 on and bonding up to 0.8: from either
-/// end beta meets the other effect on its way to the rest point of both, 0.5.
+/// Pulled and pressed at once, with debonding from beta = 0.2 on and bonding up to 0.8: from 0 or
+/// 1, beta enters the range in which both act and converges to their equilibrium, 0.5.
 TEST(ContactAdhesion, ReachesTheRestPointOfBothEffectsFromEitherEnd) {
   const IntensityLaw law{.bonding = 8, .bonding_decay = 10, .cohesion = 2, .strain = 10};
 

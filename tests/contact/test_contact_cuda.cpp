@@ -89,7 +89,7 @@ TEST_P(ContactCudaMethods, HasTheVelocitiesOfTheHost) {
   }
 }
 
-/// Too large for a block, so that the whole device works on it stage by stage.
+/// Too large for one block: solved stage by stage by the whole device.
 TEST_P(ContactCudaMethods, SolvesAnIslandLargerThanABlockTakes) {
   const ContactProblem problem =
       scenes::random_local({.seed = 305, .contacts = block_contacts + 100, .neighbors = 2});
@@ -143,7 +143,7 @@ TEST_F(ContactCuda, BodiesOfSixDofsThatAreCoupledAreIterated) {
   expect_solved(global_problem(307, 8, 0.4), options, "bodies");
 }
 
-/// Contacts alone take the place of the whole problem on the device, which has to come back.
+/// A solve of contacts alone replaces the problem on the device; the next solve must copy it again.
 TEST_F(ContactCuda, CoupledAndUncoupledIslandsCanBeMixed) {
   ContactProblem elastic = make_elastic_problem({});
   elastic.block_start.clear();

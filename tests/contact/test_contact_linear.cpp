@@ -81,7 +81,7 @@ TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
   }
 }
 
-/// From well to badly conditioned, at every estimate; a rough solve before has estimated the
+/// At every estimate, from well to badly conditioned; a previous rough solve has estimated the
 /// smallest eigenvalue.
 TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),

@@ -1,5 +1,5 @@
 /// @file test_contact_problem.cpp
-/// check_problem() of a contact problem: what is accepted, and the one line about what is not.
+/// check_problem(): accepted problems, and the messages for rejected ones.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -44,7 +44,7 @@ void PrintTo(const BadProblem& bad, std::ostream* out) {
   *out << bad.name;
 }
 
-/// A body whose last two axes are one but for rounding.
+/// A body whose last two axes are equal up to rounding.
 void make_singular(ContactProblem& problem) {
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(12, 12);
   system(4, 5) = system(5, 4) = 1 - 0x1p-53;

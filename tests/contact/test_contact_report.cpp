@@ -45,7 +45,7 @@ std::set<std::string> names_of(const Json& json) {
   return names;
 }
 
-/// The names are an interface: once released they stay.
+/// The names are stable.
 TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
   const Json json = Json::parse(to_json(counting_report()));
 
@@ -67,7 +67,7 @@ TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
   EXPECT_EQ(names_of(json["timings"]), (std::set<std::string>{"setup", "solve", "total"}));
 }
 
-/// Each field goes to the entry of its own name: all values differ.
+/// Each field is in the entry of its name; all values differ.
 TEST(ContactReport, MixesUpNoField) {
   const Json json = Json::parse(to_json(counting_report()));
 

@@ -88,8 +88,9 @@ TEST(ContactStress, OrdersDoNotChangeTheFrictionlessSolution) {
   }
 }
 
-/// Law: the force that pulls a block off is that of the area, area sqrt(W C), whether 1, 4, 16 or
-/// 64 points share it. The pull grows by 2 % of it per eta / W: measured when the last bond fails.
+/// Law: the force that separates a block is area sqrt(W C), independent of the number of points, 1,
+/// 4, 16 or 64, that share the area. The pull grows by 2 % of it per eta / W: measured when the
+/// last bond fails.
 TEST(ContactStress, PullOffForceDoesNotDependOnTheNumberOfContactPoints) {
   ContactMaterial material = glue(1e6, 0.3);
   material.energy = 0.1;

@@ -15,7 +15,7 @@ struct StackRun {
   bool is_finite = true;
 };
 
-/// A stack let go at rest, the top block `ratio` times as heavy as the lowest.
+/// A stack released at rest, the top block `ratio` times as heavy as the lowest.
 StackRun resting_stack(int count, double ratio, std::int64_t sweeps, int steps) {
   WorldOptions options = world_options({.friction = 0.5}, 5e-3);
   options.solving.tolerance = 1e-6;
@@ -49,7 +49,7 @@ TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
   EXPECT_GT(solved, 0);
 }
 
-/// With 10 sweeps a step nothing is promised but finite numbers.
+/// With 10 sweeps per step only finite numbers are required.
 TEST(ContactStress, StacksSolvedByFewSweepsStayFinite) {
   for (const int count : {10, 30}) {
     for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {

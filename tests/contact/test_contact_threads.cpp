@@ -1,5 +1,5 @@
 /// @file test_contact_threads.cpp
-/// Whole solves large enough that threads do run: bits do not depend on how many there are.
+/// Solves large enough to use threads: bits do not depend on their number.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -89,7 +89,7 @@ TEST(ContactTracker, AContactThatLetGoDoesNotBondAtOnceWhereItStillTouches) {
   EXPECT_EQ(tracker.records()[0].intensity, 0);
   step(tracker, {}, slid);
   EXPECT_TRUE(tracker.records().empty());
-  step(tracker, {at(0, 0)}, slid);  // apart in between: a new touch
+  step(tracker, {at(0, 0)}, slid);  // a new contact after a separation
   EXPECT_EQ(tracker.records()[0].intensity, 1);
 }
 

@@ -1,6 +1,6 @@
 /// @file emulated_backend.cpp
 /// Back end cuda on the emulated device: executor, pipeline and kernels are those of the real one;
-/// scan, selection and sort, which are CUB's there, use the standard library.
+/// scan, selection and sort use the standard library in place of CUB.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace tetwarp {
 namespace {
-/// Work on a stream that is no kernel of ours.
+/// Work on a stream other than kernels.
 template <class Work>
 void enqueue(cudaStream_t stream, Work&& work) {
   const std::lock_guard guard(simt::Device::only().lock);

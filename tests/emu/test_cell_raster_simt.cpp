@@ -20,7 +20,7 @@
 
 namespace tetwarp::test {
 namespace {
-/// What a raster job varies in.
+/// Parameters of a raster job.
 struct RasterCase {
   std::string scene = "waved";
   PixelType type = PixelType::float32;
@@ -31,7 +31,7 @@ struct RasterCase {
   std::optional<Region> region = {};
 };
 
-/// Everything that a raster writes.
+/// Outputs of a raster.
 template <class T>
 struct Rastered {
   std::vector<T> volume;
@@ -81,7 +81,7 @@ class RasterBench {
     return most;
   }
 
-  /// A third of the cells each: left alone, sampled, filled with the value of a voxel.
+  /// A third of the cells each: kept, sampled, filled with the value of a voxel.
   void mix_work() {
     const auto samples = static_cast<double>(source_.grid.voxel_count());
     for (std::int64_t cell = 0; cell < input_.frame.cell_count(); ++cell) {

@@ -1,6 +1,6 @@
 /// @file test_contact_simt.cpp
 /// Islands solved by one block each, run by emulation in several thread orders on the host's own
-/// arrays: sweeps have the bits of the host, accelerated methods its answers.
+/// arrays: sweeps have the bits of the host, accelerated methods its results up to rounding.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -90,7 +90,7 @@ class IslandSolves {
   }
 
   std::vector<IslandResult> results;
-  std::vector<IslandSums> sums;  ///< of what blocks have found
+  std::vector<IslandSums> sums;  ///< of the results of the blocks
   std::vector<ContactEvent> logs;
   std::vector<IslandEnd> host_ends;
   std::vector<ContactSums> host_sums;
@@ -195,7 +195,7 @@ TEST(ContactIslandSimt, FrozenContactsAreTheSameOnes) {
   expect_equal_bits<double>(packed_spheres(100), {}, false, true);
 }
 
-/// Every method, to a tolerance: the same answer but for the order of sums.
+/// Every method, to a tolerance: equal results up to the order of sums.
 TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
   const ContactProblem problems[] = {
       scenes::random_local({.seed = 10, .contacts = 60, .neighbors = 2}), packed_spheres(100)};

@@ -1,6 +1,6 @@
 /// @file test_simt.cpp
-/// The emulation of CUDA: correct kernels give what plain loops give, in every order of threads;
-/// broken ones give something else in some order, or are reported.
+/// The emulation of CUDA: correct kernels give the results of plain loops in every order of
+/// threads; broken ones give other results in some order, or are reported.
 #include <gtest/gtest.h>
 
 #include <algorithm>

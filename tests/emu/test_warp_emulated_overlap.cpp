@@ -55,8 +55,8 @@ TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
   }
 }
 
-/// A step waits once for its positions, then four times, per output, for its kernels: of these the
-/// first counts, as the others come after it on the same stream.
+/// A step waits once for its positions, then four times, per output, for its kernels: only the
+/// first of these is needed, because the others follow it on the same stream.
 TEST_F(EmulatedOverlap, LeavingOutAWaitChangesTheResult) {
   constexpr int waits_of_step = 7;
   const Steps steps = shaken(5);

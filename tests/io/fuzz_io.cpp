@@ -208,7 +208,7 @@ const char* text_of(int status) {
   }
 }
 
-/// Reads damaged files until `seconds` have gone. @returns true when none of them was a failure
+/// Reads damaged files for `seconds`. @returns true when none of them was a failure
 bool fuzz(int seconds, std::uint64_t seed) {
   const auto end = Clock::now() + std::chrono::seconds(seconds);
   const test::ScratchFolder folder;

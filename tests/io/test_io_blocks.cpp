@@ -13,7 +13,7 @@
 
 namespace tetwarp::test {
 namespace {
-/// A region of a volume's samples, cut out by hand.
+/// A region of a volume's samples, copied voxel by voxel.
 std::vector<std::byte> cut_out(const Volume& volume, const Region& region) {
   const std::size_t voxel = static_cast<std::size_t>(volume.components) * size_of(volume.type);
   const auto& n = volume.grid.dims;

@@ -24,7 +24,7 @@ WorldOptions sticky() {
   return options;
 }
 
-/// Two boxes thrown onto a floor: they land, bond, shear, and let go in part.
+/// Two boxes thrown onto a floor: they land, bond, shear, and partly debond.
 RigidWorld thrown_boxes() {
   RigidWorld world(sticky());
   world.planes.push_back({{0, 0, 0}, {0, 0, 1}});

@@ -128,7 +128,7 @@ TEST_F(Fclib, KeepsRepeatedTripletsThatAddUp) {
   EXPECT_EQ(dense(read_contact_problem(file).delassus), dense(sliding_point().delassus));
 }
 
-/// FCLIB's text and its writers disagree on which of p and i is the row of a triplet.
+/// FCLIB's documentation and its writers differ in which of p and i is the row of a triplet.
 TEST_F(Fclib, ReadsTripletsWithRowsInPWhereOnlyThatFits) {
   ContactProblem problem = sliding_point();
   problem.delassus = {};
@@ -191,7 +191,7 @@ TEST_F(Fclib, TakesMissingAdhesionVectorsAsNone) {
   EXPECT_TRUE(adhesion.energy.empty() && adhesion.saturation_pressure.empty());
 }
 
-/// Empty equality constraints, other groups and other attributes are no reason to refuse a file.
+/// Files with empty equality constraints, other groups or other attributes are accepted.
 TEST_F(Fclib, IgnoresWhatItDoesNotKnow) {
   write_contact_problem(file, local_problem());
   Hdf5Editor(file)

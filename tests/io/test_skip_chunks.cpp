@@ -1,5 +1,5 @@
 /// @file test_skip_chunks.cpp
-/// Chunks of background are counted, and not stored unless asked for.
+/// Chunks of background are counted, and stored only if the options require it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

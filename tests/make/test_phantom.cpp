@@ -79,7 +79,8 @@ TEST(Phantom, HasItsOrgansWhereTheyBelong) {
 }
 
 TEST(Phantom, EdgesAreSoft) {
-  // From the air at the body's right side inwards: at most a quarter of the voxels jump.
+  // Rows from the air at the body's right side inwards: in at least three quarters of them the
+  // first voxel of the body is a partial one.
   const auto samples = phantom().samples<float>();
   const Grid& grid = phantom().grid;
   int entries = 0;

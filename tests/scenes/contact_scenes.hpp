@@ -8,7 +8,7 @@
 
 namespace tetwarp::scenes {
 
-/// Adhesion that contacts of a scene get, one and all; stiffness 0: none.
+/// Adhesion of all contacts of a scene; stiffness 0: none.
 struct Glue {
   double stiffness = 0;  ///< C [N/m^3]
   double intensity = 1;  ///< beta

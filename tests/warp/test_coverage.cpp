@@ -55,7 +55,7 @@ TEST_P(Coverage, OwnersEqualTheReference) {
   EXPECT_EQ(cpu.counts.flat, reference.counts.flat);
 }
 
-/// Half of the voxels anywhere, half of them covered, so that small meshes are met too.
+/// Half of the voxels anywhere, half of them covered, so that small meshes are tested too.
 TEST_P(Coverage, OwnersEqualBruteForceOnRandomVoxels) {
   const scenes::Scene& scene = this->scene();
   const Grid& grid = scene.output_grid;

@@ -1,5 +1,5 @@
 /// @file test_skip_constant.cpp
-/// Filling cells that see one value of the source gives the bits of sampling them.
+/// Filling cells that read one value of the source gives the same bits as sampling them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

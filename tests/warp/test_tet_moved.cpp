@@ -12,7 +12,7 @@ namespace {
 template <class Exec>
 class TetMoved : public EachExec<Exec> {
  protected:
-  /// What the stage finds between two sets of nodes.
+  /// Results of the stage for two sets of nodes.
   struct Found {
     std::vector<std::uint8_t> moved;
     std::vector<std::int64_t> counts;

@@ -196,7 +196,7 @@ TYPED_TEST(TetSetupStage, SortsOutWhatIsInvertedFlatBadOrTooLarge) {
   EXPECT_EQ(this->download(stages.pair_offsets), (std::vector<std::int64_t>{0, 8, 16, 16, 16, 16}));
 }
 
-/// The same bits wherever a tetrahedron stands in the list.
+/// The same bits at any position of a tetrahedron in the list.
 TYPED_TEST(TetSetupStage, TreatsEveryTetrahedronAlone) {
   for (const std::int64_t size : tricky_sizes) {
     scenes::Scene scene = scene_of_tets(size);

@@ -1,5 +1,5 @@
 /// @file test_volume_label.cpp
-/// The filter for labels: most weight wins, ties go to the lowest, nothing new appears.
+/// The filter for labels: largest weight, of equal weights the lowest label, no new labels.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -23,7 +23,7 @@ namespace tetwarp::test {
 namespace {
 const double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A good warp of 8^3 voxels, to be spoiled in one place.
+/// A valid warp of 8^3 voxels; tests make one argument invalid.
 struct Call {
   Volume source = scenes::wavy_volume(scenes::unit_grid(8, 8, 8), PixelType::int16);
   Mesh mesh = covering_mesh(source.grid);

@@ -1,6 +1,5 @@
 /// @file test_warp_in_flight.cpp
-/// Steps begun before the last is finished: results, errors and refusals are those of steps taken
-/// one by one.
+/// Steps begun before the last is finished: results and errors equal those of single steps.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

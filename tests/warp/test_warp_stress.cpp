@@ -119,7 +119,7 @@ TEST_P(WarpStress, FlatTetrahedraOwnNothingAndLeaveNoHole) {
 }
 
 /// Inner nodes moved at random by one and a half cells: many tetrahedra are inverted, and a third
-/// of the voxels lie in several. The lowest owns, and the hull has no hole whatever happens inside.
+/// of the voxels lie in several. The lowest tetrahedron owns them, and the hull has no hole.
 TEST_P(WarpStress, FoldsLeaveNoHoleAndKeepPositions) {
   const Grid grid = scenes::unit_grid(40, 40, 40);
   Solid solid = turned_solid(grid, grid, {6, 6, 6});

@@ -188,7 +188,7 @@ TEST_P(WarpStressData, DenormalsInterpolateToTheirLastBit) {
       for (std::size_t v = 0; v < units.size(); ++v) {
         const auto bits = static_cast<std::uint64_t>(1000 * scenes::uniform(seed, v));
         units[v] = static_cast<double>(bits);
-        std::memcpy(&source.data[v * size], &bits, size);  // low bytes come first
+        std::memcpy(&source.data[v * size], &bits, size);  // low bytes first
       }
 
       const Warped warped = run_warp(source, scene, GetParam());
@@ -271,7 +271,7 @@ TEST_P(WarpStressData, IntegersAtTheEndsOfTheirRangeAreTheNearest) {
   found("over_half", worst);
 }
 
-/// A background that is not a number fills what nothing covers, and nothing else.
+/// A background of NaN is stored in uncovered voxels only.
 TEST_P(WarpStressData, AnOddBackgroundStaysOutside) {
   for (const double background : {std::numeric_limits<double>::quiet_NaN(),
                                   std::numeric_limits<double>::infinity(), 5e-324}) {
