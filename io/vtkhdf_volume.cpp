@@ -42,7 +42,8 @@ std::string shape_text(const std::vector<std::int64_t>& dims) {
   return text;
 }
 
-/// One point array: [z][y][x], with time before and components behind where they exist.
+/// One point array: [z][y][x], if temporal with time as first axis, with components as last axis if
+/// there are several.
 struct PointArray {
   h5::Dataset dataset;
   ArrayHeader header;

@@ -104,7 +104,8 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
   const h5::Object steps = h5::create_group(root, "Steps");
   const hsize_t count = times.size();
   h5::write_dataset(steps, "Values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {&count, 1}, times.data());
-  // Points and topology are the same rows at every step; the displacement has rows of its own.
+  // Points and topology are the same rows at every step; the displacement has one set of rows per
+  // step.
   const std::vector<std::int64_t> zeros(times.size(), 0);
   std::vector<std::int64_t> rows(times.size());
   for (std::size_t step = 0; step < rows.size(); ++step) {

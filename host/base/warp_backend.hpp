@@ -25,8 +25,8 @@ struct WarpPlan {
 
 /// A back end: cpu, cuda or reference. A step has five parts, each called once and in the order of
 /// declaration; when a part throws, the step is over. Up to two steps, numbers 0 and 1, are in
-/// flight. Of the later step only upload() is called before settle() of the earlier one, and only
-/// compute() before the earlier one's last two parts.
+/// flight. Before settle() of the earlier step only upload() of the later one is called; before the
+/// last two parts of the earlier one also compute().
 class WarpBackend {
  public:
   virtual ~WarpBackend() = default;

@@ -103,7 +103,7 @@ class JobReader {
   static Words words_of_default(const CLI::Option& option, const Json& job) {
     if (option.count() == 0 || option.get_lnames().empty()) return {};
     const std::string& name = option.get_lnames().front();
-    // The report beside --batch is that of the whole batch.
+    // With --batch, --report names the report of the whole batch.
     if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
     if (option.get_items_expected_max() == 0) return {"--" + name};
     return option_words(name, option.results());

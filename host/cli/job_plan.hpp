@@ -22,7 +22,7 @@ struct VolumePlan {
   Grid written_grid;
   std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
-  double memory_limit = 0;           ///< compute in blocks within so many bytes; 0: as a whole
+  double memory_limit = 0;           ///< limit for computing in blocks [byte]; 0: as a whole
   double memory = 0;                 ///< of sources and outputs as a whole [byte]
   bool writes_beside = false;        ///< write a step while the next one is computed
   bool overlaps = false;  ///< begin a step before the previous one is copied back and written

@@ -134,7 +134,7 @@ class VolumeRun {
   JobResult& result_;
   WarpOptions options_;
   Region region_;                      ///< of the output grid: all that is computed
-  bool is_whole_;                      ///< one block, whose sources, Warper and outputs are kept
+  bool is_whole_;                      ///< a single block; sources, Warper and outputs are reused
   bool writes_beside_;                 ///< a block is written while the next is computed
   bool overlaps_;                      ///< a step is begun before the one before is finished
   std::vector<ArrayHeader> outputs_;   ///< warped arrays, then the extra ones

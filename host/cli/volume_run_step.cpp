@@ -63,7 +63,7 @@ void VolumeRun::run_blocks(const std::shared_ptr<Step>& step) {
     next = begin_reading(*step, b + stride);
     compute(std::move(part), blocks[b], windows.samples);
   }
-  // Blocks for files of their own are computed again: their outputs are not kept.
+  // With one file per step blocks are computed again, because their outputs are not kept.
   if (is_whole_ || arguments_.temporal) last_ = step;
   if (is_whole_) return;
   ranks_.finish_sending();

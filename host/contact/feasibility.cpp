@@ -21,7 +21,7 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
 }
 
 /// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
-/// velocities computed from them anew.
+/// velocities recomputed from them.
 double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::vector<double>& y) {
   const View<double> impulse = pipeline.impulse();
   const std::vector<double> kept(impulse.data, impulse.data + impulse.size);

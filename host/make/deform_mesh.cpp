@@ -67,8 +67,8 @@ Point3 twist(const Frame& frame, const Point3& x, double angle) {
 }
 
 /// Bends the axis to an arc of `angle`, with the center at positive `side`. The line that keeps its
-/// length is the middle of the box; in boxes too thick for that the radius is larger, so that the
-/// inside of the bend does not fold.
+/// length is the middle of the box; in thicker boxes the radius is larger, so that the inside of
+/// the bend does not fold.
 Point3 bend(const Frame& frame, const Point3& x, double angle) {
   if (angle == 0) return {0, 0, 0};
   const double length = frame.size[frame.along];

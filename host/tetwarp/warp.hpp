@@ -152,9 +152,8 @@ struct WarpResult {
 class TETWARP_EXPORT Warper {
  public:
   /// @param sources  at least one volume, all on the same grid, in host memory or (cuda) device
-  ///                 memory; their samples must stay as they are for the lifetime of the Warper
+  ///                 memory; their samples must not change during the lifetime of the Warper
   /// @param mesh     rest state; copied
-  /// @param options  see WarpOptions
   /// @throws std::invalid_argument  on any bad argument, naming it
   /// @throws CudaError              when `backend` is cuda and the device is not usable
   Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
@@ -168,7 +167,6 @@ class TETWARP_EXPORT Warper {
 
   /// Warps all sources by one set of node positions.
   /// @param deformed  finite positions of as many nodes as the mesh has [world]
-  /// @param target    see WarpTarget
   /// @param progress  may be empty
   /// @returns timings and counts of this step
   /// @throws std::invalid_argument  on bad arguments
@@ -214,7 +212,7 @@ class TETWARP_EXPORT Warper {
 
   /// Steps begun and not finished.
   std::size_t steps_in_flight() const;
-  static constexpr std::size_t max_steps_in_flight = 2;  ///< how many may be
+  static constexpr std::size_t max_steps_in_flight = 2;  ///< limit of steps_in_flight()
 
   /// Warps a single source by one set of node positions.
   /// @returns a new volume on output_grid()

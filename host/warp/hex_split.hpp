@@ -1,5 +1,5 @@
 /// @file hex_split.hpp
-/// Division of hexahedra into tetrahedra, which decide the owners of voxels.
+/// Division of hexahedra into tetrahedra, by which voxels are assigned to owners.
 #pragma once
 #include <array>
 #include <cstdint>

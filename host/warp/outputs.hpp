@@ -21,8 +21,8 @@ struct CellWindow {
   int end[2];
 };
 
-/// Two slots of memory, one per target of the two steps that may be in flight, and a record of what
-/// the targets hold.
+/// Two slots of memory, one per target of the two steps in flight, and a record of the content of
+/// the targets.
 template <class Exec>
 class WarpOutputs {
  public:

@@ -18,7 +18,7 @@ struct Footprint {
   int begin[3], end[3];  ///< output voxels it may own [frame voxel]
   int source_begin[3];   ///< source voxels around its positions, for all of its voxels
   int source_end[3];
-  bool is_boxed;  ///< the map is not affine or too steep: only source_begin and source_end hold
+  bool is_boxed;  ///< the map is not affine or too steep: only source_begin, source_end hold
   int spread[3];  ///< distance of an averaged sample from the position [source voxel]
   float linear[3][3];
   double offset[3];

@@ -24,7 +24,7 @@ struct ContactFileHeader {
   bool has_solution = false;  ///< /solution/r exists, from any program, of any quality
   std::optional<std::string>
       status;                      ///< written by write_contact_solution(): name_of(ContactStatus)
-  std::optional<double> residual;  ///< eta, likewise
+  std::optional<double> residual;  ///< eta; written by write_contact_solution()
 };
 
 TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);

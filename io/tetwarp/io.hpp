@@ -198,7 +198,7 @@ TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
                                                          const std::vector<ArrayHeader>& arrays);
 
 /// Writes a mesh as a VTKHDF UnstructuredGrid.
-/// @param displacements  deformed less rest position [world], per step, per node; may be empty
+/// @param displacements  deformed minus rest position [world], per step, per node; may be empty
 /// @param times          one per step
 TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const Mesh& mesh,

@@ -138,8 +138,8 @@ struct ContactAdhesionBody {
     const bool debonds =
         beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
     if (debonds) next = 0;
-    // New bonds form unstretched: the gap shrinks so that the force beta^2 C g stays continuous;
-    // the stored energy falls by the same factor.
+    // New bonds form without tension: the gap is reduced so that the force beta^2 C g is
+    // continuous; the stored energy decreases by the same factor.
     double keep = next > 0 ? 1 : 0;
     if (next > beta) keep = (beta / next) * (beta / next);
     next_intensity[c] = next;

@@ -43,7 +43,7 @@ struct Forest {
   }
 };
 
-/// One index = one item: makes it a tree of its own.
+/// One index = one item: makes it a separate tree.
 struct MakeTreeBody {
   View<std::int32_t> parent;
   TETWARP_HD void operator()(std::int64_t i) const { parent[i] = static_cast<std::int32_t>(i); }

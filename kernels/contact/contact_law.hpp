@@ -1,5 +1,5 @@
 /// @file contact_law.hpp
-/// The law of one contact: its impulse for given velocities while all other impulses stay fixed.
+/// The law of one contact: its impulse for given velocities with all other impulses constant.
 ///
 /// Letters: r impulse, u velocity, B the contact's own 3x3 block of the Delassus matrix,
 /// K = diag(kappa_n, kappa_t, kappa_t) the adhesive springs over one step, o_t the stored

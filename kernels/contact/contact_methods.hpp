@@ -38,7 +38,7 @@ struct MethodWork {
   View<T> mixed;                     ///< [columns][3 slots], island after island
   View<ContactConstants<T>> metric;  ///< constants of mass splitting, [slots]
 
-  /// The views of one island; `metric` stays that of all.
+  /// The views of one island, but `metric` of all islands.
   TETWARP_HD MethodWork of(const ContactIsland& island) const {
     const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
     return {{weights.data + first, size},
@@ -50,7 +50,7 @@ struct MethodWork {
 };
 
 /// The methods of one island. Each continues from the current impulses and returns why it stopped;
-/// restore_best() goes back to the iterate with the smallest residual.
+/// restore_best() restores the iterate with the smallest residual.
 template <class Exec, class T, class Log>
 class ContactMethods {
  public:
@@ -85,7 +85,7 @@ class ContactMethods {
   }
 
   /// Measures the residual of the current impulses.
-  /// @return  whether they are within the tolerance, or no sweep is left
+  /// @return  whether they are within the tolerance, or the budget of sweeps is used up
   TETWARP_ANY_EXEC bool is_done_at_start() {
     pipeline_.follow_impulses();
     return measure(0);

@@ -71,7 +71,7 @@ class ConvergenceTest {
   TETWARP_HD std::int64_t sweeps() const { return sweeps_; }
   TETWARP_HD double best_excess() const { return best_excess_; }
 
-  /// Starts the count of sweeps without progress anew, for the next method.
+  /// Restarts the count of sweeps without progress, for the next method.
   /// @param patience  sweeps without progress after which the method has stalled
   TETWARP_HD void start_method(std::int64_t patience) {
     patience_ = patience;

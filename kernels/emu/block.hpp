@@ -233,7 +233,7 @@ class Block {
                        [](const auto& thread) { return thread->state == State::done; });
   }
 
-  /// 0 to count - 1 in the schedule's order; count is at most 32, for warps and lanes alike.
+  /// 0 to count - 1 in the schedule's order. @pre count <= 32
   std::vector<unsigned> ordered(unsigned count) {
     std::vector<unsigned> numbers(count);
     std::iota(numbers.begin(), numbers.end(), 0u);

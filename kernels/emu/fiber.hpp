@@ -1,5 +1,5 @@
 /// @file fiber.hpp
-/// A coroutine with a stack of its own: a call that can be suspended and resumed.
+/// A coroutine with its own stack: a call that can be suspended and resumed.
 #pragma once
 #include <ucontext.h>
 

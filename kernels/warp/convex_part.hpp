@@ -2,7 +2,7 @@
 /// The part of a voxel's box within half-spaces, and its volume.
 ///
 /// A part is an unordered list of directed edges, each with the face that it bounds. Where a plane
-/// cuts a face, one new edge closes what is left of it, and the reversed edge belongs to the face
+/// cuts a face, one new edge closes the remaining part, and the reversed edge belongs to the face
 /// that the plane adds. The volume is a sum over edges, so their order does not matter.
 #pragma once
 #include <cstdint>

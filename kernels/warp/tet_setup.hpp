@@ -181,7 +181,7 @@ struct TetSetupBody {
   /// Out, coarse corners of the box, none where it touches fewer than fewest_masked_cells cells,
   /// shape [tet_count + 1], the last entry for the sum.
   View<std::int64_t> corner_counts;
-  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], likewise
+  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], as above
   View<std::int64_t> class_counts;  ///< irregular ones are added to it, shape [tet_class_count]
   HexView hexes = {};               ///< hexahedra that the last tetrahedra are parts of
 

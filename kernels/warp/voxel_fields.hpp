@@ -230,7 +230,7 @@ struct VoxelFieldsBody {
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
 };
 
-/// The same for voxels in hexahedra. A kernel of its own, as it needs many registers.
+/// The same for voxels in hexahedra. A separate kernel, because it needs many registers.
 struct HexFieldsBody {
   VoxelFieldsJob job;
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }

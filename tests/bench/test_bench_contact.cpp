@@ -57,7 +57,7 @@ TEST(BenchSolutionCheck, OfReportsUsesReportedErrorsAndChecksTheRest) {
   EXPECT_TRUE(check_report(solved.problem, solved.solution, solved.options).fault.has_value());
 }
 
-/// Without friction a sliding box satisfies all contacts, however fast it slides.
+/// Without friction a sliding box satisfies all contacts at any speed.
 TEST(BenchSolutionCheck, RefusesAResultOutOfBalance) {
   Solved solved{.problem = scenes::box_stack({.boxes = 1, .friction = 0})};
   const double push = 0.01;

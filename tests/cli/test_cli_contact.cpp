@@ -32,7 +32,7 @@ TEST_F(ContactCommand, StopsAFallAndBrakesASlide) {
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5", "solved.hdf5"}));
 }
 
-/// The pyramid bounds each tangent by itself, so that the slower one stops.
+/// The pyramid bounds each tangent separately, so that the slower one stops.
 TEST_F(ContactCommand, BrakesEachTangentByThePyramid) {
   store(sliding_point());
 

@@ -19,8 +19,8 @@ namespace {
 using Json = nlohmann::json;
 
 /// A folder with volume.vtkhdf, 48 voxels per axis, one array half and one all air, and mesh.vtkhdf
-/// with six steps: a corner of the mesh bulges, then stays, then a node behind the volume's end
-/// moves.
+/// with six steps: first a corner of the mesh bulges, then nothing moves, then a node beyond the
+/// volume's end moves.
 class PartlyMoving : public TemporaryFolder {
  public:
   PartlyMoving() {

@@ -199,7 +199,8 @@ TEST(ContactAdhesion, BondsUnderCompressionTowardsTheSharesOfThePressure) {
   EXPECT_EQ(evolved({.intensity = 0.9, .normal_impulse = 1e9 * impulse}).intensity, 1);
 }
 
-/// The spring's force C beta^2 g stays, its energy C beta^2 g^2 falls as the gap does.
+/// The spring's force C beta^2 g is constant; its energy C beta^2 g^2 decreases in proportion to
+/// the gap.
 TEST(ContactAdhesion, BondsThatFormMoveTheAnchorsSoThatTheForceIsContinuous) {
   const Event sheared{
       .intensity = 0.3, .normal_impulse = 5e-3, .end_gap = {0, 0.5 * onset, -onset}};

@@ -73,8 +73,8 @@ TEST(ContactStress, MirrorsAndUnitsDoNotChangeTheSolution) {
   }
 }
 
-/// Law: without friction the velocities are those of a strictly convex problem, whatever the order
-/// of contacts and bodies. (With friction there may be several solutions.)
+/// Law: without friction the velocities solve a strictly convex problem, so they do not depend on
+/// the order of contacts and bodies. (With friction there may be several solutions.)
 TEST(ContactStress, OrdersDoNotChangeTheFrictionlessSolution) {
   for (const double ratio : {1.0, 3.0}) {
     const ContactCase original = busy_case(0, ratio);

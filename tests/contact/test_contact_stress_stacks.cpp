@@ -31,8 +31,8 @@ StackRun resting_stack(int count, double ratio, std::int64_t sweeps, int steps) 
   return run;
 }
 
-/// Law: a stack at rest that is solved to eta 1e-6 stays at rest, whatever the masses: in 5 steps
-/// (a free fall of 0.03 edges) the top moves by less than 1e-5 edges.
+/// Law: a stack at rest that is solved to eta 1e-6 stays at rest for any masses: in 5 steps (a free
+/// fall of 0.03 edges) the top moves by less than 1e-5 edges.
 TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
   int solved = 0;
   for (const int count : {10, 30}) {

@@ -1,6 +1,6 @@
 /// @file test_cell_raster_simt.cpp
 /// The hand-mapped raster kernel, run by emulation in several thread orders, gives the bits of the
-/// row-by-row raster of the host. A program of its own: the emulation defines CUDA's names.
+/// row-by-row raster of the host. A separate program, because the emulation defines CUDA's names.
 #include <gtest/gtest.h>
 
 #include <algorithm>

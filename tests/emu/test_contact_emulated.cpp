@@ -58,7 +58,7 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
 
   const DeviceCalls short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
 
-  EXPECT_EQ(short_solve, long_solve);  // whatever the number of sweeps
+  EXPECT_EQ(short_solve, long_solve);  // for any number of sweeps
   EXPECT_LE(long_solve.count(DeviceCall::launch), 12);
 }
 

@@ -258,7 +258,7 @@ TEST(ContactIslandSimt, EventsAreThinnedOutEvenly) {
   }
 }
 
-/// The sums of a whole device: its own fixed tree, whatever the order of threads.
+/// The sums of a whole device: its own fixed tree, for any order of threads.
 TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
   const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
   std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);

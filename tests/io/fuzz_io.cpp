@@ -3,7 +3,7 @@
 ///
 /// Damages good files, by bytes and by values, and reads them with every reader. Success or an
 /// IoError passes; a crash, a hang, another exception or a large allocation fails. Files are read
-/// in forked children, so that crashes can be counted; those inside HDF5 are counted apart.
+/// in forked children, so that crashes can be counted; those inside HDF5 are counted separately.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <sys/mman.h>

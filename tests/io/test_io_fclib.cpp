@@ -110,7 +110,7 @@ TEST_F(Fclib, ReadsMatricesByColumns) {
   EXPECT_EQ(contents(read_contact_problem(file)), contents(local_problem()));
 }
 
-/// Triplets in any order; the arrays go on behind the `nz` entries that count.
+/// Triplets in any order; the arrays are longer than the `nz` entries in use.
 TEST_F(Fclib, ReadsMatricesOfTriplets) {
   write_contact_problem(file, local_problem());
   store_delassus<std::int32_t>(

@@ -71,7 +71,7 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
-/// `pattern` again and again, `size` long.
+/// `pattern` repeated up to `size` entries.
 std::vector<double> repeated(const std::vector<double>& pattern, std::size_t size) {
   std::vector<double> result(size);
   for (std::size_t i = 0; i < size; ++i) result[i] = pattern[i % pattern.size()];

@@ -1,6 +1,6 @@
 /// @file position_probe.hpp
-/// Where a warp samples the source, against where it should: errors of the source position in
-/// voxels, what rounding the nodes costs apart from what evaluating the maps costs.
+/// Errors of the positions at which a warp samples the source [voxel]: those of rounding the nodes
+/// and those of evaluating the maps, separately.
 #pragma once
 #include <array>
 #include <cmath>

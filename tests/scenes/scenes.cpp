@@ -21,7 +21,7 @@ std::vector<Point3> to_world(const Grid& grid, std::vector<Point3> points) {
   return points;
 }
 
-/// Scene whose mesh is given in index space of one grid, used for source and output alike.
+/// Scene whose mesh is given in index space of one grid, used for source and output.
 Scene on_grid(std::string name, const Grid& grid, Mesh mesh, const std::vector<Point3>& deformed) {
   Scene scene{std::move(name), std::move(mesh), to_world(grid, deformed), grid, grid};
   scene.mesh.rest_positions = to_world(grid, scene.mesh.rest_positions);

@@ -85,8 +85,8 @@ class Series {
   FieldBuffers other_fields_;
 };
 
-/// Nodes within `radius` voxels of a point of the scene's output grid get what `change` makes of
-/// their positions.
+/// Applies `change` to the positions of the nodes within `radius` voxels of a point of the scene's
+/// output grid.
 template <class Change>
 std::vector<Point3> changed_near(const scenes::Scene& scene,
                                  std::vector<Point3> positions,
@@ -145,7 +145,7 @@ inline std::vector<std::vector<Point3>> partial_motions(const scenes::Scene& sce
   const Point3 mirror = grid.world_of(somewhere(50));
   near(13, [&](std::size_t, Point3& p) { p[1] = 2 * mirror[1] - p[1]; });
   near(12, [&](std::size_t, Point3& p) { p[2] = mirror[2]; });
-  near(0, shiver(1));  // nothing at all, but for a node that happens to be there
+  near(0, shiver(1));  // nothing, or a single node
   steps.push_back(scenes::waved(steps.back(), 2.0 * grid.spacing[0], seed));
   near(10, shiver(1));
   return steps;

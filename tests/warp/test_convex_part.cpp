@@ -27,7 +27,7 @@ class Numbers {
   std::uint64_t at_ = 0;
 };
 
-/// The plane but for its last bits, and as another formula may have it.
+/// The plane with other last bits, as another formula may compute it.
 Plane nearly(const Plane& plane, double scale, Numbers& numbers) {
   Plane result;
   for (std::size_t n = 0; n < 4; ++n) {

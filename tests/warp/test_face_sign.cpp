@@ -1,5 +1,5 @@
 /// @file test_face_sign.cpp
-/// The exact side of a face: closed, whatever the orientation, up to the largest tetrahedra.
+/// The exact side of a face: closed, for both orientations, up to the largest tetrahedra.
 #include <gtest/gtest.h>
 
 #include <algorithm>

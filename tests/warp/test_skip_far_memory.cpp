@@ -19,7 +19,7 @@
 
 namespace tetwarp::test {
 namespace {
-/// Host threads on memory of their own.
+/// Host threads with memory separate from the caller's.
 class FarExec : public CpuExec {
  public:
   static constexpr bool reads_are_free = false;

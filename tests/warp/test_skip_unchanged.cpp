@@ -102,8 +102,8 @@ TEST_P(SkipUnchanged, UpdatesHaveTheBitsOfStepsFromScratch) {
   }
 }
 
-/// New memory, as Warper::step() into a new volume has it: what has not moved is not set up again,
-/// every cell is written.
+/// Outputs in new memory, as with Warper::step() into a new volume: tetrahedra that have not moved
+/// are not set up again, every cell is written.
 TEST_P(SkipUnchanged, BuffersThatDoNotHoldTheStepBeforeAreWrittenWhole) {
   const std::vector<Volume> sources = sources_of(scene());
   Series updated(sources, scene(), options(true)), anew(sources, scene(), options(false));

@@ -162,8 +162,9 @@ TEST_P(WarpFields, AreTheReference) {
   }
 }
 
-/// A source of its own positions shows where every voxel comes from: linear filters lose nothing
-/// of it. The forward field is the displacement when meshes are exchanged.
+/// A source whose samples are its own positions shows the source position of every voxel, without
+/// interpolation error for linear filters. The forward field is the displacement when meshes are
+/// exchanged.
 TEST_P(WarpFields, DisplaceAsTheWarpDoesAndForwardIsTheInverse) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 18);
   Volume places = make_volume(scene.source_grid, PixelType::float64, 3);

@@ -1,5 +1,5 @@
 /// @file test_warp_intensity.cpp
-/// Densities, and totals that stay.
+/// Densities, and preserved totals.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -84,7 +84,7 @@ bool has_marked(const std::vector<bool>& marked, const Real3& x, long double rea
   return false;
 }
 
-/// What interpolation makes of the samples around a position.
+/// Interpolation of the samples around a position.
 struct Blend {
   long double value = 0;
   long double low = INFINITY, high = -INFINITY;  ///< of the eight

@@ -59,7 +59,7 @@ std::vector<StopCriterion> stop_criteria(const ContactOptions& options,
                                          const ContactStructure& structure,
                                          const std::vector<IslandOutcome>& outcomes);
 
-/// The solve of the uncoupled islands of one problem.
+/// Solves the uncoupled islands of one problem.
 template <class T>
 class ContactRun {
  public:

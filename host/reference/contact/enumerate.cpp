@@ -129,7 +129,7 @@ double mode_count(const DenseContacts& contacts, const ContactOptions& options) 
 
 std::vector<VectorXd> enumerate_impulses(const DenseContacts& contacts,
                                          const ContactOptions& options) {
-  constexpr double satisfied = 1e-11;  // rounding stays far below, a wrong mode far above
+  constexpr double satisfied = 1e-11;  // rounding errors are smaller, those of a wrong mode larger
   const auto systems = static_cast<std::int64_t>(mode_count(contacts, options));
   ModeSystem system(contacts);
   std::vector<VectorXd> solutions;

@@ -20,7 +20,7 @@ namespace {
 double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) {
   VectorXd x = VectorXd::Zero(matrix.cols());
   std::vector<Index> passive;
-  // In exact arithmetic the method ends by itself; with rounding errors it may cycle.
+  // In exact arithmetic the method terminates; with rounding errors it may cycle.
   for (Index step = 0; step < 10 * matrix.cols(); ++step) {
     const VectorXd slope = matrix.transpose() * (right - matrix * x);
     Index entering = -1;

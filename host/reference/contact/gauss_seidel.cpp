@@ -53,8 +53,8 @@ SweptImpulses gauss_seidel(const DenseContacts& contacts,
   bool has_changed = true;
   while (has_changed && best > goal && swept.sweeps < options.max_sweeps) {
     const std::int64_t sweeps = std::min(sweeps_per_residual, options.max_sweeps - swept.sweeps);
-    // Velocities are updated with the impulses for a few sweeps only, then computed anew, so that
-    // rounding errors do not accumulate.
+    // Velocities are updated with the impulses for a few sweeps, then recomputed, so that rounding
+    // errors do not accumulate.
     VectorXd velocity = contacts.velocity(impulse);
     for (std::int64_t s = 0; s < sweeps; ++s) {
       has_changed = sweep(contacts, options, impulse, velocity);

@@ -43,7 +43,7 @@ HWY_INLINE hn::Vec<ComponentTag> read_components(const T* samples) {
 }
 
 /// Values of all units of `taps`. The blends are those of sample(), in its order: equal bits.
-/// @param values  out, [voxel][component]; up to three values more are written behind them
+/// @param values  out, [voxel][component]; followed by up to three more values
 template <bool Rim, class T>
 inline void sample_components(const SourceView<T>& view,
                               bool nearest,

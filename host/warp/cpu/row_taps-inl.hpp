@@ -193,7 +193,7 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceView<T>& view,
   return in_source;
 }
 
-/// Adds one unit: row (j, k) of one cell, which `runs` describe, none of them RowKind::alone.
+/// Adds one unit: row (j, k) of one cell, given by `runs`. @pre no run is of RowKind::alone
 template <bool Rim, class T>
 inline void add_unit(const SourceView<T>& view,
                      bool nearest,
