@@ -10,9 +10,8 @@
 
 namespace tetwarp::cli {
 
-/// Checks the arrays of a volume file against the arguments: --vectors and --tensors name some of
-/// them, their types fit the options, and their names are not those of extra outputs. Throws
-/// IoError.
+/// Checks the arrays of a volume file: --vectors and --tensors name some of them, their types fit
+/// the options, and their names are not those of extra outputs. Throws IoError.
 void check_arrays(const std::string& path,
                   const Grid& grid,
                   const std::vector<ArrayHeader>& arrays,

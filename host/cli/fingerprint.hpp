@@ -1,6 +1,6 @@
 /// @file fingerprint.hpp
-/// A 64-bit hash of everything that determines an output file: --resume keeps an existing file that
-/// has the same.
+/// A 64-bit hash of everything that determines an output file: --resume keeps a file with an equal
+/// one.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -128,8 +128,7 @@ VolumePlan plan_volume(const std::string& path,
   }
   plan.writes_beside =
       plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
-  // On the cpu begin_step() computes the whole step, so the previous one is finished and written
-  // first.
+  // On the cpu begin_step() computes the step: the previous one is finished and written first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.steps = steps;
   plan.outputs = output_names(output, steps, arguments.temporal);

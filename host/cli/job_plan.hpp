@@ -40,7 +40,7 @@ struct JobPlan {
   std::vector<std::string> outputs() const;
 };
 
-/// Reads the headers of all files and checks all arguments. Throws std::invalid_argument, IoError,
+/// Reads all file headers and checks all arguments. Throws std::invalid_argument, IoError,
 /// CudaError.
 JobPlan plan_job(const WarpArguments& arguments);
 

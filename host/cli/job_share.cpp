@@ -12,8 +12,7 @@
 
 namespace tetwarp::cli {
 namespace {
-/// The plan with only the steps and outputs of this rank: outputs are assigned to ranks
-/// round-robin.
+/// The plan with only this rank's steps and outputs, which are assigned round-robin.
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
   const std::vector<std::string> outputs = std::exchange(volume.outputs, {});

@@ -11,8 +11,8 @@
 
 namespace tetwarp::cli {
 
-/// The ranks of a job and their messages. Used by one thread at a time. An error inside MPI ends
-/// all ranks.
+/// The ranks of a job and their messages. Used by one thread at a time. Errors in MPI end all
+/// ranks.
 class Ranks {
  public:
   /// One process alone; makes no MPI call.

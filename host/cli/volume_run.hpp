@@ -38,9 +38,8 @@ inline std::size_t bytes_of(const ArrayHeader& array, const Region& region) {
 /// reused, so that unchanged work is skipped. A step is written while the next one is computed; on
 /// a device the next one is begun before the copy of this one to the host.
 ///
-/// Several blocks: each block has its own window of the sources and its own Warper. While a block
-/// is computed, the previous one is written and the window of the next one is read; steps do not
-/// overlap.
+/// Several blocks: each has a window of the sources and a Warper. While a block is computed, the
+/// previous one is written and the window of the next one is read; steps do not overlap.
 class VolumeRun {
  public:
   VolumeRun(const WarpArguments& arguments,

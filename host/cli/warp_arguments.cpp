@@ -42,8 +42,7 @@ double parse_bytes(const std::string& text) {
   return used < text.size() ? std::ldexp(bytes, 10 * static_cast<int>(unit + 1)) : bytes;
 }
 
-/// Declares an option whose text a function turns into a value; its std::invalid_argument is a
-/// usage error.
+/// Declares an option with a parser of its text, whose std::invalid_argument is a usage error.
 template <class T, class Parse>
 void add_parsed(CLI::App& app,
                 const std::string& option,

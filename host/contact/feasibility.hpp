@@ -1,6 +1,5 @@
 /// @file feasibility.hpp
-/// Finds contacts whose normal offsets no velocity satisfies together, and solves problems that
-/// have some.
+/// Finds contacts whose normal offsets no velocity satisfies together, and solves such problems.
 #pragma once
 #include <cstdint>
 #include <functional>

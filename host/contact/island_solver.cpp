@@ -139,7 +139,7 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   outcome.sums = run.measure(island);
 }
 
-/// Newton's method from the impulses of the sweeps; its impulses are kept if their error is not
+/// Newton's method from the impulses of the sweeps; keeps its impulses unless their error is
 /// larger.
 void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome& outcome) {
   const ContactIsland& island = structure_.islands[index_of(i)];

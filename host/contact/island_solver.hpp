@@ -33,8 +33,7 @@ class IslandSolver {
   /// @return rows and springs that were left out
   ContactSavings set_problem(const ContactProblem& problem);
 
-  /// To be called before another solver uses the device; the next use copies the problem there
-  /// again.
+  /// Call before another solver uses the device; the next use copies the problem again.
   void forget_device() { has_device_system_ = false; }
 
   /// Solves all islands whose blocks A does not couple. If sweeps do not converge, searches for

@@ -1,7 +1,6 @@
 /// @file contact_exec_cpu.hpp
 /// CpuContactExec: the executor of the contact pipeline on host threads. Sums have one fixed tree,
-/// so results do not depend on the number of threads. Labels name the stage; they are not used
-/// here.
+/// so results do not depend on the number of threads. Labels of stages are ignored.
 #pragma once
 #include <algorithm>
 #include <cstddef>

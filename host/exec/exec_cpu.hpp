@@ -28,8 +28,7 @@ class CpuExec {
   template <class T>
   struct Staged {};  ///< empty: the argument of upload() is read in place
 
-  /// The host can read results of a stage without waiting, so that lists are allocated at their
-  /// exact size.
+  /// The host can read results without waiting, so that lists are allocated at their exact size.
   static constexpr bool reads_are_free = true;
 
   explicit CpuExec(int threads) : threads_(threads) {}

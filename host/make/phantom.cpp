@@ -49,8 +49,7 @@ double tissue_level(double distance, double voxel) {
          below_fat * (muscle_level - fat_level);
 }
 
-/// Smooth noise in [0, 1): random numbers on a cubic lattice of spacing texture_grain,
-/// interpolated.
+/// Smooth noise in [0, 1): interpolated random numbers on a cubic lattice of spacing texture_grain.
 double texture(double x, double y, double z) {
   const Point3 cell{x / texture_grain, y / texture_grain, z / texture_grain};
   std::uint64_t base[3];

@@ -108,8 +108,7 @@ struct PanelView {
   bool is_projection;
 };
 
-/// Coronal and sagittal panels have the head at the top, axial panels the first row, as in
-/// radiology.
+/// As in radiology: coronal and sagittal panels with the head at the top, axial ones the first row.
 constexpr std::array<PanelView, 4> panel_views{{{0, 1, false, false},  // axial
                                                 {0, 2, true, false},   // coronal
                                                 {1, 2, true, false},   // sagittal

@@ -224,8 +224,7 @@ class TETWARP_EXPORT ContactSolver {
   std::unique_ptr<State> state_;
 };
 
-/// Solves one problem; throws as ContactSolver does. For a series of problems a ContactSolver is
-/// faster.
+/// Solves one problem; throws as ContactSolver, which is faster for a series of problems.
 TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
                                               const ContactOptions& options = {});
 

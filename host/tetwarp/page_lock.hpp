@@ -22,8 +22,7 @@ class TETWARP_EXPORT PageLock {
   PageLock& operator=(PageLock&& other) noexcept;
   ~PageLock();
 
-  /// False when there is no usable CUDA device or the system refuses. Results are the same, copies
-  /// slower.
+  /// False without a usable CUDA device or if the system refuses. Only the speed of copies differs.
   bool is_locked() const { return data_ != nullptr; }
 
  private:

@@ -23,8 +23,7 @@
 
 namespace tetwarp {
 
-/// Interpolated values beyond the range of the samples, which cubic, bspline and lanczos produce at
-/// edges.
+/// Interpolated values beyond the range of the samples (cubic, bspline and lanczos, at edges).
 enum class Overshoot {
   keep,  ///< written as they are
   clamp  ///< limited to the least and largest sample of the source, component by component

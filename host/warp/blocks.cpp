@@ -75,8 +75,7 @@ struct BlockPlanner::State {
   }
   /// Computes the footprints of a step, and the counts of its plan.
   void set_footprints(const PositionsView& deformed, BlockPlan& plan);
-  /// Replaces the footprints of the tetrahedra that hexahedra were split into by those of the
-  /// hexahedra.
+  /// Replaces the footprints of the parts of hexahedra by those of the hexahedra.
   void merge_hexahedra();
   /// Divides a box into blocks and appends them to a plan.
   /// @param cells  that may own voxels of the box

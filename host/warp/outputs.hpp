@@ -21,8 +21,8 @@ struct CellWindow {
   int end[2];
 };
 
-/// Two slots of memory, one per target of the two steps in flight, and a record of the content of
-/// the targets.
+/// Two slots of memory, one per target of the steps in flight, and a record of the targets'
+/// content.
 template <class Exec>
 class WarpOutputs {
  public:

@@ -1,6 +1,5 @@
 /// @file step_counters.hpp
-/// The counters that the stages of a step increase in the executor's memory, and the report made
-/// from them.
+/// The counters of a step in the executor's memory, and the report made from them.
 #pragma once
 #include <cstdint>
 

@@ -148,8 +148,7 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
   return all;
 }
 
-/// The voxels of the source around the positions that a cell of the mesh has for the voxels of
-/// `box`.
+/// The source voxels around the positions that a cell of the mesh has for the voxels of `box`.
 inline Box samples_of(const Footprint& footprint, const Box& box) {
   Box part, rest;
   for (int axis = 0; axis < 3; ++axis) {

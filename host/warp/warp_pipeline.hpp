@@ -1,6 +1,5 @@
 /// @file warp_pipeline.hpp
-/// The warp as a list of stages, for any executor. Start reading here: run() calls the stages in
-/// order.
+/// The warp as a list of stages, for any executor. Start at run(), which calls them in order.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -62,8 +61,7 @@ class WarpPipeline : public WarpBackend {
     flight.slot = outputs_.slot();
     flight.is_delivered = false;
     compute(flight, progress);
-    // The part that an update writes is known only after settle(); a whole output can be downloaded
-    // now.
+    // The part that an update writes follows from settle(); a whole output is downloaded now.
     if (stale_.size == 0 && target.memory == Memory::host && outputs_.downloads_async(target)) {
       flight.window = outputs_.window_of({});
       download(number);

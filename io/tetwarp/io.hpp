@@ -65,8 +65,7 @@ class TETWARP_IO_EXPORT VolumeReader {
   const Grid& grid() const;
   const ArrayHeader& array() const;
 
-  /// Memory that HDF5 uses while it reads: a chunk of the array before and after decompression
-  /// [byte].
+  /// Memory of HDF5 while it reads: a chunk before and after decompression [byte].
   double chunk_bytes() const;
 
   /// Reads a region of the grid.

@@ -1,6 +1,5 @@
 /// @file view.hpp
-/// Arrays without ownership, and the integer geometry of the output grid: the members of stage
-/// bodies.
+/// Members of stage bodies: arrays without ownership, and the integer geometry of the output grid.
 #pragma once
 #include <cstdint>
 #include <type_traits>

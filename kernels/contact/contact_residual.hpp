@@ -1,6 +1,5 @@
 /// @file contact_residual.hpp
-/// Stage "residual" of the contact solver: how far impulses and velocities are from the contact
-/// law.
+/// Stage "residual" of the contact solver: the distance of impulses and velocities from the law.
 #pragma once
 #include <cstdint>
 

@@ -1,6 +1,5 @@
 /// @file device.hpp
-/// The emulated CUDA device: memory, and streams whose work runs as late or as early as CUDA
-/// permits.
+/// The emulated CUDA device: memory, and streams that run work as late or as early as CUDA permits.
 #pragma once
 #include <algorithm>
 #include <cstddef>

@@ -9,8 +9,7 @@
 
 namespace tetwarp {
 namespace {
-/// Makes the two calls that CUB needs: call(null, bytes) returns the scratch size, the second does
-/// the work.
+/// Makes the two calls that CUB needs: call(null, bytes) for the scratch size, and the actual one.
 template <class Call>
 void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& call) {
   std::size_t bytes = 0;

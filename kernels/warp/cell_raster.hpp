@@ -246,8 +246,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   store_position<General>(job, job.filter, whole, at, voxel);
 }
 
-/// Whether the tetrahedron moved by whole voxels, so that its voxels copy one sample with any
-/// filter.
+/// Whether the tetrahedron moved by whole voxels: its voxels copy one sample with any filter.
 template <class T>
 TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;

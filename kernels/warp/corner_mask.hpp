@@ -1,6 +1,6 @@
 /// @file corner_mask.hpp
-/// Stage "mask" of the warp: in which half-spaces of a tetrahedron each corner of a cell certainly
-/// lies.
+/// Stage "mask" of the warp: half-spaces of a tetrahedron that certainly contain a corner of a
+/// cell.
 #pragma once
 #include <cstdint>
 

@@ -1,6 +1,5 @@
 /// @file voxel_transform.hpp
-/// Stage "raster" of the warp, voxels whose samples are averaged, reoriented or scaled: computed in
-/// float64, rounded once.
+/// Stage "raster" of the warp for averaged, reoriented or scaled samples: float64, rounded once.
 #pragma once
 #include <cstdint>
 

@@ -35,8 +35,7 @@ inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& i
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation); relaxation and acceleration
 /// (Anderson, or nonlinear conjugate gradients, on v) are ours.
 ///
-/// In float32 the iteration also stops when rounding prevents progress; the residual is always
-/// estimated in float64.
+/// In float32 it also stops when rounding prevents progress; residuals are estimated in float64.
 template <class Exec, class T = double>
 class BlockJacobi {
  public:

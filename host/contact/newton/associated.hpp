@@ -1,6 +1,5 @@
 /// @file associated.hpp
-/// Contact with associated friction: a convex problem whose solution is a start for Newton's
-/// method.
+/// Contact with associated friction: a convex problem that yields starts for Newton's method.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

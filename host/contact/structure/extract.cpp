@@ -13,8 +13,8 @@ std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::i
   return place;
 }
 
-/// Some rows of a matrix, with renumbered columns. Entries in columns without a place are dropped;
-/// they are zeros.
+/// Some rows of a matrix, with renumbered columns. Drops entries (zeros) in columns without a
+/// place.
 SparseMatrix make_part(const SparseMatrix& matrix,
                        const std::vector<std::int32_t>& rows,
                        const std::vector<std::int32_t>& column_place,

@@ -45,7 +45,7 @@ double eta_of(const DenseContacts& contacts,
 std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
                                                 const ContactOptions& options);
 
-/// Linear systems that enumerate_impulses() solves; infinity where the laws are not piecewise
+/// Linear systems that enumerate_impulses() solves; infinity for laws that are not piecewise
 /// linear.
 double mode_count(const DenseContacts& contacts, const ContactOptions& options);
 

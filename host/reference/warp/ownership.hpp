@@ -98,8 +98,7 @@ class Ownership {
                                                  ///< voxel, at most 2; empty: not counted
 
  private:
-  /// Assigns to tetrahedron t every voxel of its closed shape that no tetrahedron of a lower number
-  /// owns.
+  /// Assigns to tetrahedron t the voxels of its closed shape that no lower tetrahedron owns.
   void claim(std::int32_t t, const double* rest_positions, const double* deformed, Counts& counts) {
     const Corners now = corners_of(t, deformed, output);
     const Corners rest = corners_of(t, rest_positions, source);

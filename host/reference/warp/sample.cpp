@@ -38,7 +38,7 @@ void solve_line(double* line, std::int64_t step, std::int64_t n) {
   }
 }
 
-/// Replaces samples that are not finite by the one before, at the beginning by the first finite
+/// Replaces samples that are not finite by the previous one, at the beginning by the next finite
 /// one.
 void bridge_gaps(double* row, std::int64_t step, std::int64_t n) {
   const auto is_gap = [&](std::int64_t i) { return !std::isfinite(row[i * step]); };

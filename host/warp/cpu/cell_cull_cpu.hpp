@@ -1,6 +1,6 @@
 /// @file cell_cull_cpu.hpp
-/// Stage "cull" on host threads: each cell of a tetrahedron's box is tested against the four faces
-/// in one vector.
+/// Stage "cull" on host threads: tests each cell of a tetrahedron's box against four faces in one
+/// vector.
 #pragma once
 #include <cstdint>
 

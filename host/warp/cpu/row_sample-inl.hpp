@@ -58,8 +58,7 @@ class RowSampler {
   }
 
  private:
-  /// Writes the runs that have a transform, and moves the others to the front. @returns their
-  /// number
+  /// Writes the runs that have a transform; moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int plain_count = 0;
     for (int r = 0; r < count; ++r) {

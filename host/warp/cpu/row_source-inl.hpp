@@ -89,8 +89,7 @@ class RowSource {
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// Distances in memory from a voxel's samples to two places that the next rows read, for
-  /// prefetching.
+  /// Distances in memory from a voxel's samples to two places to prefetch for the next rows.
   std::int64_t ahead() const { return ahead_; }
   std::int64_t ahead_too() const { return ahead_too_; }
 

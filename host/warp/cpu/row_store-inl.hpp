@@ -79,8 +79,8 @@ class RunCopier {
   std::int64_t count_ = 0;
 };
 
-/// Writes the voxels `bits` of a row that moved by whole voxels: copies, and the background outside
-/// of the source.
+/// Writes the voxels `bits` of a row that moved by whole voxels: copies, outside of the source
+/// background.
 template <class T>
 inline void copy_run(const RasterJob<T>& job,
                      const RowSource& source,

@@ -22,8 +22,7 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Collects rows one by one and writes whole cache lines; rows that follow each other in memory are
-/// joined.
+/// Collects rows and writes whole cache lines; joins rows that are adjacent in memory.
 template <class T>
 class RowStream {
  public:

@@ -99,8 +99,7 @@ inline RowPositions<Rim> row_positions(const RowSource& source,
 }
 
 /// Positions of the voxels of row (j, k) of a cell from `lane` on, each by the map of its own run.
-/// Voxels of no run use the map of the first run: their taps are readable, their values are not
-/// used.
+/// Voxels of no run use the map of the first: their taps are readable, their values not used.
 template <bool Rim>
 HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
                                             const RowRun* runs,

@@ -154,8 +154,7 @@ inline void sample_wide(const RasterJob<T>& job,
   }
 }
 
-/// The same in float32, for affine maps at the end of a source or of sources of 2^31 voxels or
-/// more.
+/// The same in float32, for affine maps at the end of a source or of sources from 2^31 voxels on.
 template <class T>
 inline void sample_narrow(const RasterJob<T>& job,
                           const RowSource& source,
