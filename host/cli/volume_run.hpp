@@ -1,6 +1,6 @@
 /// @file volume_run.hpp
-/// One volume file warped by every step of a plan, block by block. Reading, computing and
-/// writing overlap. A volume that fits in memory is a single block.
+/// One volume file warped by every step of a plan, block by block. Reading, computing and writing
+/// overlap. A volume that fits in memory is a single block.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -127,9 +127,9 @@ struct WarpTarget {
   std::int32_t* owner = nullptr;
   FieldTarget fields = {};
   Memory memory = Memory::host;  ///< of all arrays
-  /// True: the arrays still hold what the last step into them wrote, and unchanged values are not
-  /// written again. Without effect on the first step, after a step that threw, and for arrays other
-  /// than those of the last two steps.
+  /// True: the caller guarantees that the arrays still hold what the last step into them wrote, so
+  /// that unchanged values need not be written again. Without effect on the first step, after a
+  /// step that threw, and for arrays other than those of the last two steps.
   bool holds_previous = false;
   /// cudaStream_t on which the step's kernels run, to order them with the caller's work on device
   /// memory; null: a stream of the Warper. cuda only.
@@ -204,9 +204,7 @@ class TETWARP_EXPORT Warper {
   /// @returns timings and counts of this step; `total` counts from its begin_step(), so that the
   ///          times of two steps in flight overlap
   /// @throws std::logic_error       when no step is in flight
-  /// @throws std::invalid_argument, CudaError, Cancelled  the error of this step; steps after it
-  /// are
-  ///                                not affected
+  /// @throws std::invalid_argument, CudaError, Cancelled  as step(); later steps are not affected
   StepReport finish_step();
 
   /// Steps begun and not finished.

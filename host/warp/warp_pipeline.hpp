@@ -61,7 +61,7 @@ class WarpPipeline : public WarpBackend {
     flight.slot = outputs_.slot();
     flight.is_delivered = false;
     compute(flight, progress);
-    // The part that an update writes follows from settle(); a whole output is downloaded now.
+    // The part that an update writes is known after settle(); a whole output is downloaded now.
     if (stale_.size == 0 && target.memory == Memory::host && outputs_.downloads_async(target)) {
       flight.window = outputs_.window_of({});
       download(number);
