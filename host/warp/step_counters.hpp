@@ -12,8 +12,8 @@
 
 namespace tetwarp {
 
-/// Counters of the current mesh. A step that is an update of the one before adjusts them, any other
-/// step starts from zero.
+/// Counters of the current mesh. An update adjusts those of the previous step, any other step
+/// starts from zero.
 struct MeshCounters {
   std::int64_t classes[tet_class_count];
   std::int64_t folded;

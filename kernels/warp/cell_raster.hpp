@@ -35,7 +35,7 @@ struct OutsideMap {
   bool is_copy;     ///< the grids differ by whole voxels
   double linear[3][3];
   double offset[3];
-  double origin[3] = {0, 0, 0};  ///< of the frame, so that regions get the bits of the full grid
+  double origin[3] = {0, 0, 0};  ///< of the frame: makes regions bit-equal to the full grid
 };
 
 constexpr std::int64_t keep_cell = -2;    ///< the output already holds this cell's result

@@ -61,7 +61,7 @@ struct SourceBounds {
   double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
 };
 
-/// The map of one tetrahedron relative to one cell, with the bits of make_source_map().
+/// The map of one tetrahedron relative to one cell, bit-equal to make_source_map().
 class RowSource {
  public:
   template <class T>

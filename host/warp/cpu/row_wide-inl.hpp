@@ -27,9 +27,8 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Positions and neighbours of the voxels of row (j, k) of a cell, with the bits of
-/// SourceMap<double>, local_position() and tap_of(). The fourth lane is padding whose bounds accept
-/// every position.
+/// Positions and neighbours of the voxels of row (j, k) of a cell, bit-equal to SourceMap<double>,
+/// local_position() and tap_of(). The fourth lane is padding whose bounds accept every position.
 class WideRow {
  public:
   template <class T>
