@@ -70,7 +70,7 @@ else()
   target_sources(tetwarp_bench PRIVATE bench/warp/chunks_rows_noio.cpp)
 endif()
 
-# tetwarp_bench_peers: other ways to warp, beside tetwarp. Floor and probe are written in AVX-512.
+# tetwarp_bench_peers: times other programs beside tetwarp. Floor and probe use AVX-512 intrinsics.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   find_package(nlohmann_json REQUIRED)
   find_package(VTK 9 QUIET COMPONENTS CommonCore CommonDataModel CommonExecutionModel FiltersCore

@@ -1,5 +1,5 @@
 # Fails when a file in FOLDER needs a library that is neither of glibc nor in FOLDER/lib, or when
-# the folder is larger than it should be. Run by target `bundle`.
+# the folder exceeds its size limit. Run by target `bundle`.
 cmake_minimum_required(VERSION 3.22)
 set(largest_mib 40)
 file(GLOB_RECURSE files ${FOLDER}/*)

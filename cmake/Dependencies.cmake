@@ -1,4 +1,4 @@
-# Everything comes from the distribution or the CUDA toolkit; nothing is downloaded.
+# All dependencies are packages of the distribution or the CUDA toolkit; nothing is downloaded.
 # The apt names are in ./dev.
 
 # ---- CUDA: language and toolkit, or neither -----------------------------------
@@ -27,7 +27,7 @@ if(NOT TETWARP_CUDA STREQUAL "OFF")
 endif()
 message(STATUS "tetwarp: CUDA back end: ${TETWARP_HAS_CUDA}")
 
-# ---- flags that every file of ours gets; not exported ---------------------------
+# ---- compiler flags of all files of the project; not exported -------------------
 # No contraction: results must not depend on the processor that runs them.
 # g++ 12 reports false overlaps inside std::string (-Wrestrict).
 # x86-64-v2 (2009) is the minimum for Highway's narrowest vectors; wider ones are chosen at run time.
@@ -39,8 +39,8 @@ target_compile_options(tetwarp_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wconversion;-ffp-contract=off>
   $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;$<$<BOOL:${TETWARP_STRICT_FP}>:-fmad=false>>)
-# Eigen would split products by the number of OpenMP threads, on which the bits would then depend;
-# for matrices of a few hundred rows on a busy machine that was also 100 times slower.
+# Eigen would split products by the number of OpenMP threads, so that bits would depend on it;
+# for matrices of a few hundred rows on a busy machine this was also 100 times slower.
 target_compile_definitions(tetwarp_options INTERFACE EIGEN_DONT_PARALLELIZE)
 
 find_package(Eigen3 3.3 REQUIRED NO_MODULE)

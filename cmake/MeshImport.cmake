@@ -1,5 +1,5 @@
 # Libraries that read meshes of other programs: VTK (.vtu, .vtk) and Gmsh (.msh). Both are optional;
-# without one, importing its format fails with an error that names the package. A bundle has neither.
+# without one, importing its format fails with an error that names the package. A bundle contains neither.
 foreach(name VTK Gmsh)
   string(TOUPPER ${name} upper)
   set(TETWARP_${upper} AUTO CACHE STRING "Import of meshes through ${name}: AUTO, ON or OFF")

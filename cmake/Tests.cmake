@@ -10,7 +10,7 @@
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-# What several programs share: synthetic inputs, and headers parsed once for all of them.
+# Shared by several programs: synthetic inputs, and precompiled headers.
 add_library(tetwarp_scenes STATIC
   tests/scenes/contact_scenes.cpp
   tests/scenes/contact_scenes_slab.cpp
@@ -22,8 +22,8 @@ target_precompile_headers(tetwarp_scenes PRIVATE
   <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
 
-# What programs share: how they are compiled. Tests compute little themselves: -O3 would take longer
-# to compile than it saves.
+# Compile options of all programs. Tests compute little themselves: -O3 would take longer to compile
+# than it saves.
 function(tetwarp_test_target target)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PRIVATE
@@ -38,7 +38,7 @@ endfunction()
 tetwarp_test_target(tetwarp_scenes)
 
 # tetwarp_add_tests(PROGRAM [UNITY count] [LIBRARIES ...] SOURCES ...)
-# UNITY: so many files are compiled together, which saves parsing and instantiating headers again.
+# UNITY: number of files per unit, which share the parsing and instantiation of headers.
 function(tetwarp_add_tests program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "UNITY" "LIBRARIES;SOURCES")
   add_executable(${program} ${arg_SOURCES})
@@ -63,7 +63,7 @@ endfunction()
 
 # ---- stages and whole warps. They reach private code, which a shared library hides ------------
 if(NOT BUILD_SHARED_LIBS)
-  # Stages run on a device as well where nvcc compiles their tests, which takes it a minute.
+  # With nvcc the tests of stages are also compiled for a device, which takes a minute.
   set(TETWARP_DEVICE_TESTS AUTO CACHE STRING "tests on a CUDA device: AUTO, ON or OFF")
   set(tetwarp_device_tests OFF)
   if(TETWARP_HAS_CUDA)
@@ -144,8 +144,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_stress_size.cpp)
   tetwarp_discover(tetwarp_stress_tests long)
 
-  # Three files at a time; those that include kernels stand together at the end, so that a change of
-  # a kernel compiles few units.
+  # Three files per unit; those that include kernels are last, so that a change of a kernel
+  # recompiles few units.
   tetwarp_add_tests(tetwarp_contact_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     tests/contact/test_contact_acceptance.cpp
     tests/contact/test_contact_associated.cpp
@@ -180,7 +180,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_stress_stacks.cpp)
   tetwarp_discover(tetwarp_contact_stress_tests long)
 
-  # A program of its own: the emulation defines CUDA's names.
+  # A separate program, because the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
     tests/emu/test_affine_simt.cpp
     tests/emu/test_simt.cpp
@@ -215,7 +215,7 @@ if(NOT BUILD_SHARED_LIBS)
       NO_PRETTY_VALUES PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
   endif()
 
-  # The parts of the benchmarks that decide: floors, the truth for checks, which times count.
+  # Parts of the benchmarks: floors, the truth for checks, the selection of repetitions.
   find_package(fmt REQUIRED)
   tetwarp_add_tests(tetwarp_bench_tests LIBRARIES tetwarp_hwy fmt::fmt SOURCES
     bench/measure/floors.cpp
@@ -244,7 +244,7 @@ if(TETWARP_IO)
   include(cmake/FileTests.cmake)
 endif()
 
-# ---- includes between folders point one way ----------------------------------------------------
+# ---- includes between folders have one direction -----------------------------------------------
 find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(TETWARP_PYTHON python3)
 if(TETWARP_PYTHON)

@@ -1,9 +1,9 @@
 /// @file contact_block.cpp
 /// A block falls onto an adhesive floor, is lifted, pulled sideways and lifted again: it sticks,
-/// slides and lets go. Prints what happens; succeeds if all of it did.
+/// slides and separates. Prints each event; succeeds if all occurred.
 ///
-/// Each step: find contacts, let the tracker match them with those of the step before, build
-/// A v = J^T r + b, solve, move, and give the solution back to the tracker, which evolves adhesion.
+/// Each step: find contacts, match them by the tracker with those of the previous step, build A v =
+/// J^T r + b, solve, move, and pass the solution to the tracker, which updates the adhesion.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,6 @@
 #include <vector>
 
 namespace {
-
 using tetwarp::Point3;
 
 constexpr double mass = 1;          // kg
@@ -89,7 +88,6 @@ const struct {
     {1.2, {6, 0, 0}, "pulled sideways"}, {1.3, {12, 0, 0}, "pulled harder: slides"},
     {1.6, {0, 0, 0}, "slows down"},      {1.8, {0, 0, weight + 3}, "lifted again: lets go"},
 };
-
 }  // namespace
 
 int main() {

@@ -1,7 +1,7 @@
 /// @file gpu_pointers.cpp
 /// Warps a volume that is in device memory, by node positions in device memory, into device memory,
-/// on a stream of the caller: nothing but counters is copied to the host. Where no CUDA device
-/// answers, it prints the reason and ends.
+/// on a stream of the caller: nothing but counters is copied to the host. Without a usable CUDA
+/// device it prints the reason and ends.
 #include <cuda_runtime.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include <tetwarp/tetwarp.hpp>
 
 namespace {
-
 void check(cudaError_t status) {
   if (status != cudaSuccess) throw std::runtime_error(cudaGetErrorString(status));
 }
@@ -33,7 +32,6 @@ class DeviceCopy {
  private:
   void* data_ = nullptr;
 };
-
 }  // namespace
 
 int main() {

@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
                 static_cast<long long>(image.grid.dims[1]),
                 static_cast<long long>(image.grid.dims[2]));
     return tetwarp::read_nifti(out).data == warped.data ? 0 : 1;
-  } catch (const std::exception& error) {  // bad arguments and files say in one line what is wrong
+  } catch (const std::exception& error) {  // what() is one line that names the bad argument or file
     std::fprintf(stderr, "nifti: %s\n", error.what());
     return 1;
   }

@@ -1,6 +1,6 @@
 /// @file progress.cpp
-/// Shows the progress of a step and cancels one at half its work. After that the Warper goes on
-/// with the next step.
+/// Shows the progress of a step and cancels one at half its work. Afterwards the Warper can compute
+/// the next step.
 #include <cstdio>
 #include <tetwarp/tetwarp.hpp>
 

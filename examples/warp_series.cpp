@@ -1,7 +1,7 @@
 /// @file warp_series.cpp
 /// Warps a volume through a series of deformations and writes all steps to series.vtkhdf. Two
-/// result buffers take turns: while this program writes one step to the file, a CUDA device, where
-/// there is one, computes the next.
+/// result buffers are used alternately: while this program writes one step to the file, a CUDA
+/// device, where there is one, computes the next.
 #include <cstddef>
 #include <cstdio>
 #include <tetwarp/io.hpp>
@@ -14,7 +14,7 @@ int main() {
   tetwarp::Warper warper(source, mesh);
 
   tetwarp::Volume results[2];
-  tetwarp::PageLock locks[2];  // a device copies to and from locked memory without the host's help
+  tetwarp::PageLock locks[2];  // a device copies to and from locked memory without the host
   for (std::size_t buffer = 0; buffer < 2; ++buffer) {
     results[buffer] = tetwarp::make_volume(warper.output_grid(), source.type);
     locks[buffer] = tetwarp::PageLock(results[buffer].data.data(), results[buffer].data.size());

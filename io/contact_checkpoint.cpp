@@ -11,9 +11,7 @@
 #include "io/h5_disk.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr const char* root_name = "tetwarp_checkpoint";
 constexpr std::int64_t newest_version = 1;
 
@@ -124,7 +122,6 @@ std::vector<BodyPose> read_poses(const h5::Object& root) {
   }
   return poses;
 }
-
 }  // namespace
 
 std::int64_t write_contact_checkpoint(const std::string& path,

@@ -42,7 +42,7 @@ struct Expected {
 
 // ---- numbers and texts: fclib_numbers.cpp ----
 
-/// Elements of a dataset of numbers, whatever its shape. Throws IoError beyond 2^31 - 1, the
+/// Number of elements of a dataset of numbers of any shape. Throws IoError beyond 2^31 - 1, the
 /// largest number of rows that can be indexed.
 std::int64_t element_count(const h5::Dataset& dataset);
 

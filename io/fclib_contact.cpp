@@ -8,9 +8,7 @@
 #include "io/fclib.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using fclib::Expected;
 using fclib::Orientation;
 
@@ -121,7 +119,6 @@ std::vector<double> read_start(const h5::Object& file, std::int64_t contacts) {
   }
   return impulse;
 }
-
 }  // namespace
 
 std::string fclib::path_of(const std::string& field, bool is_local) {

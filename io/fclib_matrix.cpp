@@ -8,9 +8,7 @@
 #include "io/fclib.hpp"
 
 namespace tetwarp::fclib {
-
 namespace {
-
 constexpr std::int64_t by_columns = -1;
 constexpr std::int64_t by_rows = -2;
 
@@ -143,7 +141,6 @@ SparseMatrix compress(const Triplets& entries, std::int64_t rows, std::int64_t c
   }
   return matrix;
 }
-
 }  // namespace
 
 SparseMatrix read_matrix(const h5::Object& parent,

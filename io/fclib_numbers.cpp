@@ -9,9 +9,7 @@
 #include "io/fclib.hpp"
 
 namespace tetwarp::fclib {
-
 namespace {
-
 constexpr std::int64_t largest_index = std::numeric_limits<std::int32_t>::max();
 
 template <class T>
@@ -63,7 +61,6 @@ std::string read_bytes(const h5::Handle& dataset, const h5::Handle& type) {
   text.resize(std::min(text.size(), text.find('\0')));
   return text;
 }
-
 }  // namespace
 
 std::int64_t element_count(const h5::Dataset& dataset) {

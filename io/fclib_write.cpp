@@ -12,9 +12,7 @@
 #include "io/h5_disk.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using fclib::Orientation;
 using fclib::write_integers;
 using fclib::write_reals;
@@ -102,7 +100,7 @@ void write_adhesion(const h5::Object& file, const AdhesionState& adhesion) {
   }
 }
 
-/// FCLIB's reader of guesses wants the velocities too; a start from impulses has none.
+/// FCLIB's reader of guesses requires velocities too; a start from impulses has none.
 void write_guess(const h5::Object& file, const ContactProblem& problem) {
   const h5::Object guesses = h5::create_group(file, "guesses");
   write_integers(guesses, "number_of_guesses", {1});
@@ -148,7 +146,6 @@ void write_solution(const h5::Object& file, const ContactSolution& solution) {
   h5::write_scalar_attribute(group, "fclib_error", report.residual.fclib);
   if (!report.method.empty()) h5::write_text_attribute(group, "method", report.method);
 }
-
 }  // namespace
 
 std::int64_t write_contact_problem(const std::string& path,

@@ -1,13 +1,10 @@
-/// @file file_kind.cpp
 #include <tetwarp/io.hpp>
 
 #include "io/h5.hpp"
 #include "io/nifti_header.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 FileKind hdf5_kind(const std::string& path) {
   try {
     const h5::Object file = h5::open_file(path);
@@ -22,10 +19,9 @@ FileKind hdf5_kind(const std::string& path) {
     if (type == "UnstructuredGrid") return FileKind::mesh;
     return FileKind::other_vtkhdf;
   } catch (const IoError&) {
-    return FileKind::hdf5;  // it has the signature; reading it names the damage
+    return FileKind::hdf5;  // it has the signature; a reader reports the damage
   }
 }
-
 }  // namespace
 
 FileKind kind_of(const std::string& path) {

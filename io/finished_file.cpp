@@ -1,4 +1,3 @@
-/// @file finished_file.cpp
 #include "io/finished_file.hpp"
 
 #include <fcntl.h>
@@ -12,9 +11,7 @@
 #include <tetwarp/error.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 enum class SlotState { empty, changing, listed };
 
 /// An entry of the list that a signal handler reads: fixed storage, valid when `state` is listed.
@@ -50,7 +47,6 @@ std::string folder_of(const std::string& path) {
 std::string reason() {
   return std::strerror(errno);
 }
-
 }  // namespace
 
 FinishedFile::FinishedFile(const std::string& path) : path_(path) {

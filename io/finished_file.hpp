@@ -1,5 +1,5 @@
 /// @file finished_file.hpp
-/// Files that get their name only when they are complete.
+/// Files that have a temporary name until they are complete.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -41,7 +41,7 @@ class FinishedFile {
 std::int64_t write_finished_file(const std::string& path, std::string_view content);
 
 /// Removes the temporary files of this process, for exits that run no destructors.
-/// Async-signal-safe. Knows up to 64 files at a time, with names below 4096 bytes.
+/// Async-signal-safe. Limited to 64 files at a time, with names below 4096 bytes.
 void remove_unfinished_files() noexcept;
 
 }  // namespace tetwarp

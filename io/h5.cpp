@@ -7,15 +7,12 @@
 #include "io/memory.hpp"
 
 namespace tetwarp::h5 {
-
 namespace {
-
 herr_t keep_first(unsigned depth, const H5E_error2_t* error, void* text) {
   // Upward, the first entry is that of the innermost call.
   if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
   return 0;
 }
-
 }  // namespace
 
 Silence::Silence() {

@@ -111,7 +111,7 @@ Dataset open_dataset(const Object& parent, const std::string& name);
 /// to 8, in any byte order. Throws IoError for strings, compounds and the like.
 PixelType pixel_type_of(const Dataset& dataset);
 
-/// True when pixel_type_of() has an answer.
+/// True when pixel_type_of() does not throw.
 bool is_numeric(const Dataset& dataset);
 
 /// Reads `count` elements per axis from `start` on, converted to `memory_type`.

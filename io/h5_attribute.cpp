@@ -6,9 +6,7 @@
 #include "io/h5.hpp"
 
 namespace tetwarp::h5 {
-
 namespace {
-
 struct Attribute {
   Handle handle;
   Handle type;
@@ -49,7 +47,6 @@ std::vector<T> read_attribute(const Object& object,
   }
   return values;
 }
-
 }  // namespace
 
 bool has_attribute(const Object& object, const std::string& name) {

@@ -1,4 +1,3 @@
-/// @file h5_disk.cpp
 #include "io/h5_disk.hpp"
 
 #include <fcntl.h>
@@ -14,9 +13,7 @@
 #endif
 
 namespace tetwarp::h5 {
-
 namespace {
-
 /// HDF5 knows the first member only.
 struct DiskFile {
   H5FD_t base;
@@ -149,7 +146,6 @@ H5FD_class_t disk_class() {
   std::copy(std::begin(free_lists), std::end(free_lists), driver.fl_map);
   return driver;
 }
-
 }  // namespace
 
 void Disk::check(const Object& object) const {

@@ -19,7 +19,7 @@ struct Disk {
 };
 
 /// Properties for H5Fopen (null) and H5Fcreate (`disk` receives the first failed write; it must
-/// live longer than the file).
+/// outlive the file).
 Handle disk_access(Disk* disk);
 
 /// Creates a file as `temporary`; messages name it `path`. Call Disk::check() after large writes

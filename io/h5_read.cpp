@@ -10,9 +10,7 @@
 #include "io/h5_disk.hpp"
 
 namespace tetwarp::h5 {
-
 namespace {
-
 std::string child_path(const Object& parent, const std::string& name) {
   return parent.name + "/" + name;
 }
@@ -60,7 +58,6 @@ std::vector<T> read_column(const Dataset& dataset, hid_t memory_type) {
   read_block(dataset, memory_type, start, dataset.dims, values.data());
   return values;
 }
-
 }  // namespace
 
 bool is_sound(const Handle& type) {

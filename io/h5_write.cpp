@@ -3,9 +3,7 @@
 #include "io/h5.hpp"
 
 namespace tetwarp::h5 {
-
 namespace {
-
 constexpr const char* write_problem = "cannot be written";
 
 void write_values(const Object& object,
@@ -32,7 +30,6 @@ void write_row(const Object& object,
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
   write_values(object, name, file_type, memory_type, space, values.data());
 }
-
 }  // namespace
 
 Object create_group(const Object& parent, const std::string& name) {

@@ -1,4 +1,3 @@
-/// @file memory.cpp
 #include "io/memory.hpp"
 
 #include <unistd.h>

@@ -10,9 +10,7 @@
 #include "io/mesh_import.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
 constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
 
@@ -138,7 +136,6 @@ void add_displacement(const std::string& path,
     return;
   }
 }
-
 }  // namespace
 
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options) {

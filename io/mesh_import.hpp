@@ -11,7 +11,8 @@
 
 namespace tetwarp {
 
-/// One reader per library; in a build without the library it throws an IoError that says so.
+/// One reader per library; in a build without the library it throws an IoError that names the
+/// library.
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
 
@@ -52,7 +53,7 @@ void add_cell(const std::string& path,
 }
 
 /// The name of the array of displacements in a file; nothing: the file has none.
-/// @throws IoError when one was asked for that is not there
+/// @throws IoError when the file lacks the requested one
 std::optional<std::string> choose_displacement(const std::string& path,
                                                const std::vector<std::string>& names,
                                                const MeshImportOptions& options);

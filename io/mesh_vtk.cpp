@@ -18,9 +18,7 @@
 #include "io/mesh_import.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Turns off the warnings and errors that VTK prints.
 class QuietVtk {
  public:
@@ -133,7 +131,6 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
   }
   return mesh;
 }
-
 }  // namespace
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options) {

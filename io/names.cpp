@@ -3,9 +3,7 @@
 #include <tetwarp/io.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 constexpr EnumName<NiftiVectors> nifti_vectors_names[] = {{NiftiVectors::world, "world"},
                                                           {NiftiVectors::lps, "lps"}};
 constexpr EnumName<ContactStart> contact_start_names[] = {{ContactStart::zero, "zero"},
@@ -18,7 +16,6 @@ constexpr EnumName<FileKind> file_kind_names[] = {
     {FileKind::hdf5, "general HDF5 file"},
     {FileKind::nifti, "NIfTI image"},
     {FileKind::unknown, "file of unknown kind"}};
-
 }  // namespace
 
 template <>

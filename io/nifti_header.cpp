@@ -1,4 +1,3 @@
-/// @file nifti_header.cpp
 #include "io/nifti_header.hpp"
 
 #include <sys/stat.h>
@@ -12,9 +11,7 @@
 #include <tetwarp/error.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 static_assert(sizeof(nifti_1_header) == 348);
 
 constexpr std::pair<int, PixelType> datatypes[] = {
@@ -126,7 +123,6 @@ bool is_orthonormal(const Grid& grid) {
   }
   return true;
 }
-
 }  // namespace
 
 bool has_nifti_header(const std::string& path) {

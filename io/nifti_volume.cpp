@@ -9,9 +9,7 @@
 #include "io/nifti_header.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Calls `body` with a value of the C++ type of `type`.
 template <class Body>
 void with_type(PixelType type, const Body& body) {
@@ -99,7 +97,6 @@ void scale_slice(const std::vector<std::byte>& slice,
     }
   });
 }
-
 }  // namespace
 
 Volume read_nifti(const std::string& path) {

@@ -1,4 +1,3 @@
-/// @file png_image.cpp
 #include <png.h>
 
 #include <tetwarp/io.hpp>

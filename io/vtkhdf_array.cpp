@@ -1,4 +1,3 @@
-/// @file vtkhdf_array.cpp
 #include "io/vtkhdf_array.hpp"
 
 #include <algorithm>
@@ -7,9 +6,7 @@
 #include <limits>
 
 namespace tetwarp {
-
 namespace {
-
 constexpr std::int64_t chunk_bytes = std::int64_t{256} << 10;
 constexpr std::int64_t max_row_bytes = std::int64_t{1} << 20;
 
@@ -45,7 +42,6 @@ std::vector<hsize_t> file_shape(const std::array<std::int64_t, 3>& xyz,
   if (components > 1) shape.push_back(static_cast<hsize_t>(components));
   return shape;
 }
-
 }  // namespace
 
 std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,

@@ -33,7 +33,7 @@ std::vector<std::byte> sample_bytes(PixelType type, double value);
 /// only the background are not stored unless the options say so: it is the dataset's fill value.
 class ArrayWriter {
  public:
-  /// Creates the dataset in `output`, which must live longer.
+  /// Creates the dataset in `output`, which must outlive this object.
   ArrayWriter(const VtkhdfOutput& output,
               const h5::Object& point_data,
               const std::array<std::int64_t, 3>& dims,
@@ -42,7 +42,7 @@ class ArrayWriter {
               const VolumeWriteOptions& options,
               bool is_temporal);
 
-  /// Makes room for so many rows of the time axis.
+  /// Extends the time axis to this number of rows.
   void grow(std::int64_t rows) const;
 
   /// Writes a region that begins and ends at chunks, in temporal files of row `row` of the time

@@ -1,4 +1,3 @@
-/// @file vtkhdf_image.cpp
 #include "io/vtkhdf_image.hpp"
 
 #include <set>
@@ -6,9 +5,7 @@
 #include <stdexcept>
 
 namespace tetwarp {
-
 namespace {
-
 /// Checks arguments before the file is created.
 std::string checked(const std::string& path,
                     const Grid& grid,
@@ -40,7 +37,6 @@ std::string checked(const std::string& path,
   check_compression(path, options);
   return path;
 }
-
 }  // namespace
 
 void check_compression(const std::string& path, const VolumeWriteOptions& options) {
@@ -106,7 +102,7 @@ void ImageFile::write_steps() {
     h5::write_dataset(offsets, array.name, H5T_STD_I64LE, H5T_NATIVE_INT64, {&count, 1},
                       rows_.data());
   }
-  // Readers take a file with NSteps for complete: it is written last.
+  // NSteps is written last: readers treat a file with it as complete.
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
 

@@ -1,12 +1,9 @@
-/// @file vtkhdf_input.cpp
 #include "io/vtkhdf_input.hpp"
 
 #include <tetwarp/io.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 std::string wrong_type(const std::string& found, const std::string& wanted) {
   std::string problem = "Type is '" + found + "', expected '" + wanted + "'";
   if (found == "UnstructuredGrid" && wanted == "ImageData") {
@@ -31,7 +28,6 @@ void read_steps(VtkhdfInput& file) {
   file.times = h5::read_reals(values);
   file.times.resize(static_cast<std::size_t>(count));
 }
-
 }  // namespace
 
 void VtkhdfInput::check_step(std::int64_t step) const {

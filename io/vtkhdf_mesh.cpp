@@ -15,7 +15,6 @@ struct MeshReader::State {
 };
 
 namespace {
-
 void check_node_count(const h5::Object& about, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   about.fail("has " + std::to_string(found) + " nodes, the mesh has " + std::to_string(expected));
@@ -27,7 +26,6 @@ bool is_same_topology(const std::vector<MeshPart>& a, std::vector<MeshPart> b) {
   for (std::size_t part = 0; part < a.size(); ++part) b[part].first_node = a[part].first_node;
   return a == b;
 }
-
 }  // namespace
 
 MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) {

@@ -1,13 +1,10 @@
-/// @file vtkhdf_mesh_file.cpp
 #include "io/vtkhdf_mesh_file.hpp"
 
 #include <cmath>
 #include <utility>
 
 namespace tetwarp {
-
 namespace {
-
 constexpr int vtk_tetra = 10;
 constexpr int vtk_hexahedron = 12;
 
@@ -79,7 +76,6 @@ std::vector<std::int64_t> read_column(const h5::Dataset& dataset,
   h5::read_block(dataset, H5T_NATIVE_INT64, {{first}}, {{count}}, values.data());
   return values;
 }
-
 }  // namespace
 
 MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "UnstructuredGrid")) {

@@ -1,4 +1,3 @@
-/// @file vtkhdf_output.cpp
 #include "io/vtkhdf_output.hpp"
 
 #include <array>

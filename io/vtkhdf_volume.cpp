@@ -9,9 +9,7 @@
 #include "io/vtkhdf_input.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 Grid read_grid(const h5::Object& root) {
   const std::vector<std::int64_t> extent = h5::read_integer_attribute(root, "WholeExtent", 6);
   const std::vector<double> origin = h5::read_real_attribute(root, "Origin", 3);
@@ -44,7 +42,8 @@ std::string shape_text(const std::vector<std::int64_t>& dims) {
   return text;
 }
 
-/// One point array: [z][y][x], with time before and components behind where they exist.
+/// One point array: [z][y][x], if temporal with time as first axis, with components as last axis if
+/// there are several.
 struct PointArray {
   h5::Dataset dataset;
   ArrayHeader header;
@@ -106,7 +105,6 @@ std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int
   }
   return row;
 }
-
 }  // namespace
 
 VolumeHeader read_volume_header(const std::string& path) {

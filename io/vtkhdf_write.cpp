@@ -8,9 +8,7 @@
 #include "io/vtkhdf_image.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Edges = std::array<std::int64_t, 3>;
 
 std::int64_t voxel_bytes(const ArrayHeader& array) {
@@ -62,7 +60,6 @@ void write_all(ImageFile& file, const std::vector<const Volume*>& volumes) {
     file.write(array, {{0, 0, 0}, file.grid().dims}, volumes[array]->data.data());
   }
 }
-
 }  // namespace
 
 WrittenFile write_volumes(const std::string& path,
@@ -77,7 +74,7 @@ WrittenFile write_volumes(const std::string& path,
 struct TemporalVolumeWriter::State {
   std::string path;
   VolumeWriteOptions options;
-  std::unique_ptr<ImageFile> file;  // made by the first step, which knows the arrays
+  std::unique_ptr<ImageFile> file;  // created by the first step, which defines the arrays
 };
 
 TemporalVolumeWriter::TemporalVolumeWriter(const std::string& path,

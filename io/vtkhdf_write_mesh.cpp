@@ -8,9 +8,7 @@
 #include "io/vtkhdf_output.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_hexahedron = 12;
 
@@ -106,7 +104,8 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
   const h5::Object steps = h5::create_group(root, "Steps");
   const hsize_t count = times.size();
   h5::write_dataset(steps, "Values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {&count, 1}, times.data());
-  // Points and topology are the same rows at every step; the displacement has rows of its own.
+  // Points and topology are the same rows at every step; the displacement has one set of rows per
+  // step.
   const std::vector<std::int64_t> zeros(times.size(), 0);
   std::vector<std::int64_t> rows(times.size());
   for (std::size_t step = 0; step < rows.size(); ++step) {
@@ -120,7 +119,6 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
   write_integers(h5::create_group(steps, "PointDataOffsets"), "displacement", rows);
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
-
 }  // namespace
 
 void write_mesh(const std::string& path,

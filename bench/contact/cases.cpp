@@ -1,4 +1,3 @@
-/// @file cases.cpp
 #include "bench/contact/cases.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +11,7 @@
 #include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A packing has four to five contacts per sphere, fewer when small.
 ContactInput packing(const std::string& name, const scenes::SpherePacking& choice) {
   return {name, [choice] { return scenes::sphere_packing(choice); }};
@@ -214,7 +211,6 @@ const char* word_of(ContactMethod method) {
       return tetwarp::name_of(method);
   }
 }
-
 }  // namespace
 
 std::string name_of(const ContactCase& row) {

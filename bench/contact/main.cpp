@@ -21,7 +21,6 @@
 #include "bench/measure/program.hpp"
 
 namespace {
-
 using namespace tetwarp;
 
 void export_problems(bench::Extent extent, const std::string& folder) {
@@ -34,7 +33,6 @@ void export_problems(bench::Extent extent, const std::string& folder) {
     std::printf("%s\n", path.c_str());
   }
 }
-
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -1,4 +1,3 @@
-/// @file rows.cpp
 #include "bench/contact/rows.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +13,7 @@
 #include "bench/measure/row.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// The problem of a row. Rows of one problem follow each other, so only the last one is kept.
 const ContactProblem& problem_of(const ContactInput& input) {
   static std::string name;
@@ -115,7 +112,7 @@ Protocol protocol_for(double first_seconds) {
 
 void run(benchmark::State& state, const ContactCase& row) {
   static std::set<std::string> checked;
-  static std::set<std::string> given_up;  // a method that misses a tolerance misses tighter ones
+  static std::set<std::string> given_up;  // methods that have missed a tolerance
   if (given_up.contains(line_of(row))) {
     state.SkipWithError("left out: a looser tolerance was not reached");
     return;
@@ -132,7 +129,6 @@ void run(benchmark::State& state, const ContactCase& row) {
   count_report(state, subject.solution().report);
   count_check(state, subject, check);
 }
-
 }  // namespace
 
 void add_contact_row(const ContactCase& row) {

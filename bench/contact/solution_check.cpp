@@ -1,4 +1,3 @@
-/// @file solution_check.cpp
 #include "bench/contact/solution_check.hpp"
 
 #include <fmt/format.h>
@@ -7,9 +6,7 @@
 #include <cmath>
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// Largest difference between u and J v + w, or W r + q, relative to the largest term.
 double velocity_mismatch(const ContactProblem& problem, const ContactSolution& solution) {
   const bool is_local = problem.is_local();
@@ -53,7 +50,6 @@ SolutionCheck check_residual(const ContactResidual& residual,
   }
   return check;
 }
-
 }  // namespace
 
 ContactMeasure measure_of(const ContactProblem& problem) {

@@ -1,6 +1,5 @@
 /// @file affine_row-inl.hpp
-/// One output row of the sampling floor. Included once per vector instruction set (the name and the
-/// toggled guard are Highway's convention).
+/// One output row of the sampling floor. Included once per vector instruction set.
 #if defined(TETWARP_AFFINE_ROW_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_AFFINE_ROW_INL
 #undef TETWARP_AFFINE_ROW_INL

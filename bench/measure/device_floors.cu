@@ -1,4 +1,3 @@
-/// @file device_floors.cu
 #include "bench/measure/device_floors.hpp"
 
 #include <algorithm>
@@ -13,9 +12,7 @@
 #include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr int repetitions = 9;
 constexpr TileShape tile_shapes[] = {{8, 8}, {32, 4}};
 
@@ -205,7 +202,6 @@ DeviceFloor measure(const AffineJob& job, int device) {
   }
   return run.best();
 }
-
 }  // namespace
 
 DeviceFloor measure_device_floor(const AffineJob& job, int device) {

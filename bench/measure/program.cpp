@@ -1,4 +1,3 @@
-/// @file program.cpp
 #include "bench/measure/program.hpp"
 
 #include <benchmark/benchmark.h>
@@ -15,9 +14,7 @@
 #include "bench/measure/row.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 class ShortConsole : public benchmark::ConsoleReporter {
  public:
   explicit ShortConsole(std::vector<std::string_view> counters)
@@ -38,7 +35,6 @@ class ShortConsole : public benchmark::ConsoleReporter {
  private:
   std::vector<std::string_view> counters_;
 };
-
 }  // namespace
 
 Program::Program(int argc, char** argv) : arguments_(argv, argv + argc) {

@@ -1,14 +1,10 @@
-/// @file row.cpp
 #include "bench/measure/row.hpp"
 
 #include <utility>
 
 namespace tetwarp::bench {
-
 namespace {
-
 int refused = 0;
-
 }  // namespace
 
 void add_row(const std::string& name, std::function<void(benchmark::State&)> run) {

@@ -1,4 +1,3 @@
-/// @file timing.cpp
 #include "bench/measure/timing.hpp"
 
 #include <time.h>
@@ -8,9 +7,7 @@
 #include <cstddef>
 
 namespace tetwarp::bench {
-
 namespace {
-
 struct Repetition {
   double wall;
   double busy;  ///< processors used
@@ -66,7 +63,6 @@ Timing timing_of(const std::vector<Repetition>& all, const Protocol& protocol) {
   timing.busy = quantile(busy, 0.5);
   return timing;
 }
-
 }  // namespace
 
 double seconds_of(const std::function<void()>& call) {

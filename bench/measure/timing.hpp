@@ -12,8 +12,8 @@ struct Protocol {
   int repetitions = 9;
   int attempts = 27;        ///< upper limit, also reached on a busy machine
   double seconds = 10;      ///< no attempts beyond `repetitions` once this time is spent
-  double busy_threads = 0;  ///< a repetition that used less than 0.9 of so many processors does not
-                            ///< count; 0: all count
+  double busy_threads = 0;  ///< a repetition that used less than 0.9 times this many processors
+                            ///< does not count; 0: all count
 };
 
 /// Wall times of the repetitions that count [s].

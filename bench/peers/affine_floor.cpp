@@ -1,4 +1,3 @@
-/// @file affine_floor.cpp
 #include <algorithm>
 #include <cmath>
 
@@ -6,9 +5,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// Row (j, k): its part inside the source is sampled, the rest is zero.
 void sample_row(const AffineJob& job, const Sampler16& sampler, std::int64_t j, std::int64_t k) {
   float base[3], step[3];
@@ -34,7 +31,6 @@ void sample_row(const AffineJob& job, const Sampler16& sampler, std::int64_t j, 
   std::fill(row + end, row + dims, 0.0f);
   sample_row16(sampler, base, step, begin, end, row);
 }
-
 }  // namespace
 
 void sample_affine_avx512(const AffineJob& job, RowOrder order, int threads) {

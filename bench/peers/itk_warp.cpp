@@ -1,4 +1,3 @@
-/// @file itk_warp.cpp
 #include <itkImage.h>
 #include <itkLinearInterpolateImageFunction.h>
 #include <itkMultiThreaderBase.h>
@@ -7,9 +6,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 using FloatImage = itk::Image<float, 3>;
 using Field = itk::Image<itk::Vector<float, 3>, 3>;
 using Warp = itk::WarpImageFilter<FloatImage, FloatImage, Field>;
@@ -31,7 +28,6 @@ typename Image::Pointer image_over(typename Image::PixelType* pixels,
   image->GetPixelContainer()->SetImportPointer(pixels, count, false);
   return image;
 }
-
 }  // namespace
 
 PeerStep itk_warp(const PeerInput& input) {

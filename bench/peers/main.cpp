@@ -22,7 +22,6 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace {
-
 using namespace tetwarp;
 using namespace tetwarp::bench;
 
@@ -88,7 +87,7 @@ class Row {
   }
 
  private:
-  /// Rounds of floor and tetwarp in turn, so that both meet the same state of the machine.
+  /// Rounds of floor and tetwarp in turn, so that both run in the same state of the machine.
   void step_beside_floor() {
     const AffineJob floor{PixelType::float32,      Filter::linear, scene_.source_grid.dims,
                           scene_.output_grid.dims, source_.data,   output_.data(),
@@ -143,7 +142,6 @@ std::string today() {
   std::strftime(text, sizeof text, "%F", std::localtime(&now));
   return text;
 }
-
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -1,4 +1,3 @@
-/// @file paper_method.cpp
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -6,9 +5,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr int cell_edge = 8;
 
 /// Rows of the barycentric map, rest positions as columns, and the bounding box.
@@ -164,7 +161,6 @@ std::vector<Box> cells_of(const std::vector<PaperTet>& tets, int threads) {
   }
   return boxes;
 }
-
 }  // namespace
 
 PeerStep paper_method(const PeerInput& input, bool with_cells) {

@@ -1,4 +1,3 @@
-/// @file peer.cpp
 #include "bench/peers/peer.hpp"
 
 #include <algorithm>

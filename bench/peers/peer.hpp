@@ -9,7 +9,7 @@
 
 namespace tetwarp::bench {
 
-/// What every program gets. Grids have unit spacing, the source grid its origin at zero.
+/// Input of every program. Grids have unit spacing, the source grid its origin at zero.
 struct PeerInput {
   const scenes::Scene& scene;
   const float* source;  ///< [k][j][i], followed by readable bytes

@@ -1,4 +1,3 @@
-/// @file scanline_probe.cpp
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,9 +6,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// Where a face plane crosses a row (j, k): at i = along_j j + along_k k + offset.
 struct Face {
   double along_j, along_k, offset;
@@ -101,7 +98,6 @@ void draw(const ScanTet& tet, const PeerInput& input, const Sampler16& sampler) 
     }
   }
 }
-
 }  // namespace
 
 PeerStep scanline_probe(const PeerInput& input) {

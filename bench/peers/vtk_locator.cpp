@@ -1,4 +1,3 @@
-/// @file vtk_locator.cpp
 #include <vtkCellArray.h>
 #include <vtkFloatArray.h>
 #include <vtkGenericCell.h>
@@ -16,9 +15,7 @@
 #include "bench/peers/peer.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// The deformed mesh in voxels of the output.
 vtkSmartPointer<vtkUnstructuredGrid> deformed_grid(const scenes::Scene& scene) {
   vtkNew<vtkPoints> points;
@@ -101,7 +98,6 @@ class Locator {
   vtkNew<vtkImageData> source_;
   vtkNew<vtkImageInterpolator> interpolator_;
 };
-
 }  // namespace
 
 PeerStep vtk_locator(const PeerInput& input) {

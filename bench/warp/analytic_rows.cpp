@@ -1,4 +1,3 @@
-/// @file analytic_rows.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,9 +14,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr double pi = std::numbers::pi;
 constexpr double waves[3] = {3, 2, 4};  ///< per volume
 
@@ -159,7 +156,6 @@ void run_interpolation(
   state.counters["rms_error"] = errors.rms();
   state.counters["ns_per_covered"] = 1e9 * timing.median / static_cast<double>(job.covered());
 }
-
 }  // namespace
 
 void add_analytic_rows(const Selection& selection) {

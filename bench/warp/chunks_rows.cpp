@@ -1,4 +1,3 @@
-/// @file chunks_rows.cpp
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -11,9 +10,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 Volume warped(const Workload& workload, int threads) {
   WarpJob job(inputs().scene(workload), inputs().image(workload),
               {.backend = Backend::cpu, .threads = threads});
@@ -65,7 +62,6 @@ void run(benchmark::State& state, const Workload& workload, int threads) {
   state.counters["megabytes"] = megabytes(sparse.written());
   state.counters["whole_megabytes"] = megabytes(whole.written());
 }
-
 }  // namespace
 
 void add_chunk_rows(const Selection& selection) {

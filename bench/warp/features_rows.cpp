@@ -1,4 +1,3 @@
-/// @file features_rows.cpp
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,9 +10,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A feature: options, mesh and source that differ from the plain step.
 struct Feature {
   std::string name;
@@ -136,7 +133,6 @@ void run(benchmark::State& state, const Feature& feature, int threads) {
   state.counters["ns_per_covered"] = 1e9 * timings[0].median / static_cast<double>(with.covered());
   state.counters["max_error"] = error;
 }
-
 }  // namespace
 
 void add_feature_rows(const Selection& selection) {

@@ -1,4 +1,3 @@
-/// @file fields_rows.cpp
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,9 +11,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A field by name, its member of FieldTarget, and its components per voxel.
 struct FieldRow {
   const char* name;
@@ -42,7 +39,6 @@ void run(benchmark::State& state, const Workload& workload, const FieldRow& row,
   state.counters["field_ns_per_covered"] =
       1e9 * (timings[0].median - timings[1].median) / static_cast<double>(job.covered());
 }
-
 }  // namespace
 
 void add_field_rows(const Selection& selection) {

@@ -1,4 +1,3 @@
-/// @file labels_rows.cpp
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -11,9 +10,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// The label at x [voxel of a grid of n per axis], 1 to 8.
 int label_at(const Point3& x, double n) {
   double wave = 0;
@@ -62,7 +59,6 @@ void run(benchmark::State& state, std::int64_t n, Filter filter, int threads) {
   state.counters["wrong_share"] = wrong;
   state.counters["ns_per_covered"] = 1e9 * timing.median / static_cast<double>(job.covered());
 }
-
 }  // namespace
 
 void add_label_rows(const Selection& selection) {

@@ -14,7 +14,6 @@
 #include "bench/warp/rows.hpp"
 
 namespace {
-
 using namespace tetwarp;
 
 std::string milliseconds(double seconds) {
@@ -40,7 +39,6 @@ void describe(const bench::Program& program,
   benchmark::AddCustomContext("copy_gigabytes_per_second",
                               std::to_string(1e-9 * bench::copy_bandwidth(threads)));
 }
-
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -1,4 +1,3 @@
-/// @file overlap_rows.cpp
 #include <array>
 #include <cstring>
 #include <functional>
@@ -11,9 +10,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr std::size_t steps_per_job = 8;
 
 struct OverlapCase {
@@ -101,7 +98,6 @@ void run(benchmark::State& state, const OverlapCase& row) {
   count_beside(state, timings, "apart");
   state.counters["max_error"] = check.accuracy.max_error;
 }
-
 }  // namespace
 
 void add_overlap_rows(const Selection& selection) {

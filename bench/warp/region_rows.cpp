@@ -1,4 +1,3 @@
-/// @file region_rows.cpp
 #include <cstring>
 #include <functional>
 #include <optional>
@@ -10,9 +9,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 Region middle_of(const Grid& grid) {
   Region region;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,7 +52,6 @@ void run(benchmark::State& state, const Workload& workload, WarpOptions options)
   state.counters["covered_share"] =
       static_cast<double>(part.covered()) / static_cast<double>(whole.covered());
 }
-
 }  // namespace
 
 void add_region_rows(const Selection& selection) {

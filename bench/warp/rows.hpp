@@ -2,9 +2,10 @@
 /// All rows of tetwarp_bench: what each measures, and its counters.
 ///
 /// Every row makes its input, checks a result and is refused if that is wrong, then times the
-/// median of at least nine repetitions, in turn with what it is compared to. All rows have the
-/// counters of a Timing (low, high, min, kept, discarded, busy, contended); times are in ms, errors
-/// of values are shares of the image's range, "plain" and "whole" are times of the other job.
+/// median of at least nine repetitions, in turn with the job that it is compared to. All rows have
+/// the counters of a Timing (low, high, min, kept, discarded, busy, contended); times are in ms,
+/// errors of values are shares of the image's range, "plain" and "whole" are times of the other
+/// job.
 #pragma once
 #include "bench/measure/row.hpp"
 #include "bench/warp/step_cases.hpp"

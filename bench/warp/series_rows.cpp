@@ -1,4 +1,3 @@
-/// @file series_rows.cpp
 #include <array>
 #include <cstring>
 #include <functional>
@@ -10,9 +9,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 struct SeriesCase {
   Workload workload;
   int moved_percent;
@@ -94,7 +91,6 @@ void run(benchmark::State& state, const SeriesCase& row) {
   state.counters["cells_touched"] = share(counts.cells_unchanged, counts.cells);
   state.counters["max_error"] = check.accuracy.max_error;
 }
-
 }  // namespace
 
 void add_series_rows(const Selection& selection) {

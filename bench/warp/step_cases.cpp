@@ -1,13 +1,10 @@
-/// @file step_cases.cpp
 #include "bench/warp/step_cases.hpp"
 
 #include <algorithm>
 #include <tuple>
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr Filter filters[] = {Filter::nearest, Filter::linear};
 constexpr PixelType types[] = {PixelType::uint8, PixelType::int16, PixelType::float32,
                                PixelType::float64};
@@ -112,7 +109,6 @@ void add_skips(Rows& rows, StepCase row, bool full) {
     }
   }
 }
-
 }  // namespace
 
 std::vector<SkipVariant> skip_variants() {

@@ -1,4 +1,3 @@
-/// @file step_rows.cpp
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -13,9 +12,7 @@
 #include "bench/warp/warp_job.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 /// A job, and what its construction and first step cost.
 struct Subject {
   std::optional<WarpJob> job;
@@ -48,7 +45,7 @@ class Checked {
       : state_(state), row_(row), job_(*subject.job) {
     const auto voxels = static_cast<std::size_t>(job_.grid().voxel_count());
     owner_ = std::make_unique_for_overwrite<std::int32_t[]>(voxels);
-    // Bytes that the step does not write must not look like an earlier result.
+    // Bytes that the step does not write must differ from earlier results.
     std::memset(job_.output(), 0xa5, job_.output_bytes());
     std::memset(owner_.get(), 0xa5, voxels * sizeof(std::int32_t));
     counts_ = job_.step({.volumes = {}, .owner = owner_.get()}).counts;
@@ -199,7 +196,6 @@ void run(benchmark::State& state, const StepCase& row) {
   if (!checked.is_right()) return;
   count_accuracy(state, checked.accuracy());
 }
-
 }  // namespace
 
 void add_step_rows(const Selection& selection) {

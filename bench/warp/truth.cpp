@@ -1,4 +1,3 @@
-/// @file truth.cpp
 #include "bench/warp/truth.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +13,7 @@
 #include "host/reference/warp/exact_geometry.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 using namespace reference;
 
 constexpr std::int64_t complete_up_to = 128 * 128 * 128;
@@ -114,7 +111,6 @@ bool is_in_box(const Corners& tet, const Quanta& at) {
   }
   return true;
 }
-
 }  // namespace
 
 Truth make_truth(const scenes::Scene& scene) {

@@ -1,4 +1,3 @@
-/// @file warp_job.cpp
 #include "bench/warp/warp_job.hpp"
 
 #include <numbers>
@@ -8,15 +7,12 @@
 #include <tetwarp/names.hpp>
 
 namespace tetwarp::bench {
-
 namespace {
-
 WarpOptions repeated(WarpOptions options, const scenes::Scene& scene) {
   options.output_grid = scene.output_grid;
   options.skip.unchanged_tets = false;
   return options;
 }
-
 }  // namespace
 
 const scenes::Scene& Inputs::scene(const Workload& workload) {

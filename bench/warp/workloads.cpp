@@ -1,4 +1,3 @@
-/// @file workloads.cpp
 #include "bench/warp/workloads.hpp"
 
 #include <algorithm>
@@ -12,9 +11,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp::bench {
-
 namespace {
-
 constexpr double pi = std::numbers::pi;
 
 Point3 bent(const Point3& p, const Point3& centre, const Point3& uvw) {
@@ -100,7 +97,6 @@ std::vector<double> bulge_along(std::int64_t dims) {
   }
   return bulge;
 }
-
 }  // namespace
 
 Workload ties_128() {

@@ -1,4 +1,3 @@
-/// @file backend.cpp
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>
 

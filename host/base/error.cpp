@@ -1,17 +1,13 @@
-/// @file error.cpp
 #include <tetwarp/error.hpp>
 #include <utility>
 
 namespace tetwarp {
-
 namespace {
-
 std::string line_of(const std::string& file,
                     const std::string& dataset,
                     const std::string& problem) {
   return file + ": " + (dataset.empty() ? "" : dataset + ": ") + problem;
 }
-
 }  // namespace
 
 IoError::IoError(std::string file, std::string dataset, const std::string& problem)

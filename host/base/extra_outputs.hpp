@@ -1,5 +1,5 @@
 /// @file extra_outputs.hpp
-/// The arrays that a step can write beside the volumes: mask, owners and fields, in one table.
+/// Table of the arrays that a step can write in addition to the volumes: mask, owners and fields.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,12 +17,11 @@ struct ExtraOutput {
   const char* word;  ///< for `tetwarp warp --outputs`
   PixelType type;
   int components;
-  void* (*get)(const WarpTarget&);        ///< null: not wanted
+  void* (*get)(const WarpTarget&);        ///< null: not written
   void (*set)(WarpTarget&, void* array);  ///< the array has the table's type and components
 
   /// Name of the array in files.
   std::string array() const { return std::string("tetwarp_") + word; }
-  /// Bytes per voxel.
   std::int64_t voxel_bytes() const { return components * static_cast<std::int64_t>(size_of(type)); }
 };
 

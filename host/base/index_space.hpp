@@ -10,8 +10,7 @@
 namespace tetwarp {
 
 /// The map from world to index positions: inverse of direction * diag(spacing), and the origin. The
-/// inverse of a diagonal matrix consists of the rounded reciprocals. @pre check_grid() accepts
-/// `grid`
+/// inverse of a diagonal matrix consists of the rounded reciprocals. @pre check_grid() has passed
 TETWARP_EXPORT IndexFromWorld index_from_world(const Grid& grid);
 
 /// Index positions of the same world position in two grids: x_source = linear * x_output + offset.

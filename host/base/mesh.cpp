@@ -1,4 +1,3 @@
-/// @file mesh.cpp
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -7,9 +6,7 @@
 #include "kernels/base/hex_view.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 template <std::size_t N>
 void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
                  std::size_t nodes,
@@ -25,7 +22,6 @@ void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
     }
   }
 }
-
 }  // namespace
 
 void check_mesh(const Mesh& mesh) {

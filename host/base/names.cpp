@@ -1,4 +1,3 @@
-/// @file names.cpp
 #include <tetwarp/backend.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/make.hpp>
@@ -6,9 +5,7 @@
 #include <tetwarp/warp.hpp>
 
 namespace tetwarp {
-
 namespace {
-
 constexpr EnumName<Backend> backend_names[] = {{Backend::automatic, "auto"},
                                                {Backend::cuda, "cuda"},
                                                {Backend::cpu, "cpu"},
@@ -61,7 +58,6 @@ constexpr EnumName<ContactStatus> contact_status_names[] = {
     {ContactStatus::infeasible, "infeasible"}};
 constexpr EnumName<AdhesionIntegrator> adhesion_integrator_names[] = {
     {AdhesionIntegrator::exact, "exact"}, {AdhesionIntegrator::explicit_euler, "explicit-euler"}};
-
 }  // namespace
 
 template <>

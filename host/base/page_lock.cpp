@@ -1,4 +1,3 @@
-/// @file page_lock.cpp
 #include <tetwarp/page_lock.hpp>
 #include <utility>
 

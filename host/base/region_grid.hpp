@@ -13,7 +13,7 @@
 namespace tetwarp {
 
 /// The region, or all of the grid without one.
-/// @throws std::invalid_argument when it is empty or leaves the grid
+/// @throws std::invalid_argument when it is empty or not within the grid
 inline Region checked_region(const Grid& grid, const std::optional<Region>& region) {
   if (!region) return {{0, 0, 0}, grid.dims};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -1,13 +1,10 @@
-/// @file report.cpp
 #include <nlohmann/json.hpp>
 #include <tetwarp/report.hpp>
 
 #include "host/base/report_fields.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
 template <class Record, class Fields>
@@ -21,7 +18,6 @@ template <class Record, class Fields>
 void add_to(Record& record, const Record& other, const Fields& fields) {
   for (const auto& [name, member] : fields) record.*member += other.*member;
 }
-
 }  // namespace
 
 Timings& Timings::operator+=(const Timings& other) {

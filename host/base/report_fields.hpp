@@ -1,6 +1,6 @@
 /// @file report_fields.hpp
-/// The members of Timings and Counts with their names in reports: the one list that sums, JSON and
-/// the exchange between processes go through.
+/// The members of Timings and Counts with their names in reports: the list that sums, JSON and the
+/// exchange between processes use.
 #pragma once
 #include <cstdint>
 #include <iterator>
@@ -9,7 +9,6 @@
 
 namespace tetwarp {
 
-/// A member of a record of numbers.
 template <class Record, class Number>
 struct ReportField {
   const char* name;  ///< in the JSON

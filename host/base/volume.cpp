@@ -1,4 +1,3 @@
-/// @file volume.cpp
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -15,9 +14,7 @@
 #include "host/base/index_space.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using RowMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 /// Advises the system to use huge pages for memory not yet touched: accesses across a volume would
@@ -41,7 +38,6 @@ double snapped(double x) {
   const double whole = std::nearbyint(x);
   return std::abs(x - whole) < 0x1p-40 ? whole : x;
 }
-
 }  // namespace
 
 std::size_t size_of(PixelType type) {

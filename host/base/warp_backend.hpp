@@ -23,10 +23,10 @@ struct WarpPlan {
   Grid target_grid;      ///< grid of the region
 };
 
-/// One of cpu, cuda and reference. A step has five parts, each called once and in the order of
+/// A back end: cpu, cuda or reference. A step has five parts, each called once and in the order of
 /// declaration; when a part throws, the step is over. Up to two steps, numbers 0 and 1, are in
-/// flight. Of the later step only upload() is called before settle() of the earlier one, and only
-/// compute() before the earlier one's last two parts.
+/// flight. Before settle() of the earlier step only upload() of the later one is called; before the
+/// last two parts of the earlier one also compute().
 class WarpBackend {
  public:
   virtual ~WarpBackend() = default;
@@ -39,7 +39,7 @@ class WarpBackend {
   virtual void settle(int) {}
   /// Queues the copy of the result to the target.
   virtual void download(int) {}
-  /// Waits for that copy. @returns the report without the total time
+  /// Waits for the copy of download(). @returns the report without the total time
   virtual StepReport finish(int flight) = 0;
   /// Waits until all queued work has ended.
   virtual void drain() noexcept {}
@@ -59,11 +59,10 @@ BackendStatus cuda_status(int device);
 /// Free memory of CUDA device number `device` [byte]; 0 when it is not usable.
 TETWARP_EXPORT double free_device_memory(int device);
 
-/// Page-locks host memory for CUDA devices. @returns whether it worked
+/// Page-locks host memory for CUDA devices. @returns whether it succeeded
 bool cuda_lock_pages(void* data, std::size_t bytes);
 void cuda_unlock_pages(void* data);
 
-/// The processor's name.
 std::string processor_name();
 
 }  // namespace tetwarp

@@ -1,4 +1,3 @@
-/// @file array_checks.cpp
 #include "host/cli/array_checks.hpp"
 
 #include <fmt/format.h>
@@ -9,9 +8,7 @@
 #include "host/warp/transform_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 void check_named(const std::string& path,
                  const std::vector<ArrayHeader>& arrays,
                  const std::string& name,
@@ -22,7 +19,6 @@ void check_named(const std::string& path,
                 fmt::format("{} names no array that is warped; tetwarp info lists them",
                             quantity < Quantity::tensor ? "--vectors" : "--tensors"));
 }
-
 }  // namespace
 
 void check_arrays(const std::string& path,

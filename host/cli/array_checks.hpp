@@ -1,5 +1,5 @@
 /// @file array_checks.hpp
-/// Whether the arrays of a volume go with the arguments of a warp.
+/// Checks of the arrays of a volume against the arguments of a warp.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,9 +10,8 @@
 
 namespace tetwarp::cli {
 
-/// Checks the arrays of a volume file against the arguments: --vectors and --tensors name some of
-/// them, their types go with the options, and their names are not those of extra outputs.
-/// Throws IoError.
+/// Checks the arrays of a volume file: --vectors and --tensors name some of them, their types fit
+/// the options, and their names are not those of extra outputs. Throws IoError.
 void check_arrays(const std::string& path,
                   const Grid& grid,
                   const std::vector<ArrayHeader>& arrays,

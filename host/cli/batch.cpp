@@ -1,4 +1,3 @@
-/// @file batch.cpp
 #include "host/cli/batch.hpp"
 
 #include <fmt/format.h>
@@ -16,12 +15,9 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
-/// Results of the jobs so far.
 struct Outcome {
   int done = 0;
   int failed = 0;
@@ -96,7 +92,6 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     fail(outcome, name, report, one_line(error.what()));
   }
 }
-
 }  // namespace
 
 int run_batch(const WarpArguments& shared, const CLI::App& defaults) {

@@ -13,13 +13,10 @@
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Words of a command line.
 using Words = std::vector<std::string>;
 
 /// Options of the whole batch; a job may not have them.
@@ -55,7 +52,6 @@ Words value_texts(const std::string& key, const Json& value) {
   return texts;
 }
 
-/// Turns one job into words.
 class JobReader {
  public:
   JobReader(fs::path folder, const CLI::App& defaults)
@@ -107,7 +103,7 @@ class JobReader {
   static Words words_of_default(const CLI::Option& option, const Json& job) {
     if (option.count() == 0 || option.get_lnames().empty()) return {};
     const std::string& name = option.get_lnames().front();
-    // The report beside --batch is that of the whole batch.
+    // With --batch, --report names the report of the whole batch.
     if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
     if (option.get_items_expected_max() == 0) return {"--" + name};
     return option_words(name, option.results());
@@ -136,7 +132,6 @@ Json read_json(const std::string& path) {
     throw IoError(path, position_text(text, error.byte), "no valid JSON here; correct it");
   }
 }
-
 }  // namespace
 
 std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {

@@ -1,4 +1,3 @@
-/// @file cmd_contact.cpp
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -17,13 +16,10 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int infeasible_exit_code = 1;
 constexpr int not_converged_exit_code = 3;
 
-/// Seconds for files.
 struct FileSeconds {
   double read = 0;
   double write = 0;
@@ -46,7 +42,7 @@ ContactProblem read_problem(const ContactArguments& arguments) {
   return problem;
 }
 
-/// Adds the file to errors that only factorizing finds, e.g. a singular matrix.
+/// Adds the name of the file to errors that only a factorization finds, e.g. a singular matrix.
 ContactSolution solve(ContactSolver& solver,
                       const ContactProblem& problem,
                       const ContactArguments& arguments) {
@@ -113,7 +109,6 @@ int run_contact(const ContactArguments& arguments) {
   if (!arguments.quiet) print_summary(arguments, solution.report);
   return report_failure(arguments, solution.report);
 }
-
 }  // namespace
 
 void add_contact_command(CLI::App& app, Run& run) {

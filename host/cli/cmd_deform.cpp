@@ -1,4 +1,3 @@
-/// @file cmd_deform.cpp
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,9 +14,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 const Choices<int> axes{{"x", 0}, {"y", 1}, {"z", 2}};
 
 struct DeformArguments {
@@ -38,7 +35,6 @@ int run_deform(const DeformArguments& arguments) {
              arguments.output);
   return 0;
 }
-
 }  // namespace
 
 void add_deform_command(CLI::App& app, Run& run) {

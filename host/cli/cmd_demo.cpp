@@ -1,4 +1,3 @@
-/// @file cmd_demo.cpp
 #include <fmt/format.h>
 
 #include <array>
@@ -15,9 +14,7 @@
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 
 struct DemoArguments {
@@ -27,7 +24,6 @@ struct DemoArguments {
   int cells = 6;
 };
 
-/// The files of a demo.
 struct DemoFiles {
   explicit DemoFiles(const fs::path& folder)
       : volume((folder / "volume.vtkhdf").string()),
@@ -94,7 +90,6 @@ int run_demo(const DemoArguments& arguments) {
              result.outputs.front());
   return 0;
 }
-
 }  // namespace
 
 void add_demo_command(CLI::App& app, Run& run) {

@@ -1,4 +1,3 @@
-/// @file cmd_export.cpp
 #include <fmt/format.h>
 
 #include <memory>
@@ -11,9 +10,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 struct ExportArguments {
   std::string input;
   std::string output;
@@ -41,7 +38,6 @@ int run_export(const ExportArguments& arguments) {
              vectors == NiftiVectors::lps ? " as LPS displacements" : "", arguments.output);
   return 0;
 }
-
 }  // namespace
 
 void add_export_command(CLI::App& app, Run& run) {

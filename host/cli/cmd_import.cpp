@@ -1,4 +1,3 @@
-/// @file cmd_import.cpp
 #include <fmt/format.h>
 
 #include <memory>
@@ -11,9 +10,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 struct ImportArguments {
   std::string input;
   std::string output;
@@ -56,7 +53,6 @@ int run_import(const ImportArguments& arguments) {
   }
   return 0;
 }
-
 }  // namespace
 
 void add_import_command(CLI::App& app, Run& run) {

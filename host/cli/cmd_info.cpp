@@ -1,4 +1,3 @@
-/// @file cmd_info.cpp
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,9 +15,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
 struct InfoArguments {
@@ -178,7 +175,6 @@ int run_info(const InfoArguments& arguments) {
   }
   return 0;
 }
-
 }  // namespace
 
 void add_info_command(CLI::App& app, Run& run) {

@@ -1,4 +1,3 @@
-/// @file cmd_mesh.cpp
 #include <fmt/format.h>
 
 #include <memory>
@@ -12,9 +11,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 struct MeshArguments {
   std::string volume;
   std::string output;
@@ -39,7 +36,6 @@ int run_mesh(const MeshArguments& arguments) {
              arguments.lattice.hexahedra ? "hexahedra" : "tetrahedra", arguments.output);
   return 0;
 }
-
 }  // namespace
 
 void add_mesh_command(CLI::App& app, Run& run) {

@@ -1,4 +1,3 @@
-/// @file cmd_render.cpp
 #include <fmt/format.h>
 
 #include <memory>
@@ -12,9 +11,7 @@
 #include "host/cli/file_checks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 struct RenderArguments {
   std::string volume;
   std::string beside;
@@ -45,7 +42,6 @@ int run_render(const RenderArguments& arguments) {
   fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
   return 0;
 }
-
 }  // namespace
 
 void add_render_command(CLI::App& app, Run& run) {

@@ -1,4 +1,3 @@
-/// @file cmd_warp.cpp
 #include <fmt/format.h>
 
 #include <memory>
@@ -11,9 +10,7 @@
 #include "host/cli/warp_job.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Number of usable CUDA devices.
 int device_count() {
   int count = 0;
@@ -31,7 +28,6 @@ int run_warp(WarpArguments arguments) {
   ranks.finish();
   return 0;
 }
-
 }  // namespace
 
 void add_warp_command(CLI::App& app, Run& run) {

@@ -1,4 +1,3 @@
-/// @file contact_arguments.cpp
 #include "host/cli/contact_arguments.hpp"
 
 #include <vector>
@@ -6,9 +5,7 @@
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 void declare_model(CLI::App& app, ContactArguments& arguments) {
   ContactOptions& options = arguments.options;
   app.add_option("PROBLEM", arguments.problem,
@@ -93,7 +90,6 @@ void declare_running(CLI::App& app, ContactArguments& arguments) {
       ->type_name("FILE");
   app.add_flag("--quiet", arguments.quiet, "no summary");
 }
-
 }  // namespace
 
 void declare_contact_options(CLI::App& app, ContactArguments& arguments) {

@@ -1,13 +1,10 @@
-/// @file declare.cpp
 #include "host/cli/declare.hpp"
 
 #include <cctype>
 #include <memory>
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Help of CLI11 with a given usage line: its own cannot express "VOLUME... MESH".
 class UsageFormatter : public CLI::Formatter {
  public:
@@ -24,7 +21,6 @@ class UsageFormatter : public CLI::Formatter {
  private:
   std::string synopsis_;
 };
-
 }  // namespace
 
 CLI::App* add_subcommand(CLI::App& app,

@@ -34,7 +34,7 @@ CLI::Validator above_zero();  // accepts infinity
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;
 
-/// The words of an enum that names_of() knows.
+/// The words of an enum for which names_of() is defined.
 template <class T>
 Choices<T> choices_of() {
   Choices<T> choices;
@@ -42,7 +42,6 @@ Choices<T> choices_of() {
   return choices;
 }
 
-/// The words without their values.
 template <class T>
 std::vector<std::string> words_of(const Choices<T>& choices) {
   std::vector<std::string> words;

@@ -1,4 +1,3 @@
-/// @file displacement.cpp
 #include "host/cli/displacement.hpp"
 
 #include <cstddef>

@@ -8,7 +8,7 @@
 
 namespace tetwarp::cli {
 
-/// Arrays to write beside the warped ones, by their places in the table `extra_outputs`.
+/// Arrays to write in addition to the warped ones, as indices into the table `extra_outputs`.
 using ExtraChoice = std::set<std::size_t>;
 
 }  // namespace tetwarp::cli

@@ -1,4 +1,3 @@
-/// @file file_checks.cpp
 #include "host/cli/file_checks.hpp"
 
 #include <unistd.h>
@@ -8,7 +7,6 @@
 #include <system_error>
 
 namespace tetwarp::cli {
-
 namespace fs = std::filesystem;
 
 void check_output_folder(const std::string& folder, const std::string& output) {

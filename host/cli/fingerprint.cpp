@@ -1,4 +1,3 @@
-/// @file fingerprint.cpp
 #include "host/cli/fingerprint.hpp"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 /// @file fingerprint.hpp
-/// A 64-bit hash of everything that determines an output file: --resume keeps an existing file that
-/// has the same.
+/// A 64-bit hash of everything that determines an output file: --resume keeps a file with an equal
+/// one.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -18,7 +18,7 @@ namespace tetwarp::cli {
 /// after each multiplication that mixes high bits into low ones. The size of an item is hashed
 /// before it, so that different sequences of items give different hashes. Not a cryptographic hash.
 ///
-/// The same on all little-endian machines. Copies continue independently from a common beginning.
+/// Equal on all little-endian machines. A copy continues independently of its original.
 class Fingerprint {
  public:
   void add(std::span<const std::byte> bytes);
@@ -46,7 +46,7 @@ class Fingerprint {
   /// Name, type, grid and samples.
   void add(const Volume& volume);
 
-  /// The same for samples that come in parts, in the order of memory: begin(), add_part(), end().
+  /// The same for samples in parts, in the order of memory: begin(), add_part(), end().
   void begin(const ArrayHeader& array, const Grid& grid);
   void add_part(std::span<const std::byte> bytes);
   void end();

@@ -1,4 +1,3 @@
-/// @file interrupt.cpp
 #include "host/cli/interrupt.hpp"
 
 #include <unistd.h>
@@ -9,9 +8,7 @@
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 volatile std::sig_atomic_t flag = 0;
 volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
 
@@ -24,7 +21,6 @@ void handle(int) {
   remove_unfinished_files();
   _exit(interrupted_exit_code);
 }
-
 }  // namespace
 
 void install_interrupt_handlers() {
@@ -37,7 +33,7 @@ void install_interrupt_handlers() {
 }
 
 void exit_on_first_signal() {
-  flag_scopes = -1'000'000;  // stays below zero whatever is added by scopes
+  flag_scopes = -1'000'000;  // far below zero: scopes cannot make it positive
 }
 
 InterruptFlag::InterruptFlag() {

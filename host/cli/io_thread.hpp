@@ -13,7 +13,7 @@
 
 namespace tetwarp::cli {
 
-/// The destructor waits for the task that runs and drops those that have not begun.
+/// The destructor waits for the running task and discards those that have not begun.
 class IoThread {
  public:
   IoThread() : thread_([this] { work(); }) {}

@@ -1,4 +1,3 @@
-/// @file job_plan.cpp
 #include "host/cli/job_plan.hpp"
 
 #include <fmt/format.h>
@@ -17,9 +16,7 @@
 #include "host/cli/memory_plan.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 namespace fs = std::filesystem;
 
 const std::string order = "the order is: tetwarp warp VOLUME... MESH -o OUT";
@@ -65,8 +62,7 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
 }
 
 /// True when writing a step while the next one is computed saves time: on a device, with fewer
-/// threads than processors, or with compression, which uses one thread. Else computing and writing
-/// would compete for the same processors.
+/// threads than processors, or with compression, which uses one thread.
 bool leaves_time(Backend backend, const WarpArguments& arguments) {
   const auto processors = static_cast<int>(std::thread::hardware_concurrency());
   const int threads = arguments.warp.threads > 0 ? arguments.warp.threads : processors;
@@ -132,8 +128,7 @@ VolumePlan plan_volume(const std::string& path,
   }
   plan.writes_beside =
       plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
-  // On the cpu begin_step() computes the whole step, so the previous one is finished and written
-  // first.
+  // On the cpu begin_step() computes the step: the previous one is finished and written first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.steps = steps;
   plan.outputs = output_names(output, steps, arguments.temporal);
@@ -168,7 +163,6 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
     }
   }
 }
-
 }  // namespace
 
 std::vector<std::string> JobPlan::outputs() const {

@@ -18,11 +18,11 @@ struct VolumePlan {
   std::string path;
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
   Grid source_grid;
-  Grid output_grid;  ///< before the region cuts it
+  Grid output_grid;  ///< without regard to the region
   Grid written_grid;
-  std::vector<std::int64_t> steps;   ///< of the mesh; of one rank where ranks share them out
+  std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
-  double memory_limit = 0;           ///< compute in blocks within so many bytes; 0: as a whole
+  double memory_limit = 0;           ///< limit for computing in blocks [byte]; 0: as a whole
   double memory = 0;                 ///< of sources and outputs as a whole [byte]
   bool writes_beside = false;        ///< write a step while the next one is computed
   bool overlaps = false;  ///< begin a step before the previous one is copied back and written
@@ -40,7 +40,7 @@ struct JobPlan {
   std::vector<std::string> outputs() const;
 };
 
-/// Reads the headers of all files and checks all arguments. Throws std::invalid_argument, IoError,
+/// Reads all file headers and checks all arguments. Throws std::invalid_argument, IoError,
 /// CudaError.
 JobPlan plan_job(const WarpArguments& arguments);
 

@@ -1,4 +1,3 @@
-/// @file job_share.cpp
 #include "host/cli/job_share.hpp"
 
 #include <algorithm>
@@ -12,10 +11,8 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
-/// The plan with only the steps and outputs of this rank: outputs are dealt to ranks in turns.
+/// The plan with only this rank's steps and outputs, which are assigned round-robin.
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
   const std::vector<std::string> outputs = std::exchange(volume.outputs, {});
@@ -27,7 +24,6 @@ VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   }
   return volume;
 }
-
 }  // namespace
 
 void run_volume(const WarpArguments& arguments,

@@ -20,9 +20,7 @@
 #include "host/cli/ranks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int failed_exit_code = 1;
 constexpr int usage_exit_code = 2;
 
@@ -62,8 +60,8 @@ void check_subcommand(const CLI::App& app, int argument_count, const char* const
   }
 }
 
-/// Prints help or version, which CLI11 throws as errors too; for all others one line that names the
-/// help to read. @returns the exit code
+/// Prints help or version, which CLI11 throws as errors too; for all other errors one line that
+/// refers to the help. @returns the exit code
 int handle_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);
   const std::vector<CLI::App*> chosen = app.get_subcommands();
@@ -101,9 +99,7 @@ int guarded_main(int argument_count, const char* const* arguments) {
     return print_error(error.what(), failed_exit_code);
   }
 }
-
 }  // namespace
-
 }  // namespace tetwarp::cli
 
 int main(int argument_count, char** arguments) {

@@ -1,4 +1,3 @@
-/// @file memory_plan.cpp
 #include "host/cli/memory_plan.hpp"
 
 #include <fmt/format.h>
@@ -8,9 +7,7 @@
 #include "io/memory.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// Throws IoError unless the output can be computed in blocks.
 void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
   const std::string reason = needs_all_at_once(arguments);
@@ -25,7 +22,6 @@ double filter_bytes(Filter filter, PixelType type) {
   if (filter != Filter::bspline) return 0;
   return size_of(type) <= 2 || type == PixelType::float32 ? 12 : 8;
 }
-
 }  // namespace
 
 std::string needs_all_at_once(const WarpArguments& arguments) {
@@ -59,7 +55,7 @@ bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
   const double bytes = source_bytes + output_bytes;
   plan.memory = bytes;
   if (arguments.memory > 0) {
-    // 1 % is for lists of cells and tetrahedra; the rest is in use already.
+    // 1 % is for lists of cells and tetrahedra; the memory of the process is in use already.
     const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
     if (bytes > limit) {
       plan.memory_limit = arguments.memory;

@@ -12,7 +12,7 @@ std::string needs_all_at_once(const WarpArguments& arguments);
 
 /// Sets `memory` and `memory_limit` of a plan. Sources, outputs and extra outputs must fit in
 /// memory, with --memory at least block by block. Throws std::invalid_argument, IoError.
-/// @returns whether a second set of outputs fits, too
+/// @returns whether a second set of outputs also fits
 bool plan_memory(VolumePlan& plan, const WarpArguments& arguments);
 
 }  // namespace tetwarp::cli

@@ -1,4 +1,3 @@
-/// @file output_files.cpp
 #include "host/cli/output_files.hpp"
 
 #include <tetwarp/version.hpp>

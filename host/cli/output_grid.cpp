@@ -1,4 +1,3 @@
-/// @file output_grid.cpp
 #include "host/cli/output_grid.hpp"
 
 #include <algorithm>
@@ -11,9 +10,7 @@
 #include "host/cli/step_selection.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Index-space position of a world position.
@@ -61,7 +58,6 @@ Grid bounds_grid(const Grid& source,
   grid.origin = source.world_of(first);
   return grid;
 }
-
 }  // namespace
 
 Grid resolve_grid(const GridChoice& choice,

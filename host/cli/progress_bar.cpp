@@ -1,4 +1,3 @@
-/// @file progress_bar.cpp
 #include "host/cli/progress_bar.hpp"
 
 #include <fmt/format.h>
@@ -10,12 +9,9 @@
 #include <utility>
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr int bar_width = 24;
 constexpr auto redraw_interval = std::chrono::milliseconds(100);
-
 }  // namespace
 
 ProgressBar::ProgressBar(bool wanted, std::string label, double step_count)

@@ -7,11 +7,10 @@
 namespace tetwarp::cli {
 
 /// One line on standard error, redrawn at most ten times a second and cleared by the destructor:
-/// share done, Mvoxel/s, steps/s, remaining time. Draws nothing when standard error is not a
-/// terminal.
+/// share done, Mvoxel/s, steps/s, remaining time. Draws only to a terminal.
 class ProgressBar {
  public:
-  /// @param wanted      false: never draw
+  /// @param wanted false: never draw
   /// @param label       shown first, e.g. "warp" or "job 3"
   /// @param step_count  steps of the whole job
   ProgressBar(bool wanted, std::string label, double step_count);

@@ -9,9 +9,7 @@
 #include <thread>
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// The first of these environment variables that is set.
 int number_of(std::initializer_list<const char*> names, int otherwise) {
   for (const char* name : names) {
@@ -20,7 +18,6 @@ int number_of(std::initializer_list<const char*> names, int otherwise) {
   }
   return otherwise;
 }
-
 }  // namespace
 
 int launched_rank() {

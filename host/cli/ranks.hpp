@@ -11,8 +11,8 @@
 
 namespace tetwarp::cli {
 
-/// The ranks of a job and their messages. Used by one thread at a time. An error inside MPI ends
-/// all ranks.
+/// The ranks of a job and their messages. Used by one thread at a time. Errors in MPI end all
+/// ranks.
 class Ranks {
  public:
   /// One process alone; makes no MPI call.
@@ -50,7 +50,7 @@ class Ranks {
   /// Receives what a rank sends; waits for it.
   void receive(int from, std::span<std::byte> bytes) const;
 
-  /// The texts of all ranks in their order, at the root; nothing at the others.
+  /// The texts of all ranks in their order, at the root; empty at the others.
   std::vector<std::string> gather(const std::string& text) const;
 
  private:

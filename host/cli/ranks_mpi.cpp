@@ -9,9 +9,7 @@
 #include "host/cli/ranks.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 constexpr std::size_t max_message = std::size_t{1} << 30;  // [byte]; counts of MPI are ints
 
 /// Calls part(begin, size) for parts of at most max_message bytes.
@@ -21,7 +19,6 @@ void for_parts(std::size_t bytes, const Part& part) {
     part(begin, static_cast<int>(std::min(max_message, bytes - begin)));
   }
 }
-
 }  // namespace
 
 Ranks Ranks::start() {

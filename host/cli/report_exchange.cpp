@@ -1,4 +1,3 @@
-/// @file report_exchange.cpp
 #include "host/cli/report_exchange.hpp"
 
 #include <algorithm>
@@ -9,9 +8,7 @@
 #include "host/base/report_fields.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 using Json = nlohmann::ordered_json;
 
 template <class Record, class Fields>
@@ -21,7 +18,7 @@ Record record_of(const Json& json, const Fields& fields) {
   return record;
 }
 
-/// Numbers of a list. JSON has null for those that are not finite.
+/// Numbers of a list; JSON stores those that are not finite as null.
 std::vector<double> numbers_of(const Json& list) {
   std::vector<double> numbers(list.size());
   std::ranges::transform(list, numbers.begin(), [](const Json& number) {
@@ -41,7 +38,6 @@ StepReport step_of(const Json& json) {
   }
   return step;
 }
-
 }  // namespace
 
 std::string text_of(const StepReport& step) {

@@ -1,4 +1,3 @@
-/// @file source_scan.cpp
 #include "host/cli/source_scan.hpp"
 
 #include <algorithm>
@@ -11,9 +10,7 @@
 #include "host/cli/interrupt.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 void widen(std::vector<double>& range, PixelType type, std::span<const std::byte> bytes) {
   with_pixel_type(type, [&]<class T>(T) {
     const std::span samples(reinterpret_cast<const T*>(bytes.data()), bytes.size() / sizeof(T));
@@ -26,7 +23,6 @@ void widen(std::vector<double>& range, PixelType type, std::span<const std::byte
     }
   });
 }
-
 }  // namespace
 
 std::vector<double> scan_source(const VolumeReader& source,

@@ -9,8 +9,8 @@
 
 namespace tetwarp::cli {
 
-/// Adds a source to a fingerprint as Fingerprint::add(Volume) does. Holds at most `bytes` of it at
-/// a time, but at least one row.
+/// Adds a source to a fingerprint as Fingerprint::add(Volume) does. Keeps at most `bytes` of it in
+/// memory, but at least one row.
 /// @returns smallest and largest sample of component 0, then of 1 and so on, NaN left out; empty
 ///          unless `wants_range`
 std::vector<double> scan_source(const VolumeReader& source,

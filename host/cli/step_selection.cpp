@@ -1,4 +1,3 @@
-/// @file step_selection.cpp
 #include "host/cli/step_selection.hpp"
 
 #include <fmt/format.h>
@@ -78,7 +77,7 @@ std::vector<std::int64_t> StepSelection::steps_of(const Item& item, std::int64_t
   };
   const std::int64_t begin = end_of(item.begin, down ? high : low);
   const std::int64_t end = end_of(item.end, down ? low : high);
-  // The largest stride that matters, so that adding it cannot overflow.
+  // Larger strides select nothing more; clamped so that additions cannot overflow.
   const std::int64_t stride = std::clamp(item.stride, -step_count, step_count);
   std::vector<std::int64_t> steps;
   for (std::int64_t step = begin; down ? step > end : step < end; step += stride) {

@@ -9,7 +9,7 @@
 namespace tetwarp::cli {
 
 /// A comma list of step numbers and of half-open slices as in Python: "0:10:2", "-1", "0,3,8:".
-/// Order and repetition do not matter.
+/// Order and repetition have no effect.
 class StepSelection {
  public:
   /// Every step.

@@ -4,7 +4,6 @@
 
 namespace tetwarp::cli {
 
-/// Seconds since it was made.
 class Stopwatch {
  public:
   double seconds() const {

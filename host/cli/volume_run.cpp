@@ -16,9 +16,7 @@
 #include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
   double bytes = 0;
   for (const ArrayHeader& array : arrays) {
@@ -26,7 +24,6 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
   }
   return bytes;
 }
-
 }  // namespace
 
 VolumeRun::VolumeRun(const WarpArguments& arguments,
@@ -169,7 +166,7 @@ void VolumeRun::run_temporal(Fingerprint fingerprint) {
   ++result_.written;
 }
 
-/// Reads the positions of a step, when the thread for files has nothing to do.
+/// Reads the positions of a step. @pre the thread for files is idle
 std::shared_ptr<VolumeRun::Step> VolumeRun::read_step(std::int64_t number) {
   stop_if_interrupted();
   finish_writing();
@@ -185,7 +182,7 @@ std::shared_ptr<VolumeRun::Step> VolumeRun::read_step(std::int64_t number) {
   return step;
 }
 
-/// Whether --resume keeps a file; the root decides.
+/// Whether --resume keeps a file, as determined by the root.
 bool VolumeRun::may_keep(const std::string& output, const Fingerprint& fingerprint) {
   const bool may =
       ranks_.shared(ranks_.is_root() && is_up_to_date(arguments_, output, fingerprint));
@@ -213,8 +210,8 @@ void VolumeRun::finish_step(const StepReport& report) {
 }
 
 double VolumeRun::fixed_bytes() const {
-  // What is there, the mesh included, and what planning, threads and files take: footprints, lists
-  // of tetrahedra, positions in several forms; chunks.
+  // Memory in use, the mesh included, and memory for planning, threads and files: footprints, lists
+  // of tetrahedra, positions in several forms, chunks.
   const MeshHeader& mesh = plan_.mesh.header();
   double bytes = resident_memory() + 8e6 +
                  160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +

@@ -1,6 +1,6 @@
 /// @file volume_run.hpp
-/// One volume file warped by every step of a plan, block by block: reads, computes, writes, each
-/// beside the others. A volume that memory holds is a single block.
+/// One volume file warped by every step of a plan, block by block. Reading, computing and writing
+/// overlap. A volume that fits in memory is a single block.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +24,6 @@
 
 namespace tetwarp::cli {
 
-/// Bytes of an array over a region.
 inline std::size_t bytes_of(const ArrayHeader& array, const Region& region) {
   return static_cast<std::size_t>(region.voxel_count() * array.components) * size_of(array.type);
 }
@@ -32,14 +31,15 @@ inline std::size_t bytes_of(const ArrayHeader& array, const Region& region) {
 /// All references must outlive it. The arrays of the output files do not depend on the blocks.
 ///
 /// The calling thread computes. A second thread reads and writes files; the calling thread does so
-/// only while the second one is idle. Ranks take blocks in turns and the root writes them.
+/// only while the second one is idle. Blocks are assigned to ranks round-robin, and the root writes
+/// them.
 ///
 /// A whole volume: sources stay in memory, one Warper computes all steps, and its outputs are
-/// reused, so that it can skip what did not change. A step is written while the next one is
-/// computed; on a device the next one is begun before the copy of this one to the host.
-/// Several blocks: for each one a window of the sources is read and a Warper made. A block is
-/// written and the window of the one after is read while the next one is computed; steps do not
-/// overlap.
+/// reused, so that unchanged work is skipped. A step is written while the next one is computed; on
+/// a device the next one is begun before the copy of this one to the host.
+///
+/// Several blocks: each has a window of the sources and a Warper. While a block is computed, the
+/// previous one is written and the window of the next one is read; steps do not overlap.
 class VolumeRun {
  public:
   VolumeRun(const WarpArguments& arguments,
@@ -65,7 +65,7 @@ class VolumeRun {
     double seconds = 0;
   };
 
-  /// A step of the mesh on its way to its file.
+  /// A step of the mesh that is not written yet.
   struct Step {
     std::vector<Point3> positions;
     BlockPlan plan;
@@ -75,12 +75,12 @@ class VolumeRun {
     Fingerprint fingerprint{};  ///< of `output`
     bool is_repeat = false;     ///< equals the step before: a temporal file stores no samples
 
-    // Of the thread for files, until the step is written.
+    // Used by the thread for files until the step is written.
     Counts written{};
     double write_seconds = 0;
   };
 
-  /// A block of a step on its way to the file.
+  /// A block of a step that is not written yet.
   struct Part {
     std::shared_ptr<Step> step;
     Region region;                     ///< in the output grid
@@ -133,7 +133,7 @@ class VolumeRun {
   JobResult& result_;
   WarpOptions options_;
   Region region_;                      ///< of the output grid: all that is computed
-  bool is_whole_;                      ///< one block, whose sources, Warper and outputs are kept
+  bool is_whole_;                      ///< a single block; sources, Warper and outputs are reused
   bool writes_beside_;                 ///< a block is written while the next is computed
   bool overlaps_;                      ///< a step is begun before the one before is finished
   std::vector<ArrayHeader> outputs_;   ///< warped arrays, then the extra ones
@@ -144,10 +144,10 @@ class VolumeRun {
   std::optional<BlockPlanner> planner_;
   std::optional<BlockVolumeWriter> writer_;  ///< of the root; used by the thread for files
 
-  std::shared_ptr<Samples> kept_[2];    ///< outputs of a whole volume, used in turns
+  std::shared_ptr<Samples> kept_[2];    ///< outputs of a whole volume, used alternately
   std::size_t now_ = 0;                 ///< those of the last step that was begun
   std::vector<PageLock> locks_;         ///< of kept_, where a device copies to them
-  std::shared_ptr<Samples> sent_;       ///< on their way to the root
+  std::shared_ptr<Samples> sent_;       ///< being sent to the root
   std::optional<BlockMesh> part_mesh_;  ///< nodes and cells of the block that is computed
 
   std::shared_ptr<Step> last_;    ///< the last step that was begun

@@ -8,9 +8,7 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 /// In the indices of a grid whose voxel 0 is voxel `origin` of the region's.
 Region moved(const Region& region, const std::array<std::int64_t, 3>& origin) {
   Region moved = region;
@@ -21,16 +19,15 @@ Region moved(const Region& region, const std::array<std::int64_t, 3>& origin) {
   return moved;
 }
 
-/// Whether the outputs of a step equal those of the step before.
+/// Whether the outputs of a step equal those of the previous one.
 bool changes_nothing(const Counts& counts, const ExtraChoice& extra) {
   const bool keeps_forward =
       !extra.contains(forward_output) || counts.tets_unchanged == counts.tetrahedra;
   return counts.cells > 0 && counts.cells_unchanged == counts.cells && keeps_forward;
 }
-
 }  // namespace
 
-/// Throws what went wrong with the step.
+/// @throws the error of the step
 void VolumeRun::finish_computing() {
   if (!begun_) return;
   Part part = *std::exchange(begun_, {});
@@ -54,7 +51,7 @@ void VolumeRun::start_writing() {
   if (!writes_beside_) finish_writing();
 }
 
-/// Throws what the write threw.
+/// @throws the error of the write
 void VolumeRun::finish_writing() {
   if (!writing_.valid()) return;
   writing_.get();
@@ -74,7 +71,7 @@ void VolumeRun::finish_all() {
   finish_writing();
 }
 
-/// On the thread for files.
+/// Runs on the thread for files.
 void VolumeRun::write(const Part& part) {
   const Stopwatch watch;
   Step& step = *part.step;
@@ -97,7 +94,7 @@ void VolumeRun::write(const Part& part) {
   step.write_seconds += watch.seconds();
 }
 
-/// Waits until the root has the block before.
+/// Waits until the root has received the previous block.
 void VolumeRun::send(const Part& part) {
   ranks_.finish_sending();
   sent_ = part.outputs;

@@ -1,5 +1,5 @@
 /// @file volume_run_step.cpp
-/// The blocks of a step are read and computed.
+/// Reads and computes the blocks of a step.
 #include <algorithm>
 #include <future>
 #include <utility>
@@ -10,17 +10,14 @@
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
-/// A tetrahedron counts once, however many blocks it meets.
+/// A tetrahedron counts once, independent of the number of its blocks.
 void describe(const BlockPlan& plan, Counts& counts) {
   counts.blocks = std::ssize(plan.blocks);
   counts.tetrahedra = plan.tetrahedra;
   counts.inverted = plan.inverted;
   counts.flat = plan.flat;
 }
-
 }  // namespace
 
 void VolumeRun::run_step(const std::shared_ptr<Step>& step) {
@@ -66,7 +63,7 @@ void VolumeRun::run_blocks(const std::shared_ptr<Step>& step) {
     next = begin_reading(*step, b + stride);
     compute(std::move(part), blocks[b], windows.samples);
   }
-  // Blocks for files of their own are computed again: their outputs are not kept.
+  // With one file per step blocks are computed again, because their outputs are not kept.
   if (is_whole_ || arguments_.temporal) last_ = step;
   if (is_whole_) return;
   ranks_.finish_sending();

@@ -1,4 +1,3 @@
-/// @file warp_arguments.cpp
 #include "host/cli/warp_arguments.hpp"
 
 #include <algorithm>
@@ -9,9 +8,7 @@
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
 const Choices<Quantity> vector_laws{
     {name_of(Quantity::vector), Quantity::vector},
     {name_of(Quantity::covariant_vector), Quantity::covariant_vector},
@@ -45,8 +42,7 @@ double parse_bytes(const std::string& text) {
   return used < text.size() ? std::ldexp(bytes, 10 * static_cast<int>(unit + 1)) : bytes;
 }
 
-/// Declares an option whose text a function turns into a value; its std::invalid_argument is a
-/// usage error.
+/// Declares an option with a parser of its text, whose std::invalid_argument is a usage error.
 template <class T, class Parse>
 void add_parsed(CLI::App& app,
                 const std::string& option,
@@ -203,7 +199,6 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--batch", arguments.batch, "run the jobs of a JSON file; options are defaults")
       ->type_name("FILE");
 }
-
 }  // namespace
 
 void declare_warp_options(CLI::App& app, WarpArguments& arguments) {

@@ -1,4 +1,3 @@
-/// @file warp_job.cpp
 #include "host/cli/warp_job.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +15,8 @@
 #include "io/memory.hpp"
 
 namespace tetwarp::cli {
-
 namespace {
-
-/// Steps that the progress bar of the root counts: its own where ranks share out whole outputs.
+/// Steps that the progress bar of the root counts: only its own if outputs are divided among ranks.
 std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
   const std::size_t outputs = plan.outputs().size();
   const auto count = static_cast<std::size_t>(ranks.count());
@@ -36,7 +33,6 @@ std::string plan_text(const StepPlan& plan) {
                             plan.blocks, plan.largest_block, plan.largest_window,
                             bytes_text(plan.bytes_read));
 }
-
 }  // namespace
 
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {

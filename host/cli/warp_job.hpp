@@ -32,7 +32,6 @@ struct StepPlan {
   double bytes_read = 0;               ///< of the source [byte]
 };
 
-/// What a job did.
 struct JobResult {
   Report report;
   std::vector<std::string> outputs;  ///< of all steps and volumes, also those skipped
@@ -45,8 +44,8 @@ struct JobResult {
 /// written before all checks of the plan have passed. Throws std::invalid_argument, IoError,
 /// CudaError, Cancelled.
 ///
-/// Several ranks share out the outputs; a single output they share out in blocks, which the root
-/// writes. The result is complete at the root only.
+/// With several ranks the outputs are divided among them; a single output is divided in blocks,
+/// which the root writes. The result is complete at the root only.
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context);
 
 /// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped".

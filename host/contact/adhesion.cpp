@@ -11,9 +11,7 @@
 #include "kernels/contact/contact_adhesion.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 void check_adhesion(const AdhesionState& adhesion, std::int64_t contact_count) {
   if (!(adhesion.time_step > 0)) {
     throw ContactProblemError("adhesion.time_step",
@@ -51,7 +49,6 @@ void check_arguments(const ContactProblem& problem,
         text_of(options.debond_gap_factor) + " and " + text_of(options.debond_intensity));
   }
 }
-
 }  // namespace
 
 AdhesionStep evolve_adhesion(const ContactProblem& problem,

@@ -1,4 +1,3 @@
-/// @file condense.cpp
 #include "host/contact/condense.hpp"
 
 #include <algorithm>

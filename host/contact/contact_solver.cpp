@@ -20,9 +20,7 @@
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
@@ -49,7 +47,7 @@ struct WholeResidual {
   ContactSums free;        ///< without impulses
   double free_square = 0;  ///< |q|^2
 
-  /// The share of an energy [J] in eta.
+  /// The part of eta that an energy [J] contributes.
   double eta_of(double square) const {
     const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
     return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
@@ -188,7 +186,6 @@ void fill_report(const EngineResult& result, ContactMeasure measure, ContactRepo
   const double residual = by_eta ? whole.eta() : whole.fclib();
   report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
 }
-
 }  // namespace
 
 std::pair<Backend, std::string> choose_contact_backend(Backend asked, int device) {

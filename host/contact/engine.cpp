@@ -1,4 +1,3 @@
-/// @file engine.cpp
 #include "host/contact/engine.hpp"
 
 #include <algorithm>
@@ -10,9 +9,7 @@
 #include "host/contact/structure/extract.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Clock = std::chrono::steady_clock;
 
 /// Whether any normal offset is below -speed.
@@ -30,7 +27,6 @@ ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
   }
   return problem;
 }
-
 }  // namespace
 
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)

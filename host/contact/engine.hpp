@@ -18,7 +18,7 @@ namespace tetwarp {
 
 struct Condensation;
 
-/// What is kept of the coupled islands for a series of problems with the same A and J.
+/// Data of the coupled islands that problems of a series with the same A and J share.
 struct KeptSystem {
   struct Island {
     std::shared_ptr<Condensation> condensation;  ///< null: not condensed so far
@@ -31,7 +31,7 @@ struct KeptSystem {
 
 class ContactEngine {
  public:
-  /// @param device  solves the islands, kept by the caller; null: the host does
+  /// @param device  solves the islands, kept by the caller; null: the host solves them
   ContactEngine(const ContactOptions& options, int threads, ContactDevice* device);
 
   /// @pre check_problem(problem) has passed

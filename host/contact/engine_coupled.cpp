@@ -12,11 +12,9 @@
 #include "host/contact/structure/extract.hpp"
 
 namespace tetwarp {
-
 namespace {
-
-/// How a coupled island is solved: by at most so many outer iterations, and by condensing where
-/// these are 0 or do not converge.
+/// How a coupled island is solved: by at most `outer_iterations` outer iterations, and by
+/// condensing if these are 0 or do not converge.
 struct CoupledRoute {
   std::int64_t outer_iterations;
   bool condenses;
@@ -43,7 +41,6 @@ CoupledRoute coupled_route(const ContactOptions& options, const ContactIsland& i
 /// Outer iterations per row of J that take as long as condensing the island. Measured: 6 to 12, on
 /// slabs of 10,000 tetrahedra with 531 and 151 contacts.
 constexpr std::int64_t condensing_iterations = 7;
-
 }  // namespace
 
 /// The contacts of a coupled island with their dense Delassus matrix, and the solver for them.

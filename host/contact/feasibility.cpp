@@ -1,4 +1,3 @@
-/// @file feasibility.cpp
 #include "host/contact/feasibility.hpp"
 
 #include <algorithm>
@@ -10,9 +9,7 @@
 #include "kernels/contact/contact_pipeline.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// The same contacts without friction and springs.
 ContactSystem<double> make_bare(const ContactSystem<double>& system) {
   ContactSystem<double> bare = system;
@@ -24,7 +21,7 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
 }
 
 /// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
-/// velocities computed from them anew.
+/// velocities recomputed from them.
 double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::vector<double>& y) {
   const View<double> impulse = pipeline.impulse();
   const std::vector<double> kept(impulse.data, impulse.data + impulse.size);
@@ -35,7 +32,6 @@ double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::v
   pipeline.follow_impulses();
   return energy;
 }
-
 }  // namespace
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
@@ -43,8 +39,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactIsland& island,
                                               std::int64_t max_sweeps) {
   const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
-  // A distance counts as infinite if it is larger by this factor than what the contacts need
-  // singly.
+  // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
   const ContactSystem<double> bare = make_bare(system);
   const ContactNumbers<double> numbers = bare.numbers(structure.indices());

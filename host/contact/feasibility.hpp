@@ -1,6 +1,5 @@
 /// @file feasibility.hpp
-/// Contacts whose normal offsets no velocity satisfies together: how they are found, and how a
-/// problem that has some is solved.
+/// Finds contacts whose normal offsets no velocity satisfies together, and solves such problems.
 #pragma once
 #include <cstdint>
 #include <functional>

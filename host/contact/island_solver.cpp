@@ -1,4 +1,3 @@
-/// @file island_solver.cpp
 #include "host/contact/island_solver.hpp"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ ContactSavings IslandSolver::set_problem(const ContactProblem& problem) {
   return savings;
 }
 
-/// The numbers on the host. With a device they are filled in only for what it leaves to the host.
+/// The numbers on the host. With a device they are set only if the host solves a part.
 ContactSystem<double>& IslandSolver::host_system() {
   ContactSavings counted;
   if (!has_host_system_) {
@@ -136,16 +135,16 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   run.run_to_budget(island);
   outcome.sums = run.measure(island);
   if (run.is_done(island, outcome.sums)) return;
-  polish(island, run, outcome);  // may converge from the better start
+  polish(island, run, outcome);  // this better start may converge
   outcome.sums = run.measure(island);
 }
 
-/// Newton's method from the impulses of the sweeps; its impulses are kept if their error is not
+/// Newton's method from the impulses of the sweeps; keeps its impulses unless their error is
 /// larger.
 void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome& outcome) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   ContactOptions options = options_;
-  options.tolerance /= 2;  // relative to this island; relative to the whole its error is smaller
+  options.tolerance /= 2;  // relative to this island, not to the whole problem
   double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
   std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
   const std::vector<double> swept = polished;

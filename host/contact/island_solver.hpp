@@ -22,23 +22,22 @@ struct BlockJacobiMemory;
 /// Holds one structure and, on the host, on a device or on both, the numbers of one problem.
 class IslandSolver {
  public:
-  /// @param device  solves the islands, kept by the caller; null: the host does
+  /// @param device  solves the islands, kept by the caller; null: the host solves them
   IslandSolver(const ContactOptions& options, int threads, ContactDevice* device);
 
   const ContactStructure& structure() const { return structure_; }
   void set_structure(ContactStructure structure) { structure_ = std::move(structure); }
 
-  /// Takes the numbers of a problem that has the pattern of the structure.
+  /// Sets the numbers from a problem that has the pattern of the structure.
   /// @param problem  kept by the caller, unchanged, for the calls below
   /// @return rows and springs that were left out
   ContactSavings set_problem(const ContactProblem& problem);
 
-  /// To be called before another solver uses the device; the next use copies the problem there
-  /// again.
+  /// Call before another solver uses the device; the next use copies the problem again.
   void forget_device() { has_device_system_ = false; }
 
-  /// Solves all islands whose blocks A does not couple. Where sweeps do not converge, contradicting
-  /// contacts are looked for; if there are none, Newton's method and more sweeps follow.
+  /// Solves all islands whose blocks A does not couple. If sweeps do not converge, searches for
+  /// contradicting contacts; if there are none, continues with Newton's method and more sweeps.
   /// @param result  in: make_result()
   void solve_uncoupled(EngineResult& result);
 
@@ -66,7 +65,7 @@ class IslandSolver {
   ContactDevice* device_;
   ContactStructure structure_;
   const ContactProblem* problem_ = nullptr;
-  ContactSystem<double> system_;    ///< a member so that its memory is reused
+  ContactSystem<double> system_;    ///< kept, so that its memory is reused
   bool has_host_system_ = false;    ///< system_ has the numbers of the problem
   bool has_device_system_ = false;  ///< the device has them
   std::vector<double> free_motion_;

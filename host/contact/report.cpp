@@ -1,4 +1,3 @@
-/// @file report.cpp
 #include <nlohmann/json.hpp>
 #include <tetwarp/contact.hpp>
 

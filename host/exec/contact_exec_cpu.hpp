@@ -1,7 +1,6 @@
 /// @file contact_exec_cpu.hpp
 /// CpuContactExec: the executor of the contact pipeline on host threads. Sums have one fixed tree,
-/// so results do not depend on the number of threads. Labels name the stage; they are not used
-/// here.
+/// so results do not depend on the number of threads. Labels of stages are ignored.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -77,7 +76,7 @@ class CpuContactExec {
     body(0);
   }
 
-  /// A default State in memory of the executor; the state of the call before is gone.
+  /// Default-constructs a State in memory of the executor; replaces that of the previous call.
   template <class State>
   State* state() {
     static_assert(sizeof(State) <= sizeof(state_) && alignof(State) <= 16);
@@ -93,7 +92,7 @@ class CpuContactExec {
   T load_without_sync(const T* value, T) const {
     return *value;
   }
-  /// Whether the host may read results after this step. A device answers true only now and then.
+  /// Whether the host reads results after this step. A device returns true every few steps only.
   bool is_sync_point(std::int64_t) const {
     return true;
   }
@@ -132,7 +131,7 @@ class CpuContactExec {
 
  private:
   static constexpr int run_length = 64;
-  static constexpr std::int64_t serial_below = 1024;  ///< below, starting threads costs more
+  static constexpr std::int64_t serial_below = 1024;  ///< with fewer indices one thread is faster
 
   template <class Sum, class Run>
   Sum add_runs(std::int64_t first, std::int64_t last, const Run& body) const {

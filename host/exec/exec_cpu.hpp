@@ -28,7 +28,7 @@ class CpuExec {
   template <class T>
   struct Staged {};  ///< empty: the argument of upload() is read in place
 
-  /// Results of a stage can be read at once, so that lists get exactly the size they need.
+  /// The host can read results without waiting, so that lists are allocated at their exact size.
   static constexpr bool reads_are_free = true;
 
   explicit CpuExec(int threads) : threads_(threads) {}
@@ -79,7 +79,6 @@ class CpuExec {
     std::memset(static_cast<void*>(view.data), 0, static_cast<std::size_t>(view.size) * sizeof(T));
   }
 
-  /// Calls body(i) for i in [0, count).
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     const Clock clock(*this, label);
@@ -127,7 +126,7 @@ class CpuExec {
   }
 
   /// Replaces values[i] by the sum of the values before it. The last entry becomes the total; its
-  /// own value does not count.
+  /// own value is ignored.
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     const Clock clock(*this, label);
     std::int64_t sum = 0;
@@ -138,7 +137,7 @@ class CpuExec {
     }
   }
 
-  /// Reserves memory for scans of so many values: not needed here.
+  /// Reserves memory for scans: not needed on the host.
   void reserve_scan(std::int64_t) {}
 
   /// Fills a list with rejected_pair; not needed here, where stages read up to the count only.

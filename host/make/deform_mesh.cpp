@@ -13,9 +13,7 @@
 #include "host/base/counter_hash.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using std::numbers::pi;
 
 /// Box of the rest positions, and the axes of a deformation: `along` is its axis, `side` and
@@ -69,8 +67,8 @@ Point3 twist(const Frame& frame, const Point3& x, double angle) {
 }
 
 /// Bends the axis to an arc of `angle`, with the center at positive `side`. The line that keeps its
-/// length is the middle of the box; in boxes too thick for that the radius is larger, so that the
-/// inside of the bend does not fold.
+/// length is the middle of the box; in thicker boxes the radius is larger, so that the inside of
+/// the bend does not fold.
 Point3 bend(const Frame& frame, const Point3& x, double angle) {
   if (angle == 0) return {0, 0, 0};
   const double length = frame.size[frame.along];
@@ -159,7 +157,6 @@ void check_options(const DeformOptions& options, double time) {
     if (!std::isfinite(coordinate)) throw std::invalid_argument(where + "offset is not finite");
   }
 }
-
 }  // namespace
 
 std::vector<Point3> deform_positions(const Mesh& mesh, const DeformOptions& options, double time) {

@@ -14,9 +14,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Finds the foreground of a volume, one row of voxels per call.
 class ForegroundRows {
  public:
@@ -256,7 +254,6 @@ Mesh mesh_of_cells(const Grid& grid,
 bool is_mirrored(const Grid& grid) {
   return Eigen::Matrix3d(grid.direction.data()).determinant() < 0;
 }
-
 }  // namespace
 
 Mesh make_lattice_mesh(const Volume& volume, const LatticeOptions& options) {

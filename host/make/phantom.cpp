@@ -11,9 +11,7 @@
 #include "host/make/phantom_shapes.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr double skin_level = 0.42;
 constexpr double fat_level = 0.24;
 constexpr double muscle_level = 0.45;
@@ -51,8 +49,7 @@ double tissue_level(double distance, double voxel) {
          below_fat * (muscle_level - fat_level);
 }
 
-/// Smooth noise in [0, 1): random numbers on a cubic lattice of spacing texture_grain,
-/// interpolated.
+/// Smooth noise in [0, 1): interpolated random numbers on a cubic lattice of spacing texture_grain.
 double texture(double x, double y, double z) {
   const Point3 cell{x / texture_grain, y / texture_grain, z / texture_grain};
   std::uint64_t base[3];
@@ -156,7 +153,6 @@ Grid grid_of(const std::array<std::int64_t, 3>& dims) {
   }
   return grid;
 }
-
 }  // namespace
 
 Volume make_phantom(const std::array<std::int64_t, 3>& dims) {

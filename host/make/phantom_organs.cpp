@@ -1,4 +1,3 @@
-/// @file phantom_organs.cpp
 #include "host/make/phantom_organs.hpp"
 
 #include <algorithm>
@@ -7,9 +6,7 @@
 #include "host/base/counter_hash.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr int rods_per_span = 6;
 
 double dot(const Point3& a, const Point3& b) {
@@ -35,7 +32,6 @@ Point3 on_curve(const Point3& a, const Point3& b, const Point3& c, const Point3&
   }
   return point;
 }
-
 }  // namespace
 
 void Organs::ellipsoid(double level, const Point3& center, const Point3& radii, double lean) {

@@ -9,7 +9,6 @@
 
 namespace tetwarp {
 
-/// Shape of a branching vessel.
 struct Tree {
   Ellipsoid region;   ///< branches end at its surface
   double level;       ///< gray level
@@ -44,7 +43,6 @@ class Organs {
             double radius,
             std::uint64_t branch);
 
-  /// Moves the list out.
   std::vector<Organ> take() { return std::move(organs_); }
 
  private:

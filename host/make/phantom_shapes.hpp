@@ -90,13 +90,12 @@ struct Rod {
   }
 };
 
-/// A solid of one gray level.
 struct Organ {
   std::variant<Ellipsoid, Rod> solid;
   double level;
 };
 
-/// A body: its outline and its organs.
+/// A body: outline and organs.
 struct Anatomy {
   std::vector<Ellipsoid> trunk;  ///< blended smoothly into one another
   std::vector<Organ> organs;     ///< drawn in this order, each over the ones before

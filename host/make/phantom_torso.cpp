@@ -11,9 +11,7 @@
 #include "host/make/phantom_shapes.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using std::numbers::pi;
 
 constexpr double air = 0.04;
@@ -232,7 +230,6 @@ void add_shoulders_and_hips(Organs& organs) {
     organs.ellipsoid(marrow, {side * 90, 26, -146}, {8, 42, 36}, side * 0.45);
   }
 }
-
 }  // namespace
 
 Anatomy make_torso() {

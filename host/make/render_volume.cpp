@@ -13,9 +13,7 @@
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr int largest_height = 4096;
 constexpr double largest_aspect = 8;           // width to height of a panel, or its inverse
 constexpr std::int64_t max_samples = 1 << 18;  // for the percentiles
@@ -110,8 +108,7 @@ struct PanelView {
   bool is_projection;
 };
 
-/// Coronal and sagittal panels have the head at the top, axial panels the first row, as in
-/// radiology.
+/// As in radiology: coronal and sagittal panels with the head at the top, axial ones the first row.
 constexpr std::array<PanelView, 4> panel_views{{{0, 1, false, false},  // axial
                                                 {0, 2, true, false},   // coronal
                                                 {1, 2, true, false},   // sagittal
@@ -208,7 +205,6 @@ void check_arguments(std::span<const Volume* const> volumes, const RenderOptions
                                 " is not below high " + std::to_string(*options.high));
   }
 }
-
 }  // namespace
 
 Image render(std::span<const Volume* const> volumes, const RenderOptions& options) {

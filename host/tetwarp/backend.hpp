@@ -25,7 +25,7 @@ struct BackendStatus {
   Backend backend = Backend::cpu;
   bool usable = false;
   std::string device;  ///< name of the device or processor; empty when not usable
-  std::string reason;  ///< why it is not usable, as the CUDA runtime says it; empty when usable
+  std::string reason;  ///< why it is not usable, in the words of the CUDA runtime; else empty
 };
 
 /// Status of cuda, cpu and reference, in that order.

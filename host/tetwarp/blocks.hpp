@@ -13,7 +13,7 @@
 ///       warper.step(part.of(deformed), target_of(block.output));
 ///     }
 ///
-/// samples_of() and target_of() stand for the caller's reading and writing.
+/// samples_of() and target_of() are functions of the caller that read a window and provide outputs.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -56,7 +56,7 @@ struct WarpBlock {
 
 /// The blocks of one step.
 struct BlockPlan {
-  std::vector<WarpBlock> blocks;  ///< disjoint, together the region; neighbors follow each other
+  std::vector<WarpBlock> blocks;  ///< disjoint, together the region; neighbors in succession
   std::int64_t tetrahedra = 0;    ///< of the whole mesh, as in Counts
   std::int64_t inverted = 0;      ///< of the whole mesh, as in Counts
   std::int64_t flat = 0;          ///< of the whole mesh, as in Counts
@@ -88,16 +88,16 @@ class TETWARP_EXPORT BlockPlanner {
 
 /// The part of a mesh that a block needs.
 struct TETWARP_EXPORT BlockMesh {
-  Mesh mesh;                        ///< cells and nodes numbered anew
+  Mesh mesh;                        ///< with its own numbers of cells and nodes
   std::vector<std::int32_t> nodes;  ///< number in the whole mesh of each node of the part
 
-  /// Of positions of the whole mesh those of the part's nodes.
+  /// Picks the positions of the part's nodes from those of the whole mesh.
   std::vector<Point3> of(const std::vector<Point3>& positions) const;
 };
 
-/// The mesh of a block's cells. Where the block has none it holds the first cell of the mesh,
-/// because a Warper requires one. Cell c of the part is cell block.cells[c] of the mesh. Nodes keep
-/// their order, so that hexahedra are split into the same tetrahedra.
+/// The mesh of a block's cells. For a block without cells: the first cell of the mesh, because a
+/// Warper requires one. Cell c of the part is cell block.cells[c] of the mesh. Nodes keep their
+/// order, so that hexahedra are split into the same tetrahedra.
 TETWARP_EXPORT BlockMesh block_mesh(const Mesh& mesh, const WarpBlock& block);
 
 }  // namespace tetwarp

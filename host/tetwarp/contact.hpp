@@ -49,9 +49,9 @@ enum class AdhesionRule {
 ///
 ///     v_f = v - omega D^-1 (A v - b),  sweeps in omega J D^-1 J^T,  v = v_f + omega D^-1 J^T r
 ///
-/// This converges where omega lambda_max(D^-1 A) < 2, which 0.5 satisfies for meshes of
-/// tetrahedra. Anderson acceleration is applied to v; with ContactMethod::nonlinear_cg conjugate
-/// directions instead, with `gauss_seidel` nothing. ContactMethod `mass_splitting` and `newton`
+/// This converges if omega lambda_max(D^-1 A) < 2, which omega = 0.5 satisfies for meshes of
+/// tetrahedra. Anderson acceleration is applied to v; ContactMethod::nonlinear_cg uses conjugate
+/// directions instead, `gauss_seidel` no acceleration. ContactMethod `mass_splitting` and `newton`
 /// always condense. For an iterated island, eta is an upper bound of what residual_of() computes
 /// (an estimate where one body has several contacts), because the exact value needs a factorization
 /// of A.
@@ -69,8 +69,8 @@ enum class ContactCoupling {
 /// Arithmetic of the iterations; results are always measured in float64.
 enum class ContactPrecision { float64, float32 };
 
-/// Work that is left out because it cannot change the solution by more than the tolerance. Set a
-/// member to false to have that work done.
+/// Work that is left out because it cannot change the solution by more than the tolerance; a member
+/// set to false has that work done.
 struct ContactSkipOptions {
   bool frictionless_rows = true;   ///< contacts with kappa = 0 and mu = 0 are one row, not three
   bool debonded_springs = true;    ///< contacts with beta = 0 have no springs
@@ -108,11 +108,11 @@ struct ContactOptions {
 enum class ContactStatus {
   converged,
   not_converged,  ///< the best iterate is returned
-  infeasible      ///< no velocity satisfies all contacts; negative normal offsets of those that
+  infeasible      ///< no velocity satisfies all contacts; negative normal offsets of contacts that
                   ///< contradict each other were raised to 0
 };
 
-/// How far a pair of impulses and velocities is from solving a problem.
+/// How far impulses and velocities are from a solution.
 struct ContactResidual {
   double eta = 0;      ///< ContactMeasure::eta, relative
   double fclib = 0;    ///< ContactMeasure::fclib, relative
@@ -132,9 +132,8 @@ struct ContactReport {
   ContactStatus status = ContactStatus::not_converged;
   std::string status_reason;  ///< one sentence when not converged
   std::int64_t contacts = 0;
-  std::int64_t colors = 0;            ///< of the island with the most: no two contacts of a color
-                                      ///< share a body
-  std::int64_t islands = 0;           ///< connected components of bodies that have contacts
+  std::int64_t colors = 0;   ///< most colors of an island; contacts of a color share no body
+  std::int64_t islands = 0;  ///< connected components of bodies that have contacts
   std::int64_t outer_iterations = 0;  ///< of the coupled island that took the most
   std::int64_t sweeps = 0;            ///< of the island that took the most
   std::int64_t newton_iterations = 0;
@@ -155,7 +154,6 @@ struct ContactReport {
 /// The report as a JSON object.
 TETWARP_EXPORT std::string to_json(const ContactReport& report);
 
-/// Results of a solve.
 struct ContactSolution {
   std::vector<double> impulse;        ///< r, [3 contacts], N s
   std::vector<double> velocity;       ///< u, [3 contacts], m/s
@@ -197,8 +195,8 @@ struct AdhesionStep {
 TETWARP_EXPORT std::pair<Backend, std::string> choose_contact_backend(Backend asked,
                                                                       int device = 0);
 
-/// Solves a series of problems and keeps its buffers between them; colors and islands too, as long
-/// as the sparsity pattern stays the same.
+/// Solves a series of problems and keeps its buffers between them, and colors and islands while the
+/// sparsity pattern stays the same.
 ///
 /// Determinism: the same problems in the same order give the same bits for any number of threads.
 /// Not safe for concurrent calls.
@@ -226,8 +224,7 @@ class TETWARP_EXPORT ContactSolver {
   std::unique_ptr<State> state_;
 };
 
-/// Solves one problem; throws as ContactSolver does. For a series of problems a ContactSolver is
-/// faster.
+/// Solves one problem; throws as ContactSolver, which is faster for a series of problems.
 TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
                                               const ContactOptions& options = {});
 

@@ -25,8 +25,8 @@ struct BodyPose {
 };
 
 /// Identifies a contact by the two bodies and the features (faces, vertices, ...) that touch.
-/// Bodies are indices into the poses; fixed obstacles are bodies too. Feature numbers are the
-/// caller's and must stay the same from step to step.
+/// Bodies are indices into the poses; fixed obstacles are bodies too. The caller chooses feature
+/// numbers and keeps them from step to step.
 struct ContactKey {
   std::int32_t body_a = 0;
   std::int32_t feature_a = 0;
@@ -53,7 +53,7 @@ struct ContactMaterial {
 struct ReportedContact {
   ContactKey key;
   Point3 point_a_world = {0, 0, 0};  ///< on body a
-  Point3 point_b_world = {0, 0, 0};  ///< on body b, nearest to that
+  Point3 point_b_world = {0, 0, 0};  ///< on body b, the nearest to point_a_world
   Point3 normal = {0, 0, 1};         ///< unit, from b to a [world]
   double area = 0;                   ///< [m^2]
   std::int32_t material = 0;         ///< index into ContactTrackerOptions::materials
@@ -63,7 +63,7 @@ struct ReportedContact {
 
 /// State of a contact between steps, in body coordinates unless the name says world.
 struct ContactRecord {
-  ContactKey key;             ///< the smaller (body, feature) is a
+  ContactKey key;             ///< side a has the smaller (body, feature)
   std::int32_t material = 0;  ///< index into ContactTrackerOptions::materials
   bool has_touched = false;
   double area = 0;              ///< [m^2]
@@ -78,8 +78,8 @@ struct ContactRecord {
 /// One contact of the current step; the caller computes the rows of the jacobian from it.
 struct TrackedContact {
   ContactKey key;
-  Point3 point_a_world = {0, 0, 0};  ///< where the impulse acts on body a
-  Point3 point_b_world = {0, 0, 0};  ///< and, reversed, on body b
+  Point3 point_a_world = {0, 0, 0};  ///< point of body a on which the impulse acts
+  Point3 point_b_world = {0, 0, 0};  ///< point of body b on which the opposite impulse acts
   std::array<Point3, 3> axes = {};   ///< normal, tangent 1, tangent 2 [world]
   Point3 gap = {0, 0, 0};  ///< components along `axes` [m]; the tangential ones between the anchors
   bool is_reported = true;  ///< false: not reported in this step, kept because it adheres
@@ -89,11 +89,11 @@ struct ContactTrackerOptions {
   std::vector<ContactMaterial> materials = {ContactMaterial{}};
   double match_distance = 0;  ///< a contact with a new key is matched with a record of the same two
                               ///< bodies whose anchor on body a is at most this far away [m]
-  double touch_distance = 0;  ///< contacts with a gap up to this touch [m]
+  double touch_distance = 0;  ///< largest gap that counts as touching [m]
   EvolutionOptions evolution = {};
 };
 
-/// Follows contacts through the steps of a simulation.
+/// Stores the state of contacts through the steps of a simulation.
 ///
 /// A reported contact continues the record with its key, else the nearest record of the same two
 /// bodies within `match_distance`, else it is new. Contacts with adhesion are kept when collision
@@ -103,7 +103,7 @@ struct ContactTrackerOptions {
 /// reported points, so that bonds form without tension; its record is deleted when it is no longer
 /// reported.
 ///
-/// Contacts are sorted by key, whatever the order of the reports.
+/// Contacts are sorted by key, independent of the order of the reports.
 class TETWARP_EXPORT ContactTracker {
  public:
   /// @param records  records() of an earlier tracker that this one continues; sorted by key

@@ -18,7 +18,7 @@ namespace tetwarp {
 /// Choices of make_lattice_mesh().
 struct LatticeOptions {
   int cells = 8;  ///< cubic cells along the longest side of the foreground's box, >= 1
-  /// Foreground are voxels with any component above it; nothing: all voxels.
+  /// Voxels with any component above it are foreground; without a value all voxels are.
   std::optional<double> threshold = {};
   bool hexahedra = false;  ///< true: one hexahedron per cell; false: five tetrahedra
 };
@@ -51,7 +51,7 @@ struct DeformOptions {
   Point3 offset{0, 0, 0};  ///< for translate, at time 1 [world]
 };
 
-/// Node positions of a smooth deformation. The same numbers for the same arguments.
+/// Node positions of a smooth deformation. Equal arguments give equal positions.
 /// @param time  0 to 1: at 0 the rest positions, at 1 the full amount
 /// @throws std::invalid_argument when the mesh, an option or the time is invalid
 TETWARP_EXPORT std::vector<Point3> deform_positions(const Mesh& mesh,
@@ -60,7 +60,7 @@ TETWARP_EXPORT std::vector<Point3> deform_positions(const Mesh& mesh,
 
 /// A torso with ribs, spine, lungs, heart and vessels, made of analytic shapes: float32 from 0 to
 /// 1, the same for the same dims. x points to the left of the body, y to its back, z to its head;
-/// the grid covers 384 x 240 x 366 mm around the origin whatever the dims.
+/// the grid covers 384 x 240 x 366 mm around the origin for any dims.
 /// @param dims  voxels
 TETWARP_EXPORT Volume make_phantom(const std::array<std::int64_t, 3>& dims = {256, 160, 122});
 
@@ -73,15 +73,15 @@ struct Image {
 
 /// Choices of render().
 struct RenderOptions {
-  std::optional<double> low = {};   ///< shown black; nothing: 1st percentile
-  std::optional<double> high = {};  ///< shown white; nothing: 99.5th percentile
+  std::optional<double> low = {};   ///< value shown black; without one the 1st percentile
+  std::optional<double> high = {};  ///< value shown white; without one the 99.5th percentile
   int height = 360;                 ///< of each panel [pixel]
 };
 
 /// Draws three orthogonal middle slices and a maximum-intensity projection of each volume side by
 /// side, one row per volume. Panels have the proportions of the volume in the world; all rows share
 /// the gray window of the first volume.
-/// @param volumes  on any grids; of several components the Euclidean norm is drawn
+/// @param volumes  on any grids; for several components their Euclidean norm is drawn
 /// @throws std::invalid_argument when there is no volume, or an option is out of range
 TETWARP_EXPORT Image render(std::span<const Volume* const> volumes,
                             const RenderOptions& options = {});

@@ -9,20 +9,20 @@ namespace tetwarp {
 
 /// Locks the pages of host memory during its lifetime. Copies between them and a CUDA device run at
 /// the full speed of the bus, concurrently with kernels and with work of the host. Locking takes
-/// time: use it for memory of many steps, for example the arrays of WarpTarget.
+/// time: use it for memory that many steps use, for example the arrays of WarpTarget.
 class TETWARP_EXPORT PageLock {
  public:
   PageLock() = default;
   /// Does not throw when locking fails; see is_locked().
-  /// @param data   must outlive the lock; finish steps in flight that use it before the lock ends
+  /// @param data   must outlive the lock; steps in flight that use it must be finished before the
+  ///               lock is destroyed
   /// @param bytes  size of `data`
   PageLock(void* data, std::size_t bytes);
   PageLock(PageLock&& other) noexcept;
   PageLock& operator=(PageLock&& other) noexcept;
   ~PageLock();
 
-  /// False when there is no usable CUDA device or the system refuses. Results are the same, copies
-  /// slower.
+  /// False without a usable CUDA device or if the system refuses. Only the speed of copies differs.
   bool is_locked() const { return data_ != nullptr; }
 
  private:

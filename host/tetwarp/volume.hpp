@@ -87,7 +87,7 @@ struct TETWARP_EXPORT Volume {
 };
 
 /// A volume of zeros.
-/// @throws std::invalid_argument when check_grid() does, or unless there are 1 to 9 components
+/// @throws std::invalid_argument as check_grid(), or when components are not 1 to 9
 TETWARP_EXPORT Volume make_volume(const Grid& grid,
                                   PixelType type,
                                   int components = 1,

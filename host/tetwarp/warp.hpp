@@ -23,8 +23,7 @@
 
 namespace tetwarp {
 
-/// Interpolated values beyond the range of the samples, which cubic, bspline and lanczos produce at
-/// edges.
+/// Interpolated values beyond the range of the samples (cubic, bspline and lanczos, at edges).
 enum class Overshoot {
   keep,  ///< written as they are
   clamp  ///< limited to the least and largest sample of the source, component by component
@@ -36,8 +35,8 @@ enum class Intensity {
   density,  ///< an amount per volume: divided by |det F|, after vectors and tensors are reoriented.
             ///< The integral is preserved up to the error of sampling
   /// An amount per volume, averaged exactly. The source counts as constant in the box of each of
-  /// its voxels; an output voxel gets the amount that all tetrahedra carry into its box, over the
-  /// box's volume. The integral is preserved up to rounding; `filter` is not used
+  /// its voxels; an output voxel is the sum of the amounts that all tetrahedra move into its box,
+  /// over the box's volume. The integral is preserved up to rounding; `filter` is not used
   conservative
 };
 
@@ -47,8 +46,8 @@ enum class Outside {
   identity     ///< the source at the same world position
 };
 
-/// Work that is skipped because it cannot change the result. The output bits are the same with and
-/// without (except the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
+/// Work that is skipped because it cannot change the result. The output bits do not depend on it
+/// (except the quiet bit of signaling NaNs, which interpolation sets and copying keeps).
 struct SkipOptions {
   bool rejected_cells = true;  ///< no voxel tests in cells that are certainly outside a tetrahedron
   bool accepted_cells = true;  ///< no voxel tests in cells that are certainly inside a tetrahedron
@@ -64,8 +63,8 @@ struct SkipOptions {
                                   ///< background
 };
 
-/// The part of the sources' grid that memory holds, for a warp whose sources do not fit as a whole.
-/// The warp of a region reads a part of the sources only; BlockPlanner computes which.
+/// The part of the sources' grid that is in memory, for sources that do not fit as a whole. The
+/// warp of a region reads only a part of the sources, which BlockPlanner computes.
 struct SourceWindow {
   Region region;  ///< voxels that VolumeView::data of every source holds, in the source grid
   /// Per source the least and the largest sample of component 0 over the whole grid, then of
@@ -73,13 +72,13 @@ struct SourceWindow {
   std::vector<std::vector<double>> ranges = {};
 };
 
-/// Choices of a warp. The defaults suit most uses.
+/// Options of a warp. The defaults suit most uses.
 struct WarpOptions {
   Filter filter = Filter::linear;  ///< 64-bit integers: nearest and labels only
   Overshoot overshoot = Overshoot::keep;
-  /// Where a tetrahedron maps the step from voxel to voxel to more than 1.5 voxels of the source:
-  /// the mean of several samples, one per source voxel of the step, at most 16 per axis. Not with
-  /// nearest and labels.
+  /// Averages where a tetrahedron maps the step from voxel to voxel to more than 1.5 voxels of the
+  /// source: one sample per source voxel of the step, at most 16 per axis. Not with nearest and
+  /// labels.
   bool antialias = false;
   Intensity intensity = Intensity::value;
   std::vector<Quantity> quantities = {};  ///< one per source; empty: components
@@ -102,7 +101,7 @@ struct WarpOptions {
 using Progress = std::function<bool(double fraction)>;
 
 /// Arrays for fields of the deformation, float32 in world axes, [k][j][i][component] over
-/// Warper::output_grid(). Null: not wanted. All are zero where no tetrahedron covers the voxel.
+/// Warper::output_grid(); null: not computed. All are zero where no tetrahedron covers the voxel.
 struct FieldTarget {
   /// 3 components, backward: rest position of the material at the voxel minus the voxel's position.
   /// The displacement field by which other programs resample.
@@ -122,14 +121,14 @@ struct WarpTarget {
   /// One array per source, each [k][j][i][component] over Warper::output_grid() in the pixel type
   /// of the source.
   std::span<void* const> volumes;
-  /// 1 where a tetrahedron covers the voxel, else 0; null: not wanted.
+  /// 1 where a tetrahedron covers the voxel, else 0; null: not written.
   std::uint8_t* mask = nullptr;
-  /// Number of the mesh's cell that owns the voxel, -1 outside; null: not wanted.
+  /// Number of the mesh's cell that owns the voxel, -1 outside; null: not written.
   std::int32_t* owner = nullptr;
   FieldTarget fields = {};
   Memory memory = Memory::host;  ///< of all arrays
-  /// The caller promises that the arrays still hold what the last step into them wrote. A step then
-  /// does not write values again that have not changed. Without effect on the first step, after a
+  /// True: the caller guarantees that the arrays still hold what the last step into them wrote, so
+  /// that unchanged values need not be written again. Without effect on the first step, after a
   /// step that threw, and for arrays other than those of the last two steps.
   bool holds_previous = false;
   /// cudaStream_t on which the step's kernels run, to order them with the caller's work on device
@@ -143,19 +142,17 @@ struct WarpResult {
   Report report;
 };
 
-/// Warps volumes step by step. Memory is allocated once and reused; on cuda the sources stay on the
-/// device.
+/// Warps volumes step by step. Allocates memory once; on cuda the sources stay on the device.
 ///
 /// The owner of a voxel is the tetrahedron of the lowest number whose closed deformed shape
 /// contains the voxel's centre. Node positions are rounded once, to 2^-20 voxel; owners are then
 /// decided in exact integers, so that they are the same on every back end and for every number of
-/// threads. Concurrent calls on one Warper are not allowed.
+/// threads. Not safe for concurrent calls.
 class TETWARP_EXPORT Warper {
  public:
   /// @param sources  at least one volume, all on the same grid, in host memory or (cuda) device
-  ///                 memory; their samples must stay as they are for the lifetime of the Warper
+  ///                 memory; their samples must not change during the lifetime of the Warper
   /// @param mesh     rest state; copied
-  /// @param options  see WarpOptions
   /// @throws std::invalid_argument  on any bad argument, naming it
   /// @throws CudaError              when `backend` is cuda and the device is not usable
   Warper(std::span<const VolumeView> sources, const Mesh& mesh, const WarpOptions& options = {});
@@ -169,7 +166,6 @@ class TETWARP_EXPORT Warper {
 
   /// Warps all sources by one set of node positions.
   /// @param deformed  finite positions of as many nodes as the mesh has [world]
-  /// @param target    see WarpTarget
   /// @param progress  may be empty
   /// @returns timings and counts of this step
   /// @throws std::invalid_argument  on bad arguments
@@ -196,7 +192,8 @@ class TETWARP_EXPORT Warper {
   ///
   /// @param deformed  as in step(); host memory may be changed after the call, device memory after
   ///                  finish_step()
-  /// @param target    as in step(); its arrays must not be used before finish_step(); the span may
+  /// @param target    as in step(); its arrays, unlike the span, must not be used before
+  ///                  finish_step()
   /// @throws std::invalid_argument  on bad arguments; the step has then not begun
   /// @throws std::logic_error       when max_steps_in_flight steps are in flight
   void begin_step(const PositionsView& deformed,
@@ -207,14 +204,12 @@ class TETWARP_EXPORT Warper {
   /// @returns timings and counts of this step; `total` counts from its begin_step(), so that the
   ///          times of two steps in flight overlap
   /// @throws std::logic_error       when no step is in flight
-  /// @throws std::invalid_argument, CudaError, Cancelled  the error of this step; steps after it
-  /// are
-  ///                                not affected
+  /// @throws std::invalid_argument, CudaError, Cancelled  as step(); later steps are not affected
   StepReport finish_step();
 
   /// Steps begun and not finished.
   std::size_t steps_in_flight() const;
-  static constexpr std::size_t max_steps_in_flight = 2;  ///< how many may be
+  static constexpr std::size_t max_steps_in_flight = 2;  ///< limit of steps_in_flight()
 
   /// Warps a single source by one set of node positions.
   /// @returns a new volume on output_grid()

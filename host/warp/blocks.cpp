@@ -1,4 +1,3 @@
-/// @file blocks.cpp
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -16,9 +15,7 @@
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 std::string size_text(const Region& region) {
   std::string text;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,7 +60,6 @@ WarpPlan plan_of(const Grid& source, const Mesh& mesh, const WarpOptions& option
   plan.region = options.region.value_or(Region{{0, 0, 0}, plan.output_grid.dims});
   return plan;
 }
-
 }  // namespace
 
 struct BlockPlanner::State {
@@ -79,8 +75,7 @@ struct BlockPlanner::State {
   }
   /// Computes the footprints of a step, and the counts of its plan.
   void set_footprints(const PositionsView& deformed, BlockPlan& plan);
-  /// Replaces the footprints of the tetrahedra that hexahedra were split into by those of the
-  /// hexahedra.
+  /// Replaces the footprints of the parts of hexahedra by those of the hexahedra.
   void merge_hexahedra();
   /// Divides a box into blocks and appends them to a plan.
   /// @param cells  that may own voxels of the box

@@ -40,9 +40,9 @@ class WarpFields {
       : exec_(exec), plan_(plan), geometry_(geometry) {}
 
   /// Writes the fields of a step after its raster.
-  /// @param owners   tetrahedron of each output voxel, -1 outside; size 0: no field needs them
+  /// @param owners   tetrahedron of each output voxel, -1 outside; size 0: no field uses them
   /// @param touched  1 for cells to write, see WarpPairs::touched_in(); size 0: all
-  /// @param to       arrays in the memory of the executor; null: not wanted
+  /// @param to       arrays in the memory of the executor; null: not written
   void run(const WarpPairs<Exec>& pairs,
            View<const std::int32_t> owners,
            View<const std::uint8_t> touched,

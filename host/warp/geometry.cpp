@@ -1,4 +1,3 @@
-/// @file geometry.cpp
 #include "host/warp/geometry.hpp"
 
 #include <stdexcept>
@@ -11,9 +10,7 @@
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 OutputFrame make_frame(const Region& region) {
   OutputFrame frame;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -79,7 +76,6 @@ std::string cell_name(const Mesh& mesh, std::size_t t) {
   if (t < alone) return "tetrahedron " + std::to_string(t);
   return "hexahedron " + std::to_string((t - alone) / tets_per_hex);
 }
-
 }  // namespace
 
 WarpGeometry make_geometry(const WarpPlan& plan) {

@@ -38,7 +38,7 @@ struct ProgressPart {
   bool is_wanted() const { return static_cast<bool>(progress); }
 };
 
-/// Samples of a source as a kernel sees them.
+/// Samples of a source in the form that kernels read.
 /// @param held  voxels of the source grid that `data` holds
 /// @param data  in the kernel's memory
 template <class T>

@@ -1,16 +1,12 @@
-/// @file hex_split.cpp
 #include "host/warp/hex_split.hpp"
 
 #include <algorithm>
 
 namespace tetwarp {
-
 namespace {
-
 /// Corners around each face, seen from outside.
 constexpr std::size_t faces[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                      {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-
 }  // namespace
 
 std::vector<std::array<std::int32_t, 4>> split_hexes(

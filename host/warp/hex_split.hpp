@@ -1,5 +1,5 @@
 /// @file hex_split.hpp
-/// Division of hexahedra into tetrahedra, which decide the owners of voxels.
+/// Division of hexahedra into tetrahedra, by which voxels are assigned to owners.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace tetwarp {
 
 /// Splits each hexahedron into tets_per_hex tetrahedra. Each joins the node of the lowest number to
 /// one of the six triangles of the faces that do not contain this node. Faces are divided by the
-/// diagonal from their own lowest node, so that hexahedra that share a face divide it alike.
+/// diagonal from their own lowest node, so that both hexahedra of a shared face divide it equally.
 ///
 /// Source: the rule of the lowest number is that of J. Dompierre et al., "How to subdivide
 /// pyramids, prisms and hexahedra into tetrahedra", 1999.

@@ -21,8 +21,8 @@ struct CellWindow {
   int end[2];
 };
 
-/// Two slots of memory, one per target of the two steps that may be in flight, and a record of what
-/// the targets hold.
+/// Two slots of memory, one per target of the steps in flight, and a record of the targets'
+/// content.
 template <class Exec>
 class WarpOutputs {
  public:
@@ -47,21 +47,20 @@ class WarpOutputs {
       now_ = static_cast<int>(found - slots_);
       if (target.holds_previous) age = step_ - found->held->step;
     } else if (target.holds_previous || slots_[now_].is_leaving) {
-      now_ = 1 - now_;  // two alternating targets get a slot each
+      now_ = 1 - now_;  // two alternating targets use one slot each
     }
     slots_[now_].held.reset();
     slots_[now_].is_leaving = true;
     return age <= 2 ? static_cast<int>(age) : 0;
   }
-  /// The slot that the last call of take() chose.
   int slot() const { return now_; }
   /// Ends the use of a slot by its step, after the download or when there is none.
   void release(int slot) { slots_[slot].is_leaving = false; }
 
   /// Where an executor writes volume s.
   void* volume(std::size_t s, const WarpTarget& target) { return writable(s, target); }
-  /// Where it writes the other arrays; null: not wanted. Owners have memory also when only a field
-  /// that is computed from them is wanted.
+  /// Where it writes the other arrays; null: not written. Owners have memory also when only a field
+  /// that is computed from them is written.
   WarpTarget extra(const WarpTarget& target) {
     WarpTarget arrays;
     for (std::size_t e = 0; e < extra_outputs.size(); ++e) {
@@ -136,7 +135,6 @@ class WarpOutputs {
     }
   };
 
-  /// Memory of one target.
   struct Slot {
     std::vector<Buffer<std::byte>> arrays;
     std::optional<Held> held;

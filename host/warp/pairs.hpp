@@ -37,8 +37,8 @@ class WarpPairs {
   }
 
   /// Runs setup, mask and cull. On a device the first step reads the sizes of its lists and
-  /// allocates them with some room; later steps neither wait nor allocate, and had_room() reports
-  /// afterwards whether the room sufficed.
+  /// allocates more than it needs; later steps neither wait nor allocate, and had_room() returns
+  /// afterwards whether the memory sufficed.
   /// @throws std::invalid_argument on positions that are not finite or too far away
   void run(View<const double> positions) {
     now_ = 1 - now_;
@@ -50,8 +50,7 @@ class WarpPairs {
     if (!is_update_) make();
   }
 
-  /// False when a list was too small for the step: it has been enlarged, and the step must run
-  /// again.
+  /// False when a list was too small for the step: it is enlarged, and the step must run again.
   /// @param counters  of the step, after all of its stages
   bool had_room(const StepCounters& counters) {
     take_totals(counters);
@@ -133,7 +132,7 @@ class WarpPairs {
 
   /// Computes the pairs of moved tetrahedra only, and merges them with the others of the step
   /// before.
-  /// @returns false, with nothing done, when so many have moved that make() is as fast
+  /// @returns false when so many have moved that make() is as fast; nothing is done then
   bool update() {
     const std::int64_t tets = tet_count();
     const TetSetupBody setup = setup_body();

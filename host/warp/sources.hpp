@@ -38,8 +38,7 @@ class WarpSources {
 
   std::size_t size() const { return sources_.size(); }
 
-  /// Samples of source s, of type T, with the coefficients and the range that the plan's filter
-  /// needs.
+  /// Samples of source s, of type T, with the coefficients and range that the filter needs.
   template <class T>
   SourceView<T> view(std::size_t s) {
     SourceView<T> view =

@@ -1,6 +1,5 @@
 /// @file step_counters.hpp
-/// The counters that the stages of a step increase in the executor's memory, and the report made
-/// from them.
+/// The counters of a step in the executor's memory, and the report made from them.
 #pragma once
 #include <cstdint>
 
@@ -13,8 +12,8 @@
 
 namespace tetwarp {
 
-/// Counters of the current mesh. A step that is an update of the one before adjusts them, any other
-/// step starts from zero.
+/// Counters of the current mesh. An update adjusts those of the previous step, any other step
+/// starts from zero.
 struct MeshCounters {
   std::int64_t classes[tet_class_count];
   std::int64_t folded;
@@ -54,7 +53,7 @@ struct TotalsBody {
   }
 };
 
-/// Sizes that the host knows of a step.
+/// Numbers of a report that do not depend on the step's counters.
 struct StepSizes {
   std::int64_t tets;
   std::int64_t tets_unchanged;
@@ -62,7 +61,6 @@ struct StepSizes {
   std::int64_t candidate_pairs;
 };
 
-/// Adds stage times by label.
 inline void add_stages(const StageTimes& times, Timings& timings) {
   timings.upload += times.of("warp/upload");
   timings.setup += times.of("warp/setup");

@@ -1,4 +1,3 @@
-/// @file step_queue.cpp
 #include "host/warp/step_queue.hpp"
 
 #include <algorithm>
@@ -36,8 +35,8 @@ void StepQueue::begin(const PositionsView& deformed,
   Flight& now = *flights_.back();
   now.target.volumes = now.volumes;
   attempt(now, [&] { backend_->upload(now.number, deformed); });
-  // A step may update the one before, so that one must be computed first. Its download, which may
-  // block this thread, is queued after the kernels of the new step.
+  // A step may update the previous one, which must therefore be computed first. Its download may
+  // block this thread, so it is queued after the kernels of the new step.
   if (before != nullptr) settle(*before);
   attempt(now, [&] { backend_->compute(now.number, now.target, progress); });
   if (before != nullptr) attempt(*before, [&] { backend_->download(before->number); });

@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// Null: not wanted.
+/// Null: not written.
 inline std::vector<void*> arrays_of(const WarpTarget& target) {
   std::vector<void*> arrays(target.volumes.begin(), target.volumes.end());
   for (const ExtraOutput& extra : extra_outputs) arrays.push_back(extra.get(target));
@@ -27,7 +27,7 @@ inline std::vector<std::int64_t> voxel_bytes_of(const std::vector<VolumeView>& s
   return bytes;
 }
 
-/// True when a field is wanted that is computed from the owner of every output voxel.
+/// True when a field is to be computed from the owner of every output voxel.
 inline bool needs_owners(const FieldTarget& fields) {
   return fields.displacement != nullptr || fields.jacobian != nullptr ||
          fields.gradient != nullptr || fields.strain != nullptr;

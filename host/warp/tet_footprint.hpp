@@ -18,7 +18,7 @@ struct Footprint {
   int begin[3], end[3];  ///< output voxels it may own [frame voxel]
   int source_begin[3];   ///< source voxels around its positions, for all of its voxels
   int source_end[3];
-  bool is_boxed;  ///< the map is not affine or too steep: only source_begin and source_end hold
+  bool is_boxed;  ///< the map is not affine or too steep: only source_begin, source_end hold
   int spread[3];  ///< distance of an averaged sample from the position [source voxel]
   float linear[3][3];
   double offset[3];
@@ -70,7 +70,7 @@ Box image_of(const Box& box, const Real (*linear)[3], const double* start) {
 }
 
 inline int clamped_int(std::int64_t value) {
-  constexpr std::int64_t far = std::int64_t{1} << 30;  // beyond any grid
+  constexpr std::int64_t far = std::int64_t{1} << 30;  // larger than any index of a grid
   return static_cast<int>(std::clamp(value, -far, far));
 }
 
@@ -148,8 +148,7 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
   return all;
 }
 
-/// The voxels of the source around the positions that a cell of the mesh has for the voxels of
-/// `box`.
+/// The source voxels around the positions that a cell of the mesh has for the voxels of `box`.
 inline Box samples_of(const Footprint& footprint, const Box& box) {
   Box part, rest;
   for (int axis = 0; axis < 3; ++axis) {

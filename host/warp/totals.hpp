@@ -90,7 +90,7 @@ class WarpTotals {
   const WarpPlan& plan_;
   const WarpGeometry& geometry_;
   std::vector<int> firsts_;  ///< place of each source's first component in the lists, then the
-                             ///< number of all; empty: totals are not wanted
+                             ///< number of all; empty: totals are not computed
   std::vector<double> before_;
   Buffer<double> sums_;
   Buffer<double> scratch_;

@@ -1,4 +1,3 @@
-/// @file transform_checks.cpp
 #include "host/warp/transform_checks.hpp"
 
 #include <cmath>
@@ -7,9 +6,7 @@
 #include <string>
 
 namespace tetwarp {
-
 namespace {
-
 void check_filter(const VolumeView& source, Filter filter) {
   const std::string type = std::string("source: ") + name_of(source.type);
   if (filter == Filter::labels) {
@@ -68,7 +65,6 @@ void check_conservative(const WarpOptions& options) {
     throw std::invalid_argument(std::string("intensity: to keep the total, ") + wrong);
   }
 }
-
 }  // namespace
 
 void check_source_transform(const VolumeView& source,

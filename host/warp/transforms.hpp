@@ -34,7 +34,7 @@ class WarpTransforms {
 
   /// Computes the transforms of a step after its pairs; of an update only those that have changed.
   void run(const WarpPairs<Exec>& pairs) {
-    bool is_first = true;  // counts the tetrahedra that average, once
+    bool is_first = true;  // the first source counts the tetrahedra that average
     for (auto& [reorientation, buffer] : buffers_) {
       tet_transform(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
                     choice(reorientation), buffer.view(pairs.tet_count()),

@@ -1,5 +1,5 @@
 /// @file warp_pipeline.hpp
-/// The warp as a list of stages, for any executor. Read this file first: run() is the method.
+/// The warp as a list of stages, for any executor. Start at run(), which calls them in order.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -61,7 +61,7 @@ class WarpPipeline : public WarpBackend {
     flight.slot = outputs_.slot();
     flight.is_delivered = false;
     compute(flight, progress);
-    // Which part of an update was written is known after settle(); all of it can be downloaded now.
+    // The part that an update writes is known after settle(); a whole output is downloaded now.
     if (stale_.size == 0 && target.memory == Memory::host && outputs_.downloads_async(target)) {
       flight.window = outputs_.window_of({});
       download(number);
@@ -120,7 +120,7 @@ class WarpPipeline : public WarpBackend {
     int slot = 0;         ///< of outputs_
     CellWindow window{};  ///< cells to download
     bool is_delivered = false;
-    bool is_open = false;  ///< begun and not finished; still set when the step failed
+    bool is_open = false;  ///< begun and not finished; stays set when the step fails
     StepReport report;
   };
 
@@ -294,7 +294,7 @@ class WarpPipeline : public WarpBackend {
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;
   Buffer<std::uint16_t> cell_covered_;  ///< covered voxels per cell; kept from step to step
-  View<const std::uint8_t> stale_;      ///< per cell, 0: the target holds it; size 0: it holds none
+  View<const std::uint8_t> stale_;      ///< per cell, 0: up to date in the target; size 0: none is
 };
 
 }  // namespace tetwarp

@@ -18,9 +18,7 @@
 #include "kernels/warp/node_quantize.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 void check_ranges(const std::vector<VolumeView>& sources,
                   const std::vector<std::vector<double>>& ranges) {
   if (ranges.size() != sources.size()) {
@@ -149,7 +147,6 @@ std::unique_ptr<WarpBackend> make_backend(Backend backend, const WarpPlan& plan)
       return make_cpu_backend(plan);
   }
 }
-
 }  // namespace
 
 struct Warper::State {

@@ -1,6 +1,6 @@
 /// @file contact_io.hpp
 /// Contact problems and solutions as FCLIB files; checkpoints of simulations with tracked contacts.
-/// All in HDF5; errors and names of files being written as io.hpp states.
+/// All are HDF5 files; errors and temporary names as in io.hpp.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace tetwarp {
 
-/// The parts of an FCLIB file besides its problem.
+/// The parts of an FCLIB file other than its problem.
 struct ContactFileHeader {
   std::string title;
   std::string description;
@@ -24,7 +24,7 @@ struct ContactFileHeader {
   bool has_solution = false;  ///< /solution/r exists, from any program, of any quality
   std::optional<std::string>
       status;                      ///< written by write_contact_solution(): name_of(ContactStatus)
-  std::optional<double> residual;  ///< eta, likewise
+  std::optional<double> residual;  ///< eta; written by write_contact_solution()
 };
 
 TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);

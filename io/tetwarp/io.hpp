@@ -1,10 +1,10 @@
 /// @file io.hpp
 /// Files: VTKHDF volumes and meshes, NIfTI volumes, PNG pictures, FCLIB contact problems.
 ///
-/// Every function here throws IoError on failure; its one line names file, dataset and remedy.
-/// Sizes are checked against the file and the available memory before anything is allocated.
-/// Writers write to a temporary name in the same folder and rename the file when it is complete.
-/// Positions are in the length unit of the file.
+/// Every function throws IoError on failure; its text is one line that names file, dataset and
+/// remedy. Sizes are checked against the file and the available memory before anything is
+/// allocated. Writers write to a temporary name in the same folder and rename the file when it is
+/// complete. Positions are in the length unit of the file.
 ///
 /// HDF5 may be built without support for threads: call one function at a time.
 #pragma once
@@ -65,8 +65,7 @@ class TETWARP_IO_EXPORT VolumeReader {
   const Grid& grid() const;
   const ArrayHeader& array() const;
 
-  /// Memory that HDF5 uses while it reads: a chunk of the array before and after decompression
-  /// [byte].
+  /// Memory of HDF5 while it reads: a chunk before and after decompression [byte].
   double chunk_bytes() const;
 
   /// Reads a region of the grid.
@@ -131,7 +130,7 @@ struct WrittenFile {
 };
 
 /// Writes a static VTKHDF ImageData file, Version [1,0], of volumes that share a grid. An axis of
-/// one sample is an error: VTK crashes on such files.
+/// one sample is an error, because VTK crashes on such files.
 TETWARP_IO_EXPORT WrittenFile write_volumes(const std::string& path,
                                             const std::vector<const Volume*>& volumes,
                                             const VolumeWriteOptions& options = {});
@@ -162,8 +161,7 @@ enum class ChunkShape {
   bricks  ///< for arrays that are written in blocks: nearly cubes, edges by block_step()
 };
 
-/// Writes a VTKHDF ImageData file whose arrays come in regions: a static one, or a temporal one
-/// step by step.
+/// Writes a VTKHDF ImageData file region by region: a static one, or a temporal one step by step.
 class TETWARP_IO_EXPORT BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
@@ -199,7 +197,7 @@ TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
                                                          const std::vector<ArrayHeader>& arrays);
 
 /// Writes a mesh as a VTKHDF UnstructuredGrid.
-/// @param displacements  deformed less rest position [world], per step, per node; may be empty
+/// @param displacements  deformed minus rest position [world], per step, per node; may be empty
 /// @param times          one per step
 TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const Mesh& mesh,

@@ -1,6 +1,6 @@
 /// @file mesh_import.hpp
 /// Meshes of other programs: Gmsh's MSH 2 and 4.1 (.msh), VTK's XML and legacy unstructured grids
-/// (.vtu, .vtk). The libraries of Gmsh and VTK read them; a build may lack either.
+/// (.vtu, .vtk). The libraries of Gmsh and VTK read them; a build may be without either.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -34,9 +34,8 @@ TETWARP_IO_EXPORT bool has_mesh_extension(const std::string& path);
 
 /// Reads a mesh of tetrahedra and hexahedra with all steps of its displacement. The format is
 /// chosen by the end of the name.
-/// @throws IoError on other cells of three dimensions, naming kind and number; on damaged files;
-/// and,
-///                 naming the package, where this build lacks the library
+/// @throws IoError on other cells of three dimensions, on damaged files, and if this build lacks
+///         the library; the text names kind and number of the cells, or the package
 TETWARP_IO_EXPORT ImportedMesh import_mesh(const std::string& path,
                                            const MeshImportOptions& options = {});
 

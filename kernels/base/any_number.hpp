@@ -1,6 +1,6 @@
 /// @file any_number.hpp
-/// Arrays whose number type is known at run time only, read and written as float64. Each access has
-/// a switch: for stages that compute much more than they read.
+/// Arrays whose number type is known at run time only, read and written as float64. Each access
+/// evaluates a switch: for stages that compute much more than they read.
 #pragma once
 #include <cstdint>
 #include <tetwarp/choices.hpp>

@@ -5,8 +5,8 @@
 #include <math.h>  // not <cmath>: floor() and others for float, in the global namespace too
 
 // TETWARP_HD: compiled for host and device, always inlined. TETWARP_HD_RARE: the same, never
-// inlined, so that a hot loop that rarely calls it does not need its registers. TETWARP_ANY_EXEC:
-// compiled for both, inlining left to the compiler.
+// inlined, so that its registers do not count for a hot loop that rarely calls it.
+// TETWARP_ANY_EXEC: compiled for both, inlining left to the compiler.
 #if defined(__CUDACC__)
 #define TETWARP_HD __host__ __device__ __forceinline__
 #define TETWARP_HD_RARE __host__ __device__ __noinline__ inline

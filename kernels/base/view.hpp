@@ -1,5 +1,5 @@
 /// @file view.hpp
-/// Arrays without ownership, and the integer geometry of the output grid: what stage bodies hold.
+/// Members of stage bodies: arrays without ownership, and the integer geometry of the output grid.
 #pragma once
 #include <cstdint>
 #include <type_traits>
@@ -25,7 +25,7 @@ constexpr int cell_edge = 8;  ///< voxels along the edge of a cell
 constexpr int cell_shift = 3;
 
 /// The output in frame coordinates. The frame is the output grid's index space shifted by whole
-/// cells: a region of the grid has the same cells, and gets the same bits, as in the full grid.
+/// cells: a region of the grid has the same cells, and the same result bits, as in the full grid.
 struct OutputFrame {
   std::int64_t origin[3];  ///< grid index of frame voxel (0, 0, 0): a multiple of 8
   int begin[3];            ///< first voxel to compute, in 0..7 [frame]

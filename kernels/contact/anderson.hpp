@@ -11,7 +11,7 @@ namespace tetwarp {
 
 constexpr int anderson_window = 8;
 
-/// Scalars of the last steps, and what the next step does with them.
+/// Scalars of the last steps, and the action of the next one.
 struct AndersonState {
   static constexpr int window = anderson_window;
   enum class Action { keep, reject, combine };
@@ -21,7 +21,7 @@ struct AndersonState {
   double gram[window][window] = {};  ///< products of the changes of defects
   double factor[window] = {};        ///< of the changes of images, in the next x
   double last_square = 0;            ///< |defect|^2 of the last accepted step
-  int now = 0;                       ///< which of the two stored iterates is written next
+  int now = 0;                       ///< index of the stored iterate, of two, that is written next
   int depth = 0;                     ///< columns in use
   int newest = -1;                   ///< column of the next change; -1: no last iterate yet
   bool has_last = false;
@@ -29,10 +29,10 @@ struct AndersonState {
 
   TETWARP_HD double square() const { return sums.value[2 * window]; }
 
-  /// Decides after observe() whether the image is kept, rejected, or combined with the columns.
+  /// Sets the action after observe(): keep, reject, or combine the image with the columns.
   TETWARP_HD_RARE void decide() {
     if (has_last && square() > 4 * last_square) {
-      action = Action::reject;  // the last iterate stays; the next one overwrites the rejected
+      action = Action::reject;  // the last iterate stays; the next one overwrites the rejected one
       restart();
       return;
     }
@@ -203,7 +203,7 @@ class AndersonMixer {
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
     exec_.once("contact/mix", DecideBody{state_});
     exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
-    // Without a read the image counts as replaced, which is always correct.
+    // If the action is not read, the image counts as replaced, which is always correct.
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=
            AndersonState::Action::keep;
   }

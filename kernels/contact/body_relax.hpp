@@ -118,8 +118,7 @@ struct BodyDefectBody {
   }
 };
 
-/// out = keep out + factor M x for one dense block; size 3, by far the most frequent, without
-/// loops.
+/// out = keep out + factor M x for one dense block; size 3, by far the most frequent, has no loops.
 template <class T>
 TETWARP_HD void update_block(const T* m, int size, T keep, T factor, const T* x, T* out) {
   if (size == 3) {

@@ -1,13 +1,13 @@
 /// @file contact_accelerators.hpp
 /// Accelerators of a fixed-point iteration x -> g(x), for any executor. They work on vectors with a
-/// diagonal metric and do not depend on contacts. All have
+/// diagonal metric and do not depend on contacts. All have the members
 ///
 ///     columns            work vectors of the size of x that they need
 ///     observe(x, image)  records image = g(x)
 ///     defect()           norm of image - x at the last observe(); on a device this synchronizes
-///     advance(x, image)  may replace image by an accelerated x; returns false if it did not
+///     advance(x, image)  may replace image by an accelerated x; returns whether it may have
 ///
-/// Their own decisions are made by the executor in its memory, without synchronizing.
+/// All decisions of an accelerator are computed in memory of the executor, without synchronizing.
 #pragma once
 #include <cstdint>
 

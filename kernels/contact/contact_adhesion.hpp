@@ -6,8 +6,8 @@
 ///
 ///     beta' = r max(p - beta p0, 0) + min(W - C g^2 beta, 0) / eta
 ///
-/// g holds all three gaps in traction, the tangential ones only in compression. Friction does not
-/// change beta.
+/// g consists of all three gaps in traction, of the tangential gaps in compression. Friction does
+/// not change beta.
 #pragma once
 #include <cstdint>
 
@@ -38,14 +38,14 @@ TETWARP_HD double relaxed_intensity(double start, double rate, double decay, dou
   return start + (x > 0 ? rate * (-expm1(-x) / decay) : rate * time);
 }
 
-/// Clamps to [0, 1], which rounding may leave by a last place.
+/// Clamps to [0, 1], which rounding may exceed by one ulp.
 TETWARP_HD double cut_intensity(double beta) {
   return min_of(max_of(beta, 0.0), 1.0);
 }
 
 /// Exact solution after `time` [s], clamped to [0, 1]. The rate is piecewise linear and does not
-/// grow with beta: from a piece where only bonding or only debonding acts, beta can enter the piece
-/// where both act, once.
+/// grow with beta: beta can pass, once, from a piece where only bonding or only debonding acts to
+/// the piece where both act.
 TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double time) {
   const double bonding = bonding_rate_of(law, beta);
   const double debonding = debonding_rate_of(law, beta);
@@ -138,8 +138,8 @@ struct ContactAdhesionBody {
     const bool debonds =
         beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
     if (debonds) next = 0;
-    // New bonds form unstretched: the gap shrinks so that the force beta^2 C g stays continuous;
-    // the stored energy falls by the same factor.
+    // New bonds form without tension: the gap is reduced so that the force beta^2 C g is
+    // continuous; the stored energy decreases by the same factor.
     double keep = next > 0 ? 1 : 0;
     if (next > beta) keep = (beta / next) * (beta / next);
     next_intensity[c] = next;
@@ -154,14 +154,14 @@ struct ContactAdhesionBody {
 ///
 /// A contact debonds, beta = 0, if debonding is on (energy and viscosity > 0) and C g^2 exceeds
 /// `debond_gap_factor`^2 W, or if in traction its intensity falls below `debond_intensity`. The law
-/// alone would only tend to W / (C g^2) > 0.
+/// alone would converge to W / (C g^2) > 0.
 /// @param exec  where to run
 /// @param body  inputs and outputs, shapes as in AdhesionState and AdhesionStep
 ///
-/// Determinism: same bits whatever the thread count; back ends differ by the last places of expm1
-/// and log1p. Cost: one or two exponentials per contact.
-/// Source: Gascon 2010, section 4.3.3, with the gap in place of the traction and compression as the
-/// sign that bonds; the closed form and the moved anchors are ours.
+/// Determinism: same bits for any number of threads; back ends differ by the rounding of expm1 and
+/// log1p. Cost: one or two exponentials per contact.
+/// Source: Gascon 2010, section 4.3.3, with the gap in place of the traction, and with bonding in
+/// compression; the closed form and the moved anchors are ours.
 template <class Exec>
 void contact_adhesion(const Exec& exec, const ContactAdhesionBody& body) {
   exec.for_each("contact/adhesion", body.next_intensity.size, body);

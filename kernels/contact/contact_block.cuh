@@ -19,8 +19,8 @@ constexpr int island_threads = sum_threads;
 constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
 constexpr std::int64_t block_contacts = 2048;  ///< larger islands use the whole device
 
-/// The executor of the contact pipeline within one block. Every thread makes every call; all get
-/// the same results.
+/// The executor of the contact pipeline within one block. Every thread makes every call and
+/// receives the same results.
 class BlockContactExec {
  public:
   using LargestSum = PlainSums<2 * anderson_window + 1>;
@@ -50,7 +50,7 @@ class BlockContactExec {
     __syncthreads();
   }
 
-  /// A default State in shared memory; the state of the call before is gone.
+  /// Default-constructs a State in shared memory; replaces that of the previous call.
   template <class State>
   __device__ __forceinline__ State* state() const {
     static_assert(sizeof(State) <= state_bytes && alignof(State) <= 16);
@@ -118,7 +118,8 @@ class BlockContactExec {
   void* shared_;
 };
 
-/// Keeps the last measured residual and, thinned out evenly, those before. One thread writes.
+/// Stores the last measured residual and an evenly spaced selection of those before it. One thread
+/// writes.
 class ThinnedEventLog {
  public:
   /// @param events  room for two or more
@@ -140,7 +141,6 @@ class ThinnedEventLog {
     if (writes_) events_[count_] = event;
     ++count_;
   }
-  /// Ends the log.
   /// @return  how many residuals are kept
   __device__ std::int64_t end() {
     if (seen_ > 0 && !is_last_kept_) {
@@ -180,7 +180,7 @@ struct IslandJob {
   ContactSwitches switches;
   MethodPlan plan;
   View<const IslandTask> tasks;
-  std::int64_t shared_values;  ///< islands of more numbers stay in global memory
+  std::int64_t shared_values;  ///< islands with more numbers stay in global memory
   View<IslandResult> results;  ///< out, [tasks]
   View<ContactEvent> events;   ///< out, [tasks][events_per_island]
   std::int64_t events_per_island;
@@ -227,12 +227,12 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   if (threadIdx.x == 0) job.results[which] = result;
 }
 
-/// How many numbers of an island fit the 48 KiB of shared memory of a block.
+/// Number of an island's values that fit in the 48 KiB of shared memory of a block.
 template <class T>
 constexpr std::int64_t shared_capacity = static_cast<std::int64_t>(
     (std::size_t{48} * 1024 - BlockContactExec::shared_bytes) / sizeof(T));
 
-/// The largest count of numbers among islands that fit shared memory.
+/// The largest number of values of the islands that fit in shared memory.
 /// @param tasks  in memory of the host
 template <class T>
 std::int64_t shared_values_for(View<const IslandTask> tasks) {
@@ -262,7 +262,7 @@ void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
 template <class T>
 struct MeasureJob {
   ContactNumbers<T> numbers;
-  ContactState<T> state;  ///< its velocities are set to what the impulses cause
+  ContactState<T> state;  ///< out: its velocities become those of the impulses
   View<const std::int64_t> color_start;
   ContactSwitches switches;
   View<const ContactIsland> islands;

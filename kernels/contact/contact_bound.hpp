@@ -13,9 +13,9 @@ namespace tetwarp {
 /// B'.
 ///
 /// Each term of the natural map rises with its weight, then falls, so its minimum is at an end of
-/// the interval of weights. With tangential offsets this holds approximately: the smallest sum over
-/// the ends was measured to be up to 2.2 % too high, so 20 % are subtracted. That margin is
-/// measured, not proven.
+/// the interval of weights. With tangential offsets this holds approximately: measured values of
+/// the smallest sum over the ends are up to 2.2 % too high, so 20 % are subtracted. This margin is
+/// not proven.
 struct FreeResidualBoundBody {
   ContactResidualBody<double> natural;  ///< with blocks B', impulses zero, free velocities
 

@@ -19,8 +19,9 @@ struct ContactGroups {
   View<const std::int32_t> contact;        ///< contacts of each group
 };
 
-/// One index = one contact: takes the lowest color that no neighbor of lower index has, if all of
-/// these are colored; else it is left for the next round. The result does not depend on the order.
+/// One index = one contact: if all neighbors of lower index have colors, assigns the lowest color
+/// that none of them has; else leaves the contact for the next round. The result does not depend on
+/// the order.
 struct ContactColorBody {
   ContactGroups groups;
   View<std::int32_t> colors;
@@ -57,7 +58,7 @@ struct UncoloredBody {
   }
 };
 
-/// Colors all contacts greedily, in rounds; a serial executor needs one.
+/// Colors all contacts greedily, in rounds; a serial executor needs one round.
 /// @param exec    where to run
 /// @param groups  groups shared by contacts
 /// @param colors  out: colors from 0, [contacts]

@@ -43,7 +43,7 @@ struct Forest {
   }
 };
 
-/// One index = one item: makes it a tree of its own.
+/// One index = one item: makes it a separate tree.
 struct MakeTreeBody {
   View<std::int32_t> parent;
   TETWARP_HD void operator()(std::int64_t i) const { parent[i] = static_cast<std::int32_t>(i); }
@@ -88,7 +88,7 @@ struct CompressBody {
 /// @param lowest  out, [items]
 ///
 /// Determinism: the result does not depend on the order of execution. Cost: two passes over the
-/// lists; more if threads join long chains at the same time.
+/// lists; more if threads unite long chains at the same time.
 template <class Exec>
 void contact_components(Exec& exec,
                         View<const std::int64_t> start,

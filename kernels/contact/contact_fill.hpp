@@ -54,7 +54,7 @@ struct ScatterBody {
 };
 
 /// One index = one slot: friction and springs of its contact, kappa = dt^2 area C beta^2; another
-/// body sets its block. Returns how many rows and springs are left out.
+/// stage body sets its block. Returns how many rows and springs are left out.
 struct ContactConstantsBody {
   ContactInput in;
   View<const std::int32_t> contact_of_slot;
@@ -157,7 +157,7 @@ struct ContactSetupBody {
   TETWARP_HD void operator()(std::int64_t c) const {
     const PairView& pairs = response.pairs;
     ContactResponseBody<double> own = response;
-    // All blocks of a contact are in one island, so the first one decides.
+    // All blocks of a contact are in one island, so testing the first one suffices.
     if (is_coupled[pairs.block[pairs.pair_start[c]]] == 0) own.relaxation = 1;
     own(c);
     ContactMetricBody<double>{response.constants}(c);

@@ -73,7 +73,7 @@ View<const T> view_of(const DeviceVector<T>& values) {
   return values.view();
 }
 
-/// Calls enqueue work on the stream of a CudaExec; see CpuContactExec for what each does.
+/// Calls enqueue work on the stream of a CudaExec; see CpuContactExec for their definitions.
 class GridContactExec {
  public:
   template <class T>
@@ -114,7 +114,7 @@ class GridContactExec {
                                cudaMemcpyDeviceToDevice, exec_->stream()),
                "cudaMemcpyAsync on device");
   }
-  /// Stages are not timed: events would cost as much as the launches.
+  /// Stages are not timed: events would take as long as the launches.
   template <class Body>
   void for_each(const char*, std::int64_t count, const Body& body) const {
     if (count == 0) return;
@@ -132,7 +132,7 @@ class GridContactExec {
     for_each(label, 1, body);
   }
 
-  /// A default State in memory of the device; the state of the call before is gone.
+  /// Default-constructs a State in memory of the device; replaces that of the previous call.
   template <class State>
   State* state() {
     static_assert(sizeof(State) <= state_bytes);
@@ -155,7 +155,7 @@ class GridContactExec {
   T load_without_sync(const T*, T otherwise) const {
     return otherwise;
   }
-  /// Every eighth step: the device idles while the host reads.
+  /// Only every eighth step, because the device idles while the host reads.
   bool is_sync_point(std::int64_t step) const { return step % 8 == 0; }
   static constexpr bool reads_need_sync = true;
 

@@ -1,5 +1,5 @@
 /// @file contact_indices.hpp
-/// The index arrays of a contact problem as views of memory of the executor; they come from
+/// The index arrays of a contact problem as views of memory of the executor; see
 /// host/contact/structure/structure.hpp.
 #pragma once
 #include <cstdint>

@@ -1,5 +1,5 @@
 /// @file contact_law.hpp
-/// The law of one contact: its impulse for given velocities while all other impulses stay fixed.
+/// The law of one contact: its impulse for given velocities with all other impulses constant.
 ///
 /// Letters: r impulse, u velocity, B the contact's own 3x3 block of the Delassus matrix,
 /// K = diag(kappa_n, kappa_t, kappa_t) the adhesive springs over one step, o_t the stored
@@ -43,8 +43,8 @@ TETWARP_HD T larger_eigenvalue(T a, T b, T c) {
   return (a + c) / 2 + sqrt(square_of((a - c) / 2) + square_of(b));
 }
 
-/// Normal impulse for the normal velocity `free` that the contact has without it: compression stops
-/// the approach, traction stretches the spring (the proximal map of the spring's energy).
+/// Normal impulse for the normal velocity `free` without it. In compression it stops the approach;
+/// in traction it is the force of the stretched spring (the proximal map of the spring's energy).
 /// @param metric  normal entry of B, 1/kg
 /// @param spring  kappa_n
 template <class T>
@@ -68,7 +68,7 @@ TETWARP_HD T restrictive_slip(T free, T limit, T m, T coupling, T complement, T 
   const T scale = complement * (1 + coupling);  // 1 - coupling^2
   const T middle = a + square_of(coupling) * along;
   const T spread = coupling * sqrt(square_of(a + along) + scale * across);
-  // Of two equal forms the one without cancellation.
+  // The form of two that has no cancellation.
   const T product = square_of(a) - square_of(coupling) * (square_of(along) + across);
   const T slip = middle >= 0 ? (middle + spread) / scale : product / (middle - spread);
   return min_of(max_of(slip, T(0)), free);
@@ -156,8 +156,8 @@ TETWARP_HD T solve_normal(const ContactConstants<T>& c, T velocity, T* impulse) 
 }
 
 /// Replaces the impulse of a contact by the solution of its law, the other impulses fixed: normal
-/// first, then the tangents under the friction limit of the new normal impulse. Impulses that this
-/// changes at no contact satisfy the law exactly.
+/// first, then the tangents under the friction limit of the new normal impulse. Impulses that no
+/// update changes satisfy the law exactly.
 /// @param velocity  in: u with the old impulse; overwritten, [3]
 /// @param impulse   in and out: r, [3]
 template <class T>

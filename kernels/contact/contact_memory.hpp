@@ -1,5 +1,5 @@
 /// @file contact_memory.hpp
-/// Memory of a solve, for any executor: what it changes and what its methods work with.
+/// Memory of a solve, for any executor: its unknowns, and work vectors of its methods.
 #pragma once
 #include <cstdint>
 
@@ -36,7 +36,7 @@ struct StateMemory {
   }
 };
 
-/// Work vectors of ContactMethods. They are not initialized: a method touches only its own part.
+/// Work vectors of ContactMethods. They are not initialized; a method accesses only its own part.
 template <class Exec, class T>
 class MethodMemory {
  public:

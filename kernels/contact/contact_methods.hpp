@@ -28,7 +28,7 @@ struct ImpulseWeightsBody {
   }
 };
 
-/// Work vectors of the methods; nothing in them is kept from one island to the next.
+/// Work vectors of the methods; their contents are not kept from island to island.
 template <class T>
 struct MethodWork {
   static constexpr int columns = AndersonMixer<int, T>::columns;
@@ -38,7 +38,7 @@ struct MethodWork {
   View<T> mixed;                     ///< [columns][3 slots], island after island
   View<ContactConstants<T>> metric;  ///< constants of mass splitting, [slots]
 
-  /// The views of one island; `metric` stays that of all.
+  /// The views of one island, but `metric` of all islands.
   TETWARP_HD MethodWork of(const ContactIsland& island) const {
     const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
     return {{weights.data + first, size},
@@ -50,11 +50,11 @@ struct MethodWork {
 };
 
 /// The methods of one island. Each continues from the current impulses and returns why it stopped;
-/// restore_best() goes back to the iterate with the smallest residual.
+/// restore_best() restores the iterate with the smallest residual.
 template <class Exec, class T, class Log>
 class ContactMethods {
  public:
-  /// One index = one entry: product of gradient and last step; a positive sum means uphill.
+  /// One index = one entry: product of gradient and last step; a positive sum: the step led uphill.
   struct SlopeBody {
     View<const double> weights;
     View<const T> before, x, last;
@@ -85,7 +85,7 @@ class ContactMethods {
   }
 
   /// Measures the residual of the current impulses.
-  /// @return  whether they are within the tolerance, or no sweep is left
+  /// @return  whether they are within the tolerance, or the budget of sweeps is used up
   TETWARP_ANY_EXEC bool is_done_at_start() {
     pipeline_.follow_impulses();
     return measure(0);
@@ -138,8 +138,8 @@ class ContactMethods {
     return convergence_.reason();
   }
 
-  /// Runs a method. `automatic` and `newton` (whose start this is) use Anderson acceleration and,
-  /// if it stalls, conjugate directions from the best iterate.
+  /// Runs a method. `automatic` and `newton`, which starts from the result, use Anderson
+  /// acceleration and, if it stalls, conjugate directions from the best iterate.
   /// @param frozen  contacts that plain sweeps may skip
   /// @return  whether it switched to conjugate directions
   TETWARP_ANY_EXEC bool run(ContactMethod method, const FrozenContacts<T>& frozen) {
@@ -198,7 +198,7 @@ class ContactMethods {
     return convergence_.reason();
   }
 
-  /// Whether the caller may read results of the executor after this sweep.
+  /// Whether the host reads results of the executor after this sweep.
   TETWARP_ANY_EXEC bool is_sync_point() const {
     return exec().is_sync_point(convergence_.sweeps()) || convergence_.is_exhausted();
   }
@@ -233,7 +233,7 @@ struct MethodPlan {
 /// Solves one island from the current impulses and leaves the best ones.
 /// @param sweeps_done  by earlier solves of the island
 /// @param work         views of the whole problem
-/// @param log          gets every measured residual: note(ContactEvent)
+/// @param log          receives every measured residual by note(ContactEvent)
 template <class Exec, class T, class Log>
 TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
                                         const StopCriterion& criterion,
@@ -259,7 +259,7 @@ struct IslandSums {
   double free_square = 0;  ///< |q|^2
 };
 
-/// Measures the current impulses of an island; sets its body velocities to what they cause.
+/// Measures the current impulses of an island and sets the body velocities that follow from them.
 template <class Exec, class T>
 TETWARP_ANY_EXEC IslandSums measure_island(ContactPipeline<Exec, T> pipeline) {
   pipeline.follow_impulses();

@@ -1,5 +1,5 @@
 /// @file contact_numbers.hpp
-/// What the stages of the contact solver read and change, as views of memory of the executor.
+/// Input and unknowns of the stages of the contact solver, as views of memory of the executor.
 #pragma once
 #include <cstdint>
 
@@ -19,7 +19,7 @@ struct ContactIsland {
 
   TETWARP_HD std::int64_t contact_count() const { return slot_end - slot_begin; }
   TETWARP_HD std::int64_t block_count() const { return block_end - block_begin; }
-  /// How many numbers its sweeps change: impulses and body velocities.
+  /// Number of values that its sweeps change: impulses and body velocities.
   TETWARP_HD std::int64_t value_count() const { return 3 * contact_count() + dof_end - dof_begin; }
 };
 
@@ -38,7 +38,7 @@ struct ContactNumbers {
   BlockContacts block_contacts;
   View<const T> body_free;  ///< A^-1 b, [dofs]; of coupled islands not set
 
-  // Used for islands whose blocks A couples only.
+  // Used only for islands whose blocks A couples.
   SystemView<T> system;
   View<const T> load;                       ///< b, [dofs]
   View<const std::int64_t> diagonal_value;  ///< [blocks], first number of the diagonal block of A
@@ -46,7 +46,7 @@ struct ContactNumbers {
   View<const T> inverse;                    ///< D^-1: inverses of the diagonal blocks
 };
 
-/// What a solve changes, for all islands together.
+/// The unknowns of a solve, for all islands together.
 template <class T>
 struct ContactState {
   View<T> impulse;                      ///< r, [3 slots]

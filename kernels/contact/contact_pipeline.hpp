@@ -1,7 +1,7 @@
 /// @file contact_pipeline.hpp
 /// The contact solver of one island as a list of stages, for any executor: host threads, a whole
-/// device, or one block of it. Read this file first: sweep() improves the impulses, measure()
-/// returns their residual.
+/// device, or one block of it. Start reading here: sweep() improves the impulses, measure() returns
+/// their residual.
 #pragma once
 #include <cstdint>
 
@@ -80,14 +80,14 @@ class ContactPipeline {
     run_contacts(ContactMetricBody<T>{metric});
   }
 
-  /// Solves every contact by itself, all from the same velocities.
+  /// Solves every contact separately, all from the same velocities.
   /// @param metric  of split_metric()
   TETWARP_ANY_EXEC void split(View<const ContactConstants<T>> metric) {
     find_velocities();
     run_contacts(ContactSplitBody<T>{metric, switches_, state_.velocity, state_.impulse});
   }
 
-  /// Sets v to what r causes; needed after r was changed by anything but a sweep.
+  /// Sets v to the velocities of r; required after r was changed by anything but a sweep.
   /// @pre A does not couple the island's blocks
   TETWARP_ANY_EXEC void follow_impulses() {
     if (numbers_.is_local) return;

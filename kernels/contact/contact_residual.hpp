@@ -1,6 +1,5 @@
 /// @file contact_residual.hpp
-/// Stage "residual" of the contact solver: how far impulses and velocities are from the contact
-/// law.
+/// Stage "residual" of the contact solver: the distance of impulses and velocities from the law.
 #pragma once
 #include <cstdint>
 
@@ -86,8 +85,8 @@ TETWARP_HD double eta_square(const ContactConstants<T>& c,
   return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
 }
 
-/// The term of one contact in ContactSums::fclib: squared distance of nu from the projection of
-/// nu - u~ on the friction cone, u~ = u + mu |u_t| n. For laws without a cone the natural map with
+/// The term of one contact in ContactSums::fclib: squared distance of nu from the projection of nu
+/// - u~ on the friction cone, u~ = u + mu |u_t| n. For laws without a cone: the natural map with
 /// weights 1.
 template <class T>
 TETWARP_HD double fclib_square(const ContactConstants<T>& c,

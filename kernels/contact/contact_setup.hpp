@@ -18,8 +18,7 @@ struct PairView {
   View<const std::int64_t> dof_start;    ///< [blocks + 1], first dof of each block
 };
 
-/// Inverts a symmetric positive definite matrix in place, by Gauss-Jordan elimination without
-/// pivoting.
+/// Inverts a symmetric positive definite matrix in place: Gauss-Jordan without pivoting.
 template <class T>
 TETWARP_HD void invert_spd(T* a, int size) {
   for (int k = 0; k < size; ++k) {

@@ -57,8 +57,7 @@ struct DelassusSplitMetricBody {
   }
 };
 
-/// One index = one contact: solves its law for the given velocity, in the metric P of its
-/// constants.
+/// One index = one contact: solves its law for the given velocity, in the metric P.
 template <class T>
 struct ContactSplitBody {
   View<const ContactConstants<T>> constants;

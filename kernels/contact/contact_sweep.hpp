@@ -123,9 +123,9 @@ struct FrozenContacts {
   View<std::uint8_t> unchanged_visits;  ///< consecutive visits without a change, [contacts]
   View<std::int32_t> skipped_visits;    ///< visits skipped so far, [contacts]
   bool all_active = true;               ///< this sweep visits frozen contacts, too
-  T share = 0;  ///< relative change of the impulse that still counts as none
+  T share = 0;  ///< largest relative change of the impulse that counts as unchanged
 
-  /// Whether the sweep skips contact c, which is counted.
+  /// Whether the sweep skips contact c; counts skipped visits.
   TETWARP_HD bool skips(std::int64_t c) const {
     if (all_active || unchanged_visits[c] < visits_to_freeze) return false;
     ++skipped_visits[c];
@@ -150,7 +150,7 @@ struct FrozenContacts {
 
 /// Replaces the impulse r of contact c by the solution of its law, the other impulses fixed.
 /// @param velocities  DelassusView or BodiesView
-/// @param cause       what velocities.velocity_at() reads: all impulses, or all body velocities
+/// @param cause       argument of velocities.velocity_at(): all impulses, or all body velocities
 /// @param r           in and out, [3]
 /// @param change      out: r after minus r before, [3]
 /// @return  false if the contact has a normal row only, so that change[1] and change[2] are 0

@@ -9,8 +9,8 @@
 
 namespace tetwarp {
 
-/// An island has converged when error <= allowed + tolerance * sqrt(r . (u - q)), the last term for
-/// eta only. If all islands have converged, the whole problem is within the tolerance; see
+/// An island has converged if error <= allowed + tolerance * sqrt(r . (u - q)); the last term is
+/// for eta only. If all islands have converged, the whole problem is within the tolerance; see
 /// stop_criteria().
 struct StopCriterion {
   ContactMeasure measure = ContactMeasure::eta;
@@ -35,7 +35,7 @@ struct StopCriterion {
 
 enum class StopReason {
   converged,
-  stalled,   ///< the smallest residual has not dropped by a tenth for `patience` sweeps
+  stalled,   ///< the smallest residual has not dropped by a tenth in `patience` sweeps
   exhausted  ///< all sweeps of the budget are done
 };
 
@@ -48,15 +48,15 @@ struct ContactEvent {
 constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of patience
 
 /// The convergence test of one island, over all methods that work on it. Measuring a residual costs
-/// about a sweep; is_due() asks for it when the defect of the iteration, known at no cost, suggests
-/// convergence, and at growing intervals of 4 to 32 sweeps.
+/// about as much as a sweep. is_due() is true when the defect of the iteration, which costs
+/// nothing, suggests convergence, and at growing intervals of 4 to 32 sweeps.
 /// @tparam Log  has note(ContactEvent)
 template <class Log>
 class ConvergenceTest {
  public:
-  /// @param sweeps_done   by earlier solves of the island; they count in the budget
-  /// @param sweep_budget  sweeps after which to stop
-  /// @param log           gets every measured residual; kept by the caller
+  /// @param sweeps_done   by earlier solves of the island; included in the budget
+  /// @param sweep_budget  largest number of sweeps
+  /// @param log           receives every measured residual; kept by the caller
   TETWARP_HD ConvergenceTest(const StopCriterion& criterion,
                              std::int64_t sweeps_done,
                              std::int64_t sweep_budget,
@@ -71,7 +71,7 @@ class ConvergenceTest {
   TETWARP_HD std::int64_t sweeps() const { return sweeps_; }
   TETWARP_HD double best_excess() const { return best_excess_; }
 
-  /// Starts the count of sweeps without progress anew, for the next method.
+  /// Restarts the count of sweeps without progress, for the next method.
   /// @param patience  sweeps without progress after which the method has stalled
   TETWARP_HD void start_method(std::int64_t patience) {
     patience_ = patience;
@@ -93,7 +93,7 @@ class ConvergenceTest {
   /// Records a measured residual.
   /// @param defect   as in is_due()
   /// @param is_best  out: it is the smallest so far
-  /// @return  whether to stop; reason() tells why
+  /// @return  whether to stop; reason() returns the cause
   TETWARP_HD bool record(const ContactSums& sums, double defect, bool& is_best) {
     const double excess = criterion_.excess_of(sums);
     log_.note({sweeps_, criterion_.error_of(sums)});

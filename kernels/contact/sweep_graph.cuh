@@ -25,7 +25,6 @@ class StreamCapture {
     if (graph_ != nullptr) cudaGraphDestroy(graph_);
   }
 
-  /// Ends the recording.
   /// @return  the graph, owned by this object
   cudaGraph_t end() {
     is_recording_ = false;
@@ -65,7 +64,7 @@ class SweepGraph {
   cudaGraphExec_t graph_ = nullptr;
 };
 
-/// Identifies a sweep of one solve: island, arrays changed, whether frozen contacts are visited.
+/// Key of a sweep within one solve: island, arrays changed, whether frozen contacts are visited.
 struct SweepKey {
   const std::int64_t* colors;
   const void* impulse;

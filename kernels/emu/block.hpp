@@ -23,13 +23,13 @@ namespace tetwarp::simt {
 
 constexpr unsigned warp_size = 32;
 
-/// A kernel did something that is undefined on a GPU or would hang it.
+/// Error of a kernel whose behaviour is undefined on a GPU, or that would hang it.
 class Fault : public std::runtime_error {
  public:
   explicit Fault(const std::string& problem) : std::runtime_error("simt: " + problem) {}
 };
 
-/// Order in which threads run where CUDA does not define one.
+/// Order of threads where CUDA does not define one.
 enum class ThreadOrder { forward, reverse, shuffled };
 
 /// Order of threads, and the seed of the shuffled one.
@@ -233,7 +233,7 @@ class Block {
                        [](const auto& thread) { return thread->state == State::done; });
   }
 
-  /// 0 to count - 1 in the schedule's order; count is at most 32, for warps and lanes alike.
+  /// 0 to count - 1 in the schedule's order. @pre count <= 32
   std::vector<unsigned> ordered(unsigned count) {
     std::vector<unsigned> numbers(count);
     std::iota(numbers.begin(), numbers.end(), 0u);

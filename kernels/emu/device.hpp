@@ -1,6 +1,5 @@
 /// @file device.hpp
-/// The emulated CUDA device: memory, and streams whose work runs as late or as early as CUDA
-/// allows.
+/// The emulated CUDA device: memory, and streams that run work as late or as early as CUDA permits.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -27,7 +26,7 @@ using Recording = std::vector<std::function<void()>>;
 
 /// A point in a stream: before its item number `item`.
 struct Event {
-  Stream* stream = nullptr;  ///< null: never recorded, counts as passed
+  Stream* stream = nullptr;  ///< null: never recorded, counts as completed
   std::uint64_t item = 0;
 
   bool is_passed() const;
@@ -43,7 +42,7 @@ struct Stream {
   std::deque<Item> work;
   std::uint64_t queued = 0;
   std::uint64_t done = 0;
-  std::optional<Recording> recording;  ///< set while capturing: work goes here and does not run
+  std::optional<Recording> recording;  ///< set while capturing: work is stored here and not run
 
   void enqueue(std::function<void()> run, const Event& after = {}) {
     if (recording) return recording->push_back(std::move(run));
@@ -94,10 +93,10 @@ class Device {
 
   static constexpr int none = -1;
   /// Index, in order of creation, of the stream whose work runs as early as events allow; `none`
-  /// for no stream. Work of other streams runs when it is waited for.
+  /// for no stream. Work of other streams runs when the host waits for it.
   int eager_stream = none;
-  /// How many calls of cudaStreamWaitEvent still work before one is ignored; `none` ignores none.
-  /// Lets a test show that each wait is needed.
+  /// Number of calls of cudaStreamWaitEvent before the one that is ignored; `none` ignores none.
+  /// With it a test shows that each wait is needed.
   int skipped_wait = none;
 
   static Device& only() {
@@ -105,7 +104,7 @@ class Device {
     return device;
   }
 
-  /// Letters of the calls since the last take_calls(), see ApiCall.
+  /// Returns the letters (ApiCall) of the calls since the last take_calls().
   std::string take_calls() {
     const std::lock_guard guard(lock);
     return std::exchange(calls_, {});

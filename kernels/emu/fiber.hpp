@@ -1,5 +1,5 @@
 /// @file fiber.hpp
-/// A coroutine with a stack of its own: a call that can be suspended and resumed.
+/// A coroutine with its own stack: a call that can be suspended and resumed.
 #pragma once
 #include <ucontext.h>
 
@@ -49,7 +49,7 @@ class Fiber {
     to_fiber.came_back();
   }
 
-  /// To be called from inside the call: returns control to the caller of resume().
+  /// Called from inside the call: returns control to the caller of resume().
   void suspend() {
     const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
     swapcontext(&own_, &owner_);

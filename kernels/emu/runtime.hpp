@@ -1,11 +1,11 @@
 /// @file runtime.hpp
 /// CUDA's runtime functions on the emulated device, to test host code that calls them.
 ///
-/// Work on a stream runs as late as CUDA allows: when it is waited for. A test can choose one
-/// stream whose work runs as early as events allow. Code that reads a result without waiting for
-/// it, or overwrites memory that a pending copy still reads, therefore gets wrong results. Copies
-/// whose direction contradicts their addresses fail. Calls are recorded, see Device::take_calls().
-/// All functions may be called from any thread.
+/// Work on a stream runs as late as CUDA permits: when the host waits for it. A test can choose one
+/// stream whose work runs as early as events permit. Code that reads a result without waiting for
+/// it, or overwrites memory that a pending copy still reads, therefore computes wrong results.
+/// Copies whose direction contradicts their addresses fail. Device::take_calls() returns the
+/// recorded calls. All functions may be called from any thread.
 #pragma once
 #include <cstddef>
 #include <cstring>

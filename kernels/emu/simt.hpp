@@ -132,7 +132,7 @@ T atomicMax(T* address, std::type_identity_t<T> value) {
 
 namespace tetwarp::simt {
 
-/// The schedule of later launches; may be assigned.
+/// The schedule of later launches; callers assign to it.
 inline Schedule& schedule() {
   static Schedule current;
   return current;

@@ -23,7 +23,7 @@ __device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
   return other;
 }
 
-/// Sum over the threads of a block by a fixed tree; every thread gets it.
+/// Sum over the threads of a block by a fixed tree, returned to every thread.
 /// @param of_warp  scratch in shared memory, shape [sum_warps]
 /// @pre blockDim.x is sum_threads, and all threads of the block call it
 template <class Sum>

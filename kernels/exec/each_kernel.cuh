@@ -11,7 +11,7 @@ namespace tetwarp {
 constexpr int each_threads = 256;  ///< threads per block
 
 /// Minimum blocks per multiprocessor, which bounds registers per thread: Body::resident_blocks
-/// where ptxas' own choice would spill, else 0, which leaves it to ptxas.
+/// where the default of ptxas spills registers, else 0 for that default.
 template <class Body>
 constexpr int resident_blocks = [] {
   if constexpr (requires { Body::resident_blocks; }) return Body::resident_blocks;

@@ -47,8 +47,8 @@ class CudaExec {
     Buffer<T> device;
   };
 
-  /// Whether the host can read executor memory without waiting. Here it cannot: pipelines read
-  /// sizes once, then launch over the capacities of their buffers.
+  /// Whether the host can read executor memory without waiting. On a device it cannot: pipelines
+  /// read sizes once, then launch over the capacities of their buffers.
   static constexpr bool reads_are_free = false;
 
   explicit CudaExec(int device) : state_(std::make_unique<State>(device)) {}
@@ -239,7 +239,7 @@ class CudaExec {
     });
   }
 
-  /// Calls work(), which enqueues on stream(), and charges its time on the device to `label`.
+  /// Calls work(), which enqueues on stream(), and adds its time on the device to that of `label`.
   template <class Work>
   void timed(const char* label, Work&& work) {
     flight().timed(label, stream(), std::forward<Work>(work));

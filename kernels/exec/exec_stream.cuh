@@ -68,8 +68,7 @@ class DeviceFlight {
   DeviceEvent uploaded;  ///< the step's input is on the device
   DeviceEvent computed;  ///< the step's kernels have run
 
-  /// Calls work(), which enqueues on `stream`, and charges the time that this takes on the device
-  /// to `label`.
+  /// Calls work(), which enqueues on `stream`, and adds its time on the device to that of `label`.
   template <class Work>
   void timed(const char* label, cudaStream_t stream, Work&& work) {
     if (used_ == spans_.size()) spans_.emplace_back();

@@ -8,11 +8,8 @@
 #include "kernels/exec/exec_cuda.cuh"
 
 namespace tetwarp {
-
 namespace {
-
-/// Makes the two calls that CUB needs: call(null, bytes) asks for the scratch size, the second
-/// works.
+/// Makes the two calls that CUB needs: call(null, bytes) for the scratch size, and the actual one.
 template <class Call>
 void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& call) {
   std::size_t bytes = 0;
@@ -24,7 +21,6 @@ void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& cal
 struct IsValid {
   __device__ bool operator()(CellPair pair) const { return pair != rejected_pair; }
 };
-
 }  // namespace
 
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {

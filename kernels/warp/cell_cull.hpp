@@ -11,8 +11,7 @@
 
 namespace tetwarp {
 
-/// Which verdicts are used. A pair whose verdict is switched off is kept, and its voxels are
-/// tested.
+/// Which verdicts are used. Without its verdict a pair is kept, and its voxels are tested.
 struct CullSwitches {
   bool reject = true;
   bool accept = true;
@@ -36,8 +35,8 @@ struct CellCullBody {
     const std::int64_t slice = line * (ny + 1);
     const std::int64_t first =
         corner_offsets[t] + local % nx + (row % ny) * line + (row / ny) * slice;
-    // Small tetrahedra have no masks. Where the capacity of masks was too small, the step is
-    // repeated, and the verdict here does not matter. Both are kept.
+    // Without masks a pair is kept: small tetrahedra have none, and if their buffer was too small
+    // the step is repeated.
     unsigned all = 0;
     const bool has_masks = corner_offsets[t] < corner_offsets[t + 1];
     if (has_masks && first + slice + line + 1 < masks.size) {

@@ -1,6 +1,6 @@
 /// @file cell_raster.cuh
 /// Stage "raster" of the warp as a CUDA kernel: one block writes each voxel of one output cell
-/// once, background included. No races on shared faces, no separate clear.
+/// once, background included: no races on shared faces, no separate clearing.
 ///
 /// 128 threads in two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
 /// float32), four voxels along k per thread. Planes, rows and maps of `raster_chunk` tetrahedra at

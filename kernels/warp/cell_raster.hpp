@@ -28,14 +28,14 @@ struct RasterCounts {
   std::int64_t copied;        ///< voxels that copy one sample instead of interpolating
 };
 
-/// What uncovered voxels get. Source index of an uncovered frame voxel (i, j, k): linear * (origin
-/// + (i, j, k)) + offset.
+/// The value of uncovered voxels. Source index of an uncovered frame voxel (i, j, k): linear *
+/// (origin + (i, j, k)) + offset.
 struct OutsideMap {
   bool use_source;  ///< false: the background
   bool is_copy;     ///< the grids differ by whole voxels
   double linear[3][3];
   double offset[3];
-  double origin[3] = {0, 0, 0};  ///< of the frame, so that regions get the bits of the full grid
+  double origin[3] = {0, 0, 0};  ///< of the frame: makes regions bit-equal to the full grid
 };
 
 constexpr std::int64_t keep_cell = -2;    ///< the output already holds this cell's result
@@ -62,10 +62,10 @@ struct RasterJob {
   std::int32_t* tet;   ///< may be null
   RasterCounts* counts;
 
-  /// Per cell: keep_cell, sample_cell, or the source voxel whose samples every covered voxel gets.
-  /// Size 0: sample_cell for all.
+  /// Per cell: keep_cell, sample_cell, or the source voxel whose samples are stored in every
+  /// covered voxel. Size 0: sample_cell for all.
   View<const std::int64_t> cell_work;
-  /// Out, per cell that is not kept: number of covered voxels. Size 0: not wanted.
+  /// Out, per cell that is not kept: number of covered voxels. Size 0: not stored.
   View<std::uint16_t> cell_covered;
 
   /// Per tetrahedron: how its voxels are sampled, see voxel_transform.hpp. Size 0: all are plain.
@@ -74,13 +74,13 @@ struct RasterJob {
   Quantity reorientation;            ///< for which the matrices of transforms were computed
 };
 
-/// Whether voxels of tetrahedron t get more than a plain sample.
+/// Whether voxels of tetrahedron t are transformed samples.
 template <class T>
 TETWARP_HD bool has_transform(const RasterJob<T>& job, std::int64_t t) {
   return job.transforms.size > 0 && !job.transforms[t].is_plain;
 }
 
-/// Whether voxels that no tetrahedron covers get more than a plain sample.
+/// Whether voxels that no tetrahedron covers are transformed samples.
 template <class T>
 TETWARP_HD bool has_outside_transform(const RasterJob<T>& job) {
   return job.transforms.size > 0 && job.outside.use_source && !job.outside_transform.is_plain;
@@ -158,7 +158,7 @@ TETWARP_HD void outside_start(const OutsideMap& map, const int* corner, double* 
 }
 
 /// Samples a source by a filter of volume_filter.hpp or volume_label.hpp.
-/// @pre the filter can serve pixel type T; public calls check it
+/// @pre the filter supports pixel type T; public calls check it
 template <class T>
 TETWARP_HD_RARE void sample_wide(SourceView<T> source,
                                  Filter filter,
@@ -246,14 +246,14 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   store_position<General>(job, job.filter, whole, at, voxel);
 }
 
-/// Whether voxels of a tetrahedron copy one sample, for any filter: it moved by whole voxels.
+/// Whether the tetrahedron moved by whole voxels: its voxels copy one sample with any filter.
 template <class T>
 TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;
 }
 
-/// Stores a voxel that tetrahedron t owns. Computes the map anew: for the few voxels whose map is
-/// not shared by the cell.
+/// Stores a voxel that tetrahedron t owns. Computes the map for this voxel alone: for the few
+/// voxels that cannot use the map of the cell.
 template <bool General, class T, class Real>
 TETWARP_HD void store_owned(const RasterJob<T>& job, std::int64_t t, const CellVoxel& voxel) {
   const TetSetup& tet = job.setups[t];

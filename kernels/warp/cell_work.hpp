@@ -1,6 +1,6 @@
 /// @file cell_work.hpp
 /// Stage "raster" of the warp, first part: finds cells that keep their result, and cells whose
-/// covered voxels all get one value.
+/// covered voxels all have one value.
 #pragma once
 #include <cstdint>
 
@@ -10,10 +10,9 @@
 
 namespace tetwarp {
 
-/// Finds out whether the source is constant wherever the job's filter reads it for voxels of one
-/// cell in one tetrahedron.
-/// @returns a source voxel that has this constant; -1 if it is not constant there or the source
-/// ends
+/// Whether the source is constant wherever the job's filter reads it for voxels of one cell in one
+/// tetrahedron.
+/// @returns a source voxel with the constant; -1 if there is none or the source ends there
 template <class T>
 TETWARP_HD std::int64_t uniform_voxel(const UniformMap& map,
                                       const RasterJob<T>& job,
@@ -78,7 +77,7 @@ struct CellWorkBody {
     if (voxel >= 0 && constant_count.size > 0) atomic_add(&constant_count[0], 1);
   }
 
-  /// The source voxel whose samples all covered voxels of a cell get, or -1.
+  /// The source voxel whose samples fill all covered voxels of a cell, or -1.
   TETWARP_HD std::int64_t value_of(std::int64_t cell) const {
     int corner[3];
     job.frame.set_corner(cell, corner);
@@ -99,14 +98,14 @@ struct CellWorkBody {
 /// of all its covered voxels.
 ///
 /// Conservative: a cell is filled only if the source is constant at every position at which the
-/// cell could be sampled, so the output is the same as if it were sampled.
+/// cell could be sampled, so the output is the same as with sampling.
 /// @param exec            where to run
 /// @param job             all but cell_work
 /// @param uniform         map of the job's source, or of its coefficients where it has some; empty:
 ///                        no cell is filled
 /// @param touched         from cell_merge, shape [cell_count]; empty: all cells are touched
 /// @param work            out, shape [cell_count]
-/// @param constant_count  the number of filled cells is added to it, shape [1]; empty: not wanted
+/// @param constant_count  the number of filled cells is added to it, shape [1]; empty: not counted
 ///
 /// Determinism: which cells are filled may differ between back ends by the rounding of a position;
 /// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.

@@ -2,7 +2,7 @@
 /// The part of a voxel's box within half-spaces, and its volume.
 ///
 /// A part is an unordered list of directed edges, each with the face that it bounds. Where a plane
-/// cuts a face, one new edge closes what is left of it, and the reversed edge belongs to the face
+/// cuts a face, one new edge closes the remaining part, and the reversed edge belongs to the face
 /// that the plane adds. The volume is a sum over edges, so their order does not matter.
 #pragma once
 #include <cstdint>
@@ -63,7 +63,7 @@ TETWARP_HD void append_corner(std::uint8_t (*list)[2], int& count, int corner, i
   list[count++][1] = static_cast<std::uint8_t>(face);
 }
 
-/// normal . x + offset. One function, so that all comparisons use the same rounding.
+/// normal . x + offset: one function, so that all comparisons have the same rounding.
 TETWARP_HD double height_over(const double* normal, double offset, const double* x) {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2] + offset;
 }
@@ -103,9 +103,9 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
     cut_edge[c][1] = static_cast<std::uint8_t>(below);
     return c;
   };
-  // Cut corners where the boundary of a face leaves the half-space and where it enters it again:
-  // one of each per face, or several where rounding decides because the face lies in the plane.
-  // Then any pairing closes the face; the difference in volume is of the order of rounding.
+  // Cut corners at which the boundary of a face leaves the half-space and enters it again: one of
+  // each per face, or several due to rounding if the face is in the plane. Then any pairing closes
+  // the face; the difference in volume is of the order of rounding.
   std::uint8_t leaves[max_corners][2], enters[max_corners][2];  // corner, face
   int leave_count = 0, enter_count = 0;
   for (int e = 0; e < from.edge_count; ++e) {
@@ -188,8 +188,8 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(
   return now;
 }
 
-/// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box() takes
-/// only those whose centres may lie inside.
+/// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box()
+/// includes only those whose centres may be inside.
 TETWARP_HD void widen_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
   constexpr std::int64_t half = quanta_per_voxel / 2;
   for (int axis = 0; axis < 3; ++axis) {

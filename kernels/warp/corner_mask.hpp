@@ -1,6 +1,6 @@
 /// @file corner_mask.hpp
-/// Stage "mask" of the warp: in which half-spaces of a tetrahedron each corner of a cell certainly
-/// lies.
+/// Stage "mask" of the warp: half-spaces of a tetrahedron that certainly contain a corner of a
+/// cell.
 #pragma once
 #include <cstdint>
 
@@ -27,7 +27,7 @@ TETWARP_HD std::uint16_t corner_mask_of(const TetSetup& tet,
     const double offset = tet.plane[3][face];
     const double value =
         tet.plane[0][face] * dx + tet.plane[1][face] * dy + tet.plane[2][face] * dz + offset;
-    // A thousand times the rounding error of the line above, fused or not.
+    // 1000 times the rounding error of the line above, fused or not.
     const double margin = (fabs(dx) + fabs(dy) + fabs(dz) + fabs(offset) + 1) * 0x1p-40;
     mask |= unsigned(value < -margin) << (2 * face);
     mask |= unsigned(value > tet.height[face] + margin) << (2 * face + 1);
@@ -56,7 +56,7 @@ struct CornerMaskBody {
 /// Marks the half-spaces in which each corner of a cell certainly lies. A cell is rejected if all
 /// its eight masks share an outside bit, and accepted if all have all inside bits.
 ///
-/// Conservative both ways: rounding never sets a bit, so culling never changes the output.
+/// Conservative: rounding never sets a bit, so culling never changes the output.
 /// @param exec            where to run
 /// @param setups          from tet_setup, shape [tet_count]
 /// @param corner_offsets  first corner of each tetrahedron, shape [tet_count + 1]

@@ -1,6 +1,6 @@
 /// @file face_sign.hpp
 /// Exact test on which side of a face a voxel centre lies, by 128-bit integers on quantized nodes.
-/// On the face counts as inside: tetrahedra are closed.
+/// Points on a face are inside: tetrahedra are closed.
 ///
 /// Bounds: with nodes of a tetrahedron at most 2^40 quanta (2^20 voxels) apart, a normal component
 /// is below 2 * 2^80, and a plane value within 16 voxels of the box below 3 * 2^81 * 2^41 < 2^124.

@@ -59,9 +59,8 @@ TETWARP_HD void map_hex(const HexCorners& hex, const double* u, double* x, Matri
   }
 }
 
-/// How far outside of [0, 1] local coordinates may lie. A curved face differs from the two
-/// triangles that ownership is decided by, so some owned voxels lie a little outside of the
-/// hexahedron.
+/// How far outside of [0, 1] local coordinates may lie. Ownership uses two triangles in place of a
+/// curved face, so some owned voxels are slightly outside of the hexahedron.
 constexpr double hex_margin = 0.25;
 
 /// Finds the local coordinates u of position `target` by damped Newton iteration from the given u.

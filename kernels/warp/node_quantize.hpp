@@ -58,8 +58,8 @@ struct NodeQuantizeBody {
 /// @param map        world to index space of the grid
 /// @param frame      subtracted from the result [voxel, whole]
 /// @param positions  x y z per node [world], shape [3 * node_count]
-/// @param nodes      out, shape [node_count]; a bad position gives `bad_node`, which tet_setup
-///                   reports by class
+/// @param nodes      out, shape [node_count]; `bad_node` for a bad position, which tet_setup()
+///                   counts by class
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes and 15 operations per node.
 /// Source: ours.

@@ -22,8 +22,8 @@ struct NodeMovedBody {
   }
 };
 
-/// One index = one tetrahedron; any order. Subtracts moved tetrahedra from the class counts, to
-/// which moved_tet_setup() adds their new classes.
+/// One index = one tetrahedron; any order. Subtracts moved tetrahedra from the class counts;
+/// moved_tet_setup() adds their new classes.
 struct TetMovedBody {
   View<const std::int32_t> tets;
   View<const std::uint8_t> node_moved;
@@ -59,7 +59,7 @@ struct TetMovedBody {
 /// @param moved         out, 1 where a tetrahedron has moved, shape [tet_count]
 /// @param moved_counts  out, the same as int64 for a scan, shape [tet_count + 1]
 /// @param class_counts  in and out: moved irregular tetrahedra are subtracted from it
-/// @param hexes         hexahedra; all tetrahedra of one move if any of its nodes does
+/// @param hexes         hexahedra; all tetrahedra of a hexahedron move if any of its nodes does
 ///
 /// Determinism: same bits on every back end. Cost: 48 bytes read per node, 20 per tetrahedron.
 /// Source: ours.

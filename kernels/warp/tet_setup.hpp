@@ -36,7 +36,7 @@ struct TetSetup {
 };
 
 /// Tetrahedra whose box touches fewer cells get no corner masks: most of their cells would be kept
-/// anyway, and testing voxels of the few others costs less than masks for all.
+/// anyway, and testing the voxels of the others costs less than masks for all.
 constexpr std::int64_t fewest_masked_cells = 27;
 
 /// Largest extent of a tetrahedron whose face normals fit in 64 bits [quantum].
@@ -93,8 +93,8 @@ TETWARP_HD bool is_whole_shift(const TetNodes& output,
   return whole;
 }
 
-/// Converts an integer below 2^124 within an ulp. Branch-free; takes a tenth of the time of the
-/// compiler's conversion.
+/// Converts an integer below 2^124 within an ulp. Branch-free, ten times as fast as the compiler's
+/// conversion.
 TETWARP_HD double as_double(Int128 value) {
   const Int128 all = value >> 127;
   const Int128 size = (value ^ all) - all;
@@ -181,7 +181,7 @@ struct TetSetupBody {
   /// Out, coarse corners of the box, none where it touches fewer than fewest_masked_cells cells,
   /// shape [tet_count + 1], the last entry for the sum.
   View<std::int64_t> corner_counts;
-  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], likewise
+  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], as above
   View<std::int64_t> class_counts;  ///< irregular ones are added to it, shape [tet_class_count]
   HexView hexes = {};               ///< hexahedra that the last tetrahedra are parts of
 

@@ -35,7 +35,7 @@ TETWARP_HD bool is_averaging(const VoxelTransform& transform) {
   return transform.parts[0] > 1 || transform.parts[1] > 1 || transform.parts[2] > 1;
 }
 
-/// Which transforms a job wants, and what they are computed from.
+/// The transforms of a job, and the constants for computing them.
 struct TransformChoice {
   bool averages;  ///< average samples where the source is compressed
   bool divides;   ///< divide by |det F|, F the deformation gradient
@@ -123,7 +123,7 @@ struct TetTransformBody {
   TransformChoice choice;
   View<VoxelTransform> transforms;
   View<std::int64_t>
-      averaged_count;  ///< changed by the number of averaging ones; size 0: not wanted
+      averaged_count;  ///< changed by the number of averaging ones; size 0: not counted
 
   TETWARP_HD void operator()(std::int64_t t) const {
     if (moved.size > 0 && moved[t] == 0) return;
@@ -169,8 +169,7 @@ struct TetTransformBody {
 /// @param moved           from tet_moved; empty: all have moved
 /// @param choice          see TransformChoice
 /// @param transforms           in and out, shape [tet_count]
-/// @param averaged_count  in and out: number of tetrahedra that average, shape [1]; empty: not
-/// wanted
+/// @param averaged_count  in and out: tetrahedra that average, shape [1]; empty: not counted
 ///
 /// Determinism: numbers of parts are the same on every back end; matrices agree within 2^-48
 /// relative times the condition number of F. Cost: about 1500 operations per rotation.

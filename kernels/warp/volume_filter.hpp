@@ -70,9 +70,9 @@ TETWARP_HD Real third_sine(Real x) {
 
 /// Lanczos-windowed sinc of three lobes: sinc(x) sinc(x / 3), normalized to sum one.
 ///
-/// With s(x) = sin(pi x / 3), all six numerators follow from s(t) and s(1 - t), for s(1 + t) =
-/// s(t) + s(1 - t) and s(x) = s(3 - x); sin(pi t), common to all, cancels. Multiplied by t (1 - t),
-/// nothing is divided by zero.
+/// With s(x) = sin(pi x / 3), all six numerators follow from s(t) and s(1 - t), because s(1 + t) =
+/// s(t) + s(1 - t) and s(x) = s(3 - x); sin(pi t), common to all, cancels. Multiplication by t (1 -
+/// t) avoids divisions by zero.
 /// @param w  out, weights of the samples at offsets -2 to 3 from the voxel below
 template <class Real>
 TETWARP_HD void lanczos_weights(Real t, Real* w) {
@@ -130,7 +130,7 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
     const int nearest = taps.count / 2 - (t < Real(0.5) ? 1 : 0);
     bool is_plain = true;
     for (int i = 0; i < taps.count; ++i) {
-      // A tap of zero weight reads the nearest sample, so that NaN there does not spread.
+      // A tap of zero weight reads the nearest sample, so that a NaN there does not spread.
       const int voxel = first + (taps.weight[axis][i] == Real(0) ? nearest : i);
       const int there =
           filter == Filter::bspline ? mirrored(voxel, last) : min_of(max_of(voxel, 0), last);

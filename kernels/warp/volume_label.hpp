@@ -14,7 +14,7 @@ namespace tetwarp {
 /// whose sum is its cube, so sums and ties are exact on every processor.
 constexpr double label_steps = 0x1p20;
 
-/// The label with the largest sum of trilinear weights; the lowest of several.
+/// The label with the largest sum of trilinear weights; of equal ones the lowest.
 /// @param label     labels of the eight neighbours, x fastest
 /// @param fraction  of the way from the lower to the upper neighbours, per axis
 template <class T, class Real>
@@ -44,7 +44,7 @@ TETWARP_HD T heaviest_label(const T* label, const Real* fraction) {
 }
 
 /// The label at a position. Equals interpolating the indicator function of each label linearly and
-/// taking the label of the largest value, but makes no such volumes.
+/// taking the label of the largest value, without making these volumes.
 /// @pre the source has one component
 template <class T>
 TETWARP_HD T label_at(const SourceView<T>& source, const SourcePosition<ArithmeticOf<T>>& at) {

@@ -17,7 +17,7 @@
 
 namespace tetwarp {
 
-/// Whether a filter is not served by tap_of() and sample(): all but nearest and linear.
+/// Whether a filter is wider than tap_of() and sample() support: all but nearest and linear.
 TETWARP_HD bool is_wide(Filter filter) {
   return filter > Filter::linear;
 }
@@ -35,14 +35,16 @@ constexpr float rim_slack = 0x1p-19f;
 
 /// The source's samples [k][j][i][component], and data that some filters need with them.
 ///
-/// May be a window of the source. Then no position is sampled beyond the window unless the source
-/// ends there too; positions are relative to its first voxel, a whole-voxel shift without rounding.
+/// May be a window of the source. Then no position is sampled beyond an end of the window unless
+/// the source ends there too; positions are relative to its first voxel, a whole-voxel shift
+/// without rounding.
 template <class T>
 struct SourceView {
   const T* data;
   int dims[3];
   int components;
-  /// Coefficients of the spline through the samples, in their order; null unless the filter is one.
+  /// Coefficients of the spline through the samples, in their order; null unless the filter is
+  /// bspline.
   const ArithmeticOf<T>* coefficients = nullptr;
   /// Smallest and largest sample per component, to which values are clamped; null: no clamping.
   const ArithmeticOf<T>* range = nullptr;
@@ -96,7 +98,7 @@ TETWARP_HD void local_position(const SourceMap<Real>& map, int i, int j, int k, 
 /// Neighbours and weights of one position for nearest and linear.
 template <class Real>
 struct Tap {
-  bool inside;                ///< the source is defined there; else the voxel gets the background
+  bool inside;                ///< the source is defined there; else the voxel is background
   std::int64_t offset[3][2];  ///< of the lower and upper neighbour per axis [sample]
   Real fraction[3];
 };

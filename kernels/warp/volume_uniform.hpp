@@ -19,9 +19,8 @@ constexpr int longest_reach = 5;  ///< edge of the largest constant cube that is
 /// Constant cubes of blocks of the source.
 struct UniformMap {
   /// Per block: edge [block] of a cube of blocks, from this one towards higher i, j and k, in which
-  /// the source is constant; 0 if it is not constant in the block, or its value cannot be filled
-  /// in, see can_fill(). Parts of the cube beyond the end of the source do not count. Size 0:
-  /// unknown.
+  /// the source is constant; 0 if it is not constant in the block, or can_fill() is false for its
+  /// value. Parts of the cube beyond the end of the source are ignored. Size 0: unknown.
   View<const std::uint8_t> reach;
   int blocks[3];
 
@@ -56,8 +55,8 @@ TETWARP_HD std::int64_t voxel_of(const SourceView<T>& source, int i, int j, int 
   return (std::int64_t{k} * source.dims[1] + j) * source.dims[0] + i;
 }
 
-/// Whether interpolation between samples that equal `value` gives `value` bit for bit. True but for
-/// NaN, infinities, whose difference is NaN, and -0.0, which becomes 0.0.
+/// Whether interpolation between samples that equal `value` gives `value` bit for bit. False for
+/// NaN, for infinities, whose difference is NaN, and for -0.0, which becomes 0.0.
 template <class T>
 TETWARP_HD bool can_fill(T value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -219,9 +218,8 @@ struct BlockReachBody {
 /// @param rest        nodes in the source's index space [quantum], shape [node_count]
 /// @param reach       out, see UniformMap, one per block
 /// @param scratch     one per block
-/// @param extended_count  blocks that reach 2 or more are added to it, shape [1]: where there is
-/// none,
-///                    hardly a cell can be filled
+/// @param extended_count  blocks of reach 2 or more are added to it, shape [1]; with none of them
+///                        hardly any cell can be filled
 ///
 /// Determinism: same bits on every back end. Cost: one read of the uniform part of the source, a
 /// row of each other block.

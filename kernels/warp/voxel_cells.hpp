@@ -28,10 +28,10 @@ struct VoxelCellBody {
 /// HexView::cell_of().
 ///
 /// @param exec     where to run
-/// @param hexes    of the mesh; if there are none, nothing is done
+/// @param hexes    of the mesh; without any the call does nothing
 /// @param frame    the output
 /// @param touched  output cells that this step wrote; empty: all
-/// @param owners   in: tetrahedra, out: mesh elements, shape [voxel_count]; empty: not wanted
+/// @param owners   in: tetrahedra, out: mesh elements, shape [voxel_count]; empty: none
 ///
 /// Determinism: same bits on every back end. Cost: 8 bytes per voxel.
 /// Source: ours.

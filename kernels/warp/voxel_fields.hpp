@@ -21,7 +21,7 @@ struct DisplacementMap {
   std::int64_t frame[3];  ///< index of frame voxel (0, 0, 0) in the output grid
 };
 
-/// Output arrays of fields, [voxel][component]; null: not wanted.
+/// Output arrays of fields, [voxel][component]; null: not written.
 struct VoxelFields {
   float* displacement = nullptr;  ///< 3
   float* jacobian = nullptr;      ///< 1
@@ -110,7 +110,7 @@ struct VoxelFieldsJob {
   View<const TetSetup> setups;
   HexMesh mesh;
   GridAxes axes;
-  View<const TetStrain> strains;     ///< size 0: the displacement alone is wanted
+  View<const TetStrain> strains;     ///< size 0: only the displacement is written
   View<const std::int32_t> owners;   ///< -1: none
   View<const std::uint8_t> touched;  ///< cells to write; size 0: all
   OutputFrame frame;
@@ -230,17 +230,16 @@ struct VoxelFieldsBody {
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<false>(index); }
 };
 
-/// The same for voxels in hexahedra. A kernel of its own, as it needs many registers.
+/// The same for voxels in hexahedra. A separate kernel, because it needs many registers.
 struct HexFieldsBody {
   VoxelFieldsJob job;
   TETWARP_HD void operator()(std::int64_t index) const { job.write_stretch<true>(index); }
 };
 
-/// Writes the wanted fields at every voxel of the touched cells; zeros at uncovered voxels.
+/// Writes the fields at every voxel of the touched cells; zeros at uncovered voxels.
 ///
 /// @param exec  where to run
-/// @param job   input and output; its stretch is set here: whole rows on the CPU, single voxels on
-/// a
+/// @param job   input and output; `stretch` is set here: whole rows on the CPU, single voxels on a
 ///              device, where adjacent threads then access adjacent memory
 /// @pre   job.owners has the owners of all voxels, also in cells that are not written
 ///

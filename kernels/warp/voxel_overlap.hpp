@@ -1,6 +1,6 @@
 /// @file voxel_overlap.hpp
-/// Stage "raster" of a warp that keeps totals: a voxel gets the integral over its box. The source
-/// is taken as constant in the box of each of its voxels and moved with the tetrahedra.
+/// Stage "raster" of a warp that keeps totals: a voxel is the integral over its box. The source is
+/// taken as constant in the box of each of its voxels and moved with the tetrahedra.
 #pragma once
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 namespace tetwarp {
 
 /// One index = one tetrahedron; any order. Extends its box to all voxels that it intersects, and
-/// replaces a whole-voxel shift that holds only to within a quantum by the exact map.
+/// replaces a whole-voxel shift that is not exact by the exact map.
 struct TetWidenBody {
   View<const std::int32_t> tets;
   View<const Node> nodes;
@@ -30,7 +30,7 @@ struct TetWidenBody {
     if (!has_shape || (moved.size > 0 && moved[t] == 0)) return;
     const TetNodes output = tet_nodes(nodes, tets.data + 4 * t);
     widen_box(output, frame, setup);
-    // A shift that holds only to within a quantum would not keep the total exactly.
+    // A shift that is exact only to within a quantum would not keep the total exactly.
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
     if (setup.kind == MapKind::copy && !is_exact_shift(output, source)) {
       double gradient[4][3], at_anchor[4];
@@ -197,8 +197,7 @@ struct VoxelOverlapBody {
 ///
 /// Determinism: values agree within 2^-44 relative between back ends. Cost: microseconds per voxel,
 /// one cut by a plane for each pair of a source and an output voxel that intersect.
-/// Source: ours; that a remap of cell values which keeps totals has to integrate over intersections
-/// is J. K. Dukowicz, 1984.
+/// Source: ours; integration over intersections in a remap that keeps totals: J. K. Dukowicz, 1984.
 template <class Exec>
 void voxel_overlap(Exec& exec, const VoxelOverlapBody& body) {
   exec.for_each("warp/raster", body.frame.voxel_count(), body);

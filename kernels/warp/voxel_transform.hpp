@@ -1,6 +1,5 @@
 /// @file voxel_transform.hpp
-/// Stage "raster" of the warp, voxels whose samples are averaged, reoriented or scaled: computed in
-/// float64, rounded once.
+/// Stage "raster" of the warp for averaged, reoriented or scaled samples: float64, rounded once.
 #pragma once
 #include <cstdint>
 
@@ -92,7 +91,7 @@ TETWARP_HD void set_tensor(const Matrix3& tensor, double* d) {
   d[5] = tensor.at[0][2];
 }
 
-/// Makes v a unit vector. @returns false where it is zero
+/// Makes v a unit vector. @returns false if it is zero
 TETWARP_HD bool normalize(double* v) {
   const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
   for (int axis = 0; axis < 3; ++axis) v[axis] /= length;
@@ -172,7 +171,7 @@ struct TransformSampler {
 };
 
 /// Stores the transformed samples of a voxel at source position map.whole + x. Parts of the voxel
-/// outside the source are ignored; if all are, the voxel gets the background.
+/// outside the source are ignored; if all are outside, the voxel is background.
 /// @param map  gives the size of the voxel in the source
 /// @param out  shape [components]
 template <class T>

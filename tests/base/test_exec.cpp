@@ -25,7 +25,6 @@ struct PlaceBody {
 };
 
 namespace {
-
 /// Segment lengths 0 to 4, many of them empty.
 std::vector<std::int64_t> uneven_lengths(std::int64_t segments) {
   std::vector<std::int64_t> lengths;
@@ -197,6 +196,5 @@ TEST(ExecutorCpu, SortsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(mine, sorted);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

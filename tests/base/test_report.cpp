@@ -1,5 +1,5 @@
 /// @file test_report.cpp
-/// The report as JSON: its field names are an interface.
+/// The report as JSON, whose field names are stable.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 std::set<std::string> names_of(const Json& object) {
@@ -86,7 +85,7 @@ TEST(Report, SumsCountsAndTimesOverSteps) {
   EXPECT_LE(json["timings"]["raster"], json["timings"]["total"]);
 }
 
-/// Each field goes to the entry of its own name: all values differ.
+/// Each field is in the entry of its name; all values differ.
 TEST(Report, MixesUpNoField) {
   Report report;
   report.backend = Backend::reference;
@@ -133,6 +132,5 @@ TEST(Report, ListsTheBackendsOfThisMachine) {
   EXPECT_TRUE(backends[1].usable && backends[1].backend == Backend::cpu);
   EXPECT_TRUE(backends[2].usable && backends[2].backend == Backend::reference);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,7 +17,6 @@
 
 namespace tetwarp::bench {
 namespace {
-
 /// A scene warped by the reference back end.
 struct Warped {
   scenes::Scene scene;
@@ -240,6 +239,5 @@ TEST(BenchWorkloads, InvertNoTetrahedron) {
     EXPECT_EQ(counts.inverted + counts.flat, 0) << workload.name;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::bench

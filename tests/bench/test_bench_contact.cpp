@@ -13,7 +13,6 @@
 
 namespace tetwarp::bench {
 namespace {
-
 /// A stack on two boxes, solved.
 struct Solved {
   ContactProblem problem = scenes::box_stack({.boxes = 2});
@@ -58,7 +57,7 @@ TEST(BenchSolutionCheck, OfReportsUsesReportedErrorsAndChecksTheRest) {
   EXPECT_TRUE(check_report(solved.problem, solved.solution, solved.options).fault.has_value());
 }
 
-/// Without friction a sliding box satisfies all contacts, however fast it slides.
+/// Without friction a sliding box satisfies all contacts at any speed.
 TEST(BenchSolutionCheck, RefusesAResultOutOfBalance) {
   Solved solved{.problem = scenes::box_stack({.boxes = 1, .friction = 0})};
   const double push = 0.01;
@@ -94,6 +93,5 @@ TEST(BenchContactCases, HaveNamesOfTheirOwn) {
     EXPECT_GT(names.size(), 50u);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::bench

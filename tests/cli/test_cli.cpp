@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 /// The ramp moved by whole voxels along i, as the scene's mesh does it.
@@ -179,7 +178,8 @@ TEST(Cli, SaysWhichBackEndRanAndWhy) {
   EXPECT_TRUE(result.out.starts_with("reference: asked for\n")) << result.out;
 }
 
-/// Back ends but cpu begin a step before the one before is finished; step 2 repeats step 1.
+/// Back ends other than cpu begin a step before the previous one is finished; step 2 repeats step
+/// 1.
 TEST(Cli, StepsBegunEarlyMakeTheSameFiles) {
   const Scene scene;
   const auto warp = [&](const std::string& backend, std::vector<std::string> more) {
@@ -212,6 +212,5 @@ TEST(Cli, StepsBegunEarlyMakeTheSameFiles) {
     EXPECT_EQ(early["steps"][step]["step"], step);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,10 +11,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
-/// A command line that must fail, and words that its message must hold.
+/// A command line that must fail, and words that its message must contain.
 struct Refused {
   Names words;
   std::string told;
@@ -236,6 +235,5 @@ TEST(BadInput, RefusesATruncatedMesh) {
 
   expect_refused(scene, {warp_with({}), "mesh.vtkhdf"}, 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

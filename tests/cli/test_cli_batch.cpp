@@ -11,10 +11,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
-/// A scene whose batch file is in a folder of its own, so that relative paths show.
+/// A scene whose batch file is in another folder than its data, to test relative paths.
 class Batch : public testing::Test {
  protected:
   Batch() { fs::create_directory(scene / "jobs"); }
@@ -30,7 +29,7 @@ class Batch : public testing::Test {
   Scene scene;
 };
 
-/// A job of the scene's files with more members, e.g. ", \"steps\": 0".
+/// A job of the scene's files with further members, e.g. ", \"steps\": 0".
 std::string job(const std::string& output, const std::string& more) {
   return R"({"volume": "../volume.vtkhdf", "mesh": "../mesh.vtkhdf", "output": ")" + output + "\"" +
          more + "}";
@@ -152,6 +151,5 @@ TEST_F(Batch, RefusesAFileWithoutJobs) {
   }
   EXPECT_EQ(run_command(scene, {"warp", "--batch", "none.json"}).exit_code, 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 void expect_near(const std::vector<double>& actual, const std::vector<double>& expected) {
   ASSERT_EQ(actual.size(), expected.size());
   for (std::size_t i = 0; i < actual.size(); ++i) EXPECT_NEAR(actual[i], expected[i], 1e-5) << i;
@@ -33,7 +32,7 @@ TEST_F(ContactCommand, StopsAFallAndBrakesASlide) {
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5", "solved.hdf5"}));
 }
 
-/// The pyramid bounds each tangent by itself, so that the slower one stops.
+/// The pyramid bounds each tangent separately, so that the slower one stops.
 TEST_F(ContactCommand, BrakesEachTangentByThePyramid) {
   store(sliding_point());
 
@@ -75,7 +74,7 @@ TEST_F(ContactCommand, WritesTheAdhesionOfTheNextStepWhenAsked) {
 
   EXPECT_EQ(solve({"--evolve"}).exit_code, 0);
 
-  // Nothing makes this adhesion grow or fade; its anchors moved apart by dt u.
+  // This adhesion neither bonds nor debonds; the gap of its anchors grew by dt u.
   expect_near(solved("adhesion_next/intensity"), {0.5});
   const std::vector<double> velocity = solved("solution/u");
   expect_near(solved("adhesion_next/gap"), {0.125 * velocity[0], 0, 0});
@@ -209,6 +208,5 @@ TEST_F(ContactCommand, IsUnderstoodByInfo) {
   EXPECT_EQ(after["solution"], "converged");
   EXPECT_LE(after["residual"], 1e-6);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 TEST_F(ContactCommand, LeavesNothingWhenTheDiskIsFull) {
   store(column_of_points(30));
 
@@ -111,6 +110,5 @@ TEST_F(ContactCommand, RefusesToEvolveWithoutAdhesion) {
   EXPECT_NE(result.err.find("/adhesion: is missing"), std::string::npos) << result.err;
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 TEST(CliFields, WritesMaskAndOwnerBesideTheArray) {
@@ -76,6 +75,5 @@ TEST(CliFields, AForwardFieldMayChangeWhereTheVolumeDoesNot) {
     EXPECT_EQ(forward.samples<float>()[3 * 17], 2.0F * static_cast<float>(100 + step));
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

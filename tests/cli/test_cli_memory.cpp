@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
@@ -111,7 +110,8 @@ class MemoryLimit : public testing::Test {
     return Json::parse(text_of(folder / "report.json"));
   }
 
-  const std::string limit = "60M";  ///< source and outputs take as much, the process half of it
+  /// Source and outputs together take as much, the process without them half of it.
+  const std::string limit = "60M";
   TemporaryFolder folder;
 };
 
@@ -225,6 +225,5 @@ TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
   EXPECT_LT(step["bytes_read"].get<double>(), 8 * voxels);
   EXPECT_EQ(folder.names(), (Names{"mesh.vtkhdf", "plan.json", "volume.vtkhdf"}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_cli_ranks.cpp
-/// `mpirun -n 3 tetwarp warp`: outputs and blocks are shared out, errors printed once.
+/// `mpirun -n 3 tetwarp warp`: outputs and blocks are divided among ranks, errors printed once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 using Json = nlohmann::json;
 
@@ -138,6 +137,5 @@ TEST_F(Ranks, AreToldOnceWhatIsWrongWithAllOfThem) {
     EXPECT_EQ(scene.names(), scene.inputs);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,10 +12,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
-/// An old time stamp, so that a rewritten file is told from a kept one without waiting.
+/// An old time stamp that distinguishes kept files from rewritten ones without waiting.
 const fs::file_time_type long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
 
 /// A scene with out_0000 ... out_0003 written an hour ago.
@@ -115,7 +114,7 @@ TEST(Temporal, ResumesOnlyWhenEveryStepIsTheSame) {
   EXPECT_NE(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
 }
 
-/// A mesh with so many steps that the command still runs when the test has seen its first file.
+/// A mesh with so many steps that the command still runs when its first file exists.
 void write_long_mesh(const Scene& scene) {
   std::vector<double> voxels(20000);
   for (std::size_t s = 0; s < voxels.size(); ++s) voxels[s] = 1e-4 * static_cast<double>(s);
@@ -132,7 +131,7 @@ class FolderWatch {
   FolderWatch(const FolderWatch&) = delete;
   FolderWatch& operator=(const FolderWatch&) = delete;
 
-  /// Waits for it; false after half a minute.
+  /// Waits for that file; false after half a minute.
   bool sees_new_file() const {
     pollfd events{notifier_, POLLIN, 0};
     return poll(&events, 1, 30'000) == 1;
@@ -210,6 +209,5 @@ TEST(FullDisk, IsNoticedOnStandardOutput) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(result.has_one_line_error()) << result.err;
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A folder with the ramp, a flow along x everywhere, and a box that shrinks x to a quarter and
 /// turns it to y.
 class TurnedScene : public TemporaryFolder {
@@ -88,6 +87,5 @@ TEST(CliRules, ReportTotalsOfWhatIsKept) {
   EXPECT_NEAR(after, before, 1e-5 * before);
   EXPECT_NE(total("density").second, after);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,12 +16,11 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 /// A folder with volume.vtkhdf, 48 voxels per axis, one array half and one all air, and mesh.vtkhdf
-/// with six steps: a corner of the mesh bulges, then stays, then a node behind the volume's end
-/// moves.
+/// with six steps: first a corner of the mesh bulges, then nothing moves, then a node beyond the
+/// volume's end moves.
 class PartlyMoving : public TemporaryFolder {
  public:
   PartlyMoving() {
@@ -107,7 +106,7 @@ TEST(CliSkip, ReportsPerStepWhatStayed) {
   EXPECT_LT(steps[4]["counts"]["tets_unchanged"], 1080);
 }
 
-/// Deflating takes a processor of its own: each step is then written while the next is computed.
+/// With compression each step is written while the next one is computed.
 TEST(CliSkip, StepsWrittenBesideTheNextAreTheSame) {
   const PartlyMoving scene;
 
@@ -121,12 +120,12 @@ TEST(CliSkip, StepsWrittenBesideTheNextAreTheSame) {
   for (const char* same : {"voxels", "covered", "tets_unchanged"}) {
     EXPECT_EQ(beside[same], after[same]) << same;
   }
-  // The second of two outputs holds nothing yet when it is first written to.
+  // The second of the two outputs is empty when it is first written.
   EXPECT_GT(beside["cells_unchanged"], 0);
   EXPECT_LT(beside["cells_unchanged"], after["cells_unchanged"]);
 }
 
-/// Steps 3, 4 and 5 show what step 2 shows: their offset is repeated.
+/// Steps 3, 4 and 5 equal step 2: their offset is repeated.
 TEST(CliSkip, StoresTemporalStepsThatLookTheSameOnce) {
   const PartlyMoving scene;
 
@@ -138,6 +137,5 @@ TEST(CliSkip, StoresTemporalStepsThatLookTheSameOnce) {
   EXPECT_EQ(std::filesystem::file_size(scene / "fast.vtkhdf") / samples, 3u);
   EXPECT_EQ(std::filesystem::file_size(scene / "slow.vtkhdf") / samples, 6u);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Names = std::vector<std::string>;
 
 TEST(Cli, LeadsFromAVolumeToAPicture) {
@@ -93,6 +92,5 @@ TEST(Cli, DemoNeedsNoFileAndWritesAllItPromises) {
   }
   EXPECT_NE(result.out.find("before_after.png"), std::string::npos);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -36,7 +35,7 @@ MatrixXd dense_of(const SparseMatrix& matrix) {
   return dense;
 }
 
-/// A problem with any impulses and velocities, in both orders.
+/// A problem with arbitrary impulses and velocities, in both orders.
 struct Relaxation {
   Relaxation(std::uint32_t seed, Index bodies, Index dofs, double coupling)
       : random(seed),
@@ -104,7 +103,7 @@ struct Relaxation {
 
 const CpuContactExec exec(1);
 
-/// Nodes among nodes take a way of their own.
+/// Problems whose blocks are all nodes use separate code.
 TEST(BodyRelax, ProductsAreTheSameWhetherOnlyNodesAreKnownOrNot) {
   const Relaxation c(96, 40, 3, 0.5);
   SystemView<double> known = c.stages.numbers().system;
@@ -123,7 +122,7 @@ TEST(BodyRelax, ProductsAreTheSameWhetherOnlyNodesAreKnownOrNot) {
   EXPECT_FALSE(Relaxation(97, 4, 6, 0.5).stages.structure.has_only_nodes);
 }
 
-/// The two stages that it joins have tests of their own.
+/// The stage equals the two stages that it combines, which have separate tests.
 TEST(BodyRelax, AStepIsTheDefectAndItsRelaxation) {
   for (const Index dofs : {3, 6, 12}) {
     const Relaxation c(98, 7, dofs, 0.5);
@@ -158,7 +157,7 @@ TEST(BodyRelax, DefectIsWhatTheEquationLeaves) {
   }
 }
 
-/// Without coupling one whole step ends at the solution, from anywhere.
+/// Without coupling one step with omega = 1 reaches the solution from any start.
 TEST(BodyRelax, IsExactInOneStepForBodiesOfTheirOwn) {
   for (const Index dofs : {3, 6, 12}) {
     const Relaxation x(72, 7, dofs, 0);
@@ -223,7 +222,7 @@ TEST(BodyRelax, EveryBlockGathersItsContactsInOrder) {
   }
 }
 
-/// 1100 points are enough to wake the threads.
+/// 1100 points are enough for the executor to use threads.
 TEST(BodyRelax, HasTheSameBitsInAnyOrderAndForAnyNumberOfThreads) {
   constexpr std::int32_t points = 1100;
   std::mt19937 random(77);
@@ -256,6 +255,5 @@ TEST(BodyRelax, HasTheSameBitsInAnyOrderAndForAnyNumberOfThreads) {
   EXPECT_EQ(step(CpuContactExec(2)), one);
   EXPECT_EQ(step(CpuContactExec(3)), one);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,11 +17,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Numbers = std::vector<double>;
 
-// ---- against the reference
-// ---------------------------------------------------------------------------
+// ---- comparison with the reference
 
 using Variant = std::tuple<ContactMethod, FrictionLaw, AdhesionRule>;
 
@@ -79,7 +77,6 @@ TEST_P(ContactSolve, HasTheVelocitiesOfTheReferenceInGlobalForm) {
 }
 
 // ---- one method
-// --------------------------------------------------------------------------------------
 
 class EachMethod : public ::testing::TestWithParam<ContactMethod> {};
 INSTANTIATE_TEST_SUITE_P(By, EachMethod, ::testing::ValuesIn(methods), [](const auto& info) {
@@ -163,6 +160,5 @@ TEST_P(EachMethod, TheOrderOfContactsAndBodiesDoesNotMatter) {
     EXPECT_LE(relative_distance(solution.body_velocity, other.body_velocity), 1e-7);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class EachLaw : public ::testing::TestWithParam<FrictionLaw> {};
 using BlockAcceptance = EachLaw;
 INSTANTIATE_TEST_SUITE_P(Each,
@@ -51,8 +50,8 @@ double sag(const RigidWorld& world) {
   return sum;
 }
 
-/// Of the four corners two are pulled and two pressed; rule `restrictive` leaves friction nothing
-/// to add, so that the springs carry the weight whatever the step.
+/// Of the four corners two are pulled and two pressed. With rule `restrictive` friction adds
+/// nothing, so that the springs carry the weight for any step.
 TEST_P(BlockAcceptance, OnAWallTheSpringsCarryTheWeightWhateverTheStepAndNothingCreeps) {
   const double stiffness = 1e7;
   const double expected = gravity / (block_face * stiffness);
@@ -104,8 +103,8 @@ TEST_P(BlockAcceptance, OnAnInclineItSticksBelowTheFrictionAngleAndSlidesAboveIt
 }
 
 /// Bonds grow from beta = 0.1 to 1 under a block that slides to and fro on their springs, without
-/// friction. Were the anchors left where they are, springs would stiffen while stretched and put
-/// a tenth of the kinetic energy in.
+/// friction. With unmoved anchors, springs that stiffen while stretched would add a tenth of the
+/// kinetic energy.
 TEST_P(BlockAcceptance, BondsThatFormUnderShearAddNoEnergy) {
   ContactMaterial material = glue(1e6, 0, 0.1);
   material.bonding_rate = 0.01;
@@ -126,7 +125,7 @@ TEST_P(BlockAcceptance, BondsThatFormUnderShearAddNoEnergy) {
   EXPECT_LE(gain, 1e-12);
 }
 
-/// Corners of the stable range; the stress suite walks all of it.
+/// Corners of the stable range; the stress suite covers all of it.
 TEST_P(BlockAcceptance, AKickedBlockOnTheCeilingGainsNoEnergy) {
   for (const double stiffness : {1e3, 1e7, 1e10}) {
     for (const double dt : {1e-4, 2e-2}) {
@@ -138,7 +137,7 @@ TEST_P(BlockAcceptance, AKickedBlockOnTheCeilingGainsNoEnergy) {
       world.boxes[0].spin = {1, 0.5, 0.2};
       const double start = world.energy();
       double most = 0;
-      // Stiff bonds stop the block within a few long steps; then there is nothing left to see.
+      // Stiff bonds stop the block within a few long steps; later energies are rounding errors.
       for (int step = 0; step < 100 && world.energy() > 1e-20 * start; ++step) {
         world.step();
         most = std::max(most, world.energy());
@@ -203,6 +202,5 @@ TEST_P(BlockAcceptance, OrderMirrorAndUnitsChangeResidualsByRoundingOnly) {
     EXPECT_NEAR(eta_of(rescaled(original, 1, 1, factor)), eta, 1e-11 * eta);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double dt = 0.01;                          // s
 constexpr double area = 1e-4;                        // m^2
 constexpr double stiffness = 1e7;                    // N/m^3
@@ -25,7 +24,7 @@ const double onset = std::sqrt(energy / stiffness);  // gap at which beta = 1 st
 
 using Gap3 = std::array<double, 3>;
 
-/// What happened to one contact in a solve.
+/// Result of one contact.
 struct Event {
   double intensity = 1;
   double normal_impulse = 0;
@@ -111,8 +110,8 @@ TEST(ContactAdhesion, ExactIntegratorAgreesWithAFineIntegration) {
   }
 }
 
-/// Pulled and pressed at once, with debonding from beta = 0.2 on and bonding up to 0.8: from either
-/// end beta meets the other effect on its way to the rest point of both, 0.5.
+/// Pulled and pressed at once, with debonding from beta = 0.2 on and bonding up to 0.8: from 0 or
+/// 1, beta enters the range in which both act and converges to their equilibrium, 0.5.
 TEST(ContactAdhesion, ReachesTheRestPointOfBothEffectsFromEitherEnd) {
   const IntensityLaw law{.bonding = 8, .bonding_decay = 10, .cohesion = 2, .strain = 10};
 
@@ -200,7 +199,8 @@ TEST(ContactAdhesion, BondsUnderCompressionTowardsTheSharesOfThePressure) {
   EXPECT_EQ(evolved({.intensity = 0.9, .normal_impulse = 1e9 * impulse}).intensity, 1);
 }
 
-/// The spring's force C beta^2 g stays, its energy C beta^2 g^2 falls as the gap does.
+/// The spring's force C beta^2 g is constant; its energy C beta^2 g^2 decreases in proportion to
+/// the gap.
 TEST(ContactAdhesion, BondsThatFormMoveTheAnchorsSoThatTheForceIsContinuous) {
   const Event sheared{
       .intensity = 0.3, .normal_impulse = 5e-3, .end_gap = {0, 0.5 * onset, -onset}};
@@ -295,6 +295,5 @@ TEST(ContactAdhesion, RefusesSizesThatDoNotMatch) {
   problem.adhesion.energy.push_back(1);
   EXPECT_THROW(evolve_adhesion(problem, solution), ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -26,7 +25,7 @@ std::vector<MeasuredContact> contacts_of(const ContactProblem& problem, const De
   return contacts;
 }
 
-/// A problem with all that its solver refers to.
+/// A problem with all objects that its solver refers to.
 struct Setting {
   explicit Setting(const ContactProblem& problem, FrictionLaw chosen)
       : law(chosen),
@@ -39,7 +38,7 @@ struct Setting {
     return delassus.free_velocity() + delassus.velocity_change(impulse);
   }
 
-  /// The largest violation of nu in K', y in its dual cone and nu . y = 0, of what free motion has.
+  /// The largest violation of nu in K', y in its dual cone and nu . y = 0, relative to free motion.
   double violation(const VectorXd& impulse, const VectorXd& lift) const {
     const VectorXd u = velocity(impulse);
     double unit = 0, largest = 0, gap = 0;
@@ -129,6 +128,5 @@ TEST_P(Associated, LiftsByFrictionTimesSlip) {
 
   EXPECT_DOUBLE_EQ(lift(0), GetParam() == FrictionLaw::cone ? 2.5 : 3.5);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

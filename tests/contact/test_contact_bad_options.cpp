@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -84,6 +83,5 @@ TEST_P(ContactBadOptions, AreNamedByTheReferenceToo) {
 TEST(ContactBadDevice, IsACudaError) {
   EXPECT_THROW(ContactSolver(ContactOptions{.backend = Backend::cuda, .device = 4096}), CudaError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,11 +11,10 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Constants = ContactConstants<double>;
 
-/// One contact that obeys its law, velocities near by, and its block, of which only a part is
-/// known.
+/// One contact that obeys its law, similar velocities, and its block, of which only a lower bound
+/// is known.
 struct BoundCase {
   explicit BoundCase(std::uint32_t seed) : random(seed) {
     known.friction = draw(0, 1);
@@ -85,6 +84,5 @@ TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastWhatIsSaid) {
   }
   EXPECT_GT(closest, 0.8);  // 0.8 / 0.978 where it is tightest
 }
-
 }  // namespace
 }  // namespace tetwarp::test

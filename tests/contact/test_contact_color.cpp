@@ -20,10 +20,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Colors = std::vector<std::int32_t>;
 
-/// Another executor, passes counted.
+/// Counts the passes of another executor.
 template <class Exec>
 struct Counting {
   Exec exec;
@@ -40,7 +39,7 @@ struct Counting {
   }
 };
 
-/// @param rounds  out: passes over the contacts, the one that prepares them left out
+/// @param rounds  out: passes over the contacts, without the one that prepares them
 template <class Exec>
 Colors colors_of(const Exec& exec, const Lists& groups, std::int64_t group_count, int& rounds) {
   const Lists members = make_transposed(groups, group_count);
@@ -61,7 +60,7 @@ Colors colors_of(const Lists& groups, std::int64_t group_count) {
   return colors;
 }
 
-/// Contacts of two bodies, or of one with something that does not move.
+/// Contacts of two bodies, or of one body with the fixed world.
 Lists random_groups(std::uint32_t seed, std::int64_t contacts, std::int32_t bodies) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<std::int32_t> body(0, bodies - 1);
@@ -226,7 +225,7 @@ TEST(ContactComponents, AreThoseOfASearchInAnyOrder) {
   }
 }
 
-/// The worst case of joining from the wrong end.
+/// The worst case: a chain whose lists are united from its far end.
 TEST(ContactComponents, AChainIsOne) {
   Lists lists;
   for (std::int32_t i = 2000; i-- > 0;) {
@@ -240,6 +239,5 @@ TEST(ContactComponents, AChainIsOne) {
 
   EXPECT_EQ(lowest, std::vector<std::int32_t>(2001, 0));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// The Delassus matrix of a condensed island, stored by blocks, is used like one stored by rows.
 TEST(DenseBlocks, HaveTheStructureAndNumbersOfTheSameMatrixByRows) {
   const ContactProblem dense =
@@ -44,7 +43,7 @@ TEST(DenseBlocks, HaveTheStructureAndNumbersOfTheSameMatrixByRows) {
   EXPECT_EQ(system.delassus, other_system.delassus);
 }
 
-/// The bound that stops the iteration is one from soft to stiff, free to glued.
+/// The bound that stops the iteration holds for soft and stiff bodies, with and without adhesion.
 TEST(ResidualEstimator, WhatIsCalledConvergedIsWithinTheTolerance) {
   for (const double young : {1e4, 1e5, 1e6, 1e7}) {
     for (const double glue : {0.0, 1e6, 4e7}) {
@@ -89,7 +88,7 @@ TEST(ResidualEstimator, BoundsTheErrorOfBodiesAtRest) {
   EXPECT_LE(residual_of(problem, solution.impulse, solution.body_velocity).eta, 1e-8);
 }
 
-/// The first of two islands rests, the other moves.
+/// The first of two islands is at rest, the second moves.
 TEST(ResidualEstimator, SeesAnIslandAsIfItWereAlone) {
   const ContactProblem still =
       slab_at_rest({.cubes = {9, 7, 4}, .contacts = 45, .young = 3e4, .glue = {1e8, 1}});
@@ -110,7 +109,7 @@ TEST(ResidualEstimator, SeesAnIslandAsIfItWereAlone) {
   }
 }
 
-/// Contacts far below, or as near as can be without being pushed: there is nothing to iterate.
+/// Contacts that are open, or closed without force: no iteration is needed.
 TEST(ResidualEstimator, LetsBodiesGoThatNoContactHolds) {
   for (const double offset : {100.0, 0.0}) {
     ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30, .glue = {}});
@@ -155,6 +154,5 @@ TEST(ResidualEstimator, IsRightAboutStiffGlueOnSoftBodies) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

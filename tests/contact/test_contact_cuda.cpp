@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::int64_t block_contacts = 2048;  ///< of kernels/contact/contact_block.cuh
 
 ContactOptions on_device(ContactOptions options) {
@@ -90,7 +89,7 @@ TEST_P(ContactCudaMethods, HasTheVelocitiesOfTheHost) {
   }
 }
 
-/// Too large for a block, so that the whole device works on it stage by stage.
+/// Too large for one block: solved stage by stage by the whole device.
 TEST_P(ContactCudaMethods, SolvesAnIslandLargerThanABlockTakes) {
   const ContactProblem problem =
       scenes::random_local({.seed = 305, .contacts = block_contacts + 100, .neighbors = 2});
@@ -144,7 +143,7 @@ TEST_F(ContactCuda, BodiesOfSixDofsThatAreCoupledAreIterated) {
   expect_solved(global_problem(307, 8, 0.4), options, "bodies");
 }
 
-/// Contacts alone take the place of the whole problem on the device, which has to come back.
+/// A solve of contacts alone replaces the problem on the device; the next solve must copy it again.
 TEST_F(ContactCuda, CoupledAndUncoupledIslandsCanBeMixed) {
   ContactProblem elastic = make_elastic_problem({});
   elastic.block_start.clear();
@@ -244,6 +243,5 @@ TEST_F(ContactCuda, EvolvesAdhesionAsTheHostDoes) {
     EXPECT_EQ(there.debonded, here.debonded);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Wide = long double;
 using Vector = std::array<Wide, 3>;
 
@@ -53,7 +52,7 @@ class ContactLaw : public ::testing::Test {
     c.kind = ContactKind::adhesive;
     return c;
   }
-  /// Solves the contact again and again until its impulse does not change.
+  /// Repeats the update of the contact until its impulse does not change.
   std::array<T, 3> solve(const ContactConstants<T>& c,
                          ContactSwitches switches,
                          const Vector& free,
@@ -76,8 +75,8 @@ class ContactLaw : public ::testing::Test {
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(ContactLaw, Scalars);
 
-/// What contact and friction carry where the velocity is `u`, chosen to obey the law; in the mode
-/// of `trial` contacts are open, stick or slide (pyramid: axis by axis).
+/// Impulse of contact and friction that obeys the law at velocity `u`; `trial` selects open,
+/// sticking or sliding (pyramid: per axis).
 template <class T>
 Vector lawful_force(
     const ContactConstants<T>& c, ContactSwitches switches, int trial, Wide size, Vector& u) {
@@ -103,8 +102,8 @@ Vector lawful_force(
   return nu;
 }
 
-/// A contact whose tangents answer alike is solved by one visit, whatever the sizes: springs from
-/// 1e-12 to 1e12 of its mass, friction from none to 1000.
+/// A contact with an isotropic tangential block is solved by one visit, for springs of 1e-12 to
+/// 1e12 times its mass and friction from 0 to 1000.
 TYPED_TEST(ContactLaw, OneVisitFindsTheImpulseOfAnIsotropicContact) {
   using T = TypeParam;
   for (const ContactSwitches switches : variants) {
@@ -145,8 +144,8 @@ TYPED_TEST(ContactLaw, OneVisitFindsTheImpulseOfAnIsotropicContact) {
   }
 }
 
-/// Visits end at the laws for any coupled block: the normal complementary, friction within its
-/// disc (box), and no friction that could be chosen there would dissipate more.
+/// Repeated visits converge to the laws for any coupled block: normal complementarity, friction
+/// within its disc (box), and maximal dissipation.
 TYPED_TEST(ContactLaw, VisitsEndWhereEveryLawHolds) {
   using T = TypeParam;
   int open = 0, sticking = 0, sliding = 0;
@@ -227,7 +226,7 @@ TYPED_TEST(ContactLaw, WithoutFrictionAndSpringsTangentsCarryNothing) {
   }
 }
 
-/// Both laws and rules are one without friction.
+/// Without friction both laws and both rules are equal.
 TYPED_TEST(ContactLaw, WithoutFrictionTheSpringsAloneAct) {
   using T = TypeParam;
   ContactConstants<T> c = {};
@@ -261,6 +260,5 @@ TYPED_TEST(ContactLaw, TheDiscIsRoundAndTheBoxIsNot) {
   EXPECT_EQ(box[1], T(-0.5));
   EXPECT_EQ(box[2], T(-0.5));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,6 +1,6 @@
 /// @file test_contact_limits.cpp
-/// One contact against closed forms: how adhesion and friction combine, how strong a bond is, how
-/// long it lasts, what it costs to open.
+/// One contact against closed forms: combined adhesion and friction; strength, lifetime and work of
+/// separation of a bond.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,11 +12,9 @@
 
 namespace tetwarp::test {
 namespace {
+// ---- limits of friction and adhesion, for both laws and both rules
 
-// ---- the limits of friction and adhesion, for both laws and both rules
-// ---------------------------
-
-/// A contact that answers a unit impulse by a unit velocity, springs of kappa [kg].
+/// A contact with B = 1/kg along every axis and springs of kappa [kg].
 ContactProblem unit_contact(std::vector<double> free_velocity, double friction, double kappa) {
   ContactProblem problem;
   problem.delassus = {3, 3, {0, 1, 2, 3}, {0, 1, 2}, {1, 1, 1}};
@@ -105,7 +103,6 @@ TEST_P(ContactLimits, FadingAdhesionFrictionOrPressureLeavesNoJump) {
 }
 
 // ---- a bond under load
-// -----------------------------------------------------------------------------
 
 constexpr double area = 1e-2;       // m^2
 constexpr double stiffness = 1e4;   // N/m^3
@@ -217,6 +214,5 @@ TEST(BondStrength, SlowOpeningCostsTheAdhesionEnergyAndFastOpeningMore) {
   EXPECT_GT(medium, slow + 0.05);
   EXPECT_GT(fast, medium + 0.3);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::VectorXd;
 
 /// A of a problem with one island, its places in the order of the structure, and a load.
@@ -82,7 +81,7 @@ TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
   }
 }
 
-/// From well to badly conditioned, at every estimate; a rough solve before has estimated the
+/// At every estimate, from well to badly conditioned; a previous rough solve has estimated the
 /// smallest eigenvalue.
 TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
@@ -151,6 +150,5 @@ TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   EXPECT_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) { return false; }),
                ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Method automatic reaches 1e-12 within 3000 sweeps.
 void expect_solved(const ContactProblem& problem, FrictionLaw law) {
   const ContactOptions options{.law = law, .tolerance = 1e-12, .max_sweeps = 3000};
@@ -73,6 +72,5 @@ TEST(ContactNewton, SolvesJams) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

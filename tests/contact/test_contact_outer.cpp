@@ -1,6 +1,6 @@
 /// @file test_contact_outer.cpp
-/// The outer block-Jacobi iteration over bodies that A couples: what it solves, what its options
-/// do, what it reports, and when it is chosen.
+/// The outer block-Jacobi iteration over bodies that A couples: solutions, options, reports, and
+/// when it is used.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Elastic nodes and bodies of six dofs that A couples and contacts link.
 ContactProblem mixture() {
   ContactProblem soft = make_elastic_problem({.cells = 2});
@@ -91,7 +90,7 @@ TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
   }
 }
 
-/// Where A couples nothing, D is A: the inner problem is all there is.
+/// If A couples no blocks, D = A, and the inner problem is the whole problem.
 TEST(BlockJacobi, IsExactInOneStepWhereNothingIsCoupled) {
   const ContactProblem problem = global_problem(133, 6, 0);
   const ContactOptions options = {.tolerance = 1e-9, .relaxation = 1, .inner_sweeps = 2000};
@@ -131,7 +130,7 @@ TEST(BlockJacobi, AcceleratedNeedsAThirdOfThePlainSteps) {
   EXPECT_LT(3 * fast.outer_iterations, slow.outer_iterations);
 }
 
-/// A shorter step takes in proportion more of them.
+/// With a smaller omega the number of iterations grows in proportion.
 TEST(BlockJacobi, HalfTheRelaxationTakesTwiceTheSteps) {
   const ContactProblem problem = make_elastic_problem({});
   ContactOptions options = iterated(ContactMethod::gauss_seidel);
@@ -146,7 +145,7 @@ TEST(BlockJacobi, HalfTheRelaxationTakesTwiceTheSteps) {
 }
 
 /// Bodies with several contacts: better inner solutions save outer steps. Nodes with one contact
-/// each are solved by one sweep, whatever is asked for.
+/// each are solved by one sweep for any inner_sweeps.
 TEST(BlockJacobi, InnerSweepsSaveStepsWhereContactsShareBodies) {
   ContactOptions once = iterated(), often = iterated();
   once.inner_sweeps = 1;
@@ -176,7 +175,7 @@ TEST(BlockJacobi, ReportsWhatItDid) {
 
 TEST(BlockJacobi, HasTheSameBitsForAnyNumberOfThreads) {
   const ContactProblem problem =
-      scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});  // 1365 nodes wake the threads
+      scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});  // 1365 nodes use threads
   ContactOptions options = iterated();
   options.threads = 1;
   const ContactSolution one = solve_contacts(problem, options);
@@ -208,7 +207,7 @@ TEST(BlockJacobi, IsChosenForLargeIslandsOnly) {
             0);
 }
 
-/// Two steps are not enough; the Delassus matrix and Newton's method are.
+/// 100 outer iterations do not converge; the condensed problem does.
 TEST(BlockJacobi, IsFollowedByCondensingWhereItFails) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
 
@@ -218,6 +217,5 @@ TEST(BlockJacobi, IsFollowedByCondensingWhereItFails) {
   EXPECT_TRUE(solution.report.method.starts_with("outer_anderson, "));
   EXPECT_EQ(solution.report.outer_iterations, 100);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_contact_problem.cpp
-/// check_problem() of a contact problem: what is accepted, and the one line about what is not.
+/// check_problem(): accepted problems, and the messages for rejected ones.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,7 +12,6 @@
 
 namespace tetwarp {
 namespace {
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -45,7 +44,7 @@ void PrintTo(const BadProblem& bad, std::ostream* out) {
   *out << bad.name;
 }
 
-/// A body whose last two axes are one but for rounding.
+/// A body whose last two axes are equal up to rounding.
 void make_singular(ContactProblem& problem) {
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(12, 12);
   system(4, 5) = system(5, 4) = 1 - 0x1p-53;
@@ -286,6 +285,5 @@ TEST(ContactProblem, BlocksAreUncoupledRangesOrNodes) {
 
   EXPECT_EQ(blocks_of(problem), (std::vector<std::int32_t>{0, 6, 7, 8, 9, 12, 15, 18, 21, 22}));
 }
-
 }  // namespace
 }  // namespace tetwarp

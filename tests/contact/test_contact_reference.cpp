@@ -14,7 +14,6 @@
 
 namespace tetwarp {
 namespace {
-
 using Eigen::Index;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -29,7 +28,7 @@ VectorXd zeros(const DenseContacts& contacts) {
   return VectorXd::Zero(contacts.free_velocity.size());
 }
 
-/// Largest breach of any condition of the contact laws, in m/s, N s or J.
+/// Largest violation of a condition of the contact laws, in m/s, N s or J.
 double breach(const ContactProblem& problem,
               const ContactSolution& solution,
               const ContactOptions& options) {
@@ -226,7 +225,8 @@ TEST(ContactReference, ReturnsTheBestIterateWhereSweepsRunOut) {
               1e-12);
 }
 
-/// A point between two walls that stand `gap` wider (narrower: < 0) than it is thick, per dt.
+/// A point between two walls.
+/// @param gap  distance of the walls minus the thickness of the point, per dt [m/s]
 ContactProblem point_between_walls(double gap, double friction) {
   ContactProblem problem;
   problem.system = samples::sparse_of(Eigen::Matrix3d::Identity());
@@ -284,6 +284,5 @@ TEST(ContactReference, RefusesWhatCheckRefuses) {
   EXPECT_THROW(solve_contacts_reference(samples::single_contact({-1, 0, 0}, -0.5)),
                ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -11,7 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
 using samples::bond;
 using samples::single_contact;
 
@@ -63,7 +62,7 @@ TEST_P(ReferenceLimit, OfBothAddsThemOrTakesTheLarger) {
   ContactProblem problem = single_contact({-1, 1, 0}, 0.5);
   problem.adhesion = bond(kappa);
 
-  // Side by side: u = 1 - 0.5 - kappa u. The larger: the spring holds less than 0.5.
+  // Parallel: u = 1 - 0.5 - kappa u. Restrictive: the spring carries less than 0.5.
   const double u = 0.5 / (1 + kappa);
   EXPECT_NEAR(impulse_of(problem)[1],
               GetParam().rule == AdhesionRule::parallel ? -0.5 - kappa * u : -0.5, exact);
@@ -110,7 +109,7 @@ TEST_P(ReferenceLimit, OfARecoilBeyondTheBondAddsOrTakesTheLarger) {
 
   const std::vector<double> impulse = impulse_of(problem);
 
-  // Both u and u + o stay negative, so that spring and friction push the same way.
+  // Both u and u + o stay negative, so that spring and friction act in the same direction.
   if (GetParam().rule == AdhesionRule::parallel) {
     // r = 0.5 - 0.3 (u + 1), u = r - 3.
     EXPECT_NEAR(impulse[1], (0.2 + 0.9) / 1.3, exact);
@@ -145,6 +144,5 @@ TEST(ReferenceSlide, AlongADiagonalEndsOnTheDiscOrTheSquare) {
   EXPECT_NEAR(pyramid[1], -0.5, exact);
   EXPECT_NEAR(pyramid[2], -0.5, exact);
 }
-
 }  // namespace
 }  // namespace tetwarp

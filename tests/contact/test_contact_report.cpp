@@ -1,4 +1,3 @@
-/// @file test_contact_report.cpp
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -10,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Json = nlohmann::json;
 
 /// A report whose numbers all differ, in the order of its fields.
@@ -47,7 +45,7 @@ std::set<std::string> names_of(const Json& json) {
   return names;
 }
 
-/// The names are an interface: once released they stay.
+/// The names are stable.
 TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
   const Json json = Json::parse(to_json(counting_report()));
 
@@ -69,7 +67,7 @@ TEST(ContactReport, HasExactlyTheNamesOfTheInterface) {
   EXPECT_EQ(names_of(json["timings"]), (std::set<std::string>{"setup", "solve", "total"}));
 }
 
-/// Each field goes to the entry of its own name: all values differ.
+/// Each field is in the entry of its name; all values differ.
 TEST(ContactReport, MixesUpNoField) {
   const Json json = Json::parse(to_json(counting_report()));
 
@@ -129,6 +127,5 @@ TEST(ContactReport, NamesTheStatuses) {
   EXPECT_STREQ(name_of(ContactStatus::not_converged), "not converged");
   EXPECT_STREQ(name_of(ContactStatus::infeasible), "infeasible");
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_contact_residual.cpp
-/// residual_of(): zero exactly where the laws hold, and the numbers it should be elsewhere.
+/// residual_of(): zero where the laws hold, elsewhere the values computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,6 @@
 
 namespace tetwarp {
 namespace {
-
 using samples::bond;
 using samples::list_of;
 using samples::single_contact;
@@ -86,7 +85,7 @@ TEST(ContactResidual, FclibErrorIsTheDistanceToCoulombsCone) {
 }
 
 TEST(ContactResidual, AddsUpEnergiesAndNamesTheLargestContact) {
-  // Two contacts apart from each other; the second leaves half of its impulse away.
+  // Two uncoupled contacts; the second has half of its impulse.
   ContactProblem problem;
   problem.delassus = samples::sparse_of(Eigen::MatrixXd::Identity(6, 6) * 2);
   problem.free_velocity = {-2, 0, 0, -4, 0, 0};
@@ -190,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(CoupledBy, GlobalResidual, testing::Values(0.0, 0.3), [
 });
 
 TEST(ContactResidual, VelocitiesWithoutImpulsesHideNoWrongImpulse) {
-  // Falling bodies without impulses, presented with velocities of bodies at rest.
+  // Falling bodies without impulses, but with the velocities of bodies at rest.
   std::mt19937 random(12);
   ContactProblem problem = samples::random_global(random, 2, 6, 0, 0.4);
   problem.velocity_offset.assign(problem.velocity_offset.size(), 0);
@@ -251,6 +250,5 @@ TEST(ContactResidual, RefusesASystemThatOnlyItsBlocksMakeLookPositive) {
 
   EXPECT_THROW(residual_of(problem, std::vector<double>{0.0, 0.0, 0.0}, {}), ContactProblemError);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double tolerance = 1e-10;
 
 using Switch = bool ContactSkipOptions::*;
@@ -42,7 +41,7 @@ ContactProblem local_problem(std::uint32_t seed, std::int64_t contacts) {
   return samples::random_local(random, contacts, 0.3, samples::random_kappa(random, contacts));
 }
 
-/// Bodies of their own in rows of one, two, ... bodies, `rows` of them, each an island.
+/// `rows` rows of one, two, ... bodies; each row is an island.
 ContactProblem rows_of_bodies(std::uint32_t seed, Eigen::Index rows) {
   std::mt19937 random(seed);
   ContactProblem whole;
@@ -196,6 +195,5 @@ TEST(ContactSkip, CoupledIslandsStayCondensedWhileTheSystemStays) {
     expect_agreement(with, without);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,6 @@
 /// @file test_contact_solver.cpp
-/// A solver kept from problem to problem, islands side by side, bodies without room or contacts.
+/// A solver used for several problems; independent islands; infeasible contacts; bodies without
+/// contacts.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -19,10 +20,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Numbers = std::vector<double>;
 
-/// Only cuda has to be asked for by name.
+/// cuda is used only if it is named.
 TEST(ContactSolver, RunsOnTheCpuUnlessAskedOtherwise) {
   const auto [automatic, reason] = choose_contact_backend(Backend::automatic);
   const ContactReport report = solve_contacts(local_problem(90, 2)).report;
@@ -66,7 +66,7 @@ TEST(ContactSolver, NoticesWhereStoredZerosComeAndGo) {
   }
 }
 
-/// Many islands, in an order other than that of the contacts; bodies apart and coupled ones.
+/// Many islands, in another order than their contacts; coupled and uncoupled bodies.
 TEST(ContactSolver, ReportsTheContactFarthestFromItsLawAndTheBalance) {
   const ContactProblem packing = scenes::sphere_packing({.seed = 98, .edge = 5, .kept = 0.2});
   for (const ContactProblem& problem :
@@ -166,7 +166,7 @@ TEST(ContactSolver, WithoutContactsBodiesMoveFreely) {
   }
 }
 
-/// Ten digits and more below where it began, of one island and of several.
+/// More than ten digits below the initial residual, with one island and with several.
 TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
   const ContactProblem one = local_problem(93, 12);
   const ContactProblem several = scenes::sphere_packing({.edge = 5, .friction = 0, .kept = 0.15});
@@ -177,12 +177,12 @@ TEST(ContactSolver, TheHistoryEndsWithTheResidual) {
 
     ASSERT_GE(report.residual_history.size(), 2U);
     EXPECT_GT(report.residual_history.front(), 1e-3);
-    // The report measures velocities once more; at this depth their rounding shows.
+    // The report recomputes velocities, whose rounding is visible at this residual.
     EXPECT_NEAR(report.residual_history.back(), report.residual.eta, 0.01 * report.residual.eta);
   }
 }
 
-/// Bodies that A couples start in float32 and end, where that is not enough, in float64.
+/// Bodies that A couples are iterated in float32 first and, if that is not enough, in float64.
 TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
   const ContactProblem problem = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});
   ContactOptions options = {.max_sweeps = 100000, .coupling = ContactCoupling::iterated};
@@ -199,6 +199,5 @@ TEST(ContactSolver, IteratesInFloat32FirstWithThatOption) {
     EXPECT_NE(coarse.impulse, fine.impulse) << tolerance;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

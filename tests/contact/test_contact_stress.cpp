@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 struct EnergyRun {
   double max_energy = 0;  ///< after the start, as a fraction of the energy at the start
   bool is_finite = true;
@@ -45,7 +44,7 @@ EnergyRun kicked_block(const ContactMaterial& material, double dt, std::int64_t 
   return run;
 }
 
-/// Law: with 10 sweeps a step or more, energy never exceeds that of the start.
+/// Law: with 10 or more sweeps per step the energy never exceeds the initial energy.
 TEST(ContactStress, EnergyNeverExceedsTheStartWithTenSweepsOrMore) {
   const std::vector<double> steps = {1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 2e-2};
   for (const std::int64_t sweeps : {10, 25, 100}) {
@@ -99,6 +98,5 @@ TEST(ContactStress, IntensitiesStayInRangeForAnyRates) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

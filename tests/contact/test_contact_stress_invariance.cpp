@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A step in which glued blocks are pulled, pressed and sheared.
 ContactCase busy_case(double friction, double ratio) {
   constexpr int count = 5;
@@ -74,8 +73,8 @@ TEST(ContactStress, MirrorsAndUnitsDoNotChangeTheSolution) {
   }
 }
 
-/// Law: without friction the velocities are those of a strictly convex problem, whatever the order
-/// of contacts and bodies. (With friction there may be several solutions.)
+/// Law: without friction the velocities solve a strictly convex problem, so they do not depend on
+/// the order of contacts and bodies. (With friction there may be several solutions.)
 TEST(ContactStress, OrdersDoNotChangeTheFrictionlessSolution) {
   for (const double ratio : {1.0, 3.0}) {
     const ContactCase original = busy_case(0, ratio);
@@ -89,8 +88,9 @@ TEST(ContactStress, OrdersDoNotChangeTheFrictionlessSolution) {
   }
 }
 
-/// Law: the force that pulls a block off is that of the area, area sqrt(W C), whether 1, 4, 16 or
-/// 64 points share it. The pull grows by 2 % of it per eta / W: measured when the last bond fails.
+/// Law: the force that separates a block is area sqrt(W C), independent of the number of points, 1,
+/// 4, 16 or 64, that share the area. The pull grows by 2 % of it per eta / W: measured when the
+/// last bond fails.
 TEST(ContactStress, PullOffForceDoesNotDependOnTheNumberOfContactPoints) {
   ContactMaterial material = glue(1e6, 0.3);
   material.energy = 0.1;
@@ -117,6 +117,5 @@ TEST(ContactStress, PullOffForceDoesNotDependOnTheNumberOfContactPoints) {
     EXPECT_LT(force, 1.2);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -9,14 +9,13 @@
 
 namespace tetwarp::test {
 namespace {
-
 struct StackRun {
   double worst_eta = 0;
   double sink = 0;  ///< of the top block over its edge
   bool is_finite = true;
 };
 
-/// A stack let go at rest, the top block `ratio` times as heavy as the lowest.
+/// A stack released at rest, the top block `ratio` times as heavy as the lowest.
 StackRun resting_stack(int count, double ratio, std::int64_t sweeps, int steps) {
   WorldOptions options = world_options({.friction = 0.5}, 5e-3);
   options.solving.tolerance = 1e-6;
@@ -32,8 +31,8 @@ StackRun resting_stack(int count, double ratio, std::int64_t sweeps, int steps) 
   return run;
 }
 
-/// Law: a stack at rest that is solved to eta 1e-6 stays at rest, whatever the masses: in 5 steps
-/// (a free fall of 0.03 edges) the top moves by less than 1e-5 edges.
+/// Law: a stack at rest that is solved to eta 1e-6 stays at rest for any masses: in 5 steps (a free
+/// fall of 0.03 edges) the top moves by less than 1e-5 edges.
 TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
   int solved = 0;
   for (const int count : {10, 30}) {
@@ -50,7 +49,7 @@ TEST(ContactStress, SolvedStacksStandWhateverTheMasses) {
   EXPECT_GT(solved, 0);
 }
 
-/// With 10 sweeps a step nothing is promised but finite numbers.
+/// With 10 sweeps per step only finite numbers are required.
 TEST(ContactStress, StacksSolvedByFewSweepsStayFinite) {
   for (const int count : {10, 30}) {
     for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
@@ -58,6 +57,5 @@ TEST(ContactStress, StacksSolvedByFewSweepsStayFinite) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,7 +17,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Eigen::Index;
 
 constexpr ContactOptions variants[] = {
@@ -80,8 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Of, ContactSweep, ::testing::Bool(), [](const auto& inf
   return info.param ? std::string("Delassus") : std::string("Bodies");
 });
 
-/// In whatever order the contacts of a color come, the bits are those of one contact after the
-/// other by (color, index).
+/// For any order within a color the bits equal those of a serial pass sorted by (color, index).
 TEST_P(ContactSweep, HasTheBitsOfTheSequence) {
   const ContactStages stages(row_of_bodies(61, 12, GetParam()));
   const std::vector<std::int64_t> one_run = {
@@ -96,7 +94,7 @@ TEST_P(ContactSweep, HasTheBitsOfTheSequence) {
   }
 }
 
-/// Against velocities of a dense matrix, found anew for every contact.
+/// Comparison with a dense matrix whose velocities are recomputed for every contact.
 TEST_P(ContactSweep, FollowsTheDenseDelassusMatrix) {
   for (const Index bodies : {1, 2, 9}) {
     const ContactProblem problem = row_of_bodies(62, bodies, GetParam());
@@ -122,7 +120,7 @@ TEST_P(ContactSweep, FollowsTheDenseDelassusMatrix) {
   }
 }
 
-/// Many contacts in one color and few; 1025 are enough to wake the threads.
+/// Colors of many and of few contacts; 1025 are enough to use threads.
 TEST_P(ContactSweep, HasTheSameBitsForAnyNumberOfThreads) {
   for (const std::int64_t size : {1, 31, 32, 33, 1025}) {
     std::mt19937 random(63);
@@ -180,6 +178,5 @@ TEST_P(ContactSweep, SkipsFrozenContactsAndCountsThem) {
   }
   EXPECT_GT(relative_distance(swept.impulse, std::vector<double>(21, 1e-300)), 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

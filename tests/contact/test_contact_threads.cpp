@@ -1,5 +1,5 @@
 /// @file test_contact_threads.cpp
-/// Whole solves large enough that threads do run: bits do not depend on how many there are.
+/// Solves large enough to use threads: bits do not depend on their number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class ContactThreads : public ::testing::TestWithParam<ContactMethod> {
  protected:
   static void expect_same_bits_for_any_number(const ContactProblem& problem,
@@ -51,6 +50,5 @@ TEST_P(ContactThreads, TakeIslandsSideBySide) {
 
   expect_same_bits_for_any_number(problem, 1e-6, 2000);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double dt = 0.01;
 constexpr double area = 1e-4;
 constexpr double stiffness = 1e6;
@@ -90,7 +89,7 @@ TEST(ContactTracker, AContactThatLetGoDoesNotBondAtOnceWhereItStillTouches) {
   EXPECT_EQ(tracker.records()[0].intensity, 0);
   step(tracker, {}, slid);
   EXPECT_TRUE(tracker.records().empty());
-  step(tracker, {at(0, 0)}, slid);  // apart in between: a new touch
+  step(tracker, {at(0, 0)}, slid);  // a new contact after a separation
   EXPECT_EQ(tracker.records()[0].intensity, 1);
 }
 
@@ -151,7 +150,8 @@ TEST(ContactTracker, TheNearestOfSeveralInheritsAndTheKeyComesFirst) {
 
   step(tracker, {at(0.1, 0), at(0.3, 5), at(0.2, 6)});
 
-  // Feature 0 is itself, however near the other is; of 5 and 6 the nearer takes record 1.
+  // Feature 0 matches by its key, although the other is nearer; of 5 and 6 the nearer matches
+  // record 1.
   ASSERT_EQ(tracker.records().size(), 3U);
   EXPECT_EQ(tracker.records()[0].anchor_a[0], 0);
   EXPECT_EQ(tracker.records()[1].anchor_a[0], 0.3);
@@ -235,7 +235,7 @@ TEST(ContactTracker, FillsAProblemThatPassesTheChecks) {
   ContactProblem problem;
   tracker.fill(problem);
 
-  const std::size_t dofs = 9;  // every row on a body of its own
+  const std::size_t dofs = 9;  // every row on a separate body
   for (std::size_t k = 0; k < dofs; ++k) {
     for (SparseMatrix* matrix : {&problem.system, &problem.jacobian}) {
       if (k == 0) *matrix = {9, 9, {0}, {}, {}};
@@ -273,6 +273,5 @@ TEST(ContactTracker, RefusesWhatItCannotFollow) {
   EXPECT_THROW(ContactTracker{options}, std::invalid_argument);
   EXPECT_THROW(ContactTracker(glue(), {ContactRecord{.key = {1, 0, 0, 0}}}), std::invalid_argument);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using lorentz::Vector;
 
 /// Two points inside each of the cones of one, two and three dimensions.
@@ -55,6 +54,5 @@ TEST(LorentzCone, ScalingMakesTwoPointsOne) {
     EXPECT_TRUE(product.isIdentity(1e-13)) << product;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,6 +1,6 @@
 /// @file emulated_backend.cpp
 /// Back end cuda on the emulated device: executor, pipeline and kernels are those of the real one;
-/// scan, selection and sort, which are CUB's there, use the standard library.
+/// scan, selection and sort use the standard library in place of CUB.
 #include <algorithm>
 #include <cstdint>
 #include <memory>
@@ -11,10 +11,8 @@
 #include "host/warp/cuda/cell_raster_cuda.cuh"
 
 namespace tetwarp {
-
 namespace {
-
-/// Work on a stream that is no kernel of ours.
+/// Work on a stream other than kernels.
 template <class Work>
 void enqueue(cudaStream_t stream, Work&& work) {
   const std::lock_guard guard(simt::Device::only().lock);
@@ -27,7 +25,6 @@ void enqueue(cudaStream_t stream, Work&& work) {
 void take_scratch(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
   scratch.reserve(256 + count / 32);
 }
-
 }  // namespace
 
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {

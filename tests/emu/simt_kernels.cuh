@@ -1,5 +1,5 @@
 /// @file simt_kernels.cuh
-/// Small kernels for the tests of the emulation: correct ones, and ones broken in one way each.
+/// Small kernels for the tests of the emulation: correct ones, and ones with one error each.
 #pragma once
 #include "kernels/exec/launch.hpp"
 
@@ -65,7 +65,7 @@ __global__ void __launch_bounds__(96)
   if (threadIdx.x == 0) *kept = base;
 }
 
-/// What each shuffle gives lane by lane, in segments of eight.
+/// Results of each shuffle per lane, in segments of eight.
 __global__ void shuffle_kernel(int* broadcast, int* up, int* down, int* crossed) {
   const int lane = static_cast<int>(threadIdx.x);
   broadcast[lane] = __shfl_sync(all_lanes, lane, 3, 8);
@@ -89,7 +89,7 @@ __global__ void extremes_kernel(const int* values, int* low, int* high) {
   atomicMax(high, values[threadIdx.x]);
 }
 
-/// Each lane hands its left neighbour a value through shared memory.
+/// Each lane passes a value to its left neighbour through shared memory.
 template <bool has_barrier>
 __global__ void neighbor_kernel(unsigned* out) {
   __shared__ unsigned values[32];

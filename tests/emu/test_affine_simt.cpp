@@ -10,11 +10,10 @@
 
 namespace tetwarp::bench {
 namespace {
-
 constexpr int dims[3] = {19, 13, 11};
 constexpr double turn[3][4] = {{0.8, -0.6, 0.02, 6}, {0.6, 0.8, 0, -3}, {0, -0.1, 0.9, 0.3}};
 
-/// Affine in the position: linear interpolation gives it back.
+/// An affine function of the position, which linear interpolation reproduces.
 double ramp(double i, double j, double k) {
   return 3 * i - 2 * j + 5 * k + 100;
 }
@@ -30,7 +29,7 @@ std::vector<float> sampled(const Source& source, bool blends, TileShape shape) {
   return output;
 }
 
-/// Samples of the ramp, bricked where asked for.
+/// Samples of the ramp, on request in bricks.
 struct Ramp {
   std::vector<float> samples = std::vector<float>(19 * 13 * 11);
   LinearSource<float> linear{samples.data(), {dims[0], dims[1], dims[2]}};
@@ -93,6 +92,5 @@ TEST_P(AffineSimt, LayoutsHaveTheSameBitsAndEveryVoxelIsWritten) {
     EXPECT_EQ(std::count(output.begin(), output.end(), -1.0f), 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::bench

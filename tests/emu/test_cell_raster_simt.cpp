@@ -1,6 +1,6 @@
 /// @file test_cell_raster_simt.cpp
 /// The hand-mapped raster kernel, run by emulation in several thread orders, gives the bits of the
-/// row-by-row raster of the host. A program of its own: the emulation defines CUDA's names.
+/// row-by-row raster of the host. A separate program, because the emulation defines CUDA's names.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,7 @@
 
 namespace tetwarp::test {
 namespace {
-
-/// What a raster job varies in.
+/// Parameters of a raster job.
 struct RasterCase {
   std::string scene = "waved";
   PixelType type = PixelType::float32;
@@ -32,7 +31,7 @@ struct RasterCase {
   std::optional<Region> region = {};
 };
 
-/// Everything that a raster writes.
+/// Outputs of a raster.
 template <class T>
 struct Rastered {
   std::vector<T> volume;
@@ -82,7 +81,7 @@ class RasterBench {
     return most;
   }
 
-  /// A third of the cells each: left alone, sampled, filled with the value of a voxel.
+  /// A third of the cells each: kept, sampled, filled with the value of a voxel.
   void mix_work() {
     const auto samples = static_cast<double>(source_.grid.voxel_count());
     for (std::int64_t cell = 0; cell < input_.frame.cell_count(); ++cell) {
@@ -288,6 +287,5 @@ TEST(CellRasterSimt, EveryVoxelIsWritten) {
   EXPECT_EQ(std::ranges::count(blocks.owner, -99), 0);
   EXPECT_EQ(std::ranges::count(blocks.mask, 0xee), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 DeviceCalls calls_of(ContactSolver& solver, const ContactProblem& problem) {
   take_calls();
   EXPECT_TRUE(solver.solve(problem).converged());
@@ -59,7 +58,7 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
 
   const DeviceCalls short_solve = calls_of(few, problem), long_solve = calls_of(many, problem);
 
-  EXPECT_EQ(short_solve, long_solve);  // whatever the number of sweeps
+  EXPECT_EQ(short_solve, long_solve);  // for any number of sweeps
   EXPECT_LE(long_solve.count(DeviceCall::launch), 12);
 }
 
@@ -72,6 +71,5 @@ TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {
     expect_same_bits(solver.solve(problem), first, "another order of threads");
   });
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,6 +1,6 @@
 /// @file test_contact_simt.cpp
 /// Islands solved by one block each, run by emulation in several thread orders on the host's own
-/// arrays: sweeps have the bits of the host, accelerated methods its answers.
+/// arrays: sweeps have the bits of the host, accelerated methods its results up to rounding.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 ContactSystem<double> system_in(const SweepScene& scene, double) {
   return scene.system;
 }
@@ -91,7 +90,7 @@ class IslandSolves {
   }
 
   std::vector<IslandResult> results;
-  std::vector<IslandSums> sums;  ///< of what blocks have found
+  std::vector<IslandSums> sums;  ///< of the results of the blocks
   std::vector<ContactEvent> logs;
   std::vector<IslandEnd> host_ends;
   std::vector<ContactSums> host_sums;
@@ -196,7 +195,7 @@ TEST(ContactIslandSimt, FrozenContactsAreTheSameOnes) {
   expect_equal_bits<double>(packed_spheres(100), {}, false, true);
 }
 
-/// Every method, to a tolerance: the same answer but for the order of sums.
+/// Every method, to a tolerance: equal results up to the order of sums.
 TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
   const ContactProblem problems[] = {
       scenes::random_local({.seed = 10, .contacts = 60, .neighbors = 2}), packed_spheres(100)};
@@ -259,7 +258,7 @@ TEST(ContactIslandSimt, EventsAreThinnedOutEvenly) {
   }
 }
 
-/// The sums of a whole device: its own fixed tree, whatever the order of threads.
+/// The sums of a whole device: its own fixed tree, for any order of threads.
 TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
   const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
   std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);
@@ -290,6 +289,5 @@ TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
     EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
   });
 }
-
 }  // namespace
 }  // namespace tetwarp::test

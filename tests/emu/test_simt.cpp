@@ -1,6 +1,6 @@
 /// @file test_simt.cpp
-/// The emulation of CUDA: correct kernels give what plain loops give, in every order of threads;
-/// broken ones give something else in some order, or are reported.
+/// The emulation of CUDA: correct kernels give the results of plain loops in every order of
+/// threads; broken ones give other results in some order, or are reported.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,6 @@
 
 namespace tetwarp {
 namespace {
-
 std::vector<int> numbers(int count) {
   std::vector<int> values(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = i * 7919 % 1009;
@@ -197,6 +196,5 @@ TEST(Simt, RunsAgainAfterAFault) {
 
   EXPECT_EQ(sum_of<true>({1, 2, 3}), 6);
 }
-
 }  // namespace
 }  // namespace tetwarp

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 WarpOptions on_device(bool updates = true) {
   WarpOptions options;
   options.backend = Backend::cuda;
@@ -120,6 +119,5 @@ TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
   EXPECT_GT(calls.count(DeviceCall::allocate), 0) << calls;
   EXPECT_TRUE(series.has_bits_of(anew));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// The streams of the only Warper, in the order of their creation.
 enum StreamNumber { compute_stream, upload_stream, download_stream };
 
@@ -56,8 +55,8 @@ TEST_F(EmulatedOverlap, AnyStreamMayRunAheadOfTheOthers) {
   }
 }
 
-/// A step waits once for its positions, then four times, per output, for its kernels: of these the
-/// first counts, as the others come after it on the same stream.
+/// A step waits once for its positions, then four times, per output, for its kernels: only the
+/// first of these is needed, because the others follow it on the same stream.
 TEST_F(EmulatedOverlap, LeavingOutAWaitChangesTheResult) {
   constexpr int waits_of_step = 7;
   const Steps steps = shaken(5);
@@ -124,6 +123,5 @@ TEST_F(EmulatedOverlap, AFailedStepIsNotChargedToTheNext) {
   EXPECT_EQ(timings.setup, expected.setup);
   EXPECT_EQ(timings.raster, expected.raster);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
-# Installs the build in BUILD, then configures, builds and runs the programs in EXAMPLES, which see
-# nothing but the installed files.
+# Installs the build in BUILD, then configures, builds and runs the programs in EXAMPLES, which
+# use only the installed files.
 cmake_minimum_required(VERSION 3.22)
 set(root ${BUILD}/install_test)
 file(REMOVE_RECURSE ${root})

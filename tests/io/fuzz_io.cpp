@@ -3,7 +3,7 @@
 ///
 /// Damages good files, by bytes and by values, and reads them with every reader. Success or an
 /// IoError passes; a crash, a hang, another exception or a large allocation fails. Files are read
-/// in forked children, so that crashes can be counted; those inside HDF5 are counted apart.
+/// in forked children, so that crashes can be counted; those inside HDF5 are counted separately.
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <sys/mman.h>
@@ -29,7 +29,6 @@
 #include "tests/scenes/io_files.hpp"
 
 namespace {
-
 using namespace tetwarp;
 using Clock = std::chrono::steady_clock;
 
@@ -209,7 +208,7 @@ const char* text_of(int status) {
   }
 }
 
-/// Reads damaged files until `seconds` have gone. @returns true when none of them was a failure
+/// Reads damaged files for `seconds`. @returns true when none of them was a failure
 bool fuzz(int seconds, std::uint64_t seed) {
   const auto end = Clock::now() + std::chrono::seconds(seconds);
   const test::ScratchFolder folder;
@@ -242,7 +241,6 @@ bool fuzz(int seconds, std::uint64_t seed) {
   if (hdf5_crashes > 0) std::printf("%d crashes inside HDF5, not counted\n", hdf5_crashes);
   return failures == 0;
 }
-
 }  // namespace
 
 // Sanitizers end the child so that it is counted; HDF5 copes with allocations that are refused.

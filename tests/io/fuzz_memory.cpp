@@ -9,9 +9,7 @@
 #include <new>
 
 namespace {
-
 constexpr std::size_t largest_allocation = std::size_t{64} << 20;  // the files hold a few KiB
-
 }  // namespace
 
 void* operator new(std::size_t bytes) {

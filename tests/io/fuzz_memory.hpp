@@ -3,7 +3,7 @@
 
 namespace tetwarp::test {
 
-/// Exit code of a program with fuzz_memory.cpp in it that asks for far more memory than its files
+/// Exit code of a program linked with fuzz_memory.cpp that requests far more memory than its files
 /// hold.
 constexpr int large_allocation_exit_code = 43;
 

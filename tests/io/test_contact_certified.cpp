@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// sqrt(x' A x).
 double energy_norm(const SparseMatrix& a, const std::vector<double>& x) {
   double sum = 0;
@@ -164,6 +163,5 @@ TEST(ElasticBlock, HasTheVelocitiesOfTheReference) {
         << variant.name;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

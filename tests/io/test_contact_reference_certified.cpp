@@ -20,7 +20,6 @@
 
 namespace tetwarp {
 namespace {
-
 using samples::vector_of;
 
 std::filesystem::path data_folder() {
@@ -118,6 +117,5 @@ TEST_F(ReferenceCertified, SmallProblemsAreSolvedToTheCertifiedVelocity) {
   }
   EXPECT_GT(compared, 0);
 }
-
 }  // namespace
 }  // namespace tetwarp

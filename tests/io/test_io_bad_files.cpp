@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Mode = Hdf5Editor::Mode;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -277,6 +276,5 @@ TEST_F(BadFiles, AreNotWrittenOverFoldersOrDevices) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
   EXPECT_THROW(write_volumes(folder / "none/out", {&samples}), IoError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,8 +13,7 @@
 
 namespace tetwarp::test {
 namespace {
-
-/// A region of a volume's samples, cut out by hand.
+/// A region of a volume's samples, copied voxel by voxel.
 std::vector<std::byte> cut_out(const Volume& volume, const Region& region) {
   const std::size_t voxel = static_cast<std::size_t>(volume.components) * size_of(volume.type);
   const auto& n = volume.grid.dims;
@@ -139,6 +138,5 @@ TEST(IoBlocks, LeaveNothingUnlessFinished) {
   EXPECT_NE(io_error([&] { BlockVolumeWriter(folder / "a.vtkhdf", flat, {}, {}, false); }), "");
   EXPECT_EQ(folder.entry_count(), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

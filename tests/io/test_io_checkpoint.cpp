@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 WorldOptions sticky() {
   WorldOptions options;
   options.time_step = 2e-3;
@@ -25,7 +24,7 @@ WorldOptions sticky() {
   return options;
 }
 
-/// Two boxes thrown onto a floor: they land, bond, shear, and let go in part.
+/// Two boxes thrown onto a floor: they land, bond, shear, and partly debond.
 RigidWorld thrown_boxes() {
   RigidWorld world(sticky());
   world.planes.push_back({{0, 0, 0}, {0, 0, 1}});
@@ -170,6 +169,5 @@ TEST(Checkpoint, NamesWhatIsWrongWithAFile) {
   EXPECT_NE(error_after([&](Hdf5Editor& e) { e.remove(root); }).find("tetwarp_checkpoint"),
             std::string::npos);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class Fclib : public testing::Test {
  protected:
   /// Writes W of local_problem() in another storage.
@@ -111,7 +110,7 @@ TEST_F(Fclib, ReadsMatricesByColumns) {
   EXPECT_EQ(contents(read_contact_problem(file)), contents(local_problem()));
 }
 
-/// Triplets in any order; the arrays go on behind the `nz` entries that count.
+/// Triplets in any order; the arrays are longer than the `nz` entries in use.
 TEST_F(Fclib, ReadsMatricesOfTriplets) {
   write_contact_problem(file, local_problem());
   store_delassus<std::int32_t>(
@@ -129,7 +128,7 @@ TEST_F(Fclib, KeepsRepeatedTripletsThatAddUp) {
   EXPECT_EQ(dense(read_contact_problem(file).delassus), dense(sliding_point().delassus));
 }
 
-/// FCLIB's text and its writers disagree on which of p and i is the row of a triplet.
+/// FCLIB's documentation and its writers differ in which of p and i is the row of a triplet.
 TEST_F(Fclib, ReadsTripletsWithRowsInPWhereOnlyThatFits) {
   ContactProblem problem = sliding_point();
   problem.delassus = {};
@@ -192,7 +191,7 @@ TEST_F(Fclib, TakesMissingAdhesionVectorsAsNone) {
   EXPECT_TRUE(adhesion.energy.empty() && adhesion.saturation_pressure.empty());
 }
 
-/// Empty equality constraints, other groups and other attributes are no reason to refuse a file.
+/// Files with empty equality constraints, other groups or other attributes are accepted.
 TEST_F(Fclib, IgnoresWhatItDoesNotKnow) {
   write_contact_problem(file, local_problem());
   Hdf5Editor(file)
@@ -234,6 +233,5 @@ TEST_F(Fclib, RefusesToWriteAProblemThatCannotBeSolved) {
   EXPECT_TRUE(error.starts_with(file + ": /fclib_local/vectors/mu: friction[1]")) << error;
   EXPECT_EQ(folder.entry_count(), 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Edit = std::function<void(Hdf5Editor&)>;
 using Int = std::int32_t;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -247,6 +246,5 @@ TEST_F(BadFclib, IsNamedWhenSizesAreAbsurd) {
                  {[](Hdf5Editor& e) { e.dataset<Int>("fclib_local/W/i", {huge}, {}); },
                   "/fclib_local/W/i", "more than 2^31 - 1 numbers"}});
 }
-
 }  // namespace
 }  // namespace tetwarp::test

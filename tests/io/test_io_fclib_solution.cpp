@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class FclibSolution : public testing::Test {
  protected:
   ScratchFolder folder;
@@ -114,6 +113,5 @@ TEST_F(FclibSolution, RefusesTheSolutionOfAnotherProblem) {
   EXPECT_NE(error.find("belongs to another problem"), std::string::npos) << error;
   EXPECT_EQ(folder.entry_count(), 1);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

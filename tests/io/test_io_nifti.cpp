@@ -1,4 +1,3 @@
-/// @file test_io_nifti.cpp
 #include <gtest/gtest.h>
 #include <nifti1.h>
 
@@ -11,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A header of a 2 x 3 x 2 int16 volume with unit voxels.
 nifti_1_header plain_header() {
   nifti_1_header header{};
@@ -288,6 +286,5 @@ TEST(Nifti, IsToldByContent) {
   const std::string error = io_error([&] { read_volume(folder / "v.vtkhdf"); });
   EXPECT_NE(error.find("tetwarp import"), std::string::npos) << error;
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,4 +1,3 @@
-/// @file test_io_png.cpp
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -7,7 +6,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t b = at; b < at + 4; ++b) {
@@ -49,6 +47,5 @@ TEST(Png, NamesTheFolderThatIsMissing) {
 
   EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
 }
-
 }  // namespace
 }  // namespace tetwarp::test

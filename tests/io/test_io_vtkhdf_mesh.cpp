@@ -1,4 +1,3 @@
-/// @file test_io_vtkhdf_mesh.cpp
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -7,7 +6,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Mode = Hdf5Editor::Mode;
 using Integers = std::vector<std::int64_t>;
 
@@ -245,6 +243,5 @@ TEST(VtkhdfMesh, KeepsTetrahedraAndHexahedraApart) {
   EXPECT_EQ(reader.mesh().hexes, mesh.hexes);
   EXPECT_EQ(reader.mesh().rest_positions, mesh.rest_positions);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

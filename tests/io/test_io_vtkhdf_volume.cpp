@@ -1,4 +1,3 @@
-/// @file test_io_vtkhdf_volume.cpp
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Mode = Hdf5Editor::Mode;
 
 constexpr PixelType all_types[] = {
@@ -262,6 +260,5 @@ TEST(VtkhdfVolume, IsToldApartFromAMeshByContent) {
   EXPECT_EQ(kind_of(folder / "t"), FileKind::unknown);
   EXPECT_THROW(kind_of(folder / "none"), IoError);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Image = itk::Image<float, 3>;
 using Field = itk::Image<itk::Vector<float, 3>, 3>;
 
@@ -83,6 +82,5 @@ TEST(ItkWarp, ResamplingByTheExportedFieldIsTheWarp) {
   EXPECT_LE(worst, 1e-5 * 3 / 8 + 1e-6);
   EXPECT_GT(compared, mask.size() / 4);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr const char* points = "0 0 0  1 0 0  0 1 0  0 0 1  1 1 1";
 
 /// The legacy format: two tetrahedra, a triangle between them, a displacement of (1, 2, 3) times
@@ -215,6 +214,5 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
   }
   EXPECT_NE(complaint("j.stl", "").find(".msh, .vtu or .vtk"), std::string::npos);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_skip_chunks.cpp
-/// Chunks of background are counted, and not stored unless asked for.
+/// Chunks of background are counted, and stored only if the options require it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// 64x64x80 float32 samples, 16 slices in a chunk, five chunks, one of them not all background.
 Volume mostly_background() {
   Grid grid;
@@ -52,6 +51,5 @@ TEST(SkipChunks, CountsOverArraysAndSteps) {
   EXPECT_EQ(file.chunks, 20);
   EXPECT_EQ(file.chunks_background, 16);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,6 +1,6 @@
 # ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
 
-# Parts in the order in which they run; each builds into a folder of its own below build/.
+# Parts in the order in which they run; each builds into its own folder below build/.
 check_parts=(lint format host tidy small shared cuda release asan fuzz docs)
 
 # source_files EXTENSION...: the C++ and CUDA sources, from the root

@@ -16,7 +16,6 @@
 
 namespace tetwarp {
 namespace {
-
 using Eigen::Vector3d;
 using make_checks::contains;
 using make_checks::lattice_of;
@@ -165,6 +164,5 @@ TEST(Deform, BadArgumentsAreNamed) {
                        "offset"));
   EXPECT_THROW(deform_positions({}, {}, 1), std::invalid_argument);
 }
-
 }  // namespace
 }  // namespace tetwarp

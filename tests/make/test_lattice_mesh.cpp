@@ -16,7 +16,6 @@
 
 namespace tetwarp {
 namespace {
-
 using Eigen::Vector3d;
 using make_checks::contains;
 using make_checks::lattice_of;
@@ -95,7 +94,7 @@ Volume bent_bar(const Grid& grid, int components) {
       for (std::int64_t i = 0; i < grid.dims[0]; ++i) {
         if (k != 1 || (i > 1 && j > 0)) continue;
         const std::int64_t voxel = (k * grid.dims[1] + j) * grid.dims[0] + i;
-        // The last component decides alone.
+        // Only the last component is above the threshold.
         samples[static_cast<std::size_t>((voxel + 1) * components - 1)] = T{1};
       }
     }
@@ -197,6 +196,5 @@ TEST(Lattice, HexahedraAreItsCellsRightSideOut) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp

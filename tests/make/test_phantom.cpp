@@ -11,7 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
 using make_checks::lattice_of;
 using make_checks::smallest_volume;
 
@@ -80,7 +79,8 @@ TEST(Phantom, HasItsOrgansWhereTheyBelong) {
 }
 
 TEST(Phantom, EdgesAreSoft) {
-  // From the air at the body's right side inwards: at most a quarter of the voxels jump.
+  // Rows from the air at the body's right side inwards: in at least three quarters of them the
+  // first voxel of the body is a partial one.
   const auto samples = phantom().samples<float>();
   const Grid& grid = phantom().grid;
   int entries = 0;
@@ -128,6 +128,5 @@ TEST(Phantom, EveryDeformationKeepsItsLatticeRightSideOut) {
 TEST(Phantom, SixCellsMakeTheLatticeOfTheBenchmarks) {
   EXPECT_EQ(lattice_of(phantom(), 6).tets.size(), 720u);
 }
-
 }  // namespace
 }  // namespace tetwarp

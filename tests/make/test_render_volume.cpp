@@ -11,7 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
 using make_checks::contains;
 using make_checks::message_of;
 using make_checks::PixelTypes;
@@ -132,6 +131,5 @@ TEST(Render, BadArgumentsAreNamed) {
   EXPECT_TRUE(
       contains(message_of([&] { picture_of(volume, {.low = nan, .high = {}}); }), "not finite"));
 }
-
 }  // namespace
 }  // namespace tetwarp

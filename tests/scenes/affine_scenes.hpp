@@ -1,6 +1,5 @@
 /// @file affine_scenes.hpp
-/// Meshes that one linear map moves, whose warps are known everywhere; and every back end that
-/// answers.
+/// Meshes that one linear map moves, whose warps are known everywhere; and the usable back ends.
 #pragma once
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace tetwarp::test {
 
-/// Those that answer here: a test loops over them.
+/// The usable back ends; tests loop over them.
 inline std::vector<Backend> usable_backends() {
   std::vector<Backend> usable;
   for (const BackendStatus& status : available_backends()) {

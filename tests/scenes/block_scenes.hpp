@@ -18,7 +18,7 @@ inline RigidBox unit_block(int points_per_edge = 2) {
   return make_box(Eigen::Vector3d::Constant(block_edge / 2), 1.0, points_per_edge);
 }
 
-/// Surfaces bonded from the first touch on, which never let go.
+/// Surfaces that bond at the first touch and never debond.
 inline ContactMaterial glue(double stiffness, double friction = 0.5, double intensity = 1) {
   return {.friction = friction, .stiffness = stiffness, .initial_intensity = intensity};
 }

@@ -1,5 +1,5 @@
 /// @file contact_command.hpp
-/// `tetwarp contact` in a folder of its own, for the tests of the command.
+/// `tetwarp contact` in a temporary folder, for the tests of the command.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -117,8 +117,8 @@ inline ContactProblem squeezed_point() {
   return problem;
 }
 
-/// `count` points of 1 kg in a column, each resting on the one below: impulses add up downward, so
-/// that sweeps need long.
+/// `count` points of 1 kg in a column, each resting on the one below. Impulses accumulate downward,
+/// so that sweeps converge slowly.
 inline ContactProblem column_of_points(std::size_t count) {
   ContactProblem problem;
   std::vector<std::vector<double>> mass(3 * count, std::vector<double>(3 * count));

@@ -1,4 +1,3 @@
-/// @file contact_scenes.cpp
 #include "tests/scenes/contact_scenes.hpp"
 
 #include <algorithm>
@@ -9,9 +8,7 @@
 #include "host/base/counter_hash.hpp"
 
 namespace tetwarp::scenes {
-
 namespace {
-
 constexpr double gravity = 9.81;
 
 using Vector = std::array<double, 3>;
@@ -96,7 +93,6 @@ class RigidScene {
   std::vector<Entry> mass_, jacobian_;
   std::int64_t row_ = 0;
 };
-
 }  // namespace
 
 SparseMatrix sparse_matrix(std::int64_t rows, std::int64_t columns, std::vector<Entry> entries) {

@@ -8,7 +8,7 @@
 
 namespace tetwarp::scenes {
 
-/// Adhesion that contacts of a scene get, one and all; stiffness 0: none.
+/// Adhesion of all contacts of a scene; stiffness 0: none.
 struct Glue {
   double stiffness = 0;  ///< C [N/m^3]
   double intensity = 1;  ///< beta
@@ -29,7 +29,7 @@ SparseMatrix sparse_matrix(std::int64_t rows, std::int64_t columns, std::vector<
 void add_glue(
     ContactProblem& problem, const Glue& glue, double time_step, double area, std::uint32_t seed);
 
-/// A Delassus matrix without bodies behind it.
+/// A Delassus matrix that belongs to no bodies.
 struct RandomLocal {
   std::uint32_t seed = 1;
   std::int64_t contacts = 20;
@@ -64,7 +64,7 @@ struct SpherePacking {
 ContactProblem sphere_packing(const SpherePacking& choice);
 
 /// Light and heavy bodies jammed by contacts anywhere between them and the world, many more than
-/// their motions: the impulses are anything but unique.
+/// degrees of freedom: the impulses are not unique.
 struct Jam {
   std::uint32_t seed = 1;
   std::int64_t bodies = 8;
@@ -91,7 +91,7 @@ struct ElasticSlab {
 };
 ContactProblem elastic_slab(const ElasticSlab& choice);
 
-/// Two scenes in one, none of them touching the other.
+/// Two scenes in one, without contacts between them.
 /// @param b  in global form like `a`, without contacts
 ContactProblem beside(ContactProblem a, const ContactProblem& b);
 

@@ -10,9 +10,7 @@
 #include "tests/scenes/scenes.hpp"
 
 namespace tetwarp::scenes {
-
 namespace {
-
 using Vector = std::array<double, 3>;
 
 Vector minus(const Point3& a, const Point3& b) {
@@ -50,7 +48,6 @@ Element element_of(const Point3& a, const Point3& b, const Point3& c, const Poin
   element.volume = std::abs(six) / 6;
   return element;
 }
-
 }  // namespace
 
 ContactProblem elastic_slab(const ElasticSlab& choice) {

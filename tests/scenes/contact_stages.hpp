@@ -1,5 +1,5 @@
 /// @file contact_stages.hpp
-/// A contact problem in the order of its structure, as the stages of the solver get it.
+/// A contact problem in the order of its structure, as the input of the solver's stages.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>

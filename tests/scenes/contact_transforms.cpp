@@ -1,4 +1,3 @@
-/// @file contact_transforms.cpp
 #include "tests/scenes/contact_transforms.hpp"
 
 #include <algorithm>
@@ -8,9 +7,7 @@
 #include <random>
 
 namespace tetwarp::test {
-
 namespace {
-
 constexpr std::array scalars = {&AdhesionState::area,
                                 &AdhesionState::stiffness,
                                 &AdhesionState::tangential_stiffness,
@@ -74,13 +71,12 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
-/// `pattern` again and again, `size` long.
+/// `pattern` repeated up to `size` entries.
 std::vector<double> repeated(const std::vector<double>& pattern, std::size_t size) {
   std::vector<double> result(size);
   for (std::size_t i = 0; i < size; ++i) result[i] = pattern[i % pattern.size()];
   return result;
 }
-
 }  // namespace
 
 ContactCase permuted(const ContactCase& original, std::uint64_t seed) {

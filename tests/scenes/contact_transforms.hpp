@@ -19,7 +19,7 @@ struct ContactCase {
 /// Contacts and bodies in another, random order.
 ContactCase permuted(const ContactCase& original, std::uint64_t seed);
 
-/// Seen in a mirror across x: vectors lose the sign of x, spins that of y and z; frames stay
+/// Mirrored across x: the x of vectors and the y and z of spins change sign; frames stay
 /// right-handed, so tangent 2 is turned round.
 /// @pre every block is a rigid body: velocity, then spin
 ContactCase mirrored(const ContactCase& original);

@@ -17,7 +17,7 @@ inline std::string name_of_backend(const ::testing::TestParamInfo<Backend>& info
   return name_of(info.param);
 }
 
-/// Skips, with the runtime's own reason, where a back end does not answer.
+/// Skips, with the runtime's reason, if the back end is not usable.
 class EachBackend : public ::testing::TestWithParam<Backend> {
  protected:
   void SetUp() override {

@@ -75,7 +75,7 @@ class ExecArrays {
   std::vector<std::shared_ptr<void>> kept_;
 };
 
-/// Skips, with the runtime's own reason, where no device answers.
+/// Skips, with the runtime's reason, if no device is usable.
 template <class Exec>
 class EachExec : public ::testing::Test {
  protected:

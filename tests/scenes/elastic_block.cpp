@@ -1,4 +1,3 @@
-/// @file elastic_block.cpp
 #include "tests/scenes/elastic_block.hpp"
 
 #include <Eigen/Dense>
@@ -8,9 +7,7 @@
 #include <vector>
 
 namespace tetwarp::test {
-
 namespace {
-
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -95,7 +92,6 @@ class Assembly {
   Eigen::VectorXd mass_;
   std::vector<Eigen::Triplet<double>> triplets_;
 };
-
 }  // namespace
 
 ContactProblem make_elastic_problem(const ElasticBlock& block) {

@@ -9,7 +9,7 @@
 
 namespace tetwarp::test {
 
-/// Displacement, Jacobian, gradient, strain and, where it is wanted, the forward field.
+/// Displacement, Jacobian, gradient, strain and, on request, the forward field.
 class FieldBuffers {
  public:
   FieldBuffers() = default;

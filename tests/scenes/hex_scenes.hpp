@@ -82,7 +82,7 @@ inline HexBox hex_box(const std::array<int, 3>& cells,
   return box;
 }
 
-/// A smooth bend and twist that no affine map is near to, of about `amount` voxels.
+/// A smooth bend and twist of about `amount` voxels, far from affine.
 inline Mapping bent(double amount) {
   return [amount](const Point3& x) {
     return Point3{x[0] + amount * std::sin(0.21 * x[1] + 0.05 * x[2]),

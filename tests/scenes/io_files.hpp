@@ -18,7 +18,7 @@
 
 namespace tetwarp::test {
 
-/// A folder of its own, removed at the end.
+/// A temporary folder, removed at the end.
 class ScratchFolder {
  public:
   ScratchFolder() {

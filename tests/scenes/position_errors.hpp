@@ -36,7 +36,7 @@ inline double stretch_bound(const TetReals& deformed, const TetReals& rest) {
   return 3 * longest_edge(rest) / smallest_altitude(deformed);
 }
 
-/// What evaluating the map of a tetrahedron in the arithmetic of `type` may cost [voxel].
+/// Bound of the error of evaluating the map of a tetrahedron in the arithmetic of `type` [voxel].
 ///
 /// Float64, always: entries of the map come from exact integers by less than ten roundings of parts
 /// below `stretch`, and act over the tetrahedron's extent and a cell; 64 times 2^-53 of that
@@ -78,8 +78,8 @@ inline double evaluation_bound(const TetReals& deformed, const TetReals& rest, P
   return bound + 0x1p-24;
 }
 
-/// What a rounded node may be off its place in index space [voxel]: half a quantum per axis, and
-/// four roundings of float64 on the way there.
+/// Bound of the error of a rounded node in index space [voxel]: half a quantum per axis, and four
+/// roundings of float64.
 inline double node_bound(const IndexFromWorld& map, const std::vector<Point3>& positions) {
   double farthest = 0;
   for (const Point3& p : positions) {
@@ -101,7 +101,7 @@ struct PositionErrors {
   double rounding = 0;  ///< that map against the map of the nodes as given
   double rounding_share = 0;
   std::int64_t strays = 0;  ///< voxels outside their owner
-  std::int64_t voxels = 0;  ///< that were looked at
+  std::int64_t voxels = 0;  ///< that were tested
 };
 
 /// Errors over every `stride`-th owned voxel.

@@ -1,6 +1,6 @@
 /// @file position_probe.hpp
-/// Where a warp samples the source, against where it should: errors of the source position in
-/// voxels, what rounding the nodes costs apart from what evaluating the maps costs.
+/// Errors of the positions at which a warp samples the source [voxel]: those of rounding the nodes
+/// and those of evaluating the maps, separately.
 #pragma once
 #include <array>
 #include <cmath>
@@ -16,8 +16,8 @@ using Real3 = std::array<long double, 3>;
 using TetReals = std::array<Real3, 4>;
 
 /// Triangle wave between -2 and 2 with corners on every fourth voxel. Linear interpolation of it is
-/// exact and its slope is 1, so a sample off by e was taken e beside its place; float32 holds it to
-/// 2^-24 however far the voxel is from the origin.
+/// exact and its slope is 1, so an error e of a sample is an error e of its position; float32 holds
+/// it to 2^-24 however far the voxel is from the origin.
 inline double wave(long double x) {
   return static_cast<double>(std::abs(x - 8 * std::floor(x / 8) - 4) - 2);
 }

@@ -1,4 +1,3 @@
-/// @file rigid_bodies.cpp
 #include "tests/scenes/rigid_bodies.hpp"
 
 #include <algorithm>
@@ -7,9 +6,7 @@
 #include "host/contact/tracker/geometry.hpp"
 
 namespace tetwarp::test {
-
 namespace {
-
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -50,7 +47,6 @@ void push(SparseMatrix& matrix, std::size_t column, double value) {
   matrix.column.push_back(static_cast<std::int32_t>(column));
   matrix.value.push_back(value);
 }
-
 }  // namespace
 
 RigidBox make_box(const Vector3d& half_extents, double mass, int points_per_edge) {

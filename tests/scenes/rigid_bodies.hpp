@@ -1,10 +1,10 @@
 /// @file rigid_bodies.hpp
 /// A small simulation of rigid boxes on planes and on each other, stepped implicitly.
 ///
-/// Each step finds the contacts, sets up  A v = J^T r + b  with A the masses and inertias, solves
-/// it with the contact laws, moves the bodies with the velocities found, and has the tracker follow
-/// bonds. Boxes touch with points on their z faces: planes with all of them, each other with
-/// those of the smaller face on the larger.
+/// Each step finds the contacts, sets up A v = J^T r + b with A the masses and inertias, solves it
+/// with the contact laws, moves the bodies with these velocities, and updates bonds by the tracker.
+/// Boxes touch with points on their z faces: planes with all of them, each other with those of the
+/// smaller face on the larger.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -34,7 +34,7 @@ struct RigidBox {
 };
 
 /// A homogeneous box with `points_per_edge`^2 points on each z face, sharing its area evenly; one
-/// point sits in the middle.
+/// point is in the middle.
 RigidBox make_box(const Eigen::Vector3d& half_extents, double mass, int points_per_edge = 2);
 
 /// A half-space that never moves; boxes are kept on the side of its normal.

@@ -18,10 +18,9 @@
 #include <vector>
 
 namespace tetwarp::test {
-
 namespace fs = std::filesystem;
 
-/// A folder of its own under the system's temporary folder, removed at the end.
+/// A folder in the system's temporary folder, removed at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -79,7 +78,7 @@ struct CommandResult {
 /// How to run it.
 struct RunOptions {
   rlim_t file_size_limit = RLIM_INFINITY;  ///< bytes; a larger write fails as on a full disk
-  std::string out = {};                    ///< where standard output goes; empty: collected
+  std::string out = {};                    ///< file for standard output; empty: collected
   std::vector<std::string> launcher = {};  ///< words before the command's name
 };
 

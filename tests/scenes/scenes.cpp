@@ -1,4 +1,3 @@
-/// @file scenes.cpp
 #include "tests/scenes/scenes.hpp"
 
 #include <algorithm>
@@ -14,7 +13,6 @@ namespace tetwarp::scenes {
 using namespace std::string_literals;
 
 namespace {
-
 constexpr double pi = 3.14159265358979323846;
 
 /// Maps index-space points of a grid to world.
@@ -23,7 +21,7 @@ std::vector<Point3> to_world(const Grid& grid, std::vector<Point3> points) {
   return points;
 }
 
-/// Scene whose mesh is given in index space of one grid, used for source and output alike.
+/// Scene whose mesh is given in index space of one grid, used for source and output.
 Scene on_grid(std::string name, const Grid& grid, Mesh mesh, const std::vector<Point3>& deformed) {
   Scene scene{std::move(name), std::move(mesh), to_world(grid, deformed), grid, grid};
   scene.mesh.rest_positions = to_world(grid, scene.mesh.rest_positions);
@@ -56,7 +54,6 @@ Mesh soup(double n, int tets, std::uint64_t seed) {
   }
   return mesh;
 }
-
 }  // namespace
 
 double uniform(std::uint64_t seed, std::uint64_t index) {

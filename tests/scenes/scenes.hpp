@@ -12,7 +12,7 @@
 
 namespace tetwarp::scenes {
 
-/// A mesh, where its nodes go, a source grid and an output grid.
+/// A mesh, its deformed nodes, a source grid and an output grid.
 struct Scene {
   std::string name;
   Mesh mesh;

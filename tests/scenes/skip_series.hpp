@@ -85,8 +85,8 @@ class Series {
   FieldBuffers other_fields_;
 };
 
-/// Nodes within `radius` voxels of a point of the scene's output grid get what `change` makes of
-/// their positions.
+/// Applies `change` to the positions of the nodes within `radius` voxels of a point of the scene's
+/// output grid.
 template <class Change>
 std::vector<Point3> changed_near(const scenes::Scene& scene,
                                  std::vector<Point3> positions,
@@ -106,8 +106,8 @@ std::vector<Point3> changed_near(const scenes::Scene& scene,
   return positions;
 }
 
-/// Twelve steps: parts of the mesh shiver, move by whole voxels, leave the grid and come back, are
-/// turned inside out, squashed, or stay; in the last but one everything moves.
+/// Twelve steps: parts of the mesh shiver, move by whole voxels, leave the grid and return, are
+/// inverted, flattened, or stay; in the last but one everything moves.
 inline std::vector<std::vector<Point3>> partial_motions(const scenes::Scene& scene,
                                                         std::uint64_t seed) {
   const Grid& grid = scene.output_grid;
@@ -141,11 +141,11 @@ inline std::vector<std::vector<Point3>> partial_motions(const scenes::Scene& sce
   near(14, shift({300, 0, 0}));
   near(9, shiver(3));
   steps.push_back(steps.back());
-  steps.push_back(steps[3]);  // those that have left come back
+  steps.push_back(steps[3]);  // nodes that had left return
   const Point3 mirror = grid.world_of(somewhere(50));
   near(13, [&](std::size_t, Point3& p) { p[1] = 2 * mirror[1] - p[1]; });
   near(12, [&](std::size_t, Point3& p) { p[2] = mirror[2]; });
-  near(0, shiver(1));  // nothing at all, but for a node that happens to be there
+  near(0, shiver(1));  // nothing, or a single node
   steps.push_back(scenes::waved(steps.back(), 2.0 * grid.spacing[0], seed));
   near(10, shiver(1));
   return steps;

@@ -54,7 +54,7 @@ inline Point3 turned_back(const Point3& p, const Point3& centre) {
 }
 
 /// A box jittered in two ways, one of them turned by 45 degrees about two axes: well-shaped
-/// tetrahedra, each with a map of its own. `grid` is the source; the box lies within its centres.
+/// tetrahedra, each with another map. `grid` is the source; the box lies within its centres.
 inline Solid turned_solid(const Grid& source, const Grid& output, const std::array<int, 3>& cells) {
   Solid solid;
   solid.low = source.world_of({1, 1, 1});
@@ -78,8 +78,8 @@ struct CoverageErrors {
   std::int64_t inside = 0;  ///< voxels that are certainly inside
 };
 
-/// Compares owners with the hull but for voxels nearer to it than `margin` [world], where rounding
-/// of the nodes decides.
+/// Compares owners with the hull, except for voxels nearer to it than `margin` [world], where the
+/// result depends on the rounding of nodes.
 inline CoverageErrors coverage_errors(const Solid& solid,
                                       const std::vector<std::int32_t>& owners,
                                       double margin,

@@ -110,7 +110,7 @@ class Stages {
     exec.exclusive_scan("test/setup", corner_offsets);
     exec.exclusive_scan("test/setup", pair_offsets);
     masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());
-    corner_mask(exec, setups, corner_offsets, masks);  // some executors' verdicts need none
+    corner_mask(exec, setups, corner_offsets, masks);  // some executors cull without masks
     candidates = arrays.template zeros<CellPair>(arrays.download(pair_offsets).back());
     cell_verdicts(exec, setups, corner_offsets, masks, pair_offsets, switches, input.frame,
                   candidates);

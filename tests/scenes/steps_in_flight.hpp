@@ -89,7 +89,7 @@ inline std::vector<Bits> steps_in_flight(const std::vector<Volume>& sources,
   for (std::size_t s = 0; s < steps.size(); ++s) {
     std::vector<Point3> positions = steps[s];
     warper.begin_step(positions, buffers[s % 2].target(holds_previous));
-    positions.assign(positions.size(), {});  // they were the caller's only until then
+    positions.assign(positions.size(), {});  // positions may be changed after begin_step()
     if (s > 0) finish();
   }
   finish();

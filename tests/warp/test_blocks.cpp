@@ -22,7 +22,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A copy of a region of a volume that ends with its last sample.
 std::vector<std::byte> cut_out(const Volume& volume, const Region& region) {
   const std::size_t voxel = static_cast<std::size_t>(volume.components) * size_of(volume.type);
@@ -267,6 +266,5 @@ TEST(BlockWindow, MustSufficeForTheFilterAndLieInTheGrid) {
     EXPECT_THROW(start(options), std::invalid_argument);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

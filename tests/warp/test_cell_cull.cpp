@@ -1,5 +1,5 @@
 /// @file test_cell_cull.cpp
-/// Rejected cells hold no voxel of the tetrahedron, accepted ones hold nothing else.
+/// Rejected cells contain no voxel of the tetrahedron, accepted cells only its voxels.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class CellCull : public EachExec<Exec> {
  protected:
@@ -173,7 +172,7 @@ StageInput small_tet() {
   return one_tet(nodes, nodes, frame_of(16, 16, 16));
 }
 
-/// No masks are made of eight cells, and every pair is kept, inside or outside as it may be.
+/// With eight cells no masks are made, and every pair is kept.
 TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedraWithoutMasks) {
   const StageInput input = small_tet();
   const Stages<TypeParam> stages = this->run(input);
@@ -191,7 +190,7 @@ TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedraWithoutMasks) {
   }
 }
 
-/// Its far face is x + y + z = 9: the four cells that start beyond are lost.
+/// Its far face is x + y + z = 9: the four cells that start beyond it are rejected.
 TEST(CellVerdicts, RejectCellsThatASmallTetrahedronMisses) {
   CpuExec exec(1);
   ExecArrays<CpuExec> arrays(exec);
@@ -222,6 +221,5 @@ TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
     EXPECT_EQ(found[c], make_pair(static_cast<std::int64_t>(c), 0, false));
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

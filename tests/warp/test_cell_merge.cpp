@@ -10,10 +10,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Ranges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// What the stage gives.
+/// Results of the stage.
 struct Merged {
   std::vector<CellPair> pairs;
   Ranges ranges;
@@ -83,7 +82,7 @@ std::vector<CellPair> random_pairs(std::int64_t tets,
   return pairs;
 }
 
-/// Those that stay have the pairs of `seed` in both steps, those that move others.
+/// Tetrahedra that do not move have the pairs of `seed` in both steps, the others different ones.
 TYPED_TEST(CellMerge, GivesTheListOfAStepFromScratch) {
   const OutputFrame frame = frame_of(40, 24, 33);
   const std::int64_t cells = frame.cell_count();
@@ -121,7 +120,7 @@ TYPED_TEST(CellMerge, GivesTheListOfAStepFromScratch) {
   }
 }
 
-/// Tetrahedron 2 leaves cell 0 and comes to cell 3, where 1 and 4 stay; 4 settles it.
+/// Tetrahedron 2 moves from cell 0 to cell 3, where 1 and 4 stay; 4 covers all of cell 3.
 TYPED_TEST(CellMerge, PutsAComingTetrahedronInItsPlace) {
   const OutputFrame frame = frame_of(16, 16, 8);
   const PairList before =
@@ -156,6 +155,5 @@ TYPED_TEST(CellMerge, LeavesOutWhatHasNoRoom) {
   EXPECT_EQ(this->download(pair_count).front(), 4);
   EXPECT_EQ(this->ranges_of(ranges), (Ranges{{0, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 3}}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_cell_pairs.cpp
-/// Pairs come in the order of cells, then tetrahedra, and end at the first that settles the cell.
+/// Pairs are sorted by cell, then tetrahedron, and end at the first accepted one of the cell.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -8,8 +8,7 @@
 
 namespace tetwarp::test {
 namespace {
-
-/// What the stage gives.
+/// Results of the stage.
 struct SortedPairs {
   std::vector<CellPair> pairs;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ranges;
@@ -127,6 +126,5 @@ TYPED_TEST(CellPairs, LeaveEveryCellEmptyWhenAllAreRejected) {
   for (const auto& [begin, end] : found.ranges) EXPECT_EQ(begin, end);
   EXPECT_EQ(found.accepted, 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

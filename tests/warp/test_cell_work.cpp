@@ -10,7 +10,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class CellWork : public EachExec<Exec> {
  protected:
@@ -65,7 +64,7 @@ Volume uniform_volume(std::int64_t nx, float value) {
   return volume;
 }
 
-/// Voxels 0 to 39 along i; a voxel at x looks at samples x - shift and one further.
+/// Voxels 0 to 39 along i; a voxel at x reads samples x - shift and the next one.
 TYPED_TEST(CellWork, FillsCellsThatSeeOneValue) {
   Volume volume = uniform_volume(40, 2.5f);
   volume.samples<float>()[39] = 7;  // at (39, 0, 0), in the last block
@@ -129,7 +128,7 @@ TYPED_TEST(CellWork, SamplesCellsWithoutATetrahedron) {
   EXPECT_EQ(found.work[2], sample_cell);
 }
 
-/// On every scene: the taps of every voxel of a filled cell, under every map of the cell, hit the
+/// On every scene: the taps of every voxel of a filled cell, under every map of the cell, read the
 /// cell's value only.
 TYPED_TEST(CellWork, IsRightAboutEveryTap) {
   std::int64_t filled = 0;
@@ -190,6 +189,5 @@ TYPED_TEST(CellWork, IsRightAboutEveryTap) {
   }
   EXPECT_GT(filled, 100);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Plane = std::array<double, 4>;
 
 /// Numbers in [-1, 1), one after the other.
@@ -28,7 +27,7 @@ class Numbers {
   std::uint64_t at_ = 0;
 };
 
-/// The plane but for its last bits, and as another formula may have it.
+/// The plane with other last bits, as another formula may compute it.
 Plane nearly(const Plane& plane, double scale, Numbers& numbers) {
   Plane result;
   for (std::size_t n = 0; n < 4; ++n) {
@@ -72,6 +71,5 @@ TEST(ConvexPart, CutsAddUpAndFit) {
   EXPECT_LE(edges, 84);
   EXPECT_GE(corners, 24);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class CornerMask : public EachExec<Exec> {
  protected:
@@ -111,6 +110,5 @@ TYPED_TEST(CornerMask, WritesNothingBeyondItsRoom) {
   EXPECT_TRUE(std::equal(found.begin(), found.begin() + 20, whole.begin()));
   EXPECT_EQ(std::count(found.begin() + 20, found.end(), 0xbeef), 44);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

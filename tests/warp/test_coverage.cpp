@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::int64_t scene_size = 40;
 
 class Coverage : public EachScene<scene_size> {};
@@ -56,7 +55,7 @@ TEST_P(Coverage, OwnersEqualTheReference) {
   EXPECT_EQ(cpu.counts.flat, reference.counts.flat);
 }
 
-/// Half of the voxels anywhere, half of them covered, so that small meshes are met too.
+/// Half of the voxels anywhere, half of them covered, so that small meshes are tested too.
 TEST_P(Coverage, OwnersEqualBruteForceOnRandomVoxels) {
   const scenes::Scene& scene = this->scene();
   const Grid& grid = scene.output_grid;
@@ -208,6 +207,5 @@ TEST(CoverageVolume, ConvergesToTheMeshVolumeAtFirstOrder) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_face_sign.cpp
-/// The exact side of a face: closed, whatever the orientation, up to the largest tetrahedra.
+/// The exact side of a face: closed, for both orientations, up to the largest tetrahedra.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 TetNodes nodes_of(const TetQuanta& tet) {
   TetNodes nodes;
   for (std::size_t a = 0; a < 4; ++a) {
@@ -151,6 +150,5 @@ TEST(FaceSign, MeasuresTheLargestVolume) {
     EXPECT_TRUE(plane_value(plane, tet.x[face]) == Int128{2} << 120);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Nodes under seeded new numbers, so that the lowest of a hexahedron is any of its corners.
 void renumber(HexBox& box, std::uint64_t seed) {
   std::vector<std::int32_t> number(box.mesh.rest_positions.size());
@@ -112,6 +111,5 @@ TEST(HexMap, StaysWithinItsMarginHoweverTheHexahedronIsFolded) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr IndexFromWorld unit_map = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}};
 constexpr double quantum = 0x1p-20;  ///< [voxel]
 
@@ -113,6 +112,5 @@ TYPED_TEST(NodeQuantize, TakesTheFarthestPosition) {
   EXPECT_EQ(this->node_of(unit_map, {0x1p40, -0x1p40, 0}),
             (Integers{std::int64_t{1} << 60, -(std::int64_t{1} << 60), 0}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

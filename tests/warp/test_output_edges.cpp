@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::byte untouched{0xa5};
 constexpr std::size_t margin = 256;  // bytes, and whole cache lines
 
@@ -100,6 +99,5 @@ TEST(OutputEdges, AreThoseOfTheRegion) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class Parity : public EachScene<40> {
  protected:
   void SetUp() override {
@@ -140,6 +139,5 @@ TEST_P(Parity, RepeatedRunsGiveTheSameBits) {
   EXPECT_EQ(first.volume.data, second.volume.data);
   EXPECT_TRUE(first.owner == second.owner);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_skip_constant.cpp
-/// Filling cells that see one value of the source gives the bits of sampling them.
+/// Filling cells that read one value of the source gives the same bits as sampling them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Waves in the lower third, above them air of one value, and far up another.
 Volume airy_volume(const Grid& grid, PixelType type, int components = 1) {
   Volume volume = scenes::wavy_volume(grid, type, components);
@@ -168,6 +167,5 @@ TEST(SkipConstant, WorksWithUpdates) {
     EXPECT_GT(sum.cells_unchanged, 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

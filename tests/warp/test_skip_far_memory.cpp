@@ -19,8 +19,7 @@
 
 namespace tetwarp::test {
 namespace {
-
-/// Host threads on memory of their own.
+/// Host threads with memory separate from the caller's.
 class FarExec : public CpuExec {
  public:
   static constexpr bool reads_are_free = false;
@@ -149,6 +148,5 @@ TEST(FarMemorySteps, AreRunAgainWhereBuffersWereTooSmall) {
     EXPECT_TRUE(out.has_bits_of(anew)) << scale;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

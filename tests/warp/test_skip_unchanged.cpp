@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// Back end and name of a scene.
 using UpdateCase = std::tuple<Backend, std::string>;
 
@@ -103,8 +102,8 @@ TEST_P(SkipUnchanged, UpdatesHaveTheBitsOfStepsFromScratch) {
   }
 }
 
-/// New memory, as Warper::step() into a new volume has it: what has not moved is not set up again,
-/// every cell is written.
+/// Outputs in new memory, as with Warper::step() into a new volume: tetrahedra that have not moved
+/// are not set up again, every cell is written.
 TEST_P(SkipUnchanged, BuffersThatDoNotHoldTheStepBeforeAreWrittenWhole) {
   const std::vector<Volume> sources = sources_of(scene());
   Series updated(sources, scene(), options(true)), anew(sources, scene(), options(false));
@@ -247,6 +246,5 @@ TEST(SkipUnchangedSteps, LessThanAQuantumIsNoMotion) {
   EXPECT_GT(counts_near.tets_unchanged, counts_near.tetrahedra / 2);
   EXPECT_LT(counts_far.tets_unchanged, counts_far.tetrahedra);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A copy of some bytes that ends where memory ends: reading on kills the process.
 class FencedBytes {
  public:
@@ -76,6 +75,5 @@ TEST(SourceEnd, IsNotReadBeyond) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -9,11 +9,10 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class TetMoved : public EachExec<Exec> {
  protected:
-  /// What the stage finds between two sets of nodes.
+  /// Results of the stage for two sets of nodes.
   struct Found {
     std::vector<std::uint8_t> moved;
     std::vector<std::int64_t> counts;
@@ -114,6 +113,5 @@ TYPED_TEST(TetMoved, SetsUpMovedTetrahedraAndNoOthers) {
   }
   EXPECT_EQ(this->download(before.classes), this->download(after.classes));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class TetSetupStage : public EachExec<Exec> {
  protected:
@@ -197,7 +196,7 @@ TYPED_TEST(TetSetupStage, SortsOutWhatIsInvertedFlatBadOrTooLarge) {
   EXPECT_EQ(this->download(stages.pair_offsets), (std::vector<std::int64_t>{0, 8, 16, 16, 16, 16}));
 }
 
-/// The same bits wherever a tetrahedron stands in the list.
+/// The same bits at any position of a tetrahedron in the list.
 TYPED_TEST(TetSetupStage, TreatsEveryTetrahedronAlone) {
   for (const std::int64_t size : tricky_sizes) {
     scenes::Scene scene = scene_of_tets(size);
@@ -238,6 +237,5 @@ TEST(SetPlanes, HaveTheSameBitsWithShortAndLongIntegers) {
     EXPECT_EQ(std::memcmp(at_anchor[0], at_anchor[1], sizeof(at_anchor[0])), 0) << n;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -18,7 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::array wide_filters = {Filter::cubic, Filter::bspline, Filter::lanczos};
 
 /// A volume that owns its samples and, for a spline, its coefficients.
@@ -267,6 +266,5 @@ TEST(VolumeFilter, OvershootsUnlessItIsClamped) {
     EXPECT_GT(high, 5.1f);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

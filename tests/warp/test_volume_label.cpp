@@ -1,5 +1,5 @@
 /// @file test_volume_label.cpp
-/// The filter for labels: most weight wins, ties go to the lowest, nothing new appears.
+/// The filter for labels: largest weight, of equal weights the lowest label, no new labels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Labels = std::array<std::int16_t, 8>;  // x changes first
 
 std::int16_t winner(const Labels& labels, const std::array<double, 3>& fraction) {
@@ -87,6 +86,5 @@ TEST(VolumeLabel, ClampsToTheRim) {
   EXPECT_EQ(label_at(source, {{0, 0, 0}, {0.5f, 0, 0}}), 1);
   EXPECT_EQ(label_at(source, {{0, -1, 0}, {0.25f, 0.9f, 0.1f}}), 3);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

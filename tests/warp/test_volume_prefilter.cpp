@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Dims = std::array<std::int64_t, 3>;
 
 template <class Exec>
@@ -133,6 +132,5 @@ TYPED_TEST(VolumePrefilter, BridgesGapsAndKeepsThem) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

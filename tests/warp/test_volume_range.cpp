@@ -9,7 +9,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 template <class Exec>
 class VolumeRange : public EachExec<Exec> {
  protected:
@@ -55,6 +54,5 @@ TYPED_TEST(VolumeRange, LeavesOutNaN) {
   EXPECT_EQ(this->run(std::vector<double>{nan, nan}, 1),
             (std::vector<double>{infinity, -infinity}));
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A small volume that owns its samples.
 template <class T>
 struct Samples {
@@ -170,7 +169,7 @@ TEST(VolumeSample, IntegersSaturate) {
   EXPECT_EQ((rounded_to<std::uint64_t, double>(0x1p64)), std::numeric_limits<std::uint64_t>::max());
 }
 
-/// Whole part and rest: float32 sees a voxel 2^29 as finely as voxel 0.
+/// Whole part and rest: float32 resolves positions at voxel 2^29 as finely as at voxel 0.
 TEST(VolumeSample, LosesNothingFarFromVoxelZero) {
   const double linear_part[3][3] = {{1, 0, 0}, {0, 0.5, 0}, {0, 0, 2}};
   const double near_start[3] = {0.125, 7.25, -3.375};
@@ -199,6 +198,5 @@ TEST(VolumeSample, APositionBeyondAllVolumesIsOutside) {
     EXPECT_FALSE(tap_of(volume.view(), linear, map.whole, x).inside);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

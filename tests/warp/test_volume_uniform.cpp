@@ -14,7 +14,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 /// A volume of one value that owns its samples.
 template <class T>
 struct Samples {
@@ -124,7 +123,7 @@ TYPED_TEST(VolumeUniform, NeverFillsWhatInterpolationMayChange) {
   }
 }
 
-/// Blocks that no tetrahedron samples are not even read, but for those next to one.
+/// Blocks that no tetrahedron samples are not read, except for the neighbours of sampled ones.
 TYPED_TEST(VolumeUniform, LooksOnlyWhereTheMeshIs) {
   const Samples<float> samples(64, 8, 8, 1.5f);
   EXPECT_EQ(this->run(samples, box_nodes(2, 7)).reach, (Bytes{2, 1, 0, 0, 0, 0, 0, 0}));
@@ -177,6 +176,5 @@ TYPED_TEST(VolumeUniform, IsTheDefinition) {
   }
   for (const int count : seen) EXPECT_GT(count, 0);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

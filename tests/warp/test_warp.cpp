@@ -17,7 +17,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 const std::vector<PixelType> all_types = {
     PixelType::uint8, PixelType::int8,   PixelType::uint16, PixelType::int16,   PixelType::uint32,
     PixelType::int32, PixelType::uint64, PixelType::int64,  PixelType::float32, PixelType::float64};
@@ -270,6 +269,5 @@ TEST(Warp, IntegersSaturate) {
     });
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_warp_antialias.cpp
-/// Where the source is compressed a voxel gets a mean, elsewhere the very sample.
+/// Where the source is compressed a voxel is a mean of samples, elsewhere one sample.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,12 +10,11 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr std::array averaging_filters = {Filter::linear, Filter::cubic, Filter::bspline,
                                           Filter::lanczos};
 
-/// Shrunk by seven tenths and waved, on a turned grid; and by forty, which asks for more samples
-/// than a voxel may have.
+/// Shrunk by seven tenths and waved, on a turned grid; and by forty, which exceeds the limit of
+/// samples per voxel.
 std::vector<scenes::Scene> shrunk_scenes() {
   const Grid grid = scenes::oblique_grid(20, 17, 19);
   std::vector<scenes::Scene> scenes;
@@ -61,7 +60,7 @@ TEST(WarpAntialias, IsTheReference) {
   }
 }
 
-/// Every second voxel of a chessboard has one color: plain samples never see the other.
+/// Every second voxel of a chessboard has one color: plain sampling reads only one of them.
 TEST(WarpAntialias, MakesAShrunkenChessboardGray) {
   const Grid grid = scenes::unit_grid(33, 33, 33);
   Volume board = make_volume(grid, PixelType::uint8);
@@ -136,6 +135,5 @@ TEST(WarpAntialias, HasTheSameBitsWhateverIsLeftOut) {
     EXPECT_GT(unchanged, 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

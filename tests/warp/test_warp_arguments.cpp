@@ -21,10 +21,9 @@
 
 namespace tetwarp::test {
 namespace {
-
 const double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// A good warp of 8^3 voxels, to be spoiled in one place.
+/// A valid warp of 8^3 voxels; tests make one argument invalid.
 struct Call {
   Volume source = scenes::wavy_volume(scenes::unit_grid(8, 8, 8), PixelType::int16);
   Mesh mesh = covering_mesh(source.grid);
@@ -281,6 +280,5 @@ TEST_P(WarpProgress, StopsAStepAndTheNextOneIsWhole) {
   EXPECT_TRUE(warper.report().steps.empty());
   EXPECT_EQ(run_step(warper, call.source, call.deformed).volume.data, call.source.data);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

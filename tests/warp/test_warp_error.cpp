@@ -1,6 +1,6 @@
 /// @file test_warp_error.cpp
-/// The error of a warp in three parts: where the source is sampled, what interpolation makes of it,
-/// and which voxels are covered. Numbers behind "found" are the largest seen on cpu.
+/// The error of a warp in three parts: positions in the source, interpolation, and coverage.
+/// Numbers behind "found" are the largest seen on cpu.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 constexpr double pi = 3.14159265358979323846;
 
 class WarpPosition : public WarpLaws {};
@@ -40,8 +39,8 @@ TEST_P(WarpPosition, OfWellShapedTetrahedraIsWithin1e5VoxelAtAMillionVoxels) {
   }
 }
 
-/// Small tetrahedra lose nothing: a map is used a cell wide, whatever the number of tetrahedra.
-/// Found: evaluation 1.8e-6, the same as with 500 tetrahedra.
+/// The error does not grow with the number of tetrahedra, because a map is evaluated over at most a
+/// cell. Found: evaluation 1.8e-6, the same as with 500 tetrahedra.
 TEST_P(WarpPosition, StaysWithin5e6VoxelAtHalfAMillionTetrahedra) {
   const Grid grid = scenes::unit_grid(128, 128, 128);
   const Solid solid = turned_solid(grid, grid, {47, 47, 47});
@@ -230,7 +229,7 @@ TEST_P(WarpInterpolation, TheSplineIsOfFourthOrder) {
   EXPECT_NEAR(order, 4, 0.15);
 }
 
-/// Its window leaves a share of every slope, which vanishes only as the voxels do.
+/// Its window leaves an error proportional to the slope, which vanishes only with the voxel size.
 TEST_P(WarpInterpolation, LanczosIsOfFirstOrder) {
   const double order = order_of(GetParam(), Filter::lanczos);
   found("order", order);
@@ -261,6 +260,5 @@ TEST_P(WarpCoverage, HasNoErrorWhateverTheMesh) {
     EXPECT_GT(errors.inside, 100000);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
 
@@ -164,8 +163,9 @@ TEST_P(WarpFields, AreTheReference) {
   }
 }
 
-/// A source of its own positions shows where every voxel comes from: linear filters lose nothing
-/// of it. The forward field is the displacement when meshes are exchanged.
+/// A source whose samples are its own positions shows the source position of every voxel, without
+/// interpolation error for linear filters. The forward field is the displacement when meshes are
+/// exchanged.
 TEST_P(WarpFields, DisplaceAsTheWarpDoesAndForwardIsTheInverse) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 18);
   Volume places = make_volume(scene.source_grid, PixelType::float64, 3);
@@ -202,6 +202,5 @@ TEST_P(WarpFields, DisplaceAsTheWarpDoesAndForwardIsTheInverse) {
   EXPECT_EQ(warped.fields.forward(), back.fields.displacement());
   EXPECT_EQ(warped.fields.displacement(), back.fields.forward());
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -16,7 +16,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpFilters : public EachBackend {
  protected:
   Warped run(const Volume& source, const scenes::Scene& scene, WarpOptions options) {
@@ -162,7 +161,8 @@ TEST_P(WarpFilters, KeepWhatIsNotANumberWhereItBelongs) {
 }
 
 /// Eleven labels in blobs on a turned grid, and one volume per label for the reference to
-/// interpolate linearly. Where two labels come within 1e-5 of each other either may win.
+/// interpolate linearly. Where the weights of two labels differ by less than 1e-5 either is
+/// accepted.
 TEST_P(WarpFilters, LabelsAreTheLargestOfInterpolatedIndicators) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 32);
   Volume source = make_volume(scene.source_grid, PixelType::uint16);
@@ -221,6 +221,5 @@ TEST_P(WarpFilters, LabelTiesGoToTheLowest) {
     ASSERT_EQ(warped.volume.samples<std::int64_t>()[v], expected) << v;
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

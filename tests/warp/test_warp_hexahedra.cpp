@@ -20,7 +20,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpHexahedra : public EachBackend {
  protected:
   Warped run(const Volume& source, const scenes::Scene& scene, WarpOptions options = {}) {
@@ -49,7 +48,7 @@ scenes::Scene cut(scenes::Scene scene) {
   return scene;
 }
 
-/// The last hexahedra of a scene stay; the others become tetrahedra.
+/// Replaces all but the last hexahedra of a scene by tetrahedra.
 scenes::Scene mixed_scene(double amount) {
   scenes::Scene scene = bent_scene(amount);
   const auto middle = scene.mesh.hexes.begin() + 20;
@@ -117,7 +116,7 @@ TEST_P(WarpHexahedra, OwnEveryVoxelBetweenThemOnceAndTellTheCell) {
   EXPECT_EQ(*std::min_element(warped.owner.begin(), warped.owner.end()), 0);
 }
 
-/// The hexahedron of bent_scene() that a tetrahedron of cut(bent_scene(., parts)) is of.
+/// The hexahedron of bent_scene() that contains a tetrahedron of cut(bent_scene(., parts)).
 std::int32_t parent_of(std::int32_t tet, int parts) {
   if (tet < 0) return -1;
   const int part = tet / tets_per_hex, row = part / (3 * parts);
@@ -126,8 +125,8 @@ std::int32_t parent_of(std::int32_t tet, int parts) {
 }
 
 /// Within a hexahedron the difference falls with the square of the edge of the tetrahedra (found:
-/// 0.50, 0.13, 0.034 voxel). Between a curved face and the triangles it is cut into, a voxel goes
-/// by the map of the hexahedron beside, a little beyond it (found: 0.09).
+/// 0.50, 0.13, 0.034 voxel). Between a curved face and its two triangles a voxel uses the map of
+/// the neighbouring hexahedron, slightly beyond that (found: 0.09).
 TEST_P(WarpHexahedra, AreTheLimitOfEverFinerTetrahedra) {
   std::array<double, 3> error{};
   double beside_faces = 0;
@@ -266,6 +265,5 @@ TEST_P(WarpHexahedra, AreCheckedBeforeUse) {
   EXPECT_EQ(message_of([&] { run(ramp(1, 0, 0), scene); }),
             "mesh: hexahedron 5 names node 1000, expected 0 to 79");
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,6 +1,5 @@
 /// @file test_warp_in_flight.cpp
-/// Steps begun before the last is finished: results, errors and refusals are those of steps taken
-/// one by one.
+/// Steps begun before the last is finished: results and errors equal those of single steps.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -12,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class InFlight : public EachBackend {
  protected:
   const scenes::Scene scene = scenes::adversarial_scene("identity", 16);
@@ -96,6 +94,5 @@ TEST_P(InFlight, AWarperMayEndWithStepsInFlight) {
   }
   EXPECT_TRUE(a.bits() == expected[0]);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -1,5 +1,5 @@
 /// @file test_warp_intensity.cpp
-/// Densities, and totals that stay.
+/// Densities, and preserved totals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Matrix = Eigen::Matrix3d;
 
 /// A step with its whole report.
@@ -195,6 +194,5 @@ TEST(WarpIntensity, HasTheSameBitsWhateverIsLeftOut) {
     EXPECT_GT(unchanged, 0);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 bool is_same(const Warped& a, const Warped& b) {
   return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
 }
@@ -188,6 +187,5 @@ TEST(WarpForms, AgreeWithEachOther) {
   EXPECT_EQ(result.report.backend_reason, "asked for");
   EXPECT_EQ(result.report.position_quantum, 0x1p-20);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -11,7 +11,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
 
@@ -103,7 +102,7 @@ TEST(WarpQuantities, FollowAShear) {
   const Matrix finite = rotation * tensor_of(some_tensor.data()) * rotation.transpose();
   for_covered(some_tensor, Quantity::tensor, shear,
               [&](const double* d) { ASSERT_NEAR((tensor_of(d) - finite).norm(), 0, 2e-5); });
-  // A tensor along y, with its second direction z: y goes to (g, 1, 0), z stays.
+  // A tensor along y, with its second direction z: y becomes (g, 1, 0), z is unchanged.
   const Vector along = Vector(g, 1, 0).normalized(), across = along.cross(Vector::UnitZ());
   const Matrix principal = 3 * along * along.transpose() +
                            2 * Vector::UnitZ() * Vector::UnitZ().transpose() +
@@ -138,7 +137,7 @@ TEST(WarpQuantities, AreTheReference) {
   }
 }
 
-/// A reflection has no rotation of its own: the nearest proper one is taken, lengths are kept.
+/// A reflection contains no rotation: the nearest proper one is used, lengths are preserved.
 TEST(WarpQuantities, StayFiniteWhereATetrahedronIsInsideOutOrNearlyFlat) {
   for (const Vector& stretch : {Vector(1, -0.5, 2), Vector(1, 1, 1e-4), Vector(-1, -1, -1)}) {
     const Matrix forward = turn(0.3, {1, 1, 0}) * stretch.asDiagonal();
@@ -243,6 +242,5 @@ TEST(WarpQuantities, AreCopiedUnderAWholeShift) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStress : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStress, each_backend, name_of_backend);
 
@@ -120,7 +119,7 @@ TEST_P(WarpStress, FlatTetrahedraOwnNothingAndLeaveNoHole) {
 }
 
 /// Inner nodes moved at random by one and a half cells: many tetrahedra are inverted, and a third
-/// of the voxels lie in several. The lowest owns, and the hull has no hole whatever happens inside.
+/// of the voxels lie in several. The lowest tetrahedron owns them, and the hull has no hole.
 TEST_P(WarpStress, FoldsLeaveNoHoleAndKeepPositions) {
   const Grid grid = scenes::unit_grid(40, 40, 40);
   Solid solid = turned_solid(grid, grid, {6, 6, 6});
@@ -137,6 +136,5 @@ TEST_P(WarpStress, FoldsLeaveNoHoleAndKeepPositions) {
   EXPECT_GT(probed.counts.inverted, probed.counts.tetrahedra / 5);
   EXPECT_GT(probed.counts.folded, probed.counts.covered / 3);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

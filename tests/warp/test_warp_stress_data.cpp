@@ -19,7 +19,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressData : public EachBackend {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressData, each_backend, name_of_backend);
 
@@ -85,7 +84,7 @@ bool has_marked(const std::vector<bool>& marked, const Real3& x, long double rea
   return false;
 }
 
-/// What interpolation makes of the samples around a position.
+/// Interpolation of the samples around a position.
 struct Blend {
   long double value = 0;
   long double low = INFINITY, high = -INFINITY;  ///< of the eight
@@ -189,7 +188,7 @@ TEST_P(WarpStressData, DenormalsInterpolateToTheirLastBit) {
       for (std::size_t v = 0; v < units.size(); ++v) {
         const auto bits = static_cast<std::uint64_t>(1000 * scenes::uniform(seed, v));
         units[v] = static_cast<double>(bits);
-        std::memcpy(&source.data[v * size], &bits, size);  // low bytes come first
+        std::memcpy(&source.data[v * size], &bits, size);  // low bytes first
       }
 
       const Warped warped = run_warp(source, scene, GetParam());
@@ -272,7 +271,7 @@ TEST_P(WarpStressData, IntegersAtTheEndsOfTheirRangeAreTheNearest) {
   found("over_half", worst);
 }
 
-/// A background that is not a number fills what nothing covers, and nothing else.
+/// A background of NaN is stored in uncovered voxels only.
 TEST_P(WarpStressData, AnOddBackgroundStaysOutside) {
   for (const double background : {std::numeric_limits<double>::quiet_NaN(),
                                   std::numeric_limits<double>::infinity(), 5e-324}) {
@@ -293,6 +292,5 @@ TEST_P(WarpStressData, AnOddBackgroundStaysOutside) {
     }
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressGrids : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressGrids, each_backend, name_of_backend);
 
@@ -61,7 +60,7 @@ Solid at_offset(Solid solid, const Point3& offset) {
   return solid;
 }
 
-/// A picture of `solid` has the same bits as one of `other`, which shows the same scene.
+/// A warp of `solid` has the same bits as one of `other`, the same scene.
 void expect_same_bits(Backend backend, const Solid& solid, const Solid& other) {
   Volume source = scenes::wavy_volume(solid.scene.source_grid, PixelType::float32);
   const Warped expected = run_warp(source, solid.scene, backend);
@@ -177,6 +176,5 @@ TEST_P(WarpStressGrids, SpacingRatiosOfAThousandKeepTheLaws) {
   }
   found("evaluation", worst);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -12,7 +12,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpStressSize : public WarpLaws {};
 INSTANTIATE_TEST_SUITE_P(Backends, WarpStressSize, each_backend, name_of_backend);
 
@@ -78,7 +77,7 @@ TEST_P(WarpStressSize, AxesOf65536VoxelsKeepTheLaws) {
   found("evaluation", worst);
 }
 
-/// A million voxels into the source, where float32 itself is worth a sixteenth of a voxel.
+/// A million voxels into the source, where the resolution of float32 is a sixteenth of a voxel.
 /// Found: evaluation 1.1e-6.
 TEST_P(WarpStressSize, AMillionVoxelsIntoTheSourceKeepTheLaws) {
   Grid source = scenes::unit_grid(1'000'032, 5, 5);
@@ -154,6 +153,5 @@ TEST_P(WarpStressSize, TwoMillionTetrahedraKeepTheLaws) {
   EXPECT_TRUE(probed.owner == reference.owner);
   found("evaluation", errors.evaluation);
 }
-
 }  // namespace
 }  // namespace tetwarp::test

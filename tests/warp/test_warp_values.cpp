@@ -13,7 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-
 class WarpValues : public EachScene<32> {};
 INSTANTIATE_TEST_SUITE_P(Scenes, WarpValues, ::testing::ValuesIn(all_scene_names()), scene_name);
 
@@ -139,6 +138,5 @@ TEST_P(WarpValues, NearestTakesTheReferencesSampleButForTies) {
     ASSERT_NEAR(position[s] - std::floor(position[s]), 0.5, 340 * 0x1p-24);
   }
 }
-
 }  // namespace
 }  // namespace tetwarp::test

@@ -17,8 +17,7 @@
 
 namespace tetwarp {
 
-/// Sweeps per outer iteration. Where no two contacts share a body (one color) a single sweep solves
-/// them.
+/// Sweeps per outer iteration. If no two contacts share a body (one color), one sweep solves them.
 inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& island) {
   return island.color_end - island.color_begin > 2 ? options.inner_sweeps : 1;
 }
@@ -29,21 +28,20 @@ inline int sweeps_per_step(const ContactOptions& options, const ContactIsland& i
 ///     sweeps solve the contacts in  u = omega J D^-1 J^T r + q
 ///     v = v_f + omega D^-1 J^T r
 ///
-/// Proximal gradients in the metric D / omega: it converges where omega times the largest
-/// eigenvalue of D^-1 A is below 2. That eigenvalue is at most the number of nodes of an element,
-/// so that 0.5 suits tetrahedra. Where A couples nothing and omega is 1, one iteration is exact.
+/// This is a proximal gradient step in the metric D / omega. It converges if omega times the
+/// largest eigenvalue of D^-1 A is below 2. That eigenvalue is at most the number of nodes of an
+/// element, so that 0.5 suits tetrahedra. If A couples no blocks and omega is 1, one iteration is
+/// exact.
 /// Source: Otaduy et al. 2009 (iterative constraint anticipation); relaxation and acceleration
 /// (Anderson, or nonlinear conjugate gradients, on v) are ours.
 ///
-/// In float32 it also stops when rounding prevents further progress; the residual is always
-/// estimated in float64.
+/// In float32 it also stops when rounding prevents progress; residuals are estimated in float64.
 template <class Exec, class T = double>
 class BlockJacobi {
  public:
   template <class U>
   using Vector = typename Exec::template Vector<U>;
 
-  /// Work vectors.
   struct Memory {
     Vector<T> impulse, velocity;                          ///< [3 slots]
     Vector<T> body_velocity, before, defect;              ///< [dofs]
@@ -202,7 +200,7 @@ class BlockJacobi {
   }
 
   static constexpr std::int64_t first_check = 32;
-  static constexpr double divergence = 1e8;  ///< growth of the defect that ends the iteration
+  static constexpr double divergence = 1e8;  ///< growth of the defect at which the iteration ends
 
   Exec& exec_;
   const CoupledTask& task_;

@@ -1,4 +1,3 @@
-/// @file coupled_system.cpp
 #include "host/contact/block_jacobi/coupled_system.hpp"
 
 #include <Eigen/Eigenvalues>

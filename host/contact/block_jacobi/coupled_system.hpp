@@ -18,15 +18,15 @@ namespace tetwarp {
 
 /// State of a linear solve, in the norm of A.
 struct LinearProgress {
-  double moved = 0;  ///< size of the change of x since the start
+  double moved = 0;  ///< norm of the change of x since the start
   double left = 0;   ///< estimated bound of the error of x
 };
 
 /// Estimates the remaining error of a conjugate gradient solve, in the norm of A.
 ///
 /// Gauss-Radau quadrature (Golub and Meurant 1997; Meurant and Tichy 2013) bounds the error, given
-/// a lower bound of the smallest eigenvalue of D^-1 A. Used for it is half of the smallest Ritz
-/// value (Lanczos) seen in all solves so far: an estimate, not a proven bound.
+/// a lower bound of the smallest eigenvalue of D^-1 A. That lower bound is half of the smallest
+/// Ritz value (Lanczos) of all solves so far: an estimate, not a proven bound.
 class GradientError {
  public:
   void start_solve() { steps_.clear(); }
@@ -49,7 +49,6 @@ class GradientError {
   double smallest_ = 1;      ///< smallest Ritz value of D^-1 A so far
 };
 
-/// Work memory of a CoupledSystem.
 template <class Exec>
 struct CoupledSystemMemory {
   typename Exec::template Vector<double> direction, product, image;  ///< [dofs]

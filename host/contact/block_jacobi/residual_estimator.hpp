@@ -18,7 +18,6 @@
 
 namespace tetwarp {
 
-/// Work vectors of a ResidualEstimator.
 template <class Exec>
 struct EstimatorMemory {
   using Vector = typename Exec::template Vector<double>;
@@ -69,7 +68,7 @@ class ResidualEstimator {
     clear_impulses();
     const bool is_at_rest = is_zero(numbers_.load);
     if (is_at_rest) {
-      // A zero load excites no eigenvalue of A; a unit impulse on every contact does.
+      // A zero load gives no estimate of the eigenvalues of A; unit impulses on all contacts do.
       exec_.for_each("contact/setup", island_.contact_count(),
                      FromContact<UnitPushBody>{{view_of(memory_.impulse)}, island_.slot_begin});
       find_defect();
@@ -81,7 +80,7 @@ class ResidualEstimator {
     if (is_at_rest) clear_impulses();
     outcome.reason = StopReason::exhausted;
     find_free(outcome);
-    if (criterion_.error_of(outcome.free) == 0) {  // a scale of zero: no residual relative to it
+    if (criterion_.error_of(outcome.free) == 0) {  // no scale for a relative residual
       solve_system([&](const LinearProgress&) { return is_balanced(); });
       find_free(outcome);
       if (criterion_.error_of(outcome.free) == 0 && is_balanced()) {
@@ -93,7 +92,7 @@ class ResidualEstimator {
     keep_best();
   }
 
-  /// Sets body_velocity() to what the impulses cause, from zero, to half the digits of the
+  /// Solves for the body velocities of the impulses, starting from zero, to half the digits of the
   /// tolerance: more digits would cost more than the outer iterations that they save.
   /// @param impulse  [3 slots]
   void find_body_velocity(View<const double> impulse) {
@@ -106,7 +105,7 @@ class ResidualEstimator {
 
   /// Estimates the residual of impulses and keeps them if they are the best so far.
   /// @param impulse        [3 slots]
-  /// @param body_velocity  [dofs], close to what the impulses cause; with these velocities the
+  /// @param body_velocity  [dofs], close to those of the impulses; with these velocities the
   ///                       contacts satisfy their law
   /// @param is_last        false: may return early with a rough value above 1
   /// @return  at most 1 if converged: the larger of residual and imbalance, over the tolerance
@@ -126,8 +125,8 @@ class ResidualEstimator {
       sums = bounded_sums();
       excess = criterion_.excess_of(sums);
       if (options_.measure == ContactMeasure::fclib) return is_within(0.1, progress);
-      // Assumes that the remaining error moves the contacts, per size in the norm of A, at most as
-      // much as the last steps or the free motion did.
+      // Assumes that the remaining error, per its norm in A, changes the contact velocities at most
+      // as much as the last steps or the free motion did.
       const double step = std::sqrt(square_of(progress.moved) - square_of(moved));
       const double apart = distance(view_of(std::as_const(memory_.previous_velocity)));
       const double share = std::max(step > 0 ? apart / step : 0, contact_share_);

@@ -33,7 +33,7 @@ class CudaContactDevice final : public ContactDevice {
                              const ContactInput& input) override {
     exec_.use_stream(nullptr);  // makes the device current on this thread
     if (serial_ != structure.serial) {
-      grid_.forget_sweeps();  // a new structure moves arrays; with the same one all addresses stay
+      grid_.forget_sweeps();  // a new structure may move the arrays
       indices_in_memory_.restart();
       indices_ = make_indices(structure, [&](const auto& array) {
         return indices_in_memory_.put(grid_, view_of(array));
@@ -144,7 +144,6 @@ class CudaContactDevice final : public ContactDevice {
  private:
   static constexpr std::int64_t events_per_island = 32;
 
-  /// A problem in one precision, and the memory of its solve.
   template <class T>
   struct Problem {
     SystemMemory<GridContactExec, T> system;

@@ -31,8 +31,8 @@ class ContactDevice : public StructureStages {
   /// Solves all islands whose blocks A does not couple, in the precision of the options, and
   /// measures the result in float64.
   /// @param impulse        [3 slots]; in: to start from; out: the best found
-  /// @param body_velocity  out: what they cause, [dofs]; in islands without contacts the free
-  ///                       motion; in coupled islands not set
+  /// @param body_velocity  out: velocities of these impulses, [dofs]; in islands without contacts
+  ///                       the free motion; in coupled islands not set
   /// @param outcomes       out, [islands with contacts]: reason is `converged` within the tolerance
   /// @return  visits of frozen contacts that sweeps skipped
   virtual std::int64_t solve_uncoupled(const ContactOptions& options,
@@ -44,7 +44,7 @@ class ContactDevice : public StructureStages {
   /// @param guess           impulses to start from, [3 slots]; empty: zero
   /// @param max_iterations  outer iterations
   /// @param impulse         out: the best, [3 slots], set in the island
-  /// @param body_velocity   out: what it causes, [dofs], set in the island
+  /// @param body_velocity   out: velocities of that impulse, [dofs], set in the island
   virtual void solve_coupled(const ContactOptions& options,
                              const ContactIsland& island,
                              const std::vector<double>& guess,
@@ -54,10 +54,9 @@ class ContactDevice : public StructureStages {
                              IslandOutcome& outcome) = 0;
 
   /// Runs the stage "adhesion".
-  /// @param body  views of host memory: what it reads, and [contacts] that it writes
+  /// @param body  input and output, views of host memory
   virtual void evolve(const ContactAdhesionBody& body) = 0;
 
-  /// The name of the device, as in reports.
   virtual std::string name() const = 0;
 };
 

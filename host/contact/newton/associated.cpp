@@ -1,4 +1,3 @@
-/// @file associated.cpp
 #include "host/contact/newton/associated.hpp"
 
 #include <algorithm>
@@ -15,14 +14,13 @@ using Eigen::VectorXd;
 using lorentz::Vector;
 
 namespace {
-
 constexpr int iteration_limit = 60;
 constexpr double gap_goal = 1e-12;
 constexpr double step_share = 0.99;  ///< of the distance to the boundary of the cones
 /// Times the mean diagonal entry of the contact's block: a compliance added in the Newton steps
 /// only, without which redundant contacts make the equations singular close to the solution.
 constexpr double step_compliance = 1e-10;
-/// Below this relative gap the iteration ends after so many steps that do not improve the best.
+/// Below this relative gap the iteration ends after `idle_limit` steps without improvement.
 constexpr double rounding_gap = 1e-6;
 constexpr int idle_limit = 4;
 
@@ -33,7 +31,6 @@ double compliance_of(const MeasuredContact& contact) {
 Index row_of(std::size_t c) {
   return 3 * static_cast<Index>(c);
 }
-
 }  // namespace
 
 AssociatedContact::AssociatedContact(const std::vector<MeasuredContact>& contacts,

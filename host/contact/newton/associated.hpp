@@ -1,5 +1,5 @@
 /// @file associated.hpp
-/// Contact with associated friction, the convex problem from which Newton's method gets starts.
+/// Contact with associated friction: a convex problem that yields starts for Newton's method.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

@@ -1,4 +1,3 @@
-/// @file natural_map.cpp
 #include "host/contact/newton/natural_map.hpp"
 
 #include <algorithm>

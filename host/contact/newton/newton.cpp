@@ -1,4 +1,3 @@
-/// @file newton.cpp
 #include "host/contact/newton/newton.hpp"
 
 #include <Eigen/Core>
@@ -21,9 +20,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
-// All constants were found by trial on stacks, packings and problems recorded in other simulators,
-// also with fewer contacts, in other orders, and with other friction and loads.
+// Constants found by experiment on stacks, packings and problems recorded in other simulators, also
+// with fewer contacts, in other orders, and with other friction and loads.
 constexpr double first_epsilon = 1e-3;
 constexpr double min_epsilon = 1e-12;
 constexpr double max_epsilon = 100;
@@ -235,7 +233,6 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
   }
   return false;
 }
-
 }  // namespace
 
 NewtonResult newton_polish(const ContactProblem& problem,

@@ -18,8 +18,9 @@ struct NewtonResult {
 /// Improves impulses by semismooth Newton steps on the natural map inside a proximal point
 /// iteration: each outer step solves the problem with a compliance epsilon / rho added to every
 /// contact, relative to the current impulses, and epsilon is lowered as long as these steps
-/// converge. If this does not converge soon, starts are taken from convex problems of associated
-/// friction, a series in which each takes its lift from the sliding velocities of the one before.
+/// converge. If this does not converge soon, it restarts from solutions of convex problems of
+/// associated friction, each with the lift that follows from the sliding velocities of the previous
+/// one.
 ///
 /// Works for redundant contacts, which make the Jacobian of the problem itself singular. Returns
 /// the best impulses found, never worse than the start. It is cheaper to call it for each island

@@ -1,4 +1,3 @@
-/// @file newton_system.cpp
 #include "host/contact/newton/newton_system.hpp"
 
 #include <cstddef>
@@ -13,7 +12,6 @@ using Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
-
 /// With fewer unknowns a dense factorization is faster than a sparse one.
 constexpr Index dense_limit = 300;
 
@@ -36,7 +34,6 @@ Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
   matrix.makeCompressed();
   return matrix;
 }
-
 }  // namespace
 
 NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)

@@ -1,4 +1,3 @@
-/// @file checks.cpp
 #include "host/contact/problem/checks.hpp"
 
 #include <Eigen/Cholesky>
@@ -89,7 +88,6 @@ void check_rows(const std::string& field, const SparseMatrix& matrix) {
 }
 
 namespace {
-
 /// Compares each entry above the diagonal with its mirror image, in one pass over the rows.
 class SymmetryCheck {
  public:
@@ -186,7 +184,6 @@ bool is_large_block_positive(const SparseMatrix& system, std::int32_t begin, int
   return factor.info() == Eigen::Success &&
          factor.vectorD().minCoeff() > smallest_pivot * block.diagonal().maxCoeff();
 }
-
 }  // namespace
 
 void check_symmetric(const SparseMatrix& system) {

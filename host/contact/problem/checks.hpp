@@ -17,7 +17,7 @@ std::string text_of(double value);
 /// "[index]: "
 std::string at(std::int64_t index);
 
-/// @param meaning  what the expected number of entries means; ends the message
+/// @param meaning  what the expected number of entries is; the message ends with it
 void check_size(const std::string& field,
                 std::size_t size,
                 std::int64_t expected,
@@ -26,7 +26,7 @@ void check_size(const std::string& field,
 void check_finite(const std::string& field, std::span<const double> values);
 
 /// All values finite and 0 or more.
-/// @param remedy  ends the message
+/// @param remedy  the message ends with it
 void check_not_negative(const std::string& field,
                         std::span<const double> values,
                         const char* remedy);

@@ -1,4 +1,3 @@
-/// @file delassus.cpp
 #include "host/contact/problem/delassus.hpp"
 
 #include <algorithm>
@@ -15,7 +14,6 @@ using Eigen::VectorXd;
 using Matrix = Eigen::SparseMatrix<double>;
 
 namespace {
-
 VectorXd make_vector(const std::vector<double>& values) {
   return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
 }
@@ -74,7 +72,6 @@ class HalfSolve {
   std::vector<bool> is_reached_;
   std::vector<Index> reached_;
 };
-
 }  // namespace
 
 Delassus::Delassus(const ContactProblem& problem, double recovery_speed)

@@ -1,4 +1,3 @@
-/// @file imbalance.cpp
 #include "host/contact/problem/imbalance.hpp"
 
 #include <algorithm>

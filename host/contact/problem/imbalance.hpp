@@ -1,5 +1,5 @@
 /// @file imbalance.hpp
-/// How well body velocities and impulses satisfy A v = b + J^T r.
+/// How far body velocities and impulses are from A v = b + J^T r.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,4 +1,3 @@
-/// @file matrix.cpp
 #include "host/contact/problem/matrix.hpp"
 
 #include <algorithm>

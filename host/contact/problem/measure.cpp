@@ -1,4 +1,3 @@
-/// @file measure.cpp
 #include "host/contact/problem/measure.hpp"
 
 #include <algorithm>
@@ -15,7 +14,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-
 /// e_n and e_t of natural_energy() for given rho_n, rho_t, rho_t.
 Vector3d natural_error(const NaturalTerms& terms, FrictionLaw law, const Vector3d& rho) {
   const Vector2d target = terms.nu.tail<2>() - rho(1) * terms.velocity.tail<2>();
@@ -42,7 +40,6 @@ Vector3d project_on_cone(const Vector3d& x, double friction) {
   const double shrink = friction * normal / tangent;
   return {normal, shrink * x(1), shrink * x(2)};
 }
-
 }  // namespace
 
 std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem) {

@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// The constants of one contact that its laws contain.
+/// The constants in the laws of one contact.
 struct MeasuredContact {
   Eigen::Matrix3d diagonal_block;  ///< B, of the Delassus matrix [1/kg]
   Eigen::Vector3d stiffness;       ///< diagonal of K: kappa_n, kappa_t, kappa_t [kg]

@@ -13,9 +13,7 @@
 #include "host/contact/problem/matrix.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 constexpr std::int64_t max_contacts = std::numeric_limits<std::int32_t>::max() / 3;
 
 std::string count(std::int64_t number) {
@@ -72,8 +70,8 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
          (!adhesion.empty() && adhesion.intensity[c] > 0 && !stiffness.empty() && stiffness[c] > 0);
 }
 
-/// Every normal row, and one tangential row where something resists sliding, must be moved by
-/// impulses.
+/// Impulses must change the velocity of every normal row and, where something resists sliding, of
+/// one tangential row.
 /// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or the largest entry of each
 ///                  row of J
 void check_diagonal(const ContactProblem& problem,
@@ -217,7 +215,6 @@ void check_adhesion(const ContactProblem& problem) {
     check_finite("adhesion.gap", adhesion.gap);
   }
 }
-
 }  // namespace
 
 void check_problem(const ContactProblem& problem) {

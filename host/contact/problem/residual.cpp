@@ -20,7 +20,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 struct Eta {
   double total = 0;
   double largest = 0;
@@ -81,7 +80,6 @@ VectorXd make_vector(std::span<const double> values, Index expected, const char*
   }
   return Eigen::Map<const VectorXd>(values.data(), size);
 }
-
 }  // namespace
 
 ContactResidual residual_of(const ContactProblem& problem,
@@ -110,7 +108,7 @@ ContactResidual residual_of(const ContactProblem& problem,
   }
   Eta eta = eta_of(contacts, r, u, change, options);
   if (!body_velocity.empty()) {
-    // The velocities may not be those that the impulses cause; the larger error counts.
+    // The given velocities may differ from those of the impulses; the larger error counts.
     const Eta caused = eta_of(contacts, r, implied, change, options);
     if (caused.total > eta.total) eta = caused;
   }

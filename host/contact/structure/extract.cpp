@@ -1,4 +1,3 @@
-/// @file extract.cpp
 #include "host/contact/structure/extract.hpp"
 
 #include <algorithm>
@@ -6,9 +5,7 @@
 #include "host/contact/problem/matrix.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// The place of each item in a part; -1 for items that are not in it.
 std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::int32_t>& part) {
   std::vector<std::int32_t> place(index_of(count), -1);
@@ -16,8 +13,8 @@ std::vector<std::int32_t> places_in(std::int64_t count, const std::vector<std::i
   return place;
 }
 
-/// Some rows of a matrix, with renumbered columns. Entries in columns without a place are dropped;
-/// they are zeros.
+/// Some rows of a matrix, with renumbered columns. Drops entries (zeros) in columns without a
+/// place.
 SparseMatrix make_part(const SparseMatrix& matrix,
                        const std::vector<std::int32_t>& rows,
                        const std::vector<std::int32_t>& column_place,
@@ -36,7 +33,6 @@ SparseMatrix make_part(const SparseMatrix& matrix,
   }
   return part;
 }
-
 }  // namespace
 
 std::vector<double> gathered(const std::vector<double>& values,

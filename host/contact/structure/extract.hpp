@@ -41,8 +41,7 @@ void scatter_velocities(const ContactStructure& structure,
                         const double* from,
                         std::vector<double>& to);
 
-/// Replaces sums.largest_contact, a slot counted from `first_slot`, by the contact's index in the
-/// problem.
+/// Replaces sums.largest_contact, a slot relative to `first_slot`, by the index in the problem.
 void to_problem_index(const ContactStructure& structure,
                       std::int64_t first_slot,
                       ContactSums& sums);

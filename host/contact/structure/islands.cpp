@@ -1,4 +1,3 @@
-/// @file islands.cpp
 #include "host/contact/structure/islands.hpp"
 
 #include <algorithm>

@@ -48,8 +48,7 @@ class HostStages final : public StructureStages {
   std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override;
 };
 
-/// Number of the connected component of each item; components are numbered in the order of their
-/// lowest items.
+/// Number of the connected component of each item; components are sorted by their lowest items.
 std::vector<std::int32_t> components_of(const Lists& lists,
                                         std::int64_t item_count,
                                         StructureStages& stages);

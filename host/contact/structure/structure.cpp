@@ -1,4 +1,3 @@
-/// @file structure.cpp
 #include "host/contact/structure/structure.hpp"
 
 #include <algorithm>
@@ -9,9 +8,7 @@
 #include "host/contact/structure/structure_parts.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 std::vector<std::int64_t> zeros_of(const SparseMatrix& matrix) {
   std::vector<std::int64_t> zeros;
   for (std::size_t e = 0; e < matrix.value.size(); ++e) {
@@ -42,7 +39,6 @@ ContactStructure empty_structure(bool is_local) {
   structure.is_local = is_local;
   return structure;
 }
-
 }  // namespace
 
 ContactIndices ContactStructure::indices() const {

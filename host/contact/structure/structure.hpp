@@ -61,8 +61,8 @@ struct ContactStructure {
 };
 
 /// @param skip    without `converged_islands` all contacts are one island; without
-///                `contactless_bodies` the blocks that no contact reaches join the first island
-/// @param stages  where the stages run; without: on one thread of the host
+///                `contactless_bodies` the blocks connected to no contact are in the first island
+/// @param stages  runs the stages; by default one thread of the host
 /// @pre check_problem(problem) has passed
 ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip);
 ContactStructure make_structure(const ContactProblem& problem,

@@ -8,9 +8,7 @@
 #include "host/contact/structure/structure_parts.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Blocks of dofs in the order of the problem, and their connections.
 struct Blocks {
   std::vector<std::int64_t> start;  ///< [blocks + 1], dofs
@@ -58,8 +56,8 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
 }
 
 /// Sets the order of the contacts and the islands of `s`. Islands with contacts are numbered in the
-/// order of their first contact; blocks connected to no contact form the islands after them, or
-/// join the first one.
+/// order of their first contact; blocks connected to no contact are in the islands after them, or
+/// in the first one.
 /// @return the blocks, sorted by island
 std::vector<std::int32_t> order_blocks(const Blocks& blocks,
                                        const ContactSkipOptions& skip,
@@ -232,7 +230,6 @@ void fill_system(const ContactProblem& problem,
     for (const std::int32_t other : blocks.coupled.of(order[place])) entry_of[index_of(other)] = -1;
   }
 }
-
 }  // namespace
 
 void fill_global_structure(const ContactProblem& problem,

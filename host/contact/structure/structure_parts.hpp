@@ -55,7 +55,7 @@ Lists block_columns(const SparseMatrix& matrix,
   return rows;
 }
 
-/// Moves the order of the contacts into a structure and makes the islands.
+/// Moves the order of the contacts into a structure and sets its islands.
 void take_order(ContactStructure& structure, ContactOrder order);
 
 void fill_local_structure(const ContactProblem& problem,

@@ -1,4 +1,3 @@
-/// @file system.cpp
 #include "host/contact/structure/system.hpp"
 
 namespace tetwarp {

@@ -1,10 +1,7 @@
-/// @file run.cpp
 #include "host/contact/sweeps/run.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 /// Report name of the method that ContactMethods::run() starts with.
 const char* first_method(ContactMethod method) {
   switch (method) {
@@ -21,7 +18,6 @@ const char* first_method(ContactMethod method) {
   }
   return "anderson";
 }
-
 }  // namespace
 
 void IslandOutcome::add(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {

@@ -32,7 +32,6 @@ struct IslandOutcome {
   void add(const IslandEnd& end, ContactMethod method, std::int64_t contacts);
 };
 
-/// Keeps every measured residual.
 struct HostEventLog {
   std::vector<ContactEvent> events;
 
@@ -47,20 +46,20 @@ inline MethodPlan plan_of(const ContactOptions& options) {
   return {options.method, options.tolerance / 100, options.max_sweeps};
 }
 
-/// Whether sweeps may skip frozen contacts.
 inline bool freezes_contacts(const ContactOptions& options) {
   return options.method == ContactMethod::gauss_seidel && options.skip.frozen_contacts;
 }
 
-/// The stop criterion of each island. The allowed error of the whole problem is distributed half by
-/// the error of zero impulses and half by the number of contacts, so that no island gets none.
+/// The stop criterion of each island. Half of the allowed error of the whole problem is distributed
+/// by the error of zero impulses, half by the number of contacts, so that every island has a
+/// positive limit.
 /// @param outcomes  `free` and `free_square` of uncoupled islands are read
 /// @return  [islands with contacts]; of coupled ones not used
 std::vector<StopCriterion> stop_criteria(const ContactOptions& options,
                                          const ContactStructure& structure,
                                          const std::vector<IslandOutcome>& outcomes);
 
-/// The solve of the uncoupled islands of one problem.
+/// Solves the uncoupled islands of one problem.
 template <class T>
 class ContactRun {
  public:
@@ -124,7 +123,6 @@ class ContactRun {
     go_on(i, threads_, ContactMethod::nonlinear_cg);
   }
 
-  /// Measures the current impulses of an island.
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
     return measure_island(pipeline_of(i, exec)).sums;
@@ -141,8 +139,8 @@ class ContactRun {
   }
 
  private:
-  /// Contacts from which an island uses all threads. Starting them for one color costs as much as
-  /// some thousand contacts, and a color has only a part of all contacts.
+  /// Number of contacts from which an island uses all threads. Starting threads for one color costs
+  /// as much as some thousand contacts, and a color has only a part of all contacts.
   static constexpr std::int64_t shared_from = 16384;
 
   const ContactIsland& island(std::int64_t i) const {

@@ -30,8 +30,7 @@ inline Point3 body_of(const BodyPose& pose, const Eigen::Vector3d& world) {
   return point_of(rotation_of(pose).conjugate() * (world - vector_of(pose.position)));
 }
 
-/// The last reported normal [world], unit: the mean of the directions into which the two bodies
-/// have rotated it.
+/// The last reported normal [world], unit: the mean of its images under the two bodies' rotations.
 inline Eigen::Vector3d carried_normal(const ContactRecord& record,
                                       const BodyPose& pose_a,
                                       const BodyPose& pose_b) {

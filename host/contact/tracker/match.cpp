@@ -1,4 +1,3 @@
-/// @file match.cpp
 #include "host/contact/tracker/match.hpp"
 
 #include <algorithm>
@@ -9,9 +8,7 @@
 #include "host/contact/tracker/geometry.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 struct Candidate {
   double squared_distance;
   std::size_t report;
@@ -28,7 +25,6 @@ using BodyPair = std::pair<std::int32_t, std::int32_t>;
 BodyPair bodies_of(const ContactKey& key) {
   return {key.body_a, key.body_b};
 }
-
 }  // namespace
 
 ReportedContact in_key_order(const ReportedContact& report) {

@@ -14,7 +14,7 @@ ReportedContact in_key_order(const ReportedContact& report);
 
 /// For each report the index of its record, or -1. Equal keys match first; then reports and records
 /// of the same two bodies, in the order of the distance between reported point and anchor on body
-/// a, up to `match_distance` [m]. Of equal distances the smaller keys come first.
+/// a, up to `match_distance` [m]. At equal distances smaller keys match first.
 /// @param reports  each from in_key_order(), sorted by key
 /// @param records  sorted by key
 std::vector<std::int64_t> match_contacts(std::span<const ReportedContact> reports,

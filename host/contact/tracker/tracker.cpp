@@ -1,4 +1,3 @@
-/// @file tracker.cpp
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -10,9 +9,7 @@
 #include "host/contact/tracker/match.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Eigen::Vector3d;
 
 [[noreturn]] void refuse(const std::string& subject, const std::string& problem) {
@@ -141,7 +138,6 @@ void shrink_gap(ContactRecord& record, double keep, std::span<const BodyPose> po
   const Vector3d sideways = apart - normal.dot(apart) * normal;
   record.anchor_b = body_of(pose_b, anchor_b + (1 - keep) * sideways);
 }
-
 }  // namespace
 
 ContactTracker::ContactTracker(ContactTrackerOptions options, std::vector<ContactRecord> records)

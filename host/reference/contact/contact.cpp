@@ -1,4 +1,3 @@
-/// @file contact.cpp
 #include "host/reference/contact/contact.hpp"
 
 #include <chrono>
@@ -11,9 +10,7 @@
 #include "host/reference/contact/gauss_seidel.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using Eigen::Index;
 using Eigen::VectorXd;
 using namespace reference;
@@ -50,7 +47,6 @@ VectorXd solve(const DenseContacts& contacts,
   report.residual_history = std::move(swept.residual_history);
   return std::move(swept.impulse);
 }
-
 }  // namespace
 
 ContactSolution solve_contacts_reference(const ContactProblem& problem,

@@ -10,8 +10,7 @@ namespace tetwarp {
 /// Problems of up to 8 contacts with the pyramid or without friction, and with at most 60,000
 /// combinations of states, are solved by enumeration of these combinations; all others by projected
 /// Gauss-Seidel in the order of the contacts, down to eta = 1e-12 or up to `max_sweeps`. The
-/// tolerance decides on the status only; method, precision, skips, threads and device have no
-/// effect.
+/// tolerance affects the status only; method, precision, skips, threads and device have no effect.
 /// If no velocity satisfies all contacts, the status is `infeasible`; a global problem is then
 /// solved with a recovery speed of 0, and the residual reported is that of the problem as given.
 /// @throws ContactProblemError  the problem fails check_problem(), or A is not positive definite

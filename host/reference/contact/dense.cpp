@@ -1,4 +1,3 @@
-/// @file dense.cpp
 #include "host/reference/contact/dense.hpp"
 
 #include <Eigen/Cholesky>
@@ -16,7 +15,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 MatrixXd dense_of(const SparseMatrix& matrix) {
   MatrixXd result =
       MatrixXd::Zero(static_cast<Index>(matrix.rows), static_cast<Index>(matrix.columns));
@@ -113,7 +111,6 @@ double residual_norm(const DenseContacts& contacts,
   }
   return std::sqrt(energy);
 }
-
 }  // namespace
 
 DenseContacts make_dense(const ContactProblem& problem, double recovery_speed) {

@@ -10,7 +10,7 @@
 
 namespace tetwarp::reference {
 
-/// u = B r + q and v = v_free + V r; rows go contact by contact: normal, tangent 1, tangent 2.
+/// u = B r + q and v = v_free + V r; rows are ordered by contact: normal, tangent 1, tangent 2.
 struct DenseContacts {
   Eigen::MatrixXd delassus;            ///< B, [3 contacts][3 contacts], 1/kg
   Eigen::VectorXd free_velocity;       ///< q, m/s, offset included
@@ -45,11 +45,11 @@ double eta_of(const DenseContacts& contacts,
 std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
                                                 const ContactOptions& options);
 
-/// Linear systems that enumerate_impulses() solves; infinity where the laws are not piecewise
+/// Linear systems that enumerate_impulses() solves; infinity for laws that are not piecewise
 /// linear.
 double mode_count(const DenseContacts& contacts, const ContactOptions& options);
 
-/// Whether some impulses make every u_n >= 0.
+/// Whether impulses exist that make every u_n >= 0.
 bool is_feasible(const DenseContacts& contacts);
 
 }  // namespace tetwarp::reference

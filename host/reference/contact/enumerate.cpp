@@ -18,11 +18,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
 /// State of one tangent of a closed contact.
 struct TangentMode {
   bool sticks = false;
-  int slide = 0;   ///< sign of u where it slides; 0: no friction
+  int slide = 0;   ///< sign of u if it slides; 0: no friction
   int spring = 0;  ///< sign of u + o where the spring reduces the friction (rule restrictive)
 };
 
@@ -115,7 +114,6 @@ class ModeSystem {
   MatrixXd matrix_;
   VectorXd right_;
 };
-
 }  // namespace
 
 double mode_count(const DenseContacts& contacts, const ContactOptions& options) {
@@ -131,7 +129,7 @@ double mode_count(const DenseContacts& contacts, const ContactOptions& options) 
 
 std::vector<VectorXd> enumerate_impulses(const DenseContacts& contacts,
                                          const ContactOptions& options) {
-  constexpr double satisfied = 1e-11;  // rounding stays far below, a wrong mode far above
+  constexpr double satisfied = 1e-11;  // rounding errors are smaller, those of a wrong mode larger
   const auto systems = static_cast<std::int64_t>(mode_count(contacts, options));
   ModeSystem system(contacts);
   std::vector<VectorXd> solutions;

@@ -15,13 +15,12 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
 /// min |matrix x - right| over x >= 0; returns the smallest |matrix x - right|.
 /// Source: Lawson and Hanson, Solving Least Squares Problems, 1974, chapter 23.
 double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) {
   VectorXd x = VectorXd::Zero(matrix.cols());
   std::vector<Index> passive;
-  // In exact arithmetic the method ends by itself; with rounding errors it may cycle.
+  // In exact arithmetic the method terminates; with rounding errors it may cycle.
   for (Index step = 0; step < 10 * matrix.cols(); ++step) {
     const VectorXd slope = matrix.transpose() * (right - matrix * x);
     Index entering = -1;
@@ -62,7 +61,6 @@ double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) 
   }
   return (matrix * x - right).norm();
 }
-
 }  // namespace
 
 bool is_feasible(const DenseContacts& contacts) {

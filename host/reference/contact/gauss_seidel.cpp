@@ -1,4 +1,3 @@
-/// @file gauss_seidel.cpp
 #include "host/reference/contact/gauss_seidel.hpp"
 
 #include <algorithm>
@@ -13,7 +12,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
-
 constexpr double goal = 1e-12;
 constexpr std::int64_t sweeps_per_residual = 10;
 
@@ -42,7 +40,6 @@ bool sweep(const DenseContacts& contacts,
   }
   return has_changed;
 }
-
 }  // namespace
 
 SweptImpulses gauss_seidel(const DenseContacts& contacts,
@@ -56,8 +53,8 @@ SweptImpulses gauss_seidel(const DenseContacts& contacts,
   bool has_changed = true;
   while (has_changed && best > goal && swept.sweeps < options.max_sweeps) {
     const std::int64_t sweeps = std::min(sweeps_per_residual, options.max_sweeps - swept.sweeps);
-    // Velocities are updated with the impulses for a few sweeps only, then computed anew, so that
-    // rounding errors do not accumulate.
+    // Velocities are updated with the impulses for a few sweeps, then recomputed, so that rounding
+    // errors do not accumulate.
     VectorXd velocity = contacts.velocity(impulse);
     for (std::int64_t s = 0; s < sweeps; ++s) {
       has_changed = sweep(contacts, options, impulse, velocity);

@@ -1,4 +1,3 @@
-/// @file local.cpp
 #include "host/reference/contact/local.hpp"
 
 #include <Eigen/LU>
@@ -12,7 +11,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
-
 /// Friction minus its bound, for nu and u.
 double excess(const LocalContact& contact,
               const Vector3d& nu,
@@ -62,7 +60,6 @@ double tangent_impulse(const LocalContact& contact,
   }
   return (friction - kappa * (u0 + offset)) / (1 + kappa * p);
 }
-
 }  // namespace
 
 Vector3d solve_cone(const LocalContact& contact,

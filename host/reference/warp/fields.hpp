@@ -34,7 +34,7 @@ inline Eigen::Matrix3d green_lagrange(const Eigen::Matrix3d& gradient) {
   return (gradient.transpose() * gradient - Eigen::Matrix3d::Identity()) / 2;
 }
 
-/// Stores `values` as the components of voxel v; a null array is not wanted.
+/// Stores `values` as the components of voxel v; does nothing for a null array.
 template <std::size_t count>
 void store(const double (&values)[count], std::size_t v, float* array) {
   if (array == nullptr) return;

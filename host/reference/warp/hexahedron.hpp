@@ -24,7 +24,7 @@ class Trilinear {
             static_cast<double>(corners[a][axis]) / one_voxel;
       }
     }
-    for (int bit = 1; bit < 8; bit *= 2) {  // differences along one axis after the other
+    for (int bit = 1; bit < 8; bit *= 2) {  // takes differences along one axis after the other
       for (int power = 0; power < 8; ++power) {
         if (power & bit) coefficients_.col(power) -= coefficients_.col(power ^ bit);
       }

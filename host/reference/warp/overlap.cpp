@@ -1,4 +1,3 @@
-/// @file overlap.cpp
 #include "host/reference/warp/overlap.hpp"
 
 #include <algorithm>
@@ -6,9 +5,7 @@
 #include <vector>
 
 namespace tetwarp::reference {
-
 namespace {
-
 using Simplex = std::array<Eigen::Vector3d, 4>;
 
 /// A tetrahedron with positions in voxels.
@@ -103,7 +100,6 @@ Eigen::Matrix3d edges_of(const Simplex& s) {
   edges << s[1] - s[0], s[2] - s[0], s[3] - s[0];
   return edges;
 }
-
 }  // namespace
 
 void for_held(const Corners& rest, const Dims& source, const VisitHeld& visit) {

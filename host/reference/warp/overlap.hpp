@@ -1,6 +1,6 @@
 /// @file overlap.hpp
-/// Conservative intensity in the reference: overlap volumes of tetrahedra with boxes of voxels, by
-/// clipping simplices.
+/// Conservative intensity in the reference: overlaps of tetrahedra and boxes of voxels, by
+/// clipping.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -18,7 +18,6 @@
 
 namespace tetwarp::reference {
 
-/// Owners for one plan.
 class Ownership {
  public:
   /// The plan must outlive it.
@@ -42,7 +41,6 @@ class Ownership {
     }
   }
 
-  /// Nodes of a tetrahedron in an index space.
   Corners corners_of(std::int32_t t, const double* positions, const IndexSpace& space) const {
     Corners corners;
     for (std::size_t node = 0; node < 4; ++node) {
@@ -100,8 +98,7 @@ class Ownership {
                                                  ///< voxel, at most 2; empty: not counted
 
  private:
-  /// Assigns to tetrahedron t every voxel of its closed shape that no tetrahedron of a lower number
-  /// owns.
+  /// Assigns to tetrahedron t the voxels of its closed shape that no lower tetrahedron owns.
   void claim(std::int32_t t, const double* rest_positions, const double* deformed, Counts& counts) {
     const Corners now = corners_of(t, deformed, output);
     const Corners rest = corners_of(t, rest_positions, source);

@@ -1,13 +1,10 @@
-/// @file rule.cpp
 #include "host/reference/warp/rule.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tetwarp::reference {
-
 namespace {
-
 /// Edges from the first node as columns [voxel].
 Eigen::Matrix3d edges_of(const Corners& tet) {
   Eigen::Matrix3d edges;
@@ -54,7 +51,6 @@ Eigen::Matrix3d principal_rotation(const Eigen::Matrix3d& tensor, const Eigen::M
   after << n1, across, n1.cross(across);
   return after * before.transpose();
 }
-
 }  // namespace
 
 Eigen::Vector3i parts_of(const Eigen::Matrix3d& step) {

@@ -1,12 +1,9 @@
-/// @file sample.cpp
 #include "host/reference/warp/sample.hpp"
 
 #include <numbers>
 
 namespace tetwarp::reference {
-
 namespace {
-
 /// sin(pi x) / (pi x)
 double sinc(double x) {
   if (x == 0) return 1;
@@ -41,7 +38,7 @@ void solve_line(double* line, std::int64_t step, std::int64_t n) {
   }
 }
 
-/// Replaces samples that are not finite by the one before, at the beginning by the first finite
+/// Replaces samples that are not finite by the previous one, at the beginning by the next finite
 /// one.
 void bridge_gaps(double* row, std::int64_t step, std::int64_t n) {
   const auto is_gap = [&](std::int64_t i) { return !std::isfinite(row[i * step]); };
@@ -52,7 +49,6 @@ void bridge_gaps(double* row, std::int64_t step, std::int64_t n) {
     if (is_gap(i)) row[i * step] = i < first ? leading : row[(i - 1) * step];
   }
 }
-
 }  // namespace
 
 double weight_of(Filter filter, double distance) {

@@ -25,8 +25,8 @@ double weight_of(Filter filter, double distance);
 /// Distance beyond which weight_of() is zero [voxel].
 int radius_of(Filter filter);
 
-/// Index of the sample to use at index i of n samples, which may be out of range: the nearest, for
-/// splines the mirrored one.
+/// Index of the sample to use at index i, which may be outside of [0, n): the nearest, for splines
+/// the mirrored one.
 std::int64_t stand_in(Filter filter, std::int64_t i, std::int64_t n);
 
 /// Coefficients of the cubic B-spline through samples [k][j][i][component], mirrored at the
@@ -52,7 +52,6 @@ T stored(double value) {
   return static_cast<T>(value);
 }
 
-/// Samples of one source by one filter.
 template <class T>
 class Sampler {
  public:

@@ -1,7 +1,6 @@
 /// @file warp.cpp
-/// Back end reference: the warp straight from its definition. All voxels in the bounding box of
-/// every tetrahedron, owners by determinants in exact integers, values in float64; serial, without
-/// culling. It shares no code with the kernels that are tested against it.
+/// Back end reference: the warp straight from its definition, serially and without culling; values
+/// in float64. It shares no code with the kernels that are tested against it.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -23,9 +22,7 @@
 #include "host/reference/warp/sample.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 using namespace reference;
 
 class ReferenceBackend : public WarpBackend {
@@ -142,7 +139,7 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// Of voxels outside the mesh, which get the source at their own position.
+  /// Rule of voxels outside the mesh, which sample the source at their own position.
   Rule outside_rule() const {
     Rule rule;
     rule.step = owners_.source.from_world * owners_.output.to_world;
@@ -246,7 +243,6 @@ class ReferenceBackend : public WarpBackend {
   Ownership owners_;
   std::vector<Rule> rules_;  ///< of every tetrahedron
 };
-
 }  // namespace
 
 std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan) {

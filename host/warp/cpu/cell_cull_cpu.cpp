@@ -38,7 +38,7 @@ class TetCells {
     double longest = 1;
     for (int axis = 0; axis < 3; ++axis) longest += tet.end[axis] - tet.begin[axis] + 1;
     for (int face = 0; face < 4; ++face) longest = std::max(longest, std::abs(tet.plane[3][face]));
-    // A thousand times the bound of the rounding error of a plane value.
+    // 1000 times the bound of the rounding error of a plane value.
     margin_ = 4 * longest * 0x1p-40;
   }
 
@@ -58,7 +58,6 @@ class TetCells {
   bool is_rejected() const { return is_rejected_; }
   bool is_accepted() const { return is_accepted_; }
 
-  /// Computes the verdict on cell ci of the row.
   void classify(int ci) {
     const CellSpan x(tet_, frame_, 0, ci);
     const auto margin = hn::Set(d, margin_);

@@ -1,6 +1,6 @@
 /// @file cell_cull_cpu.hpp
-/// Stage "cull" on host threads: each cell of a tetrahedron's box is tested against the four faces
-/// in one vector.
+/// Stage "cull" on host threads: tests each cell of a tetrahedron's box against four faces in one
+/// vector.
 #pragma once
 #include <cstdint>
 
@@ -20,7 +20,7 @@ namespace tetwarp {
 /// @param exec          threads and clock
 /// @param setups        from tet_setup, shape [tet_count]
 /// @param pair_offsets  first candidate pair of each tetrahedron, shape [tet_count + 1]
-/// @param switches      verdicts that may be given
+/// @param switches      verdicts that are used
 /// @param frame         the output
 /// @param pairs         out, one per candidate pair, `rejected_pair` where no voxel is inside
 ///

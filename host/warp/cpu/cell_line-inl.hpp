@@ -1,7 +1,7 @@
 /// @file cell_line-inl.hpp
 /// Raster of a line of cells along x: first the owners of its voxels, then the samples, row by row
 /// over the whole line, so that the source is read in long runs. Included once per vector
-/// instruction set (the name and the toggled guard are Highway's convention).
+/// instruction set.
 #if defined(TETWARP_CELL_LINE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_LINE_INL
 #undef TETWARP_CELL_LINE_INL
@@ -153,7 +153,7 @@ class CellLine {
     return values.data();
   }
 
-  /// Adds voxels of a cell to the flat ones.
+  /// Adds voxels of a cell to `flat_`.
   /// @param value  see FlatCells
   void add_flat(const CellBox& box, int cell, const CellBits& bits, const T* value) {
     const int voxels = count_of(bits);
@@ -283,7 +283,7 @@ class CellLine {
   std::vector<RowSource> sources_;  ///< one per pair that owns voxels of this line
   std::vector<FlatCells> flat_;     ///< ascending
   std::deque<std::array<T, max_components>> constants_;  ///< values computed from coefficients
-  bool lists_open_;                 ///< voxels without an owner need more than the background
+  bool lists_open_;                 ///< voxels without an owner are added to `flat_`
   bool has_open_ = false;           ///< the line has voxels without an owner
   std::unique_ptr<RowRun[]> runs_;  ///< [k][j][run]
   int row_capacity_;

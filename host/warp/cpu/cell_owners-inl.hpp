@@ -1,6 +1,5 @@
 /// @file cell_owners-inl.hpp
-/// The owners of the voxels of a cell. Included once per vector instruction set (the name and the
-/// toggled guard are Highway's convention).
+/// The owners of the voxels of a cell. Included once per vector instruction set.
 #if defined(TETWARP_CELL_OWNERS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_OWNERS_INL
 #undef TETWARP_CELL_OWNERS_INL
@@ -72,7 +71,7 @@ inline void test_each(const RasterJob<T>& job,
   }
 }
 
-/// Prefetches the setup of the tetrahedron of pair `p`: meshes are larger than caches.
+/// Prefetches the setup of the tetrahedron of pair `p`.
 template <class T>
 inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
   if (p >= static_cast<std::uint64_t>(job.pairs.size)) return;

@@ -1,5 +1,6 @@
 /// @file cell_raster_cpu.cpp
-/// Implementation by Highway, compiled once per vector instruction set.
+/// Implementation by Highway, compiled once per vector instruction set. Highway's convention gives
+/// the -inl.hpp files that it includes their name and their toggled guard.
 #include "host/warp/cpu/cell_raster_cpu.hpp"
 
 #include <atomic>

@@ -1,6 +1,5 @@
 /// @file cell_raster_cpu.hpp
-/// Stage "raster" on host threads: a thread works on a line of cells, a vector on a row of eight
-/// voxels.
+/// Stage "raster" on host threads: a line of cells per thread, a row of eight voxels per vector.
 #pragma once
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/geometry.hpp"

@@ -1,6 +1,6 @@
 /// @file cell_sides-inl.hpp
 /// The voxels of a cell that lie inside a tetrahedron, as an interval per row. Included once per
-/// vector instruction set (the name and the toggled guard are Highway's convention).
+/// vector instruction set.
 #if defined(TETWARP_CELL_SIDES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_CELL_SIDES_INL
 #undef TETWARP_CELL_SIDES_INL
@@ -154,7 +154,7 @@ HWY_INLINE void store_rows(hn::Vec<SideByteTag> rows, int j, int k, CellBits& bi
   }
 }
 
-/// Empties the intervals of rows that run along a face and lie outside of it.
+/// Empties the intervals of rows that are parallel to a face and outside of it.
 /// @param past       in and out: end of the certain interval
 /// @param past_late  in and out: end of the possible one
 HWY_INLINE void cut_flat_faces(const CellPlanes& planes,

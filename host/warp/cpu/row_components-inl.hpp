@@ -1,7 +1,6 @@
 /// @file row_components-inl.hpp
 /// Samples of a row for several components: float32 arithmetic, four components per vector.
-/// Included once per vector instruction set (the name and the toggled guard are Highway's
-/// convention).
+/// Included once per vector instruction set.
 #if defined(TETWARP_ROW_COMPONENTS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_COMPONENTS_INL
 #undef TETWARP_ROW_COMPONENTS_INL
@@ -44,7 +43,7 @@ HWY_INLINE hn::Vec<ComponentTag> read_components(const T* samples) {
 }
 
 /// Values of all units of `taps`. The blends are those of sample(), in its order: equal bits.
-/// @param values  out, [voxel][component]; up to three values more are written behind them
+/// @param values  out, [voxel][component]; followed by up to three more values
 template <bool Rim, class T>
 inline void sample_components(const SourceView<T>& view,
                               bool nearest,

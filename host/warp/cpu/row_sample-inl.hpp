@@ -1,6 +1,5 @@
 /// @file row_sample-inl.hpp
-/// Samples of the covered voxels of a row. Included once per vector instruction set (the name and
-/// the toggled guard are Highway's convention).
+/// Samples of the covered voxels of a row. Included once per vector instruction set.
 #if defined(TETWARP_ROW_SAMPLE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_SAMPLE_INL
 #undef TETWARP_ROW_SAMPLE_INL
@@ -36,7 +35,7 @@ class RowSampler {
       : job_(job), nearest_(job.filter == Filter::nearest) {}
 
   /// Writes the covered voxels of row (j, k).
-  /// @param runs  those of a cell in succession; their order within a cell is changed
+  /// @param runs  sorted by cell; their order within a cell is changed
   void write(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     if (job_.transforms.size > 0) count = write_transformed(sources, runs, count, j, k);
     if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
@@ -59,7 +58,7 @@ class RowSampler {
   }
 
  private:
-  /// Writes the runs that have a transform, and moves the others to the front. @returns their number
+  /// Writes the runs that have a transform; moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int plain_count = 0;
     for (int r = 0; r < count; ++r) {
@@ -75,7 +74,7 @@ class RowSampler {
 
   /// Writes a cell's row of which some runs are copied or written voxel by voxel.
   void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    int vectored_count = 0;  // runs that are not; they move to the front
+    int vectored_count = 0;  // runs to write in vectors; they are moved to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
@@ -83,7 +82,7 @@ class RowSampler {
       if (source.kind() == RowKind::alone) {
         sample_alone(job_, source, runs[r].bits, j, k, cell_row);
       } else if (source.kind() == RowKind::copied) {
-        unsigned bits = runs[r].bits;  // and those of following runs with the same shift
+        unsigned bits = runs[r].bits;  // with those of following runs of the same shift
         for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
           bits |= runs[r + 1].bits;
         }

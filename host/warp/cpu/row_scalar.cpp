@@ -12,9 +12,7 @@
 #include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
-
 namespace {
-
 namespace hn = hwy::HWY_NAMESPACE;
 
 using LaneTag = hn::FixedTag<float, 4>;
@@ -200,7 +198,6 @@ void write_filtered(
   const auto map = make_source_map<double>(job.source, start, linear);
   for_voxels(bits, [&](int i) { sample_one(job, map, i, j, k, row); });
 }
-
 }  // namespace
 
 template <class T>

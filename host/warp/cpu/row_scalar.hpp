@@ -29,8 +29,7 @@ struct ScalarRows {
   static void write(
       const RasterJob<T>& job, const RowMap& map, unsigned bits, int j, int k, std::int64_t row);
 
-  /// Writes voxel (i, j, k) of the cell at `corner`, which no tetrahedron covers, by the job's rule
-  /// for those.
+  /// Writes voxel (i, j, k) of the cell at `corner`, which no tetrahedron covers.
   static void write_outside(
       const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel);
 };

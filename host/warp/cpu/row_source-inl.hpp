@@ -1,6 +1,6 @@
 /// @file row_source-inl.hpp
 /// The map of one tetrahedron over one cell, and the runs of a row that share an owner. Included
-/// once per vector instruction set (the name and the toggled guard are Highway's convention).
+/// once per vector instruction set.
 #if defined(TETWARP_ROW_SOURCE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_SOURCE_INL
 #undef TETWARP_ROW_SOURCE_INL
@@ -61,7 +61,7 @@ struct SourceBounds {
   double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
 };
 
-/// The map of one tetrahedron relative to one cell, with the bits of make_source_map().
+/// The map of one tetrahedron relative to one cell, bit-equal to make_source_map().
 class RowSource {
  public:
   template <class T>
@@ -89,8 +89,7 @@ class RowSource {
 
   /// The voxel at the map's whole part; it may lie outside the source.
   std::int64_t origin() const { return origin_; }
-  /// Distances in memory from a voxel's samples to two places that the next rows read, for
-  /// prefetching.
+  /// Distances in memory from a voxel's samples to two places to prefetch for the next rows.
   std::int64_t ahead() const { return ahead_; }
   std::int64_t ahead_too() const { return ahead_too_; }
 
@@ -132,7 +131,7 @@ class RowSource {
   }
 
   /// Sets the prefetch distances. Rows that run along lines of the source next read lines of the
-  /// next slice. Rows that run across lines next read where the neighbouring line of cells does,
+  /// next slice. Rows that run across lines next read what the neighbouring line of cells reads,
   /// one row further.
   void look_ahead(std::int64_t line, std::int64_t slice, int components) {
     const hn::FixedTag<float, 4> d;

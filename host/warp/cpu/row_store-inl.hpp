@@ -1,7 +1,6 @@
 /// @file row_store-inl.hpp
-/// Stores values in a row of the output: samples rounded to the pixel type, and copies.
-/// Included once per vector instruction set (the name and the toggled guard are Highway's
-/// convention).
+/// Stores values in a row of the output: samples rounded to the pixel type, and copies. Included
+/// once per vector instruction set.
 #if defined(TETWARP_ROW_STORE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_STORE_INL
 #undef TETWARP_ROW_STORE_INL
@@ -80,8 +79,8 @@ class RunCopier {
   std::int64_t count_ = 0;
 };
 
-/// Writes the voxels `bits` of a row that moved by whole voxels: copies, and the background outside
-/// of the source.
+/// Writes the voxels `bits` of a row that moved by whole voxels: copies, outside of the source
+/// background.
 template <class T>
 inline void copy_run(const RasterJob<T>& job,
                      const RowSource& source,

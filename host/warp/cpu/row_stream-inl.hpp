@@ -1,7 +1,7 @@
 /// @file row_stream-inl.hpp
 /// Stores of rows of the output that bypass the caches: the rows are not read again soon, and their
-/// cache lines need not be loaded before they are written. Included once per vector instruction set
-/// (the name and the toggled guard are Highway's convention).
+/// cache lines need not be loaded before they are written. Included once per vector instruction
+/// set.
 #if defined(TETWARP_ROW_STREAM_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_STREAM_INL
 #undef TETWARP_ROW_STREAM_INL
@@ -22,8 +22,7 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Collects rows one by one and writes whole cache lines; rows that follow each other in memory are
-/// joined.
+/// Collects rows and writes whole cache lines; joins rows that are adjacent in memory.
 template <class T>
 class RowStream {
  public:
@@ -56,7 +55,6 @@ class RowStream {
     if (size_ >= enough) write_lines();
   }
 
-  /// Writes all that is left.
   void flush() {
     if (is_aligned_) write_lines();
     std::copy(lines_ + skipped_, lines_ + size_, to_ + skipped_);
@@ -74,7 +72,7 @@ class RowStream {
     if (!is_aligned_) return flush();
     if (size_ < per_line) return;
     std::ptrdiff_t done = 0;
-    if (skipped_ > 0) {  // a line that other threads may write, too
+    if (skipped_ > 0) {  // other threads may write to the same cache line
       std::copy(lines_ + skipped_, lines_ + per_line, to_ + skipped_);
       done = per_line;
       skipped_ = 0;
@@ -96,7 +94,7 @@ class RowStream {
   T* lines_;                    ///< samples not written yet
   T* to_ = nullptr;             ///< where lines_[0] belongs, the start of a cache line
   std::ptrdiff_t size_ = 0;     ///< samples in lines_
-  std::ptrdiff_t skipped_ = 0;  ///< of these the first ones, which are not of a row
+  std::ptrdiff_t skipped_ = 0;  ///< number of leading samples that belong to no row
   bool is_aligned_ = true;      ///< else `to_` is not the start of a line
 };
 

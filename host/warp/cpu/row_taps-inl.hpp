@@ -1,6 +1,6 @@
 /// @file row_taps-inl.hpp
 /// The samples that the voxels of a row read: offsets and weights, eight voxels per unit. Included
-/// once per vector instruction set (the name and the toggled guard are Highway's convention).
+/// once per vector instruction set.
 ///
 /// A row is computed in two passes, so that the arithmetic does not wait for memory: this one fills
 /// a buffer of taps, row_vector-inl.hpp reads the source and blends.
@@ -99,7 +99,7 @@ inline RowPositions<Rim> row_positions(const RowSource& source,
 }
 
 /// Positions of the voxels of row (j, k) of a cell from `lane` on, each by the map of its own run.
-/// Voxels of no run follow the map of the first: readable, their values are not used.
+/// Voxels of no run use the map of the first: their taps are readable, their values not used.
 template <bool Rim>
 HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
                                             const RowRun* runs,
@@ -124,7 +124,7 @@ HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
   return x;
 }
 
-/// Where some voxels lie between samples along one axis.
+/// Neighbours of a vector of voxels along one axis.
 struct AxisTaps {
   hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without Rim less the whole part
   hn::Vec<RowTag> fraction;    ///< from it to the upper one
@@ -192,7 +192,7 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceView<T>& view,
   return in_source;
 }
 
-/// Adds one unit: row (j, k) of one cell, which `runs` describe, none of them RowKind::alone.
+/// Adds one unit: row (j, k) of one cell, given by `runs`. @pre no run is of RowKind::alone
 template <bool Rim, class T>
 inline void add_unit(const SourceView<T>& view,
                      bool nearest,
@@ -212,7 +212,7 @@ inline void add_unit(const SourceView<T>& view,
     const auto in_source = store_taps(view, nearest, x, at + lane, taps);
     if constexpr (Rim) inside |= bits_of(in_source, lane);
   }
-  // The next rows start too far away for the processor's own prefetching.
+  // The processor does not prefetch across the distance to the next rows.
   for (const std::size_t voxel : {0, cell_edge / 2}) {
     const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
     hwy::Prefetch(from + first.ahead());

@@ -1,6 +1,6 @@
 /// @file row_vector-inl.hpp
 /// Samples of a row as vectors: float32 arithmetic, one component. Included once per vector
-/// instruction set (the name and the toggled guard are Highway's convention).
+/// instruction set.
 ///
 /// A 64-bit lane holds the two neighbours along x of one voxel, loaded together; the blends along y
 /// and z process both, in the order of volume_sample.hpp: equal bits.

@@ -1,8 +1,7 @@
 /// @file row_wide-inl.hpp
 /// Samples of a row voxel by voxel, for rows that vectors of voxels cannot compute: 32-bit and
 /// wider integers, float64 and steep maps, in float64 with one lane per axis of the source.
-/// Included once per vector instruction set (the name and the toggled guard are Highway's
-/// convention).
+/// Included once per vector instruction set.
 #if defined(TETWARP_ROW_WIDE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TETWARP_ROW_WIDE_INL
 #undef TETWARP_ROW_WIDE_INL
@@ -28,9 +27,8 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Positions and neighbours of the voxels of row (j, k) of a cell, with the bits of
-/// SourceMap<double>, local_position() and tap_of(). The fourth lane is padding, and every position
-/// passes it.
+/// Positions and neighbours of the voxels of row (j, k) of a cell, bit-equal to SourceMap<double>,
+/// local_position() and tap_of(). The fourth lane is padding whose bounds accept every position.
 class WideRow {
  public:
   template <class T>
@@ -155,8 +153,7 @@ inline void sample_wide(const RasterJob<T>& job,
   }
 }
 
-/// The same in float32, for affine maps at the end of a source or of sources of 2^31 voxels or
-/// more.
+/// The same in float32, for affine maps at the end of a source or of sources from 2^31 voxels on.
 template <class T>
 inline void sample_narrow(const RasterJob<T>& job,
                           const RowSource& source,

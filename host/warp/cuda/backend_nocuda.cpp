@@ -5,7 +5,6 @@
 #include "host/base/warp_backend.hpp"
 
 namespace tetwarp {
-
 namespace {
 constexpr const char* reason = "this build has no CUDA; build with the CUDA toolkit installed";
 }

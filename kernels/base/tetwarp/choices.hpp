@@ -50,7 +50,7 @@ enum class Filter {
 /// What the components of a source mean, and how the deformation changes them.
 ///
 /// F is the deformation gradient in world axes, constant in a tetrahedron; R is the rotation
-/// nearest to F, for inverted tetrahedra too (det R = +1). Components are along world axes, as in
+/// nearest to F, also for inverted tetrahedra (det R = +1). Components are along world axes, as in
 /// VTK, also on oblique grids.
 enum class Quantity {
   components,            ///< independent numbers, any count: unchanged
@@ -63,8 +63,8 @@ enum class Quantity {
                          ///< (D. C. Alexander et al., 2001); eigenvalues unchanged
 };
 
-/// How contacts are solved. Use `automatic`. All others are expert choices, for comparing solvers:
-/// each runs one method to the end, even where it converges slowly or not at all.
+/// How contacts are solved. Use `automatic`; the others are for comparing solvers: each runs one
+/// method to the end, even if it converges slowly or not at all.
 enum class ContactMethod {
   automatic,       ///< Anderson-accelerated sweeps; other methods when the residual stagnates
   gauss_seidel,    ///< expert: projected Gauss-Seidel, color by color
