@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include <tetwarp/io_export.hpp>
+
 namespace tetwarp {
 
 /// A file that is being written under a temporary name in the folder of `path`; finish() renames
@@ -38,10 +40,11 @@ class FinishedFile {
 
 /// Writes `content` as the file `path`. Throws IoError.
 /// @returns bytes of the file
-std::int64_t write_finished_file(const std::string& path, std::string_view content);
+TETWARP_IO_EXPORT std::int64_t write_finished_file(const std::string& path,
+                                                   std::string_view content);
 
 /// Removes the temporary files of this process, for exits that run no destructors.
 /// Async-signal-safe. Limited to 64 files at a time, with names below 4096 bytes.
-void remove_unfinished_files() noexcept;
+TETWARP_IO_EXPORT void remove_unfinished_files() noexcept;
 
 }  // namespace tetwarp

@@ -3,15 +3,17 @@
 #pragma once
 #include <string>
 
+#include <tetwarp/io_export.hpp>
+
 namespace tetwarp {
 
 /// Bytes that can be allocated without swapping, as the kernel estimates it.
-double available_memory();
+TETWARP_IO_EXPORT double available_memory();
 
 /// Bytes that this process holds in memory now.
-double resident_memory();
+TETWARP_IO_EXPORT double resident_memory();
 
 /// A size for messages: "1.5 GiB".
-std::string bytes_text(double bytes);
+TETWARP_IO_EXPORT std::string bytes_text(double bytes);
 
 }  // namespace tetwarp

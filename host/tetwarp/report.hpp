@@ -12,7 +12,7 @@
 namespace tetwarp {
 
 /// Seconds per stage. A stage that did not run is zero.
-struct Timings {
+struct TETWARP_EXPORT Timings {
   double read = 0;      ///< of files; 0 for a Warper
   double upload = 0;    ///< host to device: sources once, node positions in each step
   double setup = 0;     ///< planes and maps of the tetrahedra
@@ -28,7 +28,7 @@ struct Timings {
 };
 
 /// Amounts of work, done and skipped: of one step in StepReport, summed over steps in Report.
-struct Counts {
+struct TETWARP_EXPORT Counts {
   std::int64_t voxels = 0;           ///< of the output = covered + outside
   std::int64_t covered = 0;          ///< voxels that some tetrahedron owns
   std::int64_t outside = 0;          ///< voxels that no tetrahedron covers
