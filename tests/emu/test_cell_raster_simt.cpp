@@ -188,8 +188,9 @@ TEST(CellRasterSimt, EveryFilterHasTheSameBits) {
 }
 
 TEST(CellRasterSimt, EverySceneHasTheSameBits) {
-  for (const char* scene : {"identity", "aligned", "rotated", "outside", "oblique", "slivers_1",
-                            "thin_aligned_1", "soup", "overlapping", "folded", "far", "other_grid"}) {
+  for (const char* scene :
+       {"identity", "aligned", "rotated", "outside", "oblique", "slivers_1", "thin_aligned_1",
+        "soup", "overlapping", "folded", "far", "other_grid"}) {
     expect_equal_bits({.scene = scene, .type = PixelType::int16});
     expect_equal_bits({.scene = scene, .type = PixelType::float32});
   }
