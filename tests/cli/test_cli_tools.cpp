@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/warp.hpp>
 #include <vector>
 
 #include "tests/scenes/cli_scene.hpp"
