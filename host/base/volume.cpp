@@ -133,9 +133,16 @@ VolumeView::VolumeView(const Volume& volume)
   }
 }
 
-VolumeView::VolumeView(
-    const Grid& grid_, PixelType type_, int components_, const void* data_, Memory memory_)
-    : grid(grid_), type(type_), components(components_), data(data_), memory(memory_) {}
+VolumeView::VolumeView(const Grid& view_grid,
+                       PixelType sample_type,
+                       int component_count,
+                       const void* samples,
+                       Memory where)
+    : grid(view_grid),
+      type(sample_type),
+      components(component_count),
+      data(samples),
+      memory(where) {}
 
 IndexFromWorld index_from_world(const Grid& grid) {
   const RowMatrix inverse = Eigen::PartialPivLU<RowMatrix>(world_from_index(grid)).inverse();

@@ -163,7 +163,7 @@ bool is_positive(const SparseMatrix& system, std::int32_t begin, int size) {
                               largest_dense_block, largest_dense_block>;
   Block block = Block::Zero(size, size);
   for (int i = 0; i < size; ++i) {
-    const auto row = static_cast<std::size_t>(begin + i);
+    const auto row = static_cast<std::size_t>(begin) + static_cast<std::size_t>(i);
     for (std::int64_t e = system.row_start[row]; e < system.row_start[row + 1]; ++e) {
       const int j = system.column[static_cast<std::size_t>(e)] - begin;
       if (j >= 0 && j < size) block(i, j) = system.value[static_cast<std::size_t>(e)];
