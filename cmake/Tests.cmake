@@ -12,6 +12,7 @@ include(GoogleTest)
 
 # Shared by several programs: synthetic inputs, and precompiled headers.
 add_library(tetwarp_scenes STATIC
+  tests/scenes/contact_samples.cpp
   tests/scenes/contact_scenes.cpp
   tests/scenes/contact_scenes_slab.cpp
   tests/scenes/contact_transforms.cpp

@@ -161,7 +161,8 @@ TEST(BodyRelax, DefectIsWhatTheEquationLeaves) {
 TEST(BodyRelax, IsExactInOneStepForBodiesOfTheirOwn) {
   for (const Index dofs : {3, 6, 12}) {
     const Relaxation x(72, 7, dofs, 0);
-    const VectorXd solution = x.system.llt().solve(x.load + x.jacobian.transpose() * x.impulse);
+    const VectorXd solution =
+        samples::solve_spd(x.system, x.load + x.jacobian.transpose() * x.impulse);
     const Numbers start = x.by_place(x.velocity);
 
     const Numbers after = x.relaxed(exec, 0, x.block_count(), 1, x.defect(exec, start), start);
@@ -178,7 +179,7 @@ TEST(BodyRelax, StepsByTheInverseOfTheDiagonalBlocks) {
   VectorXd expected = x.velocity;
   for (Index b = 0; b < 6; ++b) {
     expected.segment<6>(6 * b) +=
-        omega * x.system.block<6, 6>(6 * b, 6 * b).llt().solve(x.load.segment<6>(6 * b));
+        omega * samples::solve_spd(x.system.block<6, 6>(6 * b, 6 * b), x.load.segment<6>(6 * b));
   }
 
   const Numbers after = x.relaxed(exec, 0, 6, omega, x.by_place(x.load), x.by_place(x.velocity));
@@ -188,7 +189,8 @@ TEST(BodyRelax, StepsByTheInverseOfTheDiagonalBlocks) {
 
 TEST(BodyRelax, ConvergesToTheCoupledSolution) {
   const Relaxation x(74, 6, 6, 0.4);
-  const VectorXd solution = x.system.llt().solve(x.load + x.jacobian.transpose() * x.impulse);
+  const VectorXd solution =
+      samples::solve_spd(x.system, x.load + x.jacobian.transpose() * x.impulse);
   Numbers v = x.by_place(x.velocity);
 
   for (int step = 0; step < 400; ++step) v = x.relaxed(exec, 0, 6, 0.5, x.defect(exec, v), v);

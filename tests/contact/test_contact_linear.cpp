@@ -63,7 +63,7 @@ Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
 
 TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
   const LinearCase c = bodies(0.4);
-  const VectorXd exact = c.matrix.llt().solve(c.goal);
+  const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
   const double size = c.size_of(exact);
   CpuContactExec exec(1);
   Linear linear = make_linear(exec, c);
@@ -95,7 +95,7 @@ TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
     std::vector<double> first = samples::list_of(samples::random_vector(random, dofs));
     linear.solve(view_of(rough), view_of(first),
                  [](const LinearProgress& now) { return now.left <= 0.1 * now.moved; });
-    const VectorXd exact = c.matrix.llt().solve(c.goal);
+    const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
     std::vector<double> x(rough.size(), 0.0), rest = samples::list_of(c.goal);
     int questions = 0;
 
@@ -113,7 +113,7 @@ TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
 
 TEST(CoupledSystem, StopsWhereItIsToldTo) {
   const LinearCase c = bodies(0.4);
-  const VectorXd exact = c.matrix.llt().solve(c.goal);
+  const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
   CpuContactExec exec(1);
   Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
@@ -146,7 +146,7 @@ TEST(CoupledSystem, RefusesASystemThatIsNotPositiveDefinite) {
   Linear linear = make_linear(exec, c);
   std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal);
 
-  EXPECT_LT(c.matrix.selfadjointView<Eigen::Lower>().eigenvalues()(0), 0);
+  EXPECT_LT(samples::smallest_eigenvalue(c.matrix), 0);
   EXPECT_THROW(linear.solve(view_of(x), view_of(rest), [](const LinearProgress&) { return false; }),
                ContactProblemError);
 }

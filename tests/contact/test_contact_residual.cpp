@@ -108,12 +108,13 @@ class GlobalResidual : public testing::TestWithParam<double> {
     problem_ = samples::random_global(random, 5, 6, GetParam(), 0.4);
     impulse_ = list_of(samples::random_vector(random, 3 * problem_.contact_count()));
     const Eigen::MatrixXd jacobian = make_dense(problem_.jacobian);
-    const Eigen::LLT<Eigen::MatrixXd> system(make_dense(problem_.system));
-    delassus_ = jacobian * system.solve(jacobian.transpose());
-    velocity_ = system.solve(vector_of(problem_.load) + jacobian.transpose() * vector_of(impulse_));
+    const Eigen::MatrixXd system = make_dense(problem_.system);
+    const Eigen::VectorXd load = vector_of(problem_.load);
+    delassus_ = jacobian * samples::solve_spd(system, jacobian.transpose());
+    velocity_ = samples::solve_spd(system, load + jacobian.transpose() * vector_of(impulse_));
     local_.delassus = samples::sparse_of(delassus_);
-    local_.free_velocity = list_of(jacobian * system.solve(vector_of(problem_.load)) +
-                                   vector_of(problem_.velocity_offset));
+    local_.free_velocity =
+        list_of(jacobian * samples::solve_spd(system, load) + vector_of(problem_.velocity_offset));
     local_.friction = problem_.friction;
   }
 
