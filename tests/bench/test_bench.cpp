@@ -51,14 +51,14 @@ struct Warped {
 };
 
 Warped rotated_box(int components = 1) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(16)) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(12)) {
     if (scene.name == "rotated") return Warped(scene, components);
   }
   throw std::logic_error("no scene named rotated");
 }
 
 TEST(BenchTruth, EqualsTheReferenceInEveryVoxel) {
-  for (const scenes::Scene& scene : scenes::adversarial_scenes(16)) {
+  for (const scenes::Scene& scene : scenes::adversarial_scenes(12)) {
     const Warped warped(scene);
 
     const Truth truth = make_truth(scene);

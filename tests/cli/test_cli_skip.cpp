@@ -72,17 +72,21 @@ TEST(CliSkip, EachSwitchGivesTheSameFilesAndStopsItsCount) {
   const PartlyMoving scene;
   const std::vector<std::string> fields = {"--outputs", "displacement,jacobian,forward"};
   const Json fast = scene.warp("fast.vtkhdf", fields)["counts"];
-  const std::vector<std::pair<std::string, std::string>> counts = {
-      {"unchanged-tets", "tets_unchanged"},       {"unchanged-tets", "cells_unchanged"},
-      {"constant-cells", "cells_constant"},       {"unchanged-steps", "steps_unchanged"},
-      {"background-chunks", "chunks_background"}, {"copied-voxels", "voxels_copied"}};
-  for (const auto& [name, count] : counts) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> switches = {
+      {"unchanged-tets", {"tets_unchanged", "cells_unchanged"}},
+      {"constant-cells", {"cells_constant"}},
+      {"unchanged-steps", {"steps_unchanged"}},
+      {"background-chunks", {"chunks_background"}},
+      {"copied-voxels", {"voxels_copied"}}};
+  for (const auto& [name, counts] : switches) {
     std::vector<std::string> words = fields;
     words.insert(words.end(), {"--no-skip", name});
     const Json slow = scene.warp("slow.vtkhdf", words)["counts"];
 
-    EXPECT_GT(fast[count], 0) << count;
-    EXPECT_EQ(slow[count], 0) << count;
+    for (const std::string& count : counts) {
+      EXPECT_GT(fast[count], 0) << count;
+      EXPECT_EQ(slow[count], 0) << count;
+    }
     for (int step = 0; step < 6; ++step) {
       const std::string suffix = "_000" + std::to_string(step) + ".vtkhdf";
       scene.expect_same("fast" + suffix, "slow" + suffix);

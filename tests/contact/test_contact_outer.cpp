@@ -202,9 +202,10 @@ TEST(BlockJacobi, IsChosenForLargeIslandsOnly) {
   const ContactProblem large = scenes::elastic_slab({.cubes = {14, 12, 6}, .contacts = 100});
 
   EXPECT_EQ(solve_contacts(small).report.outer_iterations, 0);
-  EXPECT_EQ(solve_contacts(large).report.method, "outer_anderson");
-  EXPECT_EQ(solve_contacts(large, {.method = ContactMethod::gauss_seidel}).report.outer_iterations,
-            0);
+  EXPECT_EQ(solve_contacts(large, {.tolerance = 0.5}).report.method, "outer_anderson");
+  const ContactOptions sweeps = {
+      .method = ContactMethod::gauss_seidel, .tolerance = 0.5, .max_sweeps = 10};
+  EXPECT_EQ(solve_contacts(large, sweeps).report.outer_iterations, 0);
 }
 
 /// 100 outer iterations do not converge; the condensed problem does.
