@@ -27,7 +27,7 @@ struct SourcePosition {
 /// The samples that a filter reads around a position, as offsets and weights per axis.
 template <class Real>
 struct FilterTaps {
-  int count;  ///< per axis: 4 or 6
+  int count;  ///< per axis: tap_count()
   std::int64_t offset[3][max_taps];
   Real weight[3][max_taps];
   std::int64_t near;   ///< offset of the sample of largest weight
@@ -89,7 +89,9 @@ TETWARP_HD void lanczos_weights(Real t, Real* w) {
   for (int i = 0; i < 6; ++i) w[i] = w[i] * scale;
 }
 
-/// Weights of cubic, bspline or lanczos.
+/// Weights of a filter of this file; a filter without a branch gets those of lanczos. Real may be a
+/// vector of numbers, which has no comparisons.
+/// @param w  out, shape [tap_count()]
 template <class Real>
 TETWARP_HD void filter_weights(Filter filter, Real t, Real* w) {
   if (filter == Filter::cubic) {
@@ -112,7 +114,7 @@ TETWARP_HD int mirrored(int i, int last) {
   return within > last ? 2 * last - within : within;
 }
 
-/// Taps of cubic, bspline and lanczos.
+/// Taps of a filter of this file.
 template <class T, class Real>
 TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
                                         Filter filter,
@@ -192,8 +194,8 @@ TETWARP_HD T constant_value(const SourceView<T>& source, std::int64_t voxel, int
   return finished(source, source.coefficients[sample], c);
 }
 
-/// Samples the source by cubic, bspline or lanczos. At a voxel's centre the result is that voxel's
-/// sample, bit for bit.
+/// Samples the source by a filter of this file. At a voxel's centre the result is that voxel's
+/// sample, bit for bit. The last branch is bspline's: only that filter has coefficients.
 /// @param out  shape [components]
 template <class T>
 TETWARP_HD void sample_filtered(const SourceView<T>& source,

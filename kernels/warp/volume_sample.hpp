@@ -17,7 +17,8 @@
 
 namespace tetwarp {
 
-/// Whether a filter is wider than tap_of() and sample() support: all but nearest and linear.
+/// Whether a filter is sampled by volume_filter.hpp or volume_label.hpp, not by tap_of() and
+/// sample(): all but nearest and linear, also filters of only 2x2x2 samples.
 TETWARP_HD bool is_wide(Filter filter) {
   return filter > Filter::linear;
 }

@@ -90,7 +90,7 @@ class RowWalk {
   hn::Vec<LaneIntTag> whole_, first_, last_;
 };
 
-/// blended() of volume_filter.hpp for taps that all exist, with equal bits.
+/// blended() of volume_filter.hpp for four or six taps that all exist, with equal bits.
 /// @param samples  at the lower neighbour
 template <Filter filter, class Sample>
 float blended_lanes(const Sample* samples,
