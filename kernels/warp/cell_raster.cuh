@@ -117,7 +117,7 @@ __device__ __forceinline__ unsigned voxels_in_output(
 }
 
 /// Stores a voxel whose owner is tetrahedron `slot` of the chunk.
-/// @param work  of the cell, see RasterJob::cell_work
+/// @param work  of the cell, see RasterGeometry::cell_work
 template <bool General, class T>
 __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
                                               const RasterChunk<ArithmeticOf<T>>& chunk,

@@ -41,9 +41,8 @@ struct OutsideMap {
 constexpr std::int64_t keep_cell = -2;    ///< the output already holds this cell's result
 constexpr std::int64_t sample_cell = -1;  ///< every covered voxel is sampled
 
-/// Input and output of the raster stage for one source.
-template <class T>
-struct RasterJob {
+/// The part of RasterJob that does not depend on the pixel type: meshes, cells, owners.
+struct RasterGeometry {
   View<const TetSetup> setups;
   View<const std::int32_t> tets;
   View<const Node> nodes;
@@ -52,12 +51,8 @@ struct RasterJob {
   View<const CellPair> pairs;
   View<const CellRange> ranges;
   OutputFrame frame;
-  SourceView<T> source;
-  Filter filter;
   OutsideMap outside;
-  T background;
   bool copy_whole_shifts;
-  T* volume;           ///< [k][j][i][component]
   std::uint8_t* mask;  ///< may be null
   std::int32_t* tet;   ///< may be null
   RasterCounts* counts;
@@ -71,24 +66,30 @@ struct RasterJob {
   /// Per tetrahedron: how its voxels are sampled, see voxel_transform.hpp. Size 0: all are plain.
   View<const VoxelTransform> transforms;
   VoxelTransform outside_transform;  ///< of voxels that no tetrahedron covers
-  Quantity reorientation;            ///< for which the matrices of transforms were computed
+};
+
+/// Input and output of the raster stage for one source.
+template <class T>
+struct RasterJob : RasterGeometry {
+  SourceView<T> source;
+  Filter filter;
+  T background;
+  Quantity reorientation;  ///< for which the matrices of transforms were computed
+  T* volume;               ///< [k][j][i][component]
 };
 
 /// Whether voxels of tetrahedron t are transformed samples.
-template <class T>
-TETWARP_HD bool has_transform(const RasterJob<T>& job, std::int64_t t) {
+TETWARP_HD bool has_transform(const RasterGeometry& job, std::int64_t t) {
   return job.transforms.size > 0 && !job.transforms[t].is_plain;
 }
 
 /// Whether voxels that no tetrahedron covers are transformed samples.
-template <class T>
-TETWARP_HD bool has_outside_transform(const RasterJob<T>& job) {
+TETWARP_HD bool has_outside_transform(const RasterGeometry& job) {
   return job.transforms.size > 0 && job.outside.use_source && !job.outside_transform.is_plain;
 }
 
-/// What to do with a cell, see RasterJob::cell_work.
-template <class T>
-TETWARP_HD std::int64_t work_of(const RasterJob<T>& job, std::int64_t cell) {
+/// What to do with a cell, see RasterGeometry::cell_work.
+TETWARP_HD std::int64_t work_of(const RasterGeometry& job, std::int64_t cell) {
   return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
 }
 
@@ -227,8 +228,7 @@ TETWARP_HD void store_sample(const RasterJob<T>& job,
 
 /// The map of the hexahedron that tetrahedron t belongs to. Out of line: inlined, it makes the
 /// general raster kernel spill registers on sm_120.
-template <class T>
-TETWARP_HD_RARE HexMap hex_map_of(const RasterJob<T>& job, std::int64_t t) {
+TETWARP_HD_RARE HexMap hex_map_of(const RasterGeometry& job, std::int64_t t) {
   return make_hex_map({job.hexes, job.tets, job.nodes, job.rest}, t, job.setups[t]);
 }
 
@@ -247,8 +247,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
 }
 
 /// Whether the tetrahedron moved by whole voxels: its voxels copy one sample with any filter.
-template <class T>
-TETWARP_HD bool is_copied(const RasterJob<T>& job, const TetSetup& tet) {
+TETWARP_HD bool is_copied(const RasterGeometry& job, const TetSetup& tet) {
   return job.copy_whole_shifts && tet.kind == MapKind::copy;
 }
 

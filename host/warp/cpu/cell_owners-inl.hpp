@@ -48,8 +48,7 @@ inline SliceBits rows_between(int begin, int end, unsigned row) {
 }
 
 /// Adds to `mine` those of the voxels `unsure` that lie inside tetrahedron t.
-template <class T>
-inline void test_each(const RasterJob<T>& job,
+inline void test_each(const RasterGeometry& job,
                       const CellBox& box,
                       int t,
                       const CellPlanes& planes,
@@ -72,8 +71,7 @@ inline void test_each(const RasterJob<T>& job,
 }
 
 /// Prefetches the setup of the tetrahedron of pair `p`.
-template <class T>
-inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
+inline void fetch_ahead(const RasterGeometry& job, std::uint32_t p) {
   if (p >= static_cast<std::uint64_t>(job.pairs.size)) return;
   const TetSetup* setup = &job.setups[tet_of(job.pairs[p])];
   for (std::size_t byte = 0; byte < sizeof(TetSetup); byte += 64) {
@@ -83,8 +81,7 @@ inline void fetch_ahead(const RasterJob<T>& job, std::uint32_t p) {
 
 /// Sets `mine` to those of the voxels `open` of a cell that lie inside tetrahedron t.
 /// @returns whether there are any; if not, `mine` is undefined
-template <class T>
-inline bool find_inside(const RasterJob<T>& job,
+inline bool find_inside(const RasterGeometry& job,
                         const CellBox& box,
                         int t,
                         const CellBits& open,
@@ -123,8 +120,8 @@ inline bool find_inside(const RasterJob<T>& job,
 /// @param open    in and out: voxels without an owner
 /// @param counts  numbers of tests are added
 /// @param own     own(pair, bits) is called for every pair that owns voxels, pairs ascending
-template <class T, class Own>
-inline void find_owners(const RasterJob<T>& job,
+template <class Own>
+inline void find_owners(const RasterGeometry& job,
                         const CellBox& box,
                         const CellRange& range,
                         CellBits& open,

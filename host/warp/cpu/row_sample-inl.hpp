@@ -31,8 +31,9 @@ namespace HWY_NAMESPACE {
 template <class T>
 class RowSampler {
  public:
-  explicit RowSampler(const RasterJob<T>& job)
-      : job_(job), nearest_(job.filter == Filter::nearest) {}
+  /// @param shape  of the job's source
+  RowSampler(const RasterJob<T>& job, const SourceShape& shape)
+      : job_(job), shape_(shape), nearest_(job.filter == Filter::nearest) {}
 
   /// Writes the covered voxels of row (j, k).
   /// @param runs  sorted by cell; their order within a cell is changed
@@ -73,14 +74,14 @@ class RowSampler {
   }
 
   /// Writes a cell's row of which some runs are copied or written voxel by voxel.
-  void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+  HWY_NOINLINE void write_mixed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
     int vectored_count = 0;  // runs to write in vectors; they are moved to the front
     RowKind kind = RowKind::inner;
     for (int r = 0; r < count; ++r) {
       const RowSource& source = sources[runs[r].source];
       const int cell_row = cell_edge * runs[r].cell;
       if (source.kind() == RowKind::alone) {
-        sample_alone(job_, source, runs[r].bits, j, k, cell_row);
+        sample_alone(job_, shape_, source, runs[r].bits, j, k, cell_row);
       } else if (source.kind() == RowKind::copied) {
         unsigned bits = runs[r].bits;  // with those of following runs of the same shift
         for (; r + 1 < count && moves_alike(source, sources[runs[r + 1].source]); ++r) {
@@ -117,17 +118,17 @@ class RowSampler {
   void add(RowKind kind, const RowSource* sources, const RowRun* runs, int count, int j, int k) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (kind == RowKind::inner) {
-        add_unit(job_.source, nearest_, sources, runs, count, j, k, inner_);
+        add_unit(shape_, nearest_, sources, runs, count, j, k, inner_);
         if (inner_.count == inner_.row_units) flush(inner_);
       } else {
-        add_unit(job_.source, nearest_, sources, runs, count, j, k, rim_);
+        add_unit(shape_, nearest_, sources, runs, count, j, k, rim_);
         if (rim_.count == rim_.row_units) flush(rim_);
       }
     }
   }
 
   template <bool Rim>
-  void flush(RowTaps<Rim>& taps) {
+  HWY_NOINLINE void flush(RowTaps<Rim>& taps) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (taps.count == 0) return;
       const int components = job_.source.components;
@@ -156,6 +157,7 @@ class RowSampler {
   }
 
   const RasterJob<T>& job_;
+  const SourceShape& shape_;
   bool nearest_;
   RunCopier<T> copier_;
   RowTaps<false> inner_;

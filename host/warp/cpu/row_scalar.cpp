@@ -174,13 +174,21 @@ void for_voxels(unsigned bits, const Store& store) {
   for (; bits != 0; bits &= bits - 1) store(std::countr_zero(bits));
 }
 
-/// Writes the voxels `bits` of row (j, k), with the results of store_wide_sample().
+/// Writes the voxels `bits` of row (j, k), with the results of store_sample().
 template <class T>
 void write_filtered(
     const RasterJob<T>& job, const RowMap& row_map, unsigned bits, int j, int k, std::int64_t row) {
   double start[3], linear[3][3];
   const auto set_start = [&] { map_start(row_map.setup, row_map.corner, start, linear); };
   if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+    if (!is_wide(job.filter)) {
+      set_start();
+      const auto map = make_source_map<float>(job.source, start, linear);
+      for_voxels(bits, [&](int i) {
+        store_sample<false>(job, job.filter, map, {row_map.corner, i, j, k, row + i});
+      });
+      return;
+    }
     if (row_map.setup.kind == MapKind::affine) {
       RowWalk walk(job.source, row_map, reach_of(job.filter), j, k);
       for_voxels(bits, [&](int i) {
@@ -220,8 +228,16 @@ void ScalarRows<T>::write(
 
 template <class T>
 void ScalarRows<T>::write_outside(
-    const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel) {
-  store_transformed_outside(job, {corner, i, j, k, voxel});
+    const RasterJob<T>& job, const int* first, int begin, int end, int j, int k) {
+  for (int voxel = begin; voxel < end; ++voxel) {
+    const int i = voxel % cell_edge;
+    const int corner[3] = {first[0] + voxel - i, first[1], first[2]};
+    if (has_outside_transform(job)) {
+      store_transformed_outside(job, {corner, i, j, k, voxel});
+    } else {
+      store_outside<true>(job, {corner, i, j, k, voxel});
+    }
+  }
 }
 
 template struct ScalarRows<std::uint8_t>;

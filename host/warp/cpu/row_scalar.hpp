@@ -1,6 +1,6 @@
 /// @file row_scalar.hpp
 /// Rows whose voxels are written one by one on the CPU: transformed voxels, hexahedra, filters
-/// wider than linear, labels.
+/// wider than linear, labels, positions at the end of the source, voxels without an owner.
 #pragma once
 #include <cstdint>
 
@@ -23,15 +23,17 @@ struct RowMap {
 template <class T>
 struct ScalarRows {
   /// Writes the voxels `bits` of row (j, k) of a cell, which the map's tetrahedron owns: by its
-  /// rule, else by the map of its hexahedron, else by the job's filter, which is then wider than
-  /// linear or labels.
+  /// rule, else by the map of its hexahedron, else by the job's filter. With nearest and linear the
+  /// map must then be affine and the pixel type one with float32 arithmetic.
   /// @param row  of voxel (0, j, k) of the cell in the output
   static void write(
       const RasterJob<T>& job, const RowMap& map, unsigned bits, int j, int k, std::int64_t row);
 
-  /// Writes voxel (i, j, k) of the cell at `corner`, which no tetrahedron covers.
+  /// Writes voxels [begin, end) of row (j, k) of a line of cells, which no tetrahedron covers.
+  /// @param job    its volume is the row, from voxel 0 on
+  /// @param first  first voxel of the line's first cell
   static void write_outside(
-      const RasterJob<T>& job, const int* corner, int i, int j, int k, std::int64_t voxel);
+      const RasterJob<T>& job, const int* first, int begin, int end, int j, int k);
 };
 
 }  // namespace tetwarp

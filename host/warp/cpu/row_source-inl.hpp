@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -30,55 +31,75 @@ enum class RowKind {
   copied  ///< moved by whole voxels
 };
 
-/// Bounds of the positions at which a job's source may be read in vectors. One entry per axis; the
-/// fourth pads to four lanes, and every position passes it.
-struct SourceBounds {
+/// What the code for all pixel types needs to know of a SourceView. The bounds limit the positions
+/// at which it may be read in vectors: one entry per axis; the fourth pads to four lanes, and every
+/// position passes it.
+struct SourceShape {
   template <class T>
-  explicit SourceBounds(const RasterJob<T>& job) {
-    const SourceView<T>& source = job.source;
-    const double voxels = static_cast<double>(source.dims[0]) * source.dims[1] * source.dims[2];
-    is_vectored =
-        sizeof(ArithmeticOf<T>) == 4 && voxels <= std::numeric_limits<std::int32_t>::max();
-    // A read of two neighbours along x takes eight bytes, a read of components takes four at a
-    // time: either may extend up to `spare` voxels beyond the second neighbour.
-    const int spare = source.components == 1 ? 8 / static_cast<int>(sizeof(T)) - 1 : 2;
-    // In narrow sources these voxels extend over several rows or slices.
-    constexpr double slack = 0.51;  // nearest rounds up
-    double voxels_per_step = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = source.origin[axis];
-      inner_low[axis] = origin[axis] + 0.01;
-      inner_high[axis] = origin[axis] + source.dims[axis] - 1 - slack;
-      end[axis] = inner_high[axis] - std::ceil(spare / voxels_per_step);
-      voxels_per_step *= source.dims[axis];
+  explicit SourceShape(const SourceView<T>& source)
+      : data(reinterpret_cast<const std::byte*>(source.data)),
+        sample_bytes(sizeof(T)),
+        constants(data),
+        constant_bytes(sizeof(T)),
+        dims{source.dims[0], source.dims[1], source.dims[2]},
+        components(source.components) {
+    for (int axis = 0; axis < 3; ++axis) origin[axis] = source.origin[axis];
+    if (source.coefficients != nullptr) {
+      constants = reinterpret_cast<const std::byte*>(source.coefficients);
+      constant_bytes = sizeof(ArithmeticOf<T>);
     }
+    set_bounds(sizeof(ArithmeticOf<T>) == 4);
   }
 
+  const std::byte* data;
+  std::ptrdiff_t sample_bytes;
+  /// What constant_value() reads: the samples, or the coefficients of the spline.
+  const std::byte* constants;
+  std::ptrdiff_t constant_bytes;  ///< per component of a voxel
+  int dims[3];
+  int components;
   bool is_vectored;
   double origin[4] = {0, 0, 0, 0};      ///< first voxel that the view holds
   double inner_low[4] = {0, 0, 0, -1};  ///< between low and high no neighbour is clamped
   double inner_high[4] = {0, 0, 0, 1};
   double end[4] = {0, 0, 0, -1};  ///< above it on all axes a read may pass the end of the source
+
+ private:
+  void set_bounds(bool is_float32) {
+    const double voxels = static_cast<double>(dims[0]) * dims[1] * dims[2];
+    is_vectored = is_float32 && voxels <= std::numeric_limits<std::int32_t>::max();
+    // A read of two neighbours along x takes eight bytes, a read of components takes four at a
+    // time: either may extend up to `spare` voxels beyond the second neighbour.
+    const int spare = components == 1 ? 8 / static_cast<int>(sample_bytes) - 1 : 2;
+    // In narrow sources these voxels extend over several rows or slices.
+    constexpr double slack = 0.51;  // nearest rounds up
+    double voxels_per_step = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      inner_low[axis] = origin[axis] + 0.01;
+      inner_high[axis] = origin[axis] + dims[axis] - 1 - slack;
+      end[axis] = inner_high[axis] - std::ceil(spare / voxels_per_step);
+      voxels_per_step *= dims[axis];
+    }
+  }
 };
 
 /// The map of one tetrahedron relative to one cell, bit-equal to make_source_map().
 class RowSource {
  public:
-  template <class T>
-  RowSource(const RasterJob<T>& job,
-            const SourceBounds& bounds,
+  RowSource(const RasterGeometry& job,
+            const SourceShape& source,
             const TetSetup& tet,
             const int* corner,
             int number)
       : setup_(&tet), number_(number), corner_{corner[0], corner[1], corner[2]} {
-    set_map(bounds);
-    if (!bounds.is_vectored || tet.kind == MapKind::steep || tet.kind == MapKind::trilinear) {
+    set_map(source);
+    if (!source.is_vectored || tet.kind == MapKind::steep || tet.kind == MapKind::trilinear) {
       kind_ = RowKind::alone;
     }
     if (is_copied(job, tet)) kind_ = RowKind::copied;
-    const std::int64_t line = job.source.dims[0], slice = line * job.source.dims[1];
+    const std::int64_t line = source.dims[0], slice = line * source.dims[1];
     origin_ = whole[2] * slice + whole[1] * line + whole[0];
-    look_ahead(line, slice, job.source.components);
+    look_ahead(line, slice, source.components);
   }
 
   RowKind kind() const { return kind_; }
@@ -99,7 +120,7 @@ class RowSource {
   alignas(16) std::int32_t whole[4];
 
  private:
-  void set_map(const SourceBounds& bounds) {
+  void set_map(const SourceShape& source) {
     const hn::CappedTag<double, 4> d;  // one lane per axis of the source
     const hn::Rebind<float, decltype(d)> df;
     const hn::Rebind<std::int32_t, decltype(d)> di;
@@ -120,12 +141,12 @@ class RowSource {
       const auto limit = hn::Set(d, max_whole);
       const auto floor = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
       hn::Store(hn::DemoteTo(df, hn::Sub(start, floor)), df, base + lane);
-      const auto local = hn::Sub(floor, hn::LoadU(d, bounds.origin + lane));
+      const auto local = hn::Sub(floor, hn::LoadU(d, source.origin + lane));
       hn::Store(hn::DemoteTo(di, local), di, whole + lane);
       const auto low = hn::Add(start, below), high = hn::Add(start, above);
-      is_inner = is_inner && hn::AllTrue(d, hn::Gt(low, hn::LoadU(d, bounds.inner_low + lane))) &&
-                 hn::AllTrue(d, hn::Lt(high, hn::LoadU(d, bounds.inner_high + lane)));
-      meets_end = meets_end && hn::AllTrue(d, hn::Gt(high, hn::LoadU(d, bounds.end + lane)));
+      is_inner = is_inner && hn::AllTrue(d, hn::Gt(low, hn::LoadU(d, source.inner_low + lane))) &&
+                 hn::AllTrue(d, hn::Lt(high, hn::LoadU(d, source.inner_high + lane)));
+      meets_end = meets_end && hn::AllTrue(d, hn::Gt(high, hn::LoadU(d, source.end + lane)));
     }
     if (!meets_end) kind_ = is_inner ? RowKind::inner : RowKind::rim;
   }

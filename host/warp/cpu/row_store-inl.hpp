@@ -82,13 +82,13 @@ class RunCopier {
 /// Writes the voxels `bits` of a row that moved by whole voxels: copies, outside of the source
 /// background.
 template <class T>
-inline void copy_run(const RasterJob<T>& job,
-                     const RowSource& source,
-                     unsigned bits,
-                     int j,
-                     int k,
-                     T* out,
-                     RunCopier<T>& copier) {
+HWY_NOINLINE void copy_run(const RasterJob<T>& job,
+                           const RowSource& source,
+                           unsigned bits,
+                           int j,
+                           int k,
+                           T* out,
+                           RunCopier<T>& copier) {
   const SourceView<T>& view = job.source;
   const int components = view.components;
   const std::int64_t x = source.whole[0], y = source.whole[1] + j, z = source.whole[2] + k;

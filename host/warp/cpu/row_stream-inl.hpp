@@ -13,24 +13,27 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 HWY_BEFORE_NAMESPACE();
 namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Collects rows and writes whole cache lines; joins rows that are adjacent in memory.
-template <class T>
+/// Collects rows and writes whole cache lines; joins rows that are adjacent in memory. Sizes are in
+/// bytes.
 class RowStream {
  public:
-  /// @param longest  largest number of samples of a row
-  /// @param margin   samples before a row that pointers may refer to; they are not written
-  RowStream(std::ptrdiff_t longest, std::ptrdiff_t margin)
-      : margin_((margin + per_line - 1) / per_line * per_line),
-        storage_(hwy::AllocateAligned<T>(static_cast<std::size_t>(margin_ + enough + longest))),
+  /// @param sample   size of a sample
+  /// @param longest  largest size of a row
+  /// @param margin   space before a row that pointers may refer to; it is not written
+  RowStream(std::ptrdiff_t sample, std::ptrdiff_t longest, std::ptrdiff_t margin)
+      : sample_(sample),
+        margin_((margin + line - 1) / line * line),
+        storage_(hwy::AllocateAligned<std::uint8_t>(
+            static_cast<std::size_t>(margin_ + enough + longest))),
         lines_(storage_.get() + margin_) {}
 
   ~RowStream() { hwy::FlushStream(); }
@@ -38,63 +41,76 @@ class RowStream {
   RowStream& operator=(const RowStream&) = delete;
 
   /// @returns where to write the samples that belong at `out`; valid until end_row()
+  template <class T>
   T* begin_row(T* out) {
-    if (out != to_ + size_) {
-      flush();
-      const auto address = reinterpret_cast<std::uintptr_t>(out);
-      is_aligned_ = address % sizeof(T) == 0;
-      skipped_ = size_ = static_cast<std::ptrdiff_t>(address % line_bytes / sizeof(T));
-      to_ = out - size_;
-    }
-    return lines_ + size_;
+    return reinterpret_cast<T*>(begin_bytes(reinterpret_cast<std::uint8_t*>(out)));
   }
 
-  /// Ends a row of `count` samples.
-  void end_row(std::ptrdiff_t count) {
-    size_ += count;
+  /// Ends a row.
+  void end_row(std::ptrdiff_t size) {
+    size_ += size;
     if (size_ >= enough) write_lines();
   }
 
-  void flush() {
+  HWY_NOINLINE void flush() {
     if (is_aligned_) write_lines();
-    std::copy(lines_ + skipped_, lines_ + size_, to_ + skipped_);
+    copy(skipped_, size_);
     to_ = nullptr;
     skipped_ = size_ = 0;
   }
 
  private:
-  static constexpr std::size_t line_bytes = 64;
-  static constexpr std::ptrdiff_t per_line = line_bytes / sizeof(T);
-  static constexpr std::ptrdiff_t enough = 8 * per_line;  ///< samples to collect before writing
+  static constexpr std::ptrdiff_t line = 64;          ///< size of a cache line
+  static constexpr std::ptrdiff_t enough = 8 * line;  ///< to collect before writing
+
+  std::uint8_t* begin_bytes(std::uint8_t* out) {
+    if (out != to_ + size_) {
+      flush();
+      const auto in_line =
+          static_cast<std::ptrdiff_t>(reinterpret_cast<std::uintptr_t>(out) % line);
+      is_aligned_ = in_line % sample_ == 0;
+      skipped_ = size_ = in_line - in_line % sample_;
+      to_ = out - size_;
+    }
+    return lines_ + size_;
+  }
+
+  /// Writes bytes [begin, end) of `lines_`.
+  void copy(std::ptrdiff_t begin, std::ptrdiff_t end) {
+    if (begin < end) {
+      std::memcpy(to_ + begin, lines_ + begin, static_cast<std::size_t>(end - begin));
+    }
+  }
 
   /// Writes the whole cache lines collected so far.
-  void write_lines() {
+  HWY_NOINLINE void write_lines() {
     if (!is_aligned_) return flush();
-    if (size_ < per_line) return;
+    if (size_ < line) return;
     std::ptrdiff_t done = 0;
     if (skipped_ > 0) {  // other threads may write to the same cache line
-      std::copy(lines_ + skipped_, lines_ + per_line, to_ + skipped_);
-      done = per_line;
+      copy(skipped_, line);
+      done = line;
       skipped_ = 0;
     }
-    const hn::CappedTag<T, per_line> d;
+    const hn::CappedTag<std::uint8_t, line> d;
     const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
-    for (; done + per_line <= size_; done += per_line) {
-      for (std::ptrdiff_t v = done; v < done + per_line; v += lanes) {
-        hn::Stream(hn::Load(d, lines_ + v), d, to_ + v);
+    for (; done + line <= size_; done += line) {
+      for (std::ptrdiff_t at = done; at < done + line; at += lanes) {
+        hn::Stream(hn::Load(d, lines_ + at), d, to_ + at);
       }
     }
-    std::copy(lines_ + done, lines_ + size_, lines_);
+    std::memmove(lines_, lines_ + done, static_cast<std::size_t>(size_ - done));
     to_ += done;
     size_ -= done;
   }
 
+  std::ptrdiff_t sample_;
   std::ptrdiff_t margin_;
-  hwy::AlignedFreeUniquePtr<T[]> storage_;
-  T* lines_;                    ///< samples not written yet
-  T* to_ = nullptr;             ///< where lines_[0] belongs, the start of a cache line
-  std::ptrdiff_t size_ = 0;     ///< samples in lines_
-  std::ptrdiff_t skipped_ = 0;  ///< number of leading samples that belong to no row
+  hwy::AlignedFreeUniquePtr<std::uint8_t[]> storage_;
+  std::uint8_t* lines_;         ///< samples not written yet
+  std::uint8_t* to_ = nullptr;  ///< where lines_[0] belongs, the start of a cache line
+  std::ptrdiff_t size_ = 0;     ///< of the samples in lines_
+  std::ptrdiff_t skipped_ = 0;  ///< number of leading bytes that belong to no row
   bool is_aligned_ = true;      ///< else `to_` is not the start of a line
 };
 

@@ -162,25 +162,25 @@ axis_taps(const RowPositions<Rim>& x, hn::Vec<RowTag> near, int axis, int dim, i
 
 /// Stores offsets and fractions of some voxels at place `to` of `taps`.
 /// @returns which of them lie inside the source; without Rim all
-template <bool Rim, class T>
-HWY_INLINE hn::Mask<RowTag> store_taps(const SourceView<T>& view,
+template <bool Rim>
+HWY_INLINE hn::Mask<RowTag> store_taps(const SourceShape& source,
                                        bool nearest,
                                        const RowPositions<Rim>& x,
                                        std::size_t to,
                                        RowTaps<Rim>& taps) {
   const RowTag d;
   const RowIntTag di;
-  const int stride[3] = {1, view.dims[0], view.dims[0] * view.dims[1]};
+  const int stride[3] = {1, source.dims[0], source.dims[0] * source.dims[1]};
   AxisTaps along[3];
   auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (int axis = 0; axis < 3; ++axis) {
     const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
-    along[axis] = axis_taps<Rim>(x, near, axis, view.dims[axis], stride[axis]);
+    along[axis] = axis_taps<Rim>(x, near, axis, source.dims[axis], stride[axis]);
     if constexpr (Rim) in_source = hn::And(in_source, along[axis].in_source);
     hn::Store(along[axis].fraction, d, taps.fraction[axis] + to);
   }
-  const auto row = hn::Add(hn::Mul(along[2].voxel, hn::Set(di, view.dims[1])), along[1].voxel);
-  auto offset = hn::Add(hn::Mul(row, hn::Set(di, view.dims[0])), along[0].voxel);
+  const auto row = hn::Add(hn::Mul(along[2].voxel, hn::Set(di, source.dims[1])), along[1].voxel);
+  auto offset = hn::Add(hn::Mul(row, hn::Set(di, source.dims[0])), along[0].voxel);
   if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
   hn::Store(offset, di, taps.offset[0] + to);
   if constexpr (Rim) {
@@ -193,8 +193,8 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceView<T>& view,
 }
 
 /// Adds one unit: row (j, k) of one cell, given by `runs`. @pre no run is of RowKind::alone
-template <bool Rim, class T>
-inline void add_unit(const SourceView<T>& view,
+template <bool Rim>
+inline void add_unit(const SourceShape& source,
                      bool nearest,
                      const RowSource* sources,
                      const RowRun* runs,
@@ -209,14 +209,14 @@ inline void add_unit(const SourceView<T>& view,
   const RowStart first_start(first, j, k);
   for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(RowTag())) {
     const auto x = unit_positions<Rim>(sources, runs, run_count, first_start, j, k, lane);
-    const auto in_source = store_taps(view, nearest, x, at + lane, taps);
+    const auto in_source = store_taps(source, nearest, x, at + lane, taps);
     if constexpr (Rim) inside |= bits_of(in_source, lane);
   }
   // The processor does not prefetch across the distance to the next rows.
   for (const std::size_t voxel : {0, cell_edge / 2}) {
-    const T* from = view.data + std::int64_t{taps.offset[0][at + voxel]} * view.components;
-    hwy::Prefetch(from + first.ahead());
-    hwy::Prefetch(from + first.ahead_too());
+    const std::int64_t from = std::int64_t{taps.offset[0][at + voxel]} * source.components;
+    hwy::Prefetch(source.data + source.sample_bytes * (from + first.ahead()));
+    hwy::Prefetch(source.data + source.sample_bytes * (from + first.ahead_too()));
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};

@@ -31,16 +31,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// local_position() and tap_of(). The fourth lane is padding whose bounds accept every position.
 class WideRow {
  public:
-  template <class T>
-  WideRow(const SourceView<T>& view, const RowSource& source, bool nearest, int j, int k)
+  WideRow(const SourceShape& shape, const RowSource& source, bool nearest, int j, int k)
       : nearest_(nearest) {
     const TetSetup& tet = source.setup();
     const int* corner = source.corner();
-    double origin[4] = {0, 0, 0, 0};
-    for (int axis = 0; axis < 3; ++axis) {
-      last_[axis] = view.dims[axis] - 1;
-      origin[axis] = view.origin[axis];
-    }
+    for (int axis = 0; axis < 3; ++axis) last_[axis] = shape.dims[axis] - 1;
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
       auto start = hn::Zero(d);
       for (int a = 0; a < 3; ++a) {
@@ -55,7 +50,7 @@ class WideRow {
       const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
       const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
       const auto half = hn::Set(d, 0.5);
-      const auto local = hn::Sub(whole, hn::LoadU(d, origin + lane));
+      const auto local = hn::Sub(whole, hn::LoadU(d, shape.origin + lane));
       const auto low = hn::Sub(hn::Sub(hn::Neg(half), local), slack);
       const auto high = hn::Add(hn::Add(hn::Sub(hn::Load(d, last_ + lane), local), half), slack);
       hn::Store(line, d, line_ + lane);
@@ -107,6 +102,7 @@ class WideRow {
 /// Writes the voxels `bits` of row (j, k) in float64.
 template <class T>
 inline void sample_wide(const RasterJob<T>& job,
+                        const SourceShape& shape,
                         const RowSource& source,
                         unsigned bits,
                         int j,
@@ -117,7 +113,7 @@ inline void sample_wide(const RasterJob<T>& job,
   const std::ptrdiff_t components = view.components;
   const std::ptrdiff_t up = components * view.dims[0], far = up * view.dims[1];
   const bool nearest = job.filter == Filter::nearest;
-  WideRow taps(view, source, nearest, j, k);
+  WideRow taps(shape, source, nearest, j, k);
   for (int n = 0; bits != 0; bits &= bits - 1, ++n) {
     const int i = std::countr_zero(bits);
     T* out = job.volume + (row + i) * components;
@@ -153,37 +149,20 @@ inline void sample_wide(const RasterJob<T>& job,
   }
 }
 
-/// The same in float32, for affine maps at the end of a source or of sources from 2^31 voxels on.
-template <class T>
-inline void sample_narrow(const RasterJob<T>& job,
-                          const RowSource& source,
-                          unsigned bits,
-                          int j,
-                          int k,
-                          std::int64_t row) {
-  double start[3], linear[3][3];
-  map_start(source.setup(), source.corner(), start, linear);
-  const auto map = make_source_map<float>(job.source, start, linear);
-  for (; bits != 0; bits &= bits - 1) {
-    const int i = std::countr_zero(bits);
-    store_sample<false>(job, job.filter, map, {source.corner(), i, j, k, row + i});
-  }
-}
-
 /// Writes the voxels `bits` of a row of RowKind::alone.
 template <class T>
 inline void sample_alone(const RasterJob<T>& job,
+                         const SourceShape& shape,
                          const RowSource& source,
                          unsigned bits,
                          int j,
                          int k,
                          std::int64_t row) {
-  if (source.setup().kind == MapKind::trilinear) {
+  const MapKind kind = source.setup().kind;
+  if (kind == MapKind::trilinear || (sizeof(ArithmeticOf<T>) == 4 && kind == MapKind::affine)) {
     ScalarRows<T>::write(job, source.map(), bits, j, k, row);
-  } else if (sizeof(ArithmeticOf<T>) == 4 && source.setup().kind == MapKind::affine) {
-    sample_narrow(job, source, bits, j, k, row);
   } else {
-    sample_wide(job, source, bits, j, k, row);
+    sample_wide(job, shape, source, bits, j, k, row);
   }
 }
 
