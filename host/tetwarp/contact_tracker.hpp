@@ -61,7 +61,7 @@ struct ReportedContact {
                                ///< plane; zero: chosen by the tracker
 };
 
-/// State of a contact between steps, in body coordinates unless the name says world.
+/// State of a contact between steps, in body coordinates unless the name ends in _world.
 struct ContactRecord {
   ContactKey key;             ///< side a has the smaller (body, feature)
   std::int32_t material = 0;  ///< index into ContactTrackerOptions::materials
