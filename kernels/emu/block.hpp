@@ -194,7 +194,7 @@ class Block {
     for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
       const Thread& peer = *threads_[first + l];
       const bool has_arrived = peer.state == State::at_exchange && peer.mask == waiting.mask &&
-                            peer.line == waiting.line;
+                               peer.line == waiting.line;
       if (waiting.mask >> l & 1 && !has_arrived) return l;
     }
     return warp_size;
