@@ -12,15 +12,15 @@ peer_packages=(libvtk9-dev libtbb-dev libinsighttoolkit5-dev python3-siconos pyt
 
 run_bench() {
   local folder=$root/build/bench python=/usr/bin/python3 status=0 with_peers=no argument results
-  local arguments=() wanted=("${packages[@]}" python3-matplotlib)
+  local arguments=() required=("${packages[@]}" python3-matplotlib)
   for argument in "$@"; do
     case $argument in
       --peers) with_peers=yes ;;
-      --install) wanted+=("${peer_packages[@]}") ;;
+      --install) required+=("${peer_packages[@]}") ;;
       *) arguments+=("$argument") ;;
     esac
   done
-  install_packages "${wanted[@]}"
+  install_packages "${required[@]}"
   unset OMP_WAIT_POLICY  # threads may spin: nothing else should run meanwhile
   [[ -x $python ]] || python=python3
   results=$folder/results/$(date +%F)-$(machine_name)

@@ -74,7 +74,7 @@ if(NOT BUILD_SHARED_LIBS)
       set(tetwarp_device_tests ON)
     else()
       add_test(NAME tests_on_device COMMAND ${CMAKE_COMMAND} -E echo
-        "skipped: no CUDA device answered when the build was configured (TETWARP_DEVICE_TESTS=ON)")
+        "skipped: no usable CUDA device when the build was configured (TETWARP_DEVICE_TESTS=ON)")
       set_tests_properties(tests_on_device PROPERTIES LABELS parity SKIP_REGULAR_EXPRESSION skipped)
     endif()
   endif()

@@ -38,7 +38,7 @@ int main() {
   using tetwarp::Memory;
   const tetwarp::BackendStatus cuda = tetwarp::available_backends().front();
   if (!cuda.usable) {
-    std::printf("nothing done: no CUDA device answers (%s)\n", cuda.reason.c_str());
+    std::printf("nothing done: no usable CUDA device (%s)\n", cuda.reason.c_str());
     return 0;
   }
   const tetwarp::Volume phantom = tetwarp::make_phantom({128, 80, 61});

@@ -43,7 +43,7 @@ void keep_first(const h5::Object& group,
   if (there < count) {
     throw IoError(group.file, group.name + "/" + name,
                   "holds " + std::to_string(there) + " entries, expected " + std::to_string(count) +
-                      " as nz or p says");
+                      ", the number that nz or p gives");
   }
   values.resize(static_cast<std::size_t>(count));
 }
@@ -76,7 +76,7 @@ std::vector<std::int64_t> lines_of(const h5::Object& group, std::int64_t line_co
            std::to_string(line_count + 1) + ": one more than rows or columns");
   }
   if (start.front() != 0) refuse("begins with " + std::to_string(start.front()) + ", expected 0");
-  if (!std::is_sorted(start.begin(), start.end())) refuse("falls, expected rising offsets");
+  if (!std::is_sorted(start.begin(), start.end())) refuse("decreases, expected ascending offsets");
   const std::int64_t stored = element_count(h5::open_dataset(group, "i"));
   if (start.back() > stored) {
     refuse("ends with " + std::to_string(start.back()) + ", but i holds " + std::to_string(stored) +
@@ -109,7 +109,7 @@ Triplets read_triplets(const h5::Object& group, std::int64_t rows, std::int64_t 
   const auto count = static_cast<std::int64_t>(entries.column.size());
   keep_first(group, "i", entries.row, count);
   keep_first(group, "x", entries.value, count);
-  // FCLIB's documentation says that triplets have rows in p; its writers put them in i, as CSparse.
+  // In FCLIB's documentation p has the rows of triplets; its writers put them in i, as CSparse.
   const bool has_rows_in_p =
       nz >= 0 && !(are_below(entries.row, rows) && are_below(entries.column, columns)) &&
       are_below(entries.row, columns) && are_below(entries.column, rows);

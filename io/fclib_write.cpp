@@ -118,8 +118,9 @@ void check_length(const h5::Object& file,
   const h5::Dataset dataset = h5::open_dataset(file, vector);
   const std::int64_t expected = fclib::element_count(dataset);
   if (static_cast<std::int64_t>(values.size()) == expected) return;
-  dataset.fail("holds " + std::to_string(expected) + " numbers, but " + name + " of the solution " +
-               std::to_string(values.size()) + ": it belongs to another problem");
+  dataset.fail("holds " + std::to_string(expected) + " numbers, but " + name +
+               " of the solution has " + std::to_string(values.size()) +
+               ": the solution is of another problem");
 }
 
 void check_lengths(const std::string& problem, const ContactSolution& solution) {

@@ -59,7 +59,7 @@ FinishedFile::FinishedFile(const std::string& path) : path_(path) {
   }
   const std::string folder = folder_of(path);
   const std::string name = path.substr(folder.size());
-  if (name.empty()) throw IoError(path, "", "names no file");
+  if (name.empty()) throw IoError(path, "", "is not the name of a file");
   int descriptor = -1;
   do {
     temporary_ =

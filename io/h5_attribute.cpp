@@ -38,7 +38,7 @@ std::vector<T> read_attribute(const Object& object,
   const bool is_number = attribute.type_class == H5T_INTEGER || attribute.type_class == H5T_FLOAT;
   if (!is_number || attribute.count != count) {
     object.fail("attribute " + name + " holds " + std::to_string(attribute.count) +
-                (is_number ? " numbers" : " values that are no numbers") + ", expected " +
+                (is_number ? " numbers" : " values that are not numbers") + ", expected " +
                 std::to_string(count) + (count == 1 ? " number" : " numbers"));
   }
   std::vector<T> values(count);
@@ -88,7 +88,9 @@ std::string read_text_attribute(const Object& object, const std::string& name) {
     return copy;
   }
   const std::size_t size = H5Tget_size(attribute.type.id());
-  if (size > 65536) object.fail("attribute " + name + " claims " + std::to_string(size) + " bytes");
+  if (size > 65536)
+    object.fail("attribute " + name + " has " + std::to_string(size) +
+                " bytes, expected at most 65536");
   std::string text(size, '\0');
   if (H5Aread(attribute.handle.id(), attribute.type.id(), text.data()) < 0) {
     object.fail_with_reason("attribute " + name + " cannot be read");

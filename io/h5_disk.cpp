@@ -14,7 +14,7 @@
 
 namespace tetwarp::h5 {
 namespace {
-/// HDF5 knows the first member only.
+/// HDF5 accesses the first member only.
 struct DiskFile {
   H5FD_t base;
   int descriptor;

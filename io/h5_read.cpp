@@ -143,7 +143,9 @@ Dataset open_dataset(const Object& parent, const std::string& name) {
     dataset.fail_with_reason("damaged description");
   }
   for (const hsize_t dim : dims) {
-    if (dim > hsize_t{1} << 60) dataset.fail("absurd size " + std::to_string(dim));
+    if (dim > hsize_t{1} << 60)
+      dataset.fail("has a dimension of " + std::to_string(dim) +
+                   ", expected at most 2^60: damaged");
     dataset.dims.push_back(static_cast<std::int64_t>(dim));
   }
   if (!is_sound(type)) dataset.fail("damaged type of its elements");
@@ -177,7 +179,7 @@ PixelType pixel_type_of(const Dataset& dataset) {
   if (!is_numeric(dataset)) {
     dataset.fail(
         "holds elements of " + std::to_string(dataset.type_size) +
-        " bytes that are no numbers of 1, 2, 4 or 8 bytes; write plain integers or floats");
+        " bytes that are not numbers of 1, 2, 4 or 8 bytes; write plain integers or floats");
   }
   if (dataset.type_class == H5T_FLOAT) {
     return dataset.type_size <= 4 ? PixelType::float32 : PixelType::float64;

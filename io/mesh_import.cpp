@@ -17,7 +17,7 @@ bool has_mesh_extension(const std::string& path) {
 
 ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& options) {
   if (!has_mesh_extension(path)) {
-    throw IoError(path, "", "is no name of a mesh to import, which ends in .msh, .vtu or .vtk");
+    throw IoError(path, "", "the name of a mesh to import must end in .msh, .vtu or .vtk");
   }
   if (!std::ifstream(path)) {
     throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
@@ -25,8 +25,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   ImportedMesh mesh =
       path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
   if (mesh.mesh.cell_count() == 0) {
-    throw IoError(path, "",
-                  "holds no tetrahedron or hexahedron: damaged, or the mesh of a surface alone");
+    throw IoError(path, "", "holds no tetrahedron or hexahedron: damaged, or a surface mesh");
   }
   if (mesh.mesh.rest_positions.size() > std::numeric_limits<std::int32_t>::max()) {
     throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
@@ -42,7 +41,7 @@ void leave_out_cell(const std::string& path,
     throw IoError(path, "",
                   "cell " + std::to_string(number) + " is a " + kind.name +
                       ", expected tetrahedra of four nodes and hexahedra of eight; split the "
-                      "cells into such");
+                      "cells");
   }
   ++into.skipped[kind.name];
 }
@@ -50,12 +49,12 @@ void leave_out_cell(const std::string& path,
 std::optional<std::string> choose_displacement(const std::string& path,
                                                const std::vector<std::string>& names,
                                                const MeshImportOptions& options) {
-  const std::string wanted = options.displacement.value_or("displacement");
-  if (std::ranges::find(names, wanted) != names.end()) return wanted;
+  const std::string name = options.displacement.value_or("displacement");
+  if (std::ranges::find(names, name) != names.end()) return name;
   if (!options.displacement) return std::nullopt;
   std::string listed;
   for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
-  throw IoError(path, wanted,
+  throw IoError(path, name,
                 "no such point array; the file has " + (listed.empty() ? "none" : listed));
 }
 

@@ -50,9 +50,9 @@ void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh&
       const vtkIdType id = node < nodes->GetNumberOfIds() ? nodes->GetId(node) : -1;
       if (id >= 0 && id < grid.GetNumberOfPoints()) return id;
       throw IoError(path, "",
-                    "cell " + std::to_string(c) + " has not the nodes of a " + kinds[type].name +
-                        ", from 0 to " + std::to_string(grid.GetNumberOfPoints() - 1) +
-                        ": damaged, write it again");
+                    "cell " + std::to_string(c) + " does not have the nodes of a " +
+                        kinds[type].name + ", each from 0 to " +
+                        std::to_string(grid.GetNumberOfPoints() - 1) + ": damaged, write it again");
     };
     add_cell(path, kinds[type], c, node_at, into);
   }

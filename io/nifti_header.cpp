@@ -141,7 +141,7 @@ NiftiHeader read_nifti_header(const std::string& path) {
   header.is_swapped = raw.is_swapped;
 
   nifti_set_debug_level(0);  // else the library prints errors
-  // The library needs a name with an extension that it knows; it opens no file here.
+  // The library requires a name with a NIfTI extension; it opens no file here.
   const std::unique_ptr<nifti_image, void (*)(nifti_image*)> image(
       nifti_convert_nhdr2nim(raw.values, "volume.nii"), nifti_image_free);
   if (!image) throw IoError(path, "", "damaged NIfTI header");
@@ -159,9 +159,9 @@ NiftiHeader read_nifti_header(const std::string& path) {
   const double most = raw.is_gzip ? 1032 * file_bytes : file_bytes;
   if (!(offset >= 352) || offset + bytes > most) {
     throw IoError(path, "",
-                  "the header asks for " + std::to_string(static_cast<std::int64_t>(bytes)) +
+                  "the header declares " + std::to_string(static_cast<std::int64_t>(bytes)) +
                       " bytes of samples from byte " + std::to_string(offset) +
-                      " on, the file cannot hold them: truncated or damaged, copy it again");
+                      " on, but the file is too small: truncated or damaged, copy it again");
   }
   header.data_offset = static_cast<std::int64_t>(offset);
   return header;
@@ -174,7 +174,7 @@ nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) 
     if (grid.dims[axis] > 32767) {
       throw IoError(path, "",
                     std::to_string(grid.dims[axis]) +
-                        " voxels on an axis, NIfTI-1 holds 32767; write a region of it");
+                        " voxels on an axis, NIfTI-1 allows 32767; write a smaller region");
     }
     dims[axis + 1] = static_cast<int>(grid.dims[axis]);
   }
@@ -185,7 +185,8 @@ nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) 
   nifti_set_debug_level(0);
   const std::unique_ptr<nifti_1_header, void (*)(void*)> made(nifti_make_new_header(dims, datatype),
                                                               std::free);
-  if (!made) throw IoError(path, "", "the NIfTI library makes no such header");
+  if (!made)
+    throw IoError(path, "", "the NIfTI library has made no header for this size and sample type");
   nifti_1_header header = *made;
   std::memcpy(header.magic, "n+1", 4);
   header.vox_offset = 352;

@@ -73,7 +73,7 @@ void check_vectors(const std::string& path, const Volume& volume) {
   throw IoError(path, "",
                 "'" + volume.name + "' holds " + std::to_string(volume.components) +
                     " components of " + name_of(volume.type) +
-                    ", a displacement field has three of float32 or float64; write it as it is");
+                    ", a displacement field has three of float32 or float64; use --vectors world");
 }
 
 /// Stores slope * sample + intercept of one slice as component `c` of `out`.
@@ -139,7 +139,7 @@ Volume read_nifti(const std::string& path) {
 void write_nifti(const std::string& path, const Volume& volume, NiftiVectors vectors) {
   const bool is_compressed = path.ends_with(".nii.gz");
   if (!is_compressed && !path.ends_with(".nii")) {
-    throw IoError(path, "", "is no name of a NIfTI file, end it in .nii or .nii.gz");
+    throw IoError(path, "", "the name of a NIfTI image must end in .nii or .nii.gz");
   }
   static_cast<void>(VolumeView(volume));  // checks that the samples fill the grid
   if (vectors == NiftiVectors::lps) check_vectors(path, volume);
@@ -164,7 +164,8 @@ void write_nifti(const std::string& path, const Volume& volume, NiftiVectors vec
       is_good = stream.write(slice.data(), slice.size());
     }
   }
-  if (!stream.close() || !is_good) throw IoError(path, "", "cannot be written, is the disk full?");
+  if (!stream.close() || !is_good)
+    throw IoError(path, "", "cannot be written; check the free space of the disk");
   file.finish();
 }
 

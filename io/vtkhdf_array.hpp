@@ -30,7 +30,8 @@ std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
 std::vector<std::byte> sample_bytes(PixelType type, double value);
 
 /// A dataset [z][y][x] or [z][y][x][component], with [t] before in temporal files. Chunks that hold
-/// only the background are not stored unless the options say so: it is the dataset's fill value.
+/// only the background are not stored unless the options require it: it is the dataset's fill
+/// value.
 class ArrayWriter {
  public:
   /// Creates the dataset in `output`, which must outlive this object.

@@ -4,12 +4,12 @@
 
 namespace tetwarp {
 namespace {
-std::string wrong_type(const std::string& found, const std::string& wanted) {
-  std::string problem = "Type is '" + found + "', expected '" + wanted + "'";
-  if (found == "UnstructuredGrid" && wanted == "ImageData") {
-    problem += ": this is a mesh where a volume is wanted, are the two swapped?";
-  } else if (found == "ImageData" && wanted == "UnstructuredGrid") {
-    problem += ": this is a volume where a mesh is wanted, are the two swapped?";
+std::string wrong_type(const std::string& found, const std::string& expected) {
+  std::string problem = "Type is '" + found + "', expected '" + expected + "'";
+  if (found == "UnstructuredGrid" && expected == "ImageData") {
+    problem += ": this is a mesh, not a volume; check the order of the files";
+  } else if (found == "ImageData" && expected == "UnstructuredGrid") {
+    problem += ": this is a volume, not a mesh; check the order of the files";
   }
   return problem;
 }

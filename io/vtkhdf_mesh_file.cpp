@@ -46,8 +46,8 @@ void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t cou
   if (first >= 0 && count >= 0 && first <= dataset.rows() && count <= dataset.rows() - first)
     return;
   dataset.fail("rows " + std::to_string(first) + " to " + std::to_string(first) + " + " +
-               std::to_string(count) + " are wanted, there are " + std::to_string(dataset.rows()) +
-               "; mend the counts and the offsets under Steps, or the file is truncated");
+               std::to_string(count) + " are needed, there are " + std::to_string(dataset.rows()) +
+               "; correct the counts and the offsets under Steps, or the file is truncated");
 }
 
 h5::Dataset open_vectors(const h5::Object& parent, const std::string& name) {
@@ -115,9 +115,10 @@ std::vector<MeshPart> MeshFile::parts_of(std::int64_t step) const {
     file_.root.fail("NumberOfPoints, NumberOfCells and NumberOfConnectivityIds differ in length");
   }
   if (first_part > entries || part_count > entries - first_part) {
-    file_.root.fail("step " + std::to_string(step) + " wants parts " + std::to_string(first_part) +
-                    " to " + std::to_string(first_part) + " + " + std::to_string(part_count) +
-                    ", NumberOfPoints has " + std::to_string(entries) + " entries");
+    file_.root.fail("step " + std::to_string(step) + " refers to parts " +
+                    std::to_string(first_part) + " to " + std::to_string(first_part) + " + " +
+                    std::to_string(part_count) + ", but NumberOfPoints has " +
+                    std::to_string(entries) + " entries");
   }
   MeshPart next;
   next.first_node = offset_of(point_offsets_, step);
@@ -239,8 +240,7 @@ void MeshFile::read_part_cells(const MeshPart& part,
   for (std::size_t cell = 0; cell < offsets.size(); ++cell) {
     if (offsets[cell] != expected) {
       offsets_.fail("entry " + std::to_string(cell) + " of a part is " +
-                    std::to_string(offsets[cell]) + ", its cells ask for " +
-                    std::to_string(expected) +
+                    std::to_string(offsets[cell]) + ", expected " + std::to_string(expected) +
                     " (from 0 in steps of 4 for tetrahedra, 8 for hexahedra)");
     }
     if (cell < sizes.size()) expected += sizes[cell];
@@ -258,7 +258,7 @@ void MeshFile::read_part_cells(const MeshPart& part,
       for (std::size_t corner = 0; corner < nodes.size(); ++corner) {
         const std::int64_t node = ids[first + corner];
         if (node < 0 || node >= part.node_count) {
-          connectivity_.fail("cell " + std::to_string(first_cell + cell) + " names node " +
+          connectivity_.fail("cell " + std::to_string(first_cell + cell) + " refers to node " +
                              std::to_string(node) + ", expected 0 to " +
                              std::to_string(part.node_count - 1));
         }

@@ -31,7 +31,7 @@ Grid read_grid(const h5::Object& root) {
     grid.origin = grid.world_of(start);
     check_grid(grid, "grid");
   } catch (const std::invalid_argument& error) {
-    root.fail(std::string(error.what()) + "; mend WholeExtent, Origin, Spacing or Direction");
+    root.fail(std::string(error.what()) + "; correct WholeExtent, Origin, Spacing or Direction");
   }
   return grid;
 }
@@ -76,10 +76,10 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
     found.pop_back();
   }
   if (found != shape) {
-    array.dataset.fail("has shape " + shape_text(array.dataset.dims) + ", WholeExtent asks for " +
+    array.dataset.fail("has shape " + shape_text(array.dataset.dims) + ", expected " +
                        shape_text(shape) +
                        (file.is_temporal() ? " ([t][z][y][x])" : " ([z][y][x])") +
-                       " and perhaps components; mend WholeExtent or the data");
+                       ", optionally with components; correct WholeExtent or the data");
   }
   return array;
 }
@@ -101,7 +101,7 @@ std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int
   const std::int64_t row = offsets.empty() ? step : offsets[static_cast<std::size_t>(step)];
   if (row >= array.dataset.rows()) {
     array.dataset.fail("step " + std::to_string(step) + " is row " + std::to_string(row) +
-                       ", there are " + std::to_string(array.dataset.rows()));
+                       ", but there are " + std::to_string(array.dataset.rows()) + " rows");
   }
   return row;
 }

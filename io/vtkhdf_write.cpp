@@ -31,7 +31,7 @@ std::vector<ArrayHeader> headers_of(const std::string& path,
       throw IoError(path, "/VTKHDF/PointData/" + volume->name, problem);
     };
     if (volume->grid != volumes.front()->grid) {
-      refuse("lies on another grid than '" + volumes.front()->name + "', write it to its own file");
+      refuse("has another grid than '" + volumes.front()->name + "', write it to another file");
     }
     try {
       check_grid(volume->grid, "grid");
@@ -98,7 +98,7 @@ void TemporalVolumeWriter::append(double time, const std::vector<const Volume*>&
   const std::vector<ArrayHeader>& arrays = state.file->arrays();
   if (headers.size() != arrays.size()) {
     throw IoError(state.path, "",
-                  "a step of " + std::to_string(headers.size()) + " arrays after steps of " +
+                  "a step has " + std::to_string(headers.size()) + " arrays, the first step has " +
                       std::to_string(arrays.size()));
   }
   for (std::size_t array = 0; array < arrays.size(); ++array) {

@@ -8,6 +8,7 @@
 #include <tetwarp/io.hpp>
 #include <tetwarp/names.hpp>
 
+#include "host/contact/sweeps/method_names.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 
 namespace tetwarp::bench {
@@ -196,27 +197,12 @@ const char* word_of(ContactKind kind) {
 const char* word_of(ContactPrecision precision) {
   return precision == ContactPrecision::float64 ? "float64" : "float32";
 }
-
-const char* word_of(ContactMethod method) {
-  switch (method) {
-    case ContactMethod::automatic:
-      return "automatic";
-    case ContactMethod::gauss_seidel:
-      return "gauss_seidel";
-    case ContactMethod::nonlinear_cg:
-      return "nonlinear_cg";
-    case ContactMethod::mass_splitting:
-      return "mass_splitting";
-    default:
-      return tetwarp::name_of(method);
-  }
-}
 }  // namespace
 
 std::string name_of(const ContactCase& row) {
   const ContactOptions& options = row.options;
   std::string name = fmt::format("{}/{}/{}/{}/cpu/threads:{}/tolerance:{:.0e}", word_of(row.kind),
-                                 row.input.name, word_of(options.method),
+                                 row.input.name, report_name_of(options.method),
                                  word_of(options.precision), options.threads, options.tolerance);
   if (row.visit != ContactVisit::first) name += fmt::format("/visit:{}", word_of(row.visit));
   if (!row.without.empty()) name += "/without:" + row.without;

@@ -76,7 +76,7 @@ def main():
     tables.add_argument("--gpu-peers", metavar="LOG", help="output of peers/gpu_samplers.py")
     tables.set_defaults(run=print_tables)
     plots.set_defaults(run=draw_plots)
-    both = commands.add_parser("compare", help="tell faster from slower; exit code 1 when slower")
+    both = commands.add_parser("compare", help="mark rows as faster or slower; exit code 1 when slower")
     both.add_argument("old", metavar="OLD")
     both.add_argument("new", metavar="NEW")
     both.add_argument("--threshold", type=float, default=0.05, help="share of the old time")

@@ -11,8 +11,8 @@
 
 namespace tetwarp::bench {
 
-/// Holds one scene, its truth and one image of it; asking for others replaces them, so rows of one
-/// workload should follow each other.
+/// Holds one scene, its truth and one image of it; a call for another workload replaces
+/// them, so rows of one workload should follow each other.
 class Inputs {
  public:
   const scenes::Scene& scene(const Workload& workload);

@@ -12,16 +12,16 @@ std::vector<BackendStatus> available_backends(int device) {
           {Backend::reference, true, processor, ""}};
 }
 
-std::pair<Backend, std::string> choose_backend(Backend asked, int device) {
-  if (asked == Backend::cpu || asked == Backend::reference) return {asked, "asked for"};
+std::pair<Backend, std::string> choose_backend(Backend requested, int device) {
+  if (requested == Backend::cpu || requested == Backend::reference) return {requested, "requested"};
   const BackendStatus cuda = cuda_status(device);
   if (cuda.usable) {
-    return {Backend::cuda, asked == Backend::cuda ? "asked for" : cuda.device + " answers"};
+    return {Backend::cuda, requested == Backend::cuda ? "requested" : cuda.device + " is usable"};
   }
-  if (asked == Backend::cuda) {
+  if (requested == Backend::cuda) {
     throw CudaError("back end cuda: " + cuda.reason + "; use cpu or auto");
   }
-  return {Backend::cpu, "no CUDA device answers (" + cuda.reason + ")"};
+  return {Backend::cpu, "no usable CUDA device (" + cuda.reason + ")"};
 }
 
 }  // namespace tetwarp

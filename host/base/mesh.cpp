@@ -15,8 +15,8 @@ void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     for (const std::int32_t node : cells[cell]) {
       if (node < 0 || node >= node_count) {
-        throw std::invalid_argument("mesh: " + what + " " + std::to_string(cell) + " names node " +
-                                    std::to_string(node) + ", expected 0 to " +
+        throw std::invalid_argument("mesh: " + what + " " + std::to_string(cell) +
+                                    " refers to node " + std::to_string(node) + ", expected 0 to " +
                                     std::to_string(node_count - 1));
       }
     }

@@ -97,10 +97,10 @@ std::size_t Volume::byte_count() const {
          size_of(type);
 }
 
-void Volume::check_type(PixelType asked) const {
-  if (asked != type) {
+void Volume::check_type(PixelType expected) const {
+  if (expected != type) {
     throw std::invalid_argument("volume '" + name + "' holds " + name_of(type) + ", not " +
-                                name_of(asked));
+                                name_of(expected));
   }
 }
 

@@ -16,7 +16,7 @@ void check_named(const std::string& path,
   const auto is_named = [&](const ArrayHeader& array) { return array.name == name; };
   if (std::ranges::any_of(arrays, is_named)) return;
   throw IoError(path, name,
-                fmt::format("{} names no array that is warped; tetwarp info lists them",
+                fmt::format("{}: no such array among those to warp; tetwarp info lists all arrays",
                             quantity < Quantity::tensor ? "--vectors" : "--tensors"));
 }
 }  // namespace

@@ -58,7 +58,7 @@ class JobReader {
       : folder_(std::move(folder)), defaults_(defaults) {}
 
   Words words_of(const Json& job) const {
-    if (!job.is_object()) throw std::invalid_argument("is no JSON object");
+    if (!job.is_object()) throw std::invalid_argument("is not a JSON object");
     Words files;
     Words options;
     for (const std::string key : {"volume", "mesh"}) {
@@ -129,7 +129,7 @@ Json read_json(const std::string& path) {
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
-    throw IoError(path, position_text(text, error.byte), "no valid JSON here; correct it");
+    throw IoError(path, position_text(text, error.byte), "not valid JSON; correct it");
   }
 }
 }  // namespace

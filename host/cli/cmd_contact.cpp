@@ -37,7 +37,7 @@ void check_files(const ContactArguments& arguments) {
 ContactProblem read_problem(const ContactArguments& arguments) {
   ContactProblem problem = read_contact_problem(arguments.problem, arguments.start);
   if (arguments.evolve && problem.adhesion.empty()) {
-    throw IoError(arguments.problem, "/adhesion", "is missing, there is nothing to evolve");
+    throw IoError(arguments.problem, "/adhesion", "is missing, but --evolve needs it");
   }
   return problem;
 }

@@ -48,21 +48,22 @@ void add_deform_command(CLI::App& app, Run& run) {
   command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
       ->required()
       ->type_name("MESH");
-  add_choice(*command, "--kind", deform.kind, choices_of<Deformation>(), "[twist]");
+  add_choice(*command, "--kind", deform.kind, choices_of<Deformation>(),
+             "kind of deformation [twist]");
   command
       ->add_option("--steps", arguments->steps,
-                   "steps at times 0 to 1; a single one is at time 1 [8]")
+                   "number of steps, at times 0 to 1; a single one is at time 1 [8]")
       ->check(between(1, 1000000))
       ->type_name("N");
   command
       ->add_option("--amount", deform.amount,
                    "quarter turns of twist, bend and rotate; else share of the mesh's box [1]")
       ->type_name("A");
-  add_choice(*command, "--axis", deform.axis, axes, "of twist, bend, swim and rotate [z]");
-  command->add_option("--seed", deform.seed, "of random [1]")
+  add_choice(*command, "--axis", deform.axis, axes, "axis of twist, bend, swim and rotate [z]");
+  command->add_option("--seed", deform.seed, "seed of random [1]")
       ->check(at_least_zero())
       ->type_name("N");
-  command->add_option("--offset", deform.offset, "of translate, in world units [0,0,0]")
+  command->add_option("--offset", deform.offset, "offset of translate, in world units [0,0,0]")
       ->delimiter(',')
       ->type_name("X,Y,Z");
   command->callback([arguments, &run] {

@@ -103,10 +103,10 @@ void add_demo_command(CLI::App& app, Run& run) {
       ->delimiter(',')
       ->check(between(8, 4096))
       ->type_name("NI,NJ,NK");
-  command->add_option("--steps", arguments->steps, "of twisting [8]")
+  command->add_option("--steps", arguments->steps, "steps of the twist [8]")
       ->check(between(2, 1000))
       ->type_name("N");
-  command->add_option("--cells", arguments->cells, "of the mesh along the longest side [6]")
+  command->add_option("--cells", arguments->cells, "cubes of the mesh along the longest side [6]")
       ->check(between(1, 100))
       ->type_name("N");
   command->callback([arguments, &run] { run = [arguments] { return run_demo(*arguments); }; });

@@ -52,7 +52,7 @@ void add_export_command(CLI::App& app, Run& run) {
       ->required()
       ->type_name("FILE");
   command->add_option("--array", arguments->array, "array to write [first]")->type_name("NAME");
-  command->add_option("--step", arguments->step, "of a volume file with several steps [0]")
+  command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
   command
@@ -61,7 +61,7 @@ void add_export_command(CLI::App& app, Run& run) {
           [arguments](const std::string& word) {
             arguments->vectors = meaning_of("--vectors", word, choices_of<NiftiVectors>());
           },
-          "axes of vectors: as they are, or those of ITK and ANTs, x and y turned round [lps for "
+          "axes of vectors: the file's, or those of ITK and ANTs, x and y negated [lps for "
           "tetwarp_displacement and tetwarp_forward, else world]")
       ->type_name("world|lps");
   command->callback([arguments, &run] { run = [arguments] { return run_export(*arguments); }; });

@@ -23,7 +23,7 @@ void run_volume_import(const ImportArguments& arguments) {
              "usage: tetwarp import FILE -o VOLUME, with a NIfTI image or a mesh named .msh, .vtu "
              "or .vtk");
   if (arguments.mesh.displacement) {
-    throw IoError(arguments.input, "", "has no --displacement, which meshes have; leave it out");
+    throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
   }
   const Volume volume = read_nifti(arguments.input);
   write_volumes(arguments.output, {&volume}, arguments.write);
@@ -72,7 +72,7 @@ void add_import_command(CLI::App& app, Run& run) {
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")
       ->required()
       ->type_name("OUT");
-  command->add_option("--compress", arguments->write.compress, "deflate level, 0 is none [0]")
+  command->add_option("--compress", arguments->write.compress, "deflate level, 0 for none [0]")
       ->check(between(0, 9))
       ->type_name("L");
   command

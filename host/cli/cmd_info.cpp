@@ -185,7 +185,7 @@ void add_info_command(CLI::App& app, Run& run) {
       ->required()
       ->type_name("");
   command->add_flag("--stats", arguments->stats, "read the samples and show their range");
-  command->add_flag("--json", arguments->json, "as JSON");
+  command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &run] { run = [arguments] { return run_info(*arguments); }; });
 }
 

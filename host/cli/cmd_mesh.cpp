@@ -53,12 +53,13 @@ void add_mesh_command(CLI::App& app, Run& run) {
       ->type_name("N");
   command
       ->add_option("--threshold", arguments->lattice.threshold,
-                   "foreground is above it [every voxel is foreground]")
+                   "voxels above this value are foreground [every voxel]")
       ->type_name("V");
   command->add_flag("--hexahedra", arguments->lattice.hexahedra,
-                    "the cubes themselves, mapped trilinearly, not five tetrahedra each");
-  command->add_option("--array", arguments->array, "array to look at [first]")->type_name("NAME");
-  command->add_option("--step", arguments->step, "of a volume file with several steps [0]")
+                    "keep the cubes as trilinear hexahedra, instead of five tetrahedra each");
+  command->add_option("--array", arguments->array, "array to compare with the threshold [first]")
+      ->type_name("NAME");
+  command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
   command->callback([arguments, &run] { run = [arguments] { return run_mesh(*arguments); }; });

@@ -57,14 +57,14 @@ void add_render_command(CLI::App& app, Run& run) {
   command->add_option("--beside", arguments->beside, "second volume, drawn with the same window")
       ->type_name("VOLUME");
   command->add_option("--array", arguments->array, "array to draw [first]")->type_name("NAME");
-  command->add_option("--step", arguments->step, "of volume files with several steps [0]")
+  command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
-  command->add_option("--low", arguments->render.low, "drawn black [1st percentile]")
+  command->add_option("--low", arguments->render.low, "value drawn black [1st percentile]")
       ->type_name("V");
-  command->add_option("--high", arguments->render.high, "drawn white [99.5th percentile]")
+  command->add_option("--high", arguments->render.high, "value drawn white [99.5th percentile]")
       ->type_name("V");
-  command->add_option("--height", arguments->render.height, "of a panel, in pixels [360]")
+  command->add_option("--height", arguments->render.height, "height of a panel, in pixels [360]")
       ->check(between(16, 4096))
       ->type_name("N");
   command->callback([arguments, &run] { run = [arguments] { return run_render(*arguments); }; });

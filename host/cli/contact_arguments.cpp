@@ -19,9 +19,9 @@ void declare_model(CLI::App& app, ContactArguments& arguments) {
       ->type_name("SOLUTION");
   add_choice(app, "--law", options.law, choices_of<FrictionLaw>(), "friction law [cone]");
   add_choice(app, "--rule", options.rule, choices_of<AdhesionRule>(),
-             "friction beside the adhesive spring, or topping it up [parallel]");
+             "friction and adhesive spring add up, or the larger of both acts [parallel]");
   app.add_option("--recovery-speed", options.recovery_speed,
-                 "penetration is undone at most this fast, in m/s [any speed]")
+                 "maximum speed at which penetration is removed, in m/s [no limit]")
       ->check(above_zero())
       ->type_name("V");
   app.add_flag("--evolve", arguments.evolve,
@@ -35,14 +35,16 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
       ->type_name("E");
   add_choice(app, "--measure", options.measure, choices_of<ContactMeasure>(),
              "what the tolerance bounds: energy-weighted residual or FCLIB's error [eta]");
-  app.add_option("--max-sweeps", options.max_sweeps, "passes over all contacts [20000]")
+  app.add_option("--max-sweeps", options.max_sweeps,
+                 "maximum number of passes over all contacts [20000]")
       ->check(above_zero())
       ->type_name("N");
-  add_choice(app, "--solver", options.method, choices_of<ContactMethod>(), "method [auto]");
+  add_choice(app, "--solver", options.method, choices_of<ContactMethod>(),
+             "solution method [auto]");
   add_choice(app, "--coupling", options.coupling, choices_of<ContactCoupling>(),
-             "bodies that A couples: condensed onto their contacts, or an outer iteration [auto]");
+             "bodies that A couples: condense them onto their contacts, or iterate [auto]");
   app.add_option("--relaxation", options.relaxation,
-                 "of the outer iteration, above 0 and below 2 [0.5]")
+                 "factor of the outer iteration, above 0 and below 2 [0.5]")
       ->check(above_zero())
       ->type_name("W");
   app.add_option("--inner", options.inner_sweeps, "sweeps per outer iteration [5]")
@@ -71,24 +73,24 @@ void declare_skips(CLI::App& app, ContactSkipOptions& skip) {
       [&skip](const Switches& members) {
         for (bool Skip::*member : members) skip.*member = false;
       },
-      "do work that changes the result by no more than the tolerance");
+      "disable optimizations; results change by no more than the tolerance");
 }
 
 void declare_running(CLI::App& app, ContactArguments& arguments) {
   ContactOptions& options = arguments.options;
   add_choice(app, "--backend", options.backend, choices_of<Backend>(), "where to compute [auto]");
   add_choice(app, "--precision", options.precision, choices_of<ContactPrecision>(),
-             "of the iterations [double]");
+             "floating-point format of the iterations [double]");
   app.add_option("--device", options.device, "CUDA device number [0]")
       ->check(at_least_zero())
       ->type_name("N");
-  app.add_option("--threads", options.threads, "of the cpu back end, 0 is all cores [0]")
+  app.add_option("--threads", options.threads, "threads of the cpu back end, 0 for all cores [0]")
       ->check(at_least_zero())
       ->type_name("N");
   declare_skips(app, options.skip);
   app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
       ->type_name("FILE");
-  app.add_flag("--quiet", arguments.quiet, "no summary");
+  app.add_flag("--quiet", arguments.quiet, "print no summary");
 }
 }  // namespace
 

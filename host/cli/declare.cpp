@@ -69,7 +69,7 @@ CLI::Validator above_zero() {
   const auto check = [](const std::string& text) -> std::string {
     double number = 0;
     if (CLI::detail::lexical_cast(text, number) && number > 0) return {};
-    return "'" + text + "' is no number above 0";
+    return "'" + text + "' is not a number above 0";
   };
   return {check, ""};
 }

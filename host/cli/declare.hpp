@@ -55,7 +55,7 @@ T meaning_of(const std::string& option, const std::string& word, const Choices<T
   const auto found = std::find_if(choices.begin(), choices.end(),
                                   [&](const auto& choice) { return choice.first == word; });
   if (found == choices.end()) {
-    throw CLI::ValidationError(option, "'" + word + "' is none of " + listed(words_of(choices)));
+    throw CLI::ValidationError(option, "'" + word + "' is not one of " + listed(words_of(choices)));
   }
   return found->second;
 }

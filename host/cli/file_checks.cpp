@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 void check_output_folder(const std::string& folder, const std::string& output) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
-    throw IoError(output, "", "'" + folder + "' is no existing folder; create it first");
+    throw IoError(output, "", "folder '" + folder + "' does not exist; create it first");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw IoError(output, "", "no permission to write in folder '" + folder + "'");
@@ -26,7 +26,7 @@ void check_output_file(const std::string& output, const std::vector<std::string>
     throw IoError(output, "", "is a folder; name the file to write");
   }
   if (fs::exists(output, error) && !fs::is_regular_file(output, error)) {
-    throw IoError(output, "", "exists and is no regular file; name another");
+    throw IoError(output, "", "exists and is not a regular file; choose another name");
   }
   const std::string canonical = canonical_path(output);
   for (const std::string& input : inputs) {
@@ -46,12 +46,12 @@ void check_hdf_name(const std::string& output) {
   }
 }
 
-void check_kind(const std::string& path, FileKind wanted, const std::string& remedy) {
+void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
   const FileKind kind = kind_of(path);
-  if (kind != wanted) {
+  if (kind != expected) {
     throw IoError(
         path, "",
-        std::string("is a ") + name_of(kind) + ", expected a " + name_of(wanted) + "; " + remedy);
+        std::string("is a ") + name_of(kind) + ", expected a " + name_of(expected) + "; " + remedy);
   }
 }
 

@@ -18,7 +18,7 @@ void check_output_folder(const std::string& folder, const std::string& output);
 void check_hdf_name(const std::string& output);
 
 /// Checks that a file can be opened and is of this kind. @param remedy the message ends with it
-void check_kind(const std::string& path, FileKind wanted, const std::string& remedy);
+void check_kind(const std::string& path, FileKind expected, const std::string& remedy);
 
 /// The absolute path with links and dots resolved, also of a file that does not exist.
 std::string canonical_path(const std::string& path);

@@ -13,7 +13,7 @@ void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
   const std::string reason = needs_all_at_once(arguments);
   if (reason.empty()) return;
   throw IoError(plan.path, "",
-                fmt::format("{}: source and output take {}, allow more --memory", reason,
+                fmt::format("{}: source and output need {}, allow more --memory", reason,
                             bytes_text(plan.memory)));
 }
 
@@ -29,10 +29,10 @@ std::string needs_all_at_once(const WarpArguments& arguments) {
     return "the forward displacement needs the whole mesh; leave out --outputs forward";
   }
   if (arguments.warp.intensity == Intensity::conservative) {
-    return "totals are kept of a whole source; use --intensity density";
+    return "conservative needs the whole source; use --intensity density";
   }
   if (arguments.warp.filter == Filter::bspline) {
-    return "a spline passes through all samples; use --filter cubic";
+    return "bspline needs the whole source; use --filter cubic";
   }
   return {};
 }

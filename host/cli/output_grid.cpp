@@ -90,7 +90,8 @@ Region parse_region(const std::string& text) {
     region.end[axis] = *whole_number(ends[1]);
   }
   if (!valid) {
-    throw std::invalid_argument("'" + text + "' is no region i0:i1,j0:j1,k0:k1 of whole numbers");
+    throw std::invalid_argument("'" + text +
+                                "' is not a region i0:i1,j0:j1,k0:k1 of whole numbers");
   }
   return region;
 }

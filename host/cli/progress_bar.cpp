@@ -14,8 +14,8 @@ constexpr int bar_width = 24;
 constexpr auto redraw_interval = std::chrono::milliseconds(100);
 }  // namespace
 
-ProgressBar::ProgressBar(bool wanted, std::string label, double step_count)
-    : draws_(wanted && isatty(STDERR_FILENO) == 1),
+ProgressBar::ProgressBar(bool is_enabled, std::string label, double step_count)
+    : draws_(is_enabled && isatty(STDERR_FILENO) == 1),
       label_(std::move(label)),
       step_count_(std::max(step_count, 1.0)) {}
 

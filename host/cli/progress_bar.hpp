@@ -10,10 +10,10 @@ namespace tetwarp::cli {
 /// share done, Mvoxel/s, steps/s, remaining time. Draws only to a terminal.
 class ProgressBar {
  public:
-  /// @param wanted false: never draw
+  /// @param is_enabled false: never draw
   /// @param label       shown first, e.g. "warp" or "job 3"
   /// @param step_count  steps of the whole job
-  ProgressBar(bool wanted, std::string label, double step_count);
+  ProgressBar(bool is_enabled, std::string label, double step_count);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;

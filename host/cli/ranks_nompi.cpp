@@ -9,7 +9,8 @@ namespace tetwarp::cli {
 Ranks Ranks::start() {
   if (launched_count() > 1) {
     throw std::runtime_error(
-        "this build knows no MPI; start it without mpirun, or build it with TETWARP_MPI=ON");
+        "this build does not support MPI; start it without mpirun, or build it with "
+        "TETWARP_MPI=ON");
   }
   return {};
 }

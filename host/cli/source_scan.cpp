@@ -27,7 +27,7 @@ void widen(std::vector<double>& range, PixelType type, std::span<const std::byte
 
 std::vector<double> scan_source(const VolumeReader& source,
                                 double bytes,
-                                bool wants_range,
+                                bool needs_range,
                                 Fingerprint& fingerprint) {
   const ArrayHeader& array = source.array();
   const auto& dims = source.grid().dims;
@@ -35,7 +35,7 @@ std::vector<double> scan_source(const VolumeReader& source,
   const auto voxel = static_cast<std::int64_t>(components * size_of(array.type));
   constexpr double beyond = std::numeric_limits<double>::infinity();
   std::vector<double> range;
-  for (std::size_t c = 0; wants_range && c < components; ++c) {
+  for (std::size_t c = 0; needs_range && c < components; ++c) {
     range.insert(range.end(), {beyond, -beyond});
   }
   fingerprint.begin(array, source.grid());
@@ -56,7 +56,7 @@ std::vector<double> scan_source(const VolumeReader& source,
       const std::span<const std::byte> read(part.data(),
                                             static_cast<std::size_t>(region.voxel_count() * voxel));
       fingerprint.add_part(read);
-      if (wants_range) widen(range, array.type, read);
+      if (needs_range) widen(range, array.type, read);
     }
   }
   fingerprint.end();

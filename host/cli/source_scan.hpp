@@ -12,10 +12,10 @@ namespace tetwarp::cli {
 /// Adds a source to a fingerprint as Fingerprint::add(Volume) does. Keeps at most `bytes` of it in
 /// memory, but at least one row.
 /// @returns smallest and largest sample of component 0, then of 1 and so on, NaN left out; empty
-///          unless `wants_range`
+///          unless `needs_range`
 std::vector<double> scan_source(const VolumeReader& source,
                                 double bytes,
-                                bool wants_range,
+                                bool needs_range,
                                 Fingerprint& fingerprint);
 
 }  // namespace tetwarp::cli

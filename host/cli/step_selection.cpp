@@ -38,7 +38,7 @@ StepSelection::Item StepSelection::parse_item(const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   const auto refuse = [&text]() {
     return std::invalid_argument("'" + text +
-                                 "' is no step number and no slice such as 0:10:2 or -3:");
+                                 "' is neither a step number nor a slice such as 0:10:2 or -3:");
   };
   if (parts.size() > 3) throw refuse();
   Item item;

@@ -110,12 +110,12 @@ Fingerprint VolumeRun::read_sources() {
 /// @returns as read_sources(), at the root
 Fingerprint VolumeRun::scan_sources() {
   Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
-  const bool wants_range = arguments_.warp.overshoot == Overshoot::clamp;
+  const bool needs_range = arguments_.warp.overshoot == Overshoot::clamp;
   ranges_.resize(readers_.size());
-  if (!ranks_.is_root() && !wants_range) return fingerprint;
+  if (!ranks_.is_root() && !needs_range) return fingerprint;
   const double bytes = std::clamp(0.5 * limits().host, 1e6, 2.5e8);
   for (std::size_t s = 0; s < readers_.size(); ++s) {
-    ranges_[s] = scan_source(readers_[s], bytes, wants_range, fingerprint);
+    ranges_[s] = scan_source(readers_[s], bytes, needs_range, fingerprint);
     result_.report.counts.bytes_read += static_cast<std::int64_t>(
         bytes_of(volume_.arrays[s], {{0, 0, 0}, volume_.source_grid.dims}));
   }

@@ -37,7 +37,7 @@ double parse_bytes(const std::string& text) {
   const std::size_t unit = used + 1 == text.size() ? units.find(text[used]) : std::string::npos;
   if (used == 0 || (used < text.size() && unit == std::string::npos) || !(bytes > 0) ||
       !std::isfinite(bytes)) {
-    throw std::invalid_argument("'" + text + "' is no size such as 512M or 4G");
+    throw std::invalid_argument("'" + text + "' is not a size such as 512M or 4G");
   }
   return used < text.size() ? std::ldexp(bytes, 10 * static_cast<int>(unit + 1)) : bytes;
 }
@@ -106,7 +106,8 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
       ->type_name("NAME");
-  app.add_option("--source-step", arguments.source_step, "step of a volume file that has several")
+  app.add_option("--source-step", arguments.source_step,
+                 "step of a volume file with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
   add_parsed(
@@ -114,7 +115,8 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
-  app.add_option("--rest-step", arguments.mesh.rest_step, "rest step of points that move [0]")
+  app.add_option("--rest-step", arguments.mesh.rest_step,
+                 "step that holds the rest positions of moving points [0]")
       ->check(at_least_zero())
       ->type_name("N");
 }
@@ -134,27 +136,28 @@ void declare_grid(CLI::App& app, WarpArguments& arguments) {
 
 void declare_result(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
-  add_choice(app, "--filter", warp.filter, choices_of<Filter>(), "between voxel centres [linear]");
+  add_choice(app, "--filter", warp.filter, choices_of<Filter>(),
+             "interpolation between voxel centres [linear]");
   add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
-             "values beyond those of the source, of cubic, bspline and lanczos [keep]");
-  app.add_flag("--antialias", warp.antialias, "average where tetrahedra shrink the source");
+             "interpolated values beyond the source's range: cubic, bspline, lanczos [keep]");
+  app.add_flag("--antialias", warp.antialias, "average samples where tetrahedra shrink the source");
   add_choice(app, "--intensity", warp.intensity, choices_of<Intensity>(),
-             "what a voxel shows, has per volume, or has with totals kept [value]");
+             "samples are values, densities, or densities with totals preserved [value]");
   add_quantities(app, "--vectors", arguments.quantities, vector_laws,
-                 "an array of 3 components that the deformation turns, repeatable [rotate]");
+                 "array of 3 components to reorient, repeatable [rotate]");
   add_quantities(app, "--tensors", arguments.quantities, tensor_laws,
-                 "the same of 6: XX YY ZZ XY YZ XZ [finite-strain]");
+                 "array of 6 components XX YY ZZ XY YZ XZ to reorient, repeatable [finite-strain]");
   add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
-             "what no tetrahedron covers [background]");
+             "voxels outside the mesh: --background, or the source [background]");
   app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
   ExtraChoice& extra = arguments.extra;
   add_word_list(
-      app, "--outputs", extra_choices(), [&extra](std::size_t wanted) { extra.insert(wanted); },
-      "extra arrays tetwarp_mask and so on: covered or not; owning cell; rest less output "
+      app, "--outputs", extra_choices(), [&extra](std::size_t output) { extra.insert(output); },
+      "extra arrays tetwarp_mask and so on: covered or not; owning cell; rest minus output "
       "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
-      "deformed less rest position, of the source's voxels; zero (tet: -1) where nothing covers");
-  app.add_flag("--temporal", arguments.temporal, "one file with all steps");
-  app.add_option("--compress", arguments.compress, "deflate level, 0 is none [0]")
+      "deformed minus rest position of the source's voxels; 0 (tet: -1) in uncovered voxels");
+  app.add_flag("--temporal", arguments.temporal, "write all steps to one file");
+  app.add_option("--compress", arguments.compress, "deflate level, 0 for none [0]")
       ->check(between(0, 9))
       ->type_name("L");
   app.add_flag("--resume", arguments.resume, "keep outputs that are complete and up to date");
@@ -166,7 +169,7 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--device", warp.device, "CUDA device number [0]")
       ->check(at_least_zero())
       ->type_name("N");
-  app.add_option("--threads", warp.threads, "of the cpu back end, 0 is all cores [0]")
+  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
       ->check(at_least_zero())
       ->type_name("N");
   using Switch = std::vector<bool SkipOptions::*>;
@@ -188,15 +191,17 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
       [&skip](const Switch& members) {
         for (bool SkipOptions::*member : members) skip.*member = false;
       },
-      "do work that cannot change the result");
+      "disable optimizations, none of which changes the result");
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
-             "memory to keep to, e.g. 4G or 512M: what does not fit is streamed in blocks");
-  app.add_flag("--dry-run", arguments.dry_run, "say what would be done, and in which memory");
+             "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
+  app.add_flag("--dry-run", arguments.dry_run,
+               "print the plan and the memory it needs; compute nothing");
   app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
-  app.add_flag("--quiet", arguments.quiet, "no progress and no summary");
-  app.add_option("--batch", arguments.batch, "run the jobs of a JSON file; options are defaults")
+  app.add_flag("--quiet", arguments.quiet, "print no progress and no summary");
+  app.add_option("--batch", arguments.batch,
+                 "run the jobs of a JSON file; other options are their defaults")
       ->type_name("FILE");
 }
 }  // namespace
@@ -211,12 +216,13 @@ void declare_warp_options(CLI::App& app, WarpArguments& arguments) {
 void check_complete(const WarpArguments& arguments) {
   const Filter filter = arguments.warp.filter;
   if (arguments.warp.antialias && (filter == Filter::nearest || filter == Filter::labels)) {
-    throw CLI::ValidationError("--antialias",
-                               "averages, which nearest and labels must not; use another --filter");
+    throw CLI::ValidationError(
+        "--antialias", "cannot average samples with nearest and labels; use another --filter");
   }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {
-      throw CLI::ValidationError("--batch", "volumes, mesh and output stand in the file's jobs");
+      throw CLI::ValidationError("--batch",
+                                 "name volumes, mesh and output in the jobs of the file instead");
     }
     return;
   }

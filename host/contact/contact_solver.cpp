@@ -135,20 +135,21 @@ void set_status(const EngineResult& result, const ContactOptions& options, Conta
   report.status =
       is_within && is_balanced ? ContactStatus::converged : ContactStatus::not_converged;
   if (!is_balanced) {
-    report.status_reason = "A v - J^T r - b is " + rounded_text_of(report.residual.balance) +
-                           " of its terms, asked for " + rounded_text_of(options.tolerance);
+    report.status_reason = "relative residual of A v = J^T r + b is " +
+                           rounded_text_of(report.residual.balance) + ", tolerance " +
+                           rounded_text_of(options.tolerance);
   }
   if (!is_within) {
     report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
                            rounded_text_of(residual) + " after " + std::to_string(report.sweeps) +
-                           " sweeps, asked for " + rounded_text_of(options.tolerance);
+                           " sweeps, tolerance " + rounded_text_of(options.tolerance);
   }
   if (result.clamped.empty()) return;
   report.status = ContactStatus::infeasible;
   report.status_reason =
-      "no velocity satisfies contact " + std::to_string(result.clamped.front()) + " and " +
-      std::to_string(result.clamped.size() - 1) +
-      " others together; their normal offsets were raised to 0, which the residual refers to";
+      "no velocity satisfies contact " + std::to_string(result.clamped.front()) +
+      " together with " + std::to_string(result.clamped.size() - 1) +
+      " others; the solution and its residual are those with their normal offsets raised to 0";
 }
 
 /// u = W r + q, or u = J v + w.
@@ -188,11 +189,11 @@ void fill_report(const EngineResult& result, ContactMeasure measure, ContactRepo
 }
 }  // namespace
 
-std::pair<Backend, std::string> choose_contact_backend(Backend asked, int device) {
-  if (asked == Backend::automatic) {
-    return {Backend::cpu, "contact runs on cuda only where it is asked for by name"};
+std::pair<Backend, std::string> choose_contact_backend(Backend requested, int device) {
+  if (requested == Backend::automatic) {
+    return {Backend::cpu, "the default of contact; cuda runs only if requested"};
   }
-  return choose_backend(asked, device);
+  return choose_backend(requested, device);
 }
 
 struct ContactSolver::State {

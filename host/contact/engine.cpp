@@ -40,7 +40,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given) {
   }
   return solve_feasible(given, std::move(changed), [&](const ContactProblem& problem) {
     set_structure(problem);
-    forget_unless_same(problem);
+    reset_cache_if_changed(problem);
     EngineResult result = make_result(problem, islands_.structure());
     result.savings = islands_.set_problem(problem);
     result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -56,7 +56,7 @@ void ContactEngine::set_structure(const ContactProblem& problem) {
   islands_.set_structure(device_ != nullptr ? make_structure(problem, options_.skip, *device_)
                                             : make_structure(problem, options_.skip));
   pattern_ = pattern_of(problem);
-  kept_ = {};
+  cache_ = {};
 }
 
 void ContactEngine::solve_contactless(const ContactProblem& problem, EngineResult& result) {

@@ -19,14 +19,14 @@ namespace tetwarp {
 struct Condensation;
 
 /// Data of the coupled islands that problems of a series with the same A and J share.
-struct KeptSystem {
+struct CoupledIslandCache {
   struct Island {
     std::shared_ptr<Condensation> condensation;  ///< null: not condensed so far
     std::int64_t outer_iterations = 0;           ///< of all problems of the series
   };
 
   std::vector<double> system, jacobian;  ///< stored numbers of A and J
-  std::vector<Island> islands;           ///< empty: nothing is kept
+  std::vector<Island> islands;           ///< empty: nothing is stored
 };
 
 class ContactEngine {
@@ -40,7 +40,7 @@ class ContactEngine {
 
  private:
   void set_structure(const ContactProblem& problem);
-  void forget_unless_same(const ContactProblem& problem);
+  void reset_cache_if_changed(const ContactProblem& problem);
   void solve_coupled(const ContactProblem& problem, EngineResult& result);
   void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
   void solve_contactless(const ContactProblem& problem, EngineResult& result);
@@ -50,7 +50,7 @@ class ContactEngine {
   ContactDevice* device_;
   std::optional<ContactPattern> pattern_;  ///< that of the structure
   IslandSolver islands_;
-  KeptSystem kept_;
+  CoupledIslandCache cache_;
 };
 
 }  // namespace tetwarp

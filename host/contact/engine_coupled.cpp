@@ -63,7 +63,7 @@ struct Condensation {
   IslandSolver solver;
 };
 
-void ContactEngine::forget_unless_same(const ContactProblem& problem) {
+void ContactEngine::reset_cache_if_changed(const ContactProblem& problem) {
   const std::vector<ContactIsland>& islands = islands_.structure().islands;
   const auto is_coupled = [](const ContactIsland& island) { return island.is_coupled; };
   if (!options_.skip.constant_systems || std::none_of(islands.begin(), islands.end(), is_coupled)) {
@@ -72,13 +72,13 @@ void ContactEngine::forget_unless_same(const ContactProblem& problem) {
   const auto is_same = [](const std::vector<double>& a, const std::vector<double>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
   };
-  if (is_same(kept_.system, problem.system.value) &&
-      is_same(kept_.jacobian, problem.jacobian.value)) {
+  if (is_same(cache_.system, problem.system.value) &&
+      is_same(cache_.jacobian, problem.jacobian.value)) {
     return;
   }
-  kept_.system = problem.system.value;
-  kept_.jacobian = problem.jacobian.value;
-  kept_.islands.assign(islands.size(), {});
+  cache_.system = problem.system.value;
+  cache_.jacobian = problem.jacobian.value;
+  cache_.islands.assign(islands.size(), {});
 }
 
 void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& result) {
@@ -89,16 +89,16 @@ void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& r
     CoupledRoute route = coupled_route(options_, island);
     const std::int64_t rows = 3 * island.contact_count();
     const bool sweeps_fast = rows * rows <= static_cast<std::int64_t>(problem.system.value.size());
-    if (!kept_.islands.empty() && route.condenses && sweeps_fast &&
-        kept_.islands[index_of(i)].outer_iterations >= condensing_iterations * rows) {
+    if (!cache_.islands.empty() && route.condenses && sweeps_fast &&
+        cache_.islands[index_of(i)].outer_iterations >= condensing_iterations * rows) {
       route.outer_iterations = 0;  // A and J do not change: condensing once is cheaper from now on
     }
     if (route.outer_iterations > 0) islands_.iterate(i, route.outer_iterations, result);
     const bool is_solved =
         route.outer_iterations > 0 && result.outcomes[index_of(i)].reason == StopReason::converged;
     if (!is_solved && route.condenses) condense(problem, i, result);
-    if (!kept_.islands.empty()) {
-      kept_.islands[index_of(i)].outer_iterations += result.outcomes[index_of(i)].outer_iterations;
+    if (!cache_.islands.empty()) {
+      cache_.islands[index_of(i)].outer_iterations += result.outcomes[index_of(i)].outer_iterations;
     }
   }
 }
@@ -107,9 +107,9 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
   const ContactStructure& structure = islands_.structure();
   const ContactIsland& island = structure.islands[index_of(i)];
   const ContactProblem part = make_island_problem(problem, structure, island);
-  std::shared_ptr<Condensation> unkept;
+  std::shared_ptr<Condensation> temporary;
   std::shared_ptr<Condensation>& kept =
-      kept_.islands.empty() ? unkept : kept_.islands[index_of(i)].condensation;
+      cache_.islands.empty() ? temporary : cache_.islands[index_of(i)].condensation;
   if (kept == nullptr) {
     kept = std::make_shared<Condensation>(part, IslandSolver(options_, threads_, device_));
   } else {

@@ -48,11 +48,11 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   state.reset(exec, numbers, false);
   ContactPipeline<CpuContactExec, double> pipeline(exec, numbers, view_of(structure.color_start),
                                                    island, {}, state.views());
-  double wanted = 0;
+  double required = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);
     const double approach = std::min(bare.free_velocity[3 * slot], 0.0);
-    wanted += approach * approach / bare.constants[slot].block[0];
+    required += approach * approach / bare.constants[slot].block[0];
   }
   const View<double> y = pipeline.impulse();
   std::vector<double> before(static_cast<std::size_t>(y.size));
@@ -73,7 +73,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     for (std::size_t i = 0; i < growth.size(); ++i) {
       gain -= growth[i] * bare.free_velocity[static_cast<std::size_t>(3 * island.slot_begin) + i];
     }
-    if (!(gain > 0 && gain > far * std::sqrt(energy * wanted))) continue;
+    if (!(gain > 0 && gain > far * std::sqrt(energy * required))) continue;
     std::vector<std::int64_t> slots;
     for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
       const auto own = static_cast<std::size_t>(3 * (s - island.slot_begin));

@@ -8,6 +8,7 @@
 #include "host/contact/feasibility.hpp"
 #include "host/contact/newton/newton.hpp"
 #include "host/contact/structure/extract.hpp"
+#include "host/contact/sweeps/method_names.hpp"
 
 namespace tetwarp {
 
@@ -151,7 +152,7 @@ void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome
   const NewtonResult newton = newton_polish(make_island_problem(*problem_, structure_, island),
                                             options, polished, body_velocity);
   outcome.newton_iterations += newton.iterations;
-  outcome.methods.push_back("newton");
+  outcome.methods.push_back(report_name_of(ContactMethod::newton));
   const double before = run.excess(i, outcome.sums);
   std::copy(polished.begin(), polished.end(), impulse);
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);

@@ -33,10 +33,10 @@ struct BackendStatus {
 TETWARP_EXPORT std::vector<BackendStatus> available_backends(int device = 0);
 
 /// The back end that a warp uses for a choice of WarpOptions::backend.
-/// @param asked   the choice
+/// @param requested  the choice
 /// @param device  CUDA device number
 /// @returns cuda, cpu or reference, and the reason in one sentence
-/// @throws CudaError when `asked` is cuda and the device is not usable
-TETWARP_EXPORT std::pair<Backend, std::string> choose_backend(Backend asked, int device = 0);
+/// @throws CudaError when `requested` is cuda and the device is not usable
+TETWARP_EXPORT std::pair<Backend, std::string> choose_backend(Backend requested, int device = 0);
 
 }  // namespace tetwarp

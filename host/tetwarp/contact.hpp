@@ -187,12 +187,12 @@ struct AdhesionStep {
 };
 
 /// The back end that a contact solve with this choice runs on, and the reason in one sentence.
-/// `automatic` means cpu: for contact, cuda is used only when asked for by name, until it has been
+/// `automatic` means cpu: for contact, cuda is used only if requested, until it has been
 /// measured on a device.
-/// @param asked   ContactOptions::backend
+/// @param requested  ContactOptions::backend
 /// @param device  CUDA device number
-/// @throws CudaError  cuda is asked for and device `device` is not usable
-TETWARP_EXPORT std::pair<Backend, std::string> choose_contact_backend(Backend asked,
+/// @throws CudaError  cuda is requested and device `device` is not usable
+TETWARP_EXPORT std::pair<Backend, std::string> choose_contact_backend(Backend requested,
                                                                       int device = 0);
 
 /// Solves a series of problems and keeps its buffers between them, and colors and islands while the
@@ -203,7 +203,7 @@ TETWARP_EXPORT std::pair<Backend, std::string> choose_contact_backend(Backend as
 class TETWARP_EXPORT ContactSolver {
  public:
   /// @throws std::invalid_argument  an option is out of range; the text names it
-  /// @throws CudaError              cuda was asked for and the device is not usable
+  /// @throws CudaError              cuda was requested and the device is not usable
   explicit ContactSolver(const ContactOptions& options = {});
   ContactSolver(ContactSolver&&) noexcept;
   ContactSolver& operator=(ContactSolver&&) noexcept;

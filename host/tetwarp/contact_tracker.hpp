@@ -61,7 +61,7 @@ struct ReportedContact {
                                ///< plane; zero: chosen by the tracker
 };
 
-/// State of a contact between steps, in body coordinates unless the name says world.
+/// State of a contact between steps, in body coordinates unless the name ends in _world.
 struct ContactRecord {
   ContactKey key;             ///< side a has the smaller (body, feature)
   std::int32_t material = 0;  ///< index into ContactTrackerOptions::materials
@@ -116,8 +116,9 @@ class TETWARP_EXPORT ContactTracker {
   /// @param time_step  dt [s], > 0
   /// @return the contacts of this step, valid until the next call of begin_step() or end_step()
   /// @throws std::invalid_argument  a key occurs twice, a body has no pose or touches itself, a
-  ///                                normal is no unit vector, an area is negative, a material does
-  ///                                not exist, a position is not finite, or time_step is not > 0
+  ///                                normal is not a unit vector, an area is negative, a material
+  ///                                does not exist, a position is not finite, or time_step is not >
+  ///                                0
   const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
                                                 std::span<const BodyPose> poses,
                                                 double time_step);

@@ -45,7 +45,7 @@ Enum parse(std::string_view word) {
     if (word == entry.name) return entry.value;
     listed += (listed.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw std::invalid_argument("'" + std::string(word) + "' is none of " + listed);
+  throw std::invalid_argument("'" + std::string(word) + "' is not one of " + listed);
 }
 
 }  // namespace tetwarp

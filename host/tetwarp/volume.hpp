@@ -83,7 +83,7 @@ struct TETWARP_EXPORT Volume {
   }
 
  private:
-  void check_type(PixelType asked) const;
+  void check_type(PixelType expected) const;
 };
 
 /// A volume of zeros.

@@ -35,7 +35,7 @@ struct ProgressPart {
   /// Reports that `fraction` of this part is finished.
   /// @throws Cancelled when the callback returns false
   void report(double fraction) const;
-  bool is_wanted() const { return static_cast<bool>(progress); }
+  bool is_requested() const { return static_cast<bool>(progress); }
 };
 
 /// Samples of a source in the form that kernels read.

@@ -142,9 +142,9 @@ class WarpOutputs {
   };
 
   void* writable(std::size_t place, const WarpTarget& target) {
-    void* const wanted = arrays_of(target)[place];
-    if (wanted == nullptr || target.memory == Memory::device) return wanted;
-    return exec_.writable(static_cast<std::byte*>(wanted),
+    void* const destination = arrays_of(target)[place];
+    if (destination == nullptr || target.memory == Memory::device) return destination;
+    return exec_.writable(static_cast<std::byte*>(destination),
                           voxel_bytes_[place] * frame_.voxel_count(), slots_[now_].arrays[place]);
   }
 

@@ -29,7 +29,7 @@ class WarpTotals {
     sums_.reserve(firsts_.back());
   }
 
-  bool are_wanted() const { return !firsts_.empty(); }
+  bool are_requested() const { return !firsts_.empty(); }
 
   /// Sums output s of this step, and in the first step also source s.
   void run(std::size_t s, NumberView source, NumberView output, const WarpPairs<Exec>& pairs) {

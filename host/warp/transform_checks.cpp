@@ -89,7 +89,7 @@ void check_transforms(std::span<const VolumeView> sources, const WarpOptions& op
   const bool blends = options.filter != Filter::nearest && options.filter != Filter::labels;
   if (options.antialias && !blends) {
     throw std::invalid_argument(
-        "antialias: averages samples, which nearest and labels must not; use another filter");
+        "antialias: cannot average samples with nearest and labels; use another filter");
   }
   if (!options.quantities.empty() && options.quantities.size() != sources.size()) {
     throw std::invalid_argument("quantities: expected none or one per source, " +

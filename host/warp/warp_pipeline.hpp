@@ -129,7 +129,7 @@ class WarpPipeline : public WarpBackend {
     run(flight.positions, flight.target, flight.age, progress);
     flight.counters.reserve(1);
     exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
-    if (totals_.are_wanted()) {
+    if (totals_.are_requested()) {
       flight.totals.reserve(totals_.sums().size);
       exec_.fetch(totals_.sums(), flight.totals);
     }
@@ -217,7 +217,7 @@ class WarpPipeline : public WarpBackend {
       } else {
         cell_raster(exec_, job, part);
       }
-      if (totals_.are_wanted()) {
+      if (totals_.are_requested()) {
         totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);
       }
     });
@@ -243,7 +243,7 @@ class WarpPipeline : public WarpBackend {
   }
 
   void report_totals(Flight& flight) {
-    if (!totals_.are_wanted()) return;
+    if (!totals_.are_requested()) return;
     const View<const double> sums = flight.totals.const_view(totals_.sums().size);
     flight.report.totals.before = totals_.before();
     for (std::int64_t c = 0; c < sums.size; ++c) {

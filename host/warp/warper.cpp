@@ -48,7 +48,7 @@ void check_window(const std::vector<VolumeView>& sources, const WarpOptions& opt
         "source window: a spline passes through all samples of a source; use another filter");
   }
   if (options.intensity == Intensity::conservative) {
-    throw std::invalid_argument("source window: totals are of a whole source; use density");
+    throw std::invalid_argument("source window: conservative needs the whole source; use density");
   }
   if (options.overshoot == Overshoot::clamp) check_ranges(sources, options.source_window->ranges);
 }

@@ -169,9 +169,9 @@ class Block {
   /// Completes one exchange that all its lanes have reached. @returns whether there was one
   bool complete_exchange(unsigned first, unsigned lane_count) {
     for (unsigned lane = 0; lane < lane_count; ++lane) {
-      const Thread& asking = *threads_[first + lane];
-      if (asking.state != State::at_exchange || missing_lane(first, lane) < lane_count) continue;
-      const unsigned mask = asking.mask;
+      const Thread& waiting = *threads_[first + lane];
+      if (waiting.state != State::at_exchange || missing_lane(first, lane) < lane_count) continue;
+      const unsigned mask = waiting.mask;
       unsigned ballot = 0;
       for (unsigned l = 0; l < lane_count; ++l) {
         if (mask >> l & 1) ballot |= unsigned{threads_[first + l]->predicate} << l;
@@ -190,12 +190,12 @@ class Block {
 
   /// First lane that has not reached the exchange in which `lane` waits; warp_size if none.
   unsigned missing_lane(unsigned first, unsigned lane) const {
-    const Thread& asking = *threads_[first + lane];
+    const Thread& waiting = *threads_[first + lane];
     for (unsigned l = 0; l < warp_size && first + l < thread_count_; ++l) {
       const Thread& peer = *threads_[first + l];
-      const bool has_come =
-          peer.state == State::at_exchange && peer.mask == asking.mask && peer.line == asking.line;
-      if (asking.mask >> l & 1 && !has_come) return l;
+      const bool has_arrived = peer.state == State::at_exchange && peer.mask == waiting.mask &&
+                               peer.line == waiting.line;
+      if (waiting.mask >> l & 1 && !has_arrived) return l;
     }
     return warp_size;
   }

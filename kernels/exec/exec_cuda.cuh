@@ -71,11 +71,11 @@ class CudaExec {
   /// of the previous stream if it changes.
   void use_stream(void* stream) {
     check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
-    const cudaStream_t wanted =
+    const cudaStream_t next =
         stream != nullptr ? static_cast<cudaStream_t>(stream) : cudaStream_t{state_->own_stream};
-    if (wanted == state_->stream) return;
+    if (next == state_->stream) return;
     check_cuda(cudaStreamSynchronize(state_->stream), "cudaStreamSynchronize");
-    state_->stream = wanted;
+    state_->stream = next;
   }
 
   /// To be called before the first kernel of the current step: its kernels wait for its upload().

@@ -156,19 +156,19 @@ TYPED_TEST(Executor, ZeroClearsItsViewAndNoMore) {
 }
 
 TYPED_TEST(Executor, DeliversWhatWasWritten) {
-  std::vector<std::int64_t> home(33, -1);
+  std::vector<std::int64_t> results(33, -1);
   typename TypeParam::template Buffer<std::int64_t> buffer;
-  std::int64_t* const place = this->exec().writable(home.data(), 33, buffer);
+  std::int64_t* const place = this->exec().writable(results.data(), 33, buffer);
   std::vector<std::int64_t> squares(33);
   for (std::size_t i = 0; i < 33; ++i) squares[i] = static_cast<std::int64_t>(i * i);
 
   this->exec().zero("test", View<std::int64_t>{place, 33});
   this->exec().for_each("test", 33, SquareBody{{place, 33}});
   this->exec().end_compute();
-  this->exec().download("test", View<const std::int64_t>{place, 33}, home.data());
+  this->exec().download("test", View<const std::int64_t>{place, 33}, results.data());
   this->exec().times();  // waits
 
-  EXPECT_EQ(home, squares);
+  EXPECT_EQ(results, squares);
 }
 
 TYPED_TEST(Executor, ChargesTimeToTheLabelUntilCleared) {

@@ -61,7 +61,7 @@ TEST(Report, NamesWhatRanAndWhere) {
 
   EXPECT_EQ(json["version"], TETWARP_VERSION);
   EXPECT_EQ(json["backend"], "cpu");
-  EXPECT_EQ(json["backend_reason"], "asked for");
+  EXPECT_EQ(json["backend_reason"], "requested");
   EXPECT_EQ(json["threads"], 2);
   EXPECT_EQ(json["position_quantum"], 0x1p-20);
   EXPECT_FALSE(json["device"].get<std::string>().empty());

@@ -168,14 +168,14 @@ TEST(Cli, ReportsCountsTimesAndOutputsAsJson) {
   EXPECT_EQ(report["counts"]["bytes_written"], bytes);
 }
 
-TEST(Cli, SaysWhichBackEndRanAndWhy) {
+TEST(Cli, PrintsTheBackEndAndTheReasonForItsChoice) {
   const Scene scene;
 
   const CommandResult result =
       scene.warp({"-o", "out.vtkhdf", "--backend", "reference", "--steps", "0"});
 
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(result.out.starts_with("reference: asked for\n")) << result.out;
+  EXPECT_TRUE(result.out.starts_with("reference: requested\n")) << result.out;
 }
 
 /// Back ends other than cpu begin a step before the previous one is finished; step 2 repeats step

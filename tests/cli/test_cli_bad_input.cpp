@@ -16,7 +16,7 @@ using Names = std::vector<std::string>;
 /// A command line that must fail, and words that its message must contain.
 struct Refused {
   Names words;
-  std::string told;
+  std::string message;
 };
 
 void expect_refused(const Scene& scene, const Refused& refused, int exit_code) {
@@ -26,7 +26,7 @@ void expect_refused(const Scene& scene, const Refused& refused, int exit_code) {
 
   EXPECT_EQ(result.exit_code, exit_code) << result.err;
   EXPECT_TRUE(result.has_one_line_error()) << result.err;
-  EXPECT_NE(result.err.find(refused.told), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(refused.message), std::string::npos) << result.err;
   EXPECT_EQ(scene.names(), before);
 }
 
@@ -36,7 +36,7 @@ Names warp_with(Names more) {
   return more;
 }
 
-TEST(UsageError, ExitsWithTwoAndSaysWhereToRead) {
+TEST(UsageError, ExitsWithTwoAndNamesTheHelp) {
   const Scene scene;
   for (const Refused& refused : std::vector<Refused>{
            {{}, "tetwarp --help"},
@@ -77,7 +77,7 @@ TEST(BadInput, NamesTheFileThatCannotBeRead) {
            {{"import", "volume.vtkhdf", "-o", "out.vtkhdf"}, "is a volume, expected a NIfTI"},
            {{"render", "mesh.vtkhdf", "-o", "out.png"}, "is a mesh, expected a volume"},
            {warp_with({"--rest", "none.vtkhdf"}), "none.vtkhdf"},
-           {warp_with({"--vectors", "flow"}), "--vectors names no array"},
+           {warp_with({"--vectors", "flow"}), "--vectors: no such array"},
            {warp_with({"--tensors", "density=principal"}),
             "density: quantities: a tensor has 6 components, the source 1"},
            {warp_with({"--grid", "none.vtkhdf"}), "none.vtkhdf"}}) {
@@ -85,7 +85,7 @@ TEST(BadInput, NamesTheFileThatCannotBeRead) {
   }
 }
 
-TEST(BadInput, TellsSwappedVolumeAndMeshApart) {
+TEST(BadInput, DistinguishesSwappedVolumeAndMesh) {
   const Scene scene;
   expect_refused(scene,
                  {{"warp", "mesh.vtkhdf", "volume.vtkhdf", "-o", "out.vtkhdf"},
@@ -102,7 +102,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
   for (const Refused& refused : std::vector<Refused>{
            {warp_to("volume.vtkhdf"), "is also an input"},
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
-           {warp_to("nowhere/out.vtkhdf"), "'nowhere' is no existing folder"},
+           {warp_to("nowhere/out.vtkhdf"), "folder 'nowhere' does not exist"},
            {warp_to("folder.vtkhdf"), "is a folder"},
            {warp_to("out.nii.gz"), ".vtkhdf, .hdf or .h5"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
@@ -221,9 +221,9 @@ TEST(BadInput, RefusesFieldsThatCannotBe) {
                  {{"import", "absent.vtu", "-o", "out.vtkhdf"}, "absent.vtu: cannot be opened"}, 1);
 }
 
-TEST(BadInput, SaysWhyCudaCannotRun) {
+TEST(BadInput, ReportsWhyCudaIsNotUsable) {
   const BackendStatus cuda = available_backends().front();
-  if (cuda.usable) GTEST_SKIP() << "a CUDA device answers: " << cuda.device;
+  if (cuda.usable) GTEST_SKIP() << "a CUDA device is usable: " << cuda.device;
   const Scene scene;
 
   expect_refused(scene, {warp_with({"--backend", "cuda"}), cuda.reason}, 1);

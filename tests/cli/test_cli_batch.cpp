@@ -91,7 +91,7 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
       << result.err;
   EXPECT_NE(result.err.find("tetwarp: job 3: --filter: 'cubical'"), std::string::npos);
   EXPECT_NE(result.err.find("tetwarp: job 4: has no 'mesh'\n"), std::string::npos);
-  EXPECT_NE(result.err.find("tetwarp: job 5: is no JSON object\n"), std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 5: is not a JSON object\n"), std::string::npos);
   EXPECT_TRUE(result.out.ends_with("1 done, 5 failed, 0 skipped\n")) << result.out;
   const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
   ASSERT_EQ(report.size(), 6u);
@@ -137,8 +137,7 @@ TEST_F(Batch, NamesThePlaceWhereTheFileIsNoJson) {
   const CommandResult result = run("{\"jobs\": [\n  {\"volume\": }\n]}");
 
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.err,
-            "tetwarp: jobs/jobs.json: line 2, column 14: no valid JSON here; correct it\n");
+  EXPECT_EQ(result.err, "tetwarp: jobs/jobs.json: line 2, column 14: not valid JSON; correct it\n");
 }
 
 TEST_F(Batch, RefusesAFileWithoutJobs) {

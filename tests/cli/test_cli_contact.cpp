@@ -69,7 +69,7 @@ TEST_F(ContactCommand, HoldsABodyByItsAdhesion) {
   EXPECT_FALSE(holds(folder / "solved.hdf5", "adhesion_next"));
 }
 
-TEST_F(ContactCommand, WritesTheAdhesionOfTheNextStepWhenAsked) {
+TEST_F(ContactCommand, WritesTheAdhesionOfTheNextStepWithEvolve) {
   store(pulled_point());
 
   EXPECT_EQ(solve({"--evolve"}).exit_code, 0);
@@ -123,7 +123,7 @@ TEST_F(ContactCommand, ReportsInJson) {
   EXPECT_GE(timings["total"], timings["read"].get<double>() + timings["write"].get<double>());
 }
 
-TEST_F(ContactCommand, StartsFromASolutionWhenAsked) {
+TEST_F(ContactCommand, StartsFromASolutionWithWarmStart) {
   store(column_of_points(30));
   ASSERT_EQ(solve({"--tolerance", "1e-8", "--report", "report.json"}).exit_code, 0);
   const std::int64_t cold = report()["sweeps"];
@@ -178,7 +178,7 @@ TEST_F(ContactCommand, FindsTheSameVelocitiesByEveryMethod) {
   }
 }
 
-TEST_F(ContactCommand, IsSilentWhenAsked) {
+TEST_F(ContactCommand, PrintsNothingWithQuiet) {
   store(sliding_point());
 
   const CommandResult result = solve({"--quiet"});

@@ -75,7 +75,7 @@ TEST_F(ContactCommand, NamesFileDatasetAndEntryOfABadProblem) {
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
 }
 
-TEST(ContactFiles, AreToldFromOtherFiles) {
+TEST(ContactFiles, AreDistinguishedFromOtherFiles) {
   const Scene scene;
 
   const CommandResult result =

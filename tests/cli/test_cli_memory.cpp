@@ -148,7 +148,7 @@ TEST_F(MemoryLimit, ResumesWhatARunWithoutItHasWritten) {
   EXPECT_TRUE(holds_same(folder / "a_0001.vtkhdf", folder / "b_0001.vtkhdf"));
 }
 
-TEST_F(MemoryLimit, IsToldInOneLineWhenItCannotBeKept) {
+TEST_F(MemoryLimit, FailsWithOneLineWhenTooLow) {
   const auto expect_error = [&](const Names& more, int exit_code, const std::string& part) {
     Names words{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"};
     words.insert(words.end(), more.begin(), more.end());

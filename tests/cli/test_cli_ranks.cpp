@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 class Ranks : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::string(TETWARP_MPIRUN).empty()) GTEST_SKIP() << "this build knows no MPI";
+    if (std::string(TETWARP_MPIRUN).empty()) GTEST_SKIP() << "this build does not support MPI";
   }
 
   /// mpirun of Open MPI 4.1 sometimes hangs in PMIx_server_finalize after a rank has failed and all
@@ -126,7 +126,7 @@ TEST_F(Ranks, EndTogetherWithOneLineWhenOneOfThemFails) {
   }
 }
 
-TEST_F(Ranks, AreToldOnceWhatIsWrongWithAllOfThem) {
+TEST_F(Ranks, PrintACommonErrorOnce) {
   for (const Names& words :
        {Names{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--memory", "much"},
         Names{"volume.vtkhdf", "none.vtkhdf", "-o", "out.vtkhdf"}, Names{"--batch", "jobs.json"}}) {

@@ -201,7 +201,7 @@ TEST(FullDisk, KeepsAnOlderOutput) {
   EXPECT_EQ(text_of(scene / "out.vtkhdf"), before);
 }
 
-TEST(FullDisk, IsNoticedOnStandardOutput) {
+TEST(FullDisk, IsAnErrorOfStandardOutput) {
   const Scene scene;
 
   const CommandResult result = run_command(scene, {"info", "volume.vtkhdf"}, {.out = "/dev/full"});

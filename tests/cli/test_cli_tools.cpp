@@ -81,7 +81,7 @@ TEST(Cli, InfoShowsVolumesAndMeshesForPeopleAndMachines) {
       << mesh.out;
 }
 
-TEST(Cli, DemoNeedsNoFileAndWritesAllItPromises) {
+TEST(Cli, DemoNeedsNoFileAndWritesAllOutputs) {
   const TemporaryFolder folder;
 
   const CommandResult result =

@@ -198,7 +198,7 @@ TEST(BodyRelax, ConvergesToTheCoupledSolution) {
   EXPECT_LE(relative_distance(v, x.by_place(solution)), 1e-10);
 }
 
-TEST(BodyRelax, ChangesTheBlocksAskedForOnly) {
+TEST(BodyRelax, ChangesTheSelectedBlocksOnly) {
   const Relaxation x(75, 6, 6, 0);
   const Numbers before = x.by_place(x.velocity);
 

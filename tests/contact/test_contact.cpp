@@ -50,7 +50,7 @@ class ContactSolve : public ::testing::TestWithParam<Variant> {
 
 std::string name_of_variant(const ::testing::TestParamInfo<Variant>& info) {
   const auto [method, law, rule] = info.param;
-  return name_of(method) + (law == FrictionLaw::cone ? "_cone" : "_pyramid") +
+  return std::string(report_name_of(method)) + (law == FrictionLaw::cone ? "_cone" : "_pyramid") +
          (rule == AdhesionRule::parallel ? "_parallel" : "_restrictive");
 }
 INSTANTIATE_TEST_SUITE_P(
@@ -80,7 +80,7 @@ TEST_P(ContactSolve, HasTheVelocitiesOfTheReferenceInGlobalForm) {
 
 class EachMethod : public ::testing::TestWithParam<ContactMethod> {};
 INSTANTIATE_TEST_SUITE_P(By, EachMethod, ::testing::ValuesIn(methods), [](const auto& info) {
-  return name_of(info.param);
+  return report_name_of(info.param);
 });
 
 /// Springs up to 1 kg; the impulses of stiffer ones are small differences of rounded velocities.

@@ -130,7 +130,7 @@ TEST(ContactAdhesion, DecaysToItsRestPointAndNoFurther) {
   EXPECT_NEAR(exact_intensity(law, 1, 0.1), 1.0 / 16 + 15.0 / 16 * std::exp(-1.6), 1e-15);
 }
 
-TEST(ContactAdhesion, SurvivesRatesOfAnySize) {
+TEST(ContactAdhesion, AcceptsRatesOfAnySize) {
   for (const double rate : {0.0, 1e-300, 1e-20, 1.0, 1e20, 1e300}) {
     for (const double decay : {0.0, 1e-300, 1e-20, 1.0, 1e20, 1e300}) {
       for (const double strain : {0.0, 1e-300, 1.0, 1e300}) {

@@ -55,7 +55,7 @@ struct BoundCase {
   static constexpr double zero[3] = {0, 0, 0};
 };
 
-TEST(ContactBound, EtaIsAtMostWhatIsSaid) {
+TEST(ContactBound, EtaIsAtMostTheBound) {
   double closest = 0;
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);
@@ -71,7 +71,7 @@ TEST(ContactBound, EtaIsAtMostWhatIsSaid) {
   EXPECT_GT(closest, 0.9);
 }
 
-TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastWhatIsSaid) {
+TEST(ContactBound, TheEtaOfNoImpulsesIsAtLeastTheBound) {
   double closest = 0;
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     const BoundCase c(seed);

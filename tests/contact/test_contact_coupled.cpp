@@ -89,7 +89,7 @@ TEST(ResidualEstimator, BoundsTheErrorOfBodiesAtRest) {
 }
 
 /// The first of two islands is at rest, the second moves.
-TEST(ResidualEstimator, SeesAnIslandAsIfItWereAlone) {
+TEST(ResidualEstimator, MeasuresAnIslandAsIfItWereAlone) {
   const ContactProblem still =
       slab_at_rest({.cubes = {9, 7, 4}, .contacts = 45, .young = 3e4, .glue = {1e8, 1}});
   const ContactProblem moving = scenes::elastic_slab({.cubes = {6, 5, 2}, .contacts = 30});

@@ -59,7 +59,7 @@ class ContactCudaMethods : public testing::TestWithParam<ContactMethod> {
 INSTANTIATE_TEST_SUITE_P(Each,
                          ContactCudaMethods,
                          testing::ValuesIn(methods),
-                         [](const auto& info) { return name_of(info.param); });
+                         [](const auto& info) { return report_name_of(info.param); });
 
 TEST_P(ContactCudaMethods, SolvesBothFormsUnderEveryLawAndRule) {
   for (const FrictionLaw law : {FrictionLaw::cone, FrictionLaw::pyramid}) {

@@ -61,7 +61,7 @@ Linear make_linear(CpuContactExec& exec, const LinearCase& c) {
   return Linear(exec, c.stages.numbers(), c.stages.island(), c.memory);
 }
 
-TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
+TEST(CoupledSystem, ReducesTheErrorToTheRequestedShare) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
   const double size = c.size_of(exact);
@@ -83,7 +83,7 @@ TEST(CoupledSystem, LeavesTheShareOfTheErrorAskedFor) {
 
 /// At every estimate, from well to badly conditioned; a previous rough solve has estimated the
 /// smallest eigenvalue.
-TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
+TEST(CoupledSystem, EstimatesItsErrorFromAboveAndTightly) {
   const LinearCase cases[] = {bodies(0.1), bodies(0.4), LinearCase(make_elastic_problem({})),
                               LinearCase(make_elastic_problem({.young = 1e7}))};
   for (const LinearCase& c : cases) {
@@ -111,7 +111,7 @@ TEST(CoupledSystem, IsOffByAtMostWhatItSaysAndNotByMuchLess) {
   }
 }
 
-TEST(CoupledSystem, StopsWhereItIsToldTo) {
+TEST(CoupledSystem, StopsWhenTheCriterionHolds) {
   const LinearCase c = bodies(0.4);
   const VectorXd exact = samples::solve_spd(c.matrix, c.goal);
   CpuContactExec exec(1);
@@ -123,7 +123,7 @@ TEST(CoupledSystem, StopsWhereItIsToldTo) {
   EXPECT_GT(c.size_of(samples::vector_of(x) - exact), 1e-3 * c.size_of(exact));
 }
 
-TEST(CoupledSystem, DoesNotBlameTheSystemForSquaresThatUnderflow) {
+TEST(CoupledSystem, AcceptsLoadsWhoseSquaresUnderflow) {
   LinearCase c = bodies(0.4);
   for (const double scale : {1e-150, 1e-155, 1e-160, 1e-165, 1e-300, 0.0}) {
     std::vector<double> x(180, 0.0), rest = samples::list_of(c.goal * scale);

@@ -75,7 +75,7 @@ TEST_P(EachModel, HasTheVelocitiesOfTheReference) {
       for (const auto coupling : {ContactCoupling::iterated, ContactCoupling::condensed}) {
         options.method = method;
         options.coupling = coupling;
-        const std::string what = "problem " + std::to_string(k) + ", " + name_of(method);
+        const std::string what = "problem " + std::to_string(k) + ", " + report_name_of(method);
 
         const ContactSolution solution = solve_contacts(problems[k], options);
 

@@ -63,7 +63,7 @@ const BadProblem bad_problems[] = {
      [](ContactProblem& p) {
        p.free_velocity = {1, 2, 3};
      },
-     "delassus", ": given beside"},
+     "delassus", ": set together with"},
     {"NegativeFriction", global_problem, [](ContactProblem& p) { p.friction[2] = -0.25; },
      "friction", "[2]: -0.25 is negative; "},
     {"FrictionNotANumber", local_problem, [](ContactProblem& p) { p.friction[1] = nan; },
@@ -89,7 +89,7 @@ const BadProblem bad_problems[] = {
     {"FirstRowStart", global_problem, [](ContactProblem& p) { p.system.row_start[0] = 1; },
      "system.row_start", "[0]: 1, expected 0"},
     {"FallingRowStart", global_problem, [](ContactProblem& p) { p.system.row_start[1] = 40; },
-     "system.row_start", "[2]: 12 is below the one before"},
+     "system.row_start", "[2]: 12 is less than the previous entry"},
     {"LastRowStart", global_problem, [](ContactProblem& p) { p.jacobian.row_start.back() += 2; },
      "jacobian.row_start", "[9]: "},
     {"MissingRowStart", local_problem, [](ContactProblem& p) { p.delassus.row_start.pop_back(); },
@@ -147,7 +147,7 @@ const BadProblem bad_problems[] = {
      [](ContactProblem& p) { p.adhesion.tangential_stiffness[2] = -2; },
      "adhesion.tangential_stiffness", "[2]: -2 is negative; "},
     {"IntensityOverOne", global_problem, [](ContactProblem& p) { p.adhesion.intensity[2] = 1.5; },
-     "adhesion.intensity", "[2]: 1.5 is over 1; 0 is debonded, 1 fully bonded"},
+     "adhesion.intensity", "[2]: 1.5 is above 1; 0 is debonded, 1 fully bonded"},
     {"NegativeIntensity", global_problem, [](ContactProblem& p) { p.adhesion.intensity[0] = -0.5; },
      "adhesion.intensity", "[0]: -0.5 is negative; "},
     {"IntensityNotANumber", global_problem,
@@ -174,7 +174,7 @@ const BadProblem bad_problems[] = {
      [](ContactProblem& p) {
        p.block_start = {0, 6, 6, 12};
      },
-     "block_start", "[2]: 6 does not lie above the one before"},
+     "block_start", "[2]: 6 is not greater than the previous entry"},
     {"BlocksEndEarly", global_problem,
      [](ContactProblem& p) {
        p.block_start = {0, 6};
@@ -184,7 +184,7 @@ const BadProblem bad_problems[] = {
      [](ContactProblem& p) {
        p.block_start = {0, 6};
      },
-     "block_start", ": given beside delassus"},
+     "block_start", ": set together with delassus"},
     {"GuessCount", local_problem,
      [](ContactProblem& p) {
        p.impulse_guess = {1, 2};

@@ -203,7 +203,7 @@ TEST(ContactResidual, VelocitiesWithoutImpulsesHideNoWrongImpulse) {
   EXPECT_DOUBLE_EQ(residual.balance, 1);
 }
 
-TEST(ContactResidual, LimitsTheRecoveryOfPenetrationAsAsked) {
+TEST(ContactResidual, LimitsTheRecoverySpeedOfPenetration) {
   ContactProblem problem;
   problem.system = samples::sparse_of(Eigen::Matrix3d::Identity());
   problem.jacobian = problem.system;

@@ -23,7 +23,7 @@ namespace {
 using Numbers = std::vector<double>;
 
 /// cuda is used only if it is named.
-TEST(ContactSolver, RunsOnTheCpuUnlessAskedOtherwise) {
+TEST(ContactSolver, RunsOnTheCpuByDefault) {
   const auto [automatic, reason] = choose_contact_backend(Backend::automatic);
   const ContactReport report = solve_contacts(local_problem(90, 2)).report;
 
@@ -51,7 +51,7 @@ TEST(ContactSolver, UsedAgainGivesTheBitsOfANewOne) {
 
 /// A stored zero becomes a coupling and a zero again: the index arrays are the same, the structures
 /// are not.
-TEST(ContactSolver, NoticesWhereStoredZerosComeAndGo) {
+TEST(ContactSolver, DetectsStoredZerosThatComeAndGo) {
   ContactProblem coupled = global_problem(94, 3, 0.4), loose = coupled;
   for (std::int64_t row = 0; row < 18; ++row) {
     const auto r = static_cast<std::size_t>(row);
@@ -140,14 +140,15 @@ TEST(ContactSolver, ASqueezedBodyEndsInfeasibleAndFiniteWithinTheBudget) {
     const ContactSolution solution =
         solve_contacts(problem, {.method = method, .tolerance = 1e-9, .max_sweeps = 300});
 
-    EXPECT_EQ(solution.report.status, ContactStatus::infeasible) << name_of(method);
-    EXPECT_NE(solution.report.status_reason, "") << name_of(method);
-    EXPECT_LE(solution.report.sweeps, 300) << name_of(method);
+    EXPECT_EQ(solution.report.status, ContactStatus::infeasible) << report_name_of(method);
+    EXPECT_NE(solution.report.status_reason, "") << report_name_of(method);
+    EXPECT_LE(solution.report.sweeps, 300) << report_name_of(method);
     for (const Numbers* values : {&solution.impulse, &solution.velocity, &solution.body_velocity}) {
-      for (const double value : *values) EXPECT_LE(std::abs(value), 10) << name_of(method);
+      for (const double value : *values) EXPECT_LE(std::abs(value), 10) << report_name_of(method);
     }
-    EXPECT_NEAR(solution.body_velocity[0], 0, 1e-8) << name_of(method);   // stays where it is
-    EXPECT_NEAR(solution.body_velocity[3], -1, 1e-8) << name_of(method);  // stops at its wall
+    EXPECT_NEAR(solution.body_velocity[0], 0, 1e-8) << report_name_of(method);  // stays where it is
+    EXPECT_NEAR(solution.body_velocity[3], -1, 1e-8)
+        << report_name_of(method);  // stops at its wall
   }
 }
 

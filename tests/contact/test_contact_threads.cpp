@@ -28,7 +28,7 @@ class ContactThreads : public ::testing::TestWithParam<ContactMethod> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(By, ContactThreads, ::testing::ValuesIn(methods), [](const auto& info) {
-  return name_of(info.param);
+  return report_name_of(info.param);
 });
 
 /// One island, its colors wide enough to be shared among threads.

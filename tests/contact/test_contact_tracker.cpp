@@ -93,7 +93,7 @@ TEST(ContactTracker, AContactThatLetGoDoesNotBondAtOnceWhereItStillTouches) {
   EXPECT_EQ(tracker.records()[0].intensity, 1);
 }
 
-TEST(ContactTracker, KeepsWhatAdheresAndForgetsTheRest) {
+TEST(ContactTracker, KeepsContactsThatAdhereAndRemovesOthers) {
   ContactTracker tracker(glue());
   step(tracker, {at(0, 0), at(1, 1, 1e-3)});
 

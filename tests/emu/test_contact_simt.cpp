@@ -208,13 +208,13 @@ TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
         solves.by_blocks(place);
         for (std::size_t i = 0; i < solves.results.size(); ++i) {
           const IslandResult& result = solves.results[i];
-          EXPECT_EQ(result.end.reason, StopReason::converged) << name_of(method);
+          EXPECT_EQ(result.end.reason, StopReason::converged) << report_name_of(method);
           EXPECT_LE(StopCriterion({ContactMeasure::eta, 1e-9, 1e-9}).excess_of(solves.sums[i].sums),
                     1.001);
           EXPECT_NEAR(static_cast<double>(result.end.sweeps),
                       static_cast<double>(solves.host_ends[i].sweeps),
                       5 + 0.2 * static_cast<double>(solves.host_ends[i].sweeps))
-              << name_of(method);
+              << report_name_of(method);
         }
       }
     }

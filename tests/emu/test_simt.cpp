@@ -183,7 +183,7 @@ TEST(Simt, ReportsLaunchesThatNoGpuTakes) {
 }
 
 #if defined(__SANITIZE_ADDRESS__)
-TEST(Simt, SanitizersSeeTheEndOfSharedMemory) {
+TEST(Simt, SanitizersDetectTheEndOfSharedMemory) {
   std::vector<int> out(32);
 
   EXPECT_DEATH(launch(nullptr, overrun_kernel, 1, 32, 0, out.data()),

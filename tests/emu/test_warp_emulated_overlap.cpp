@@ -61,9 +61,9 @@ TEST_F(EmulatedOverlap, LeavingOutAWaitChangesTheResult) {
   constexpr int waits_of_step = 7;
   const Steps steps = shaken(5);
   const std::vector<Bits> expected = steps_one_by_one(sources, scene, options, steps);
-  const auto run = [&](int ahead, int forgotten) {
+  const auto run = [&](int ahead, int skipped) {
     device.eager_stream = ahead;
-    device.skipped_wait = forgotten;
+    device.skipped_wait = skipped;
     return steps_in_flight(sources, scene, options, steps, Pages::locked, false);
   };
 

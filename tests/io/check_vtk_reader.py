@@ -1,4 +1,4 @@
-"""Opens VTKHDF files with VTK's own vtkHDFReader and compares what it sees with h5py.
+"""Opens VTKHDF files with VTK's own vtkHDFReader and compares what it reads with h5py.
 
 Usage: check_vtk_reader.py FILE...     static image and mesh files
        check_vtk_reader.py COMMAND     all static files that `COMMAND demo` writes
@@ -67,7 +67,7 @@ def check_mesh(group, data):
 
 
 def check(path):
-    """False when the file is none of the static ones that every VTKHDF reader knows."""
+    """False when the file is none of the static ones that every VTKHDF reader supports."""
     with h5py.File(path, "r") as file:
         group = file["VTKHDF"]
         kind = group.attrs["Type"].decode()

@@ -68,8 +68,8 @@ TEST_F(BadFiles, AreNamedWhenTheyAreTruncated) {
 }
 
 TEST_F(BadFiles, AreNamedWhenVolumeAndMeshAreSwapped) {
-  expect_line(io_error([&] { read_volume(mesh); }), mesh, "are the two swapped?");
-  expect_line(io_error([&] { MeshReader reader(volume); }), volume, "are the two swapped?");
+  expect_line(io_error([&] { read_volume(mesh); }), mesh, "check the order of the files");
+  expect_line(io_error([&] { MeshReader reader(volume); }), volume, "check the order of the files");
 }
 
 TEST_F(BadFiles, AreNamedWhenTheTypeIsAnotherOrMissing) {
@@ -123,7 +123,7 @@ TEST_F(BadFiles, AreNamedWhenAnArrayDoesNotExistOrHoldsNoNumbers) {
   Hdf5Editor(volume).dataset("VTKHDF/PointData/values", {4, 5, 7}, std::vector<std::uint8_t>{},
                              H5Tcopy(H5T_C_S1));
   expect_volume_error("holds no array of numbers");
-  expect_line(io_error([&] { read_volume(volume, "values"); }), volume, "that are no numbers");
+  expect_line(io_error([&] { read_volume(volume, "values"); }), volume, "that are not numbers");
 }
 
 TEST_F(BadFiles, AreNamedWhenAStepDoesNotExist) {
@@ -153,7 +153,7 @@ TEST_F(BadFiles, AreNamedWhenMeshOffsetsLeaveTheData) {
   error("VTKHDF/Steps/PointOffsets", 1, "/VTKHDF/Points: rows 1");
   error("VTKHDF/Steps/PointOffsets", -5, "PointOffsets: entry 1 is -5");
   error("VTKHDF/Steps/CellOffsets", std::numeric_limits<std::int64_t>::max(), "CellOffsets");
-  error("VTKHDF/Steps/PartOffsets", 1, "wants parts 1");
+  error("VTKHDF/Steps/PartOffsets", 1, "refers to parts 1");
   error("VTKHDF/Steps/PointDataOffsets/displacement", 6, "/PointData/displacement: rows 6");
 }
 
@@ -161,7 +161,7 @@ TEST_F(BadFiles, AreNamedWhenAMeshHasOtherCells) {
   Hdf5Editor(mesh).dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 14});
   expect_mesh_error("cell 1 has type 14 (VTK_PYRAMID)");
   Hdf5Editor(mesh).dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 12});
-  expect_mesh_error("entry 2 of a part is 8, its cells ask for 12");
+  expect_mesh_error("entry 2 of a part is 8, expected 12");
   Hdf5Editor(mesh).dataset<std::int64_t>("VTKHDF/NumberOfCells", {1}, {0});
   expect_mesh_error("no tetrahedron");
 }
@@ -173,8 +173,8 @@ TEST_F(BadFiles, AreNamedWhenConnectivityIsWrong) {
     Hdf5Editor(mesh).dataset(name, {values.size()}, values);
     expect_mesh_error(words);
   };
-  error("VTKHDF/Connectivity", {0, 1, 2, 3, 1, 2, 3, 5}, "cell 1 names node 5");
-  error("VTKHDF/Connectivity", {0, 1, -2, 3, 1, 2, 3, 4}, "cell 0 names node -2");
+  error("VTKHDF/Connectivity", {0, 1, 2, 3, 1, 2, 3, 5}, "cell 1 refers to node 5");
+  error("VTKHDF/Connectivity", {0, 1, -2, 3, 1, 2, 3, 4}, "cell 0 refers to node -2");
   error("VTKHDF/Connectivity", {0, 1, 2, 3}, "/VTKHDF/Connectivity: rows 0");
   error("VTKHDF/Offsets", {0, 8, 4}, "/VTKHDF/Offsets: entry 1");
   error("VTKHDF/Offsets", {0, 3, 8}, "/VTKHDF/Offsets: entry 1");

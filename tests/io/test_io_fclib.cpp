@@ -63,7 +63,7 @@ TEST_F(Fclib, KeepsAProblemWithoutContacts) {
   EXPECT_EQ(again.jacobian.columns, 6);
 }
 
-TEST_F(Fclib, LeavesTheStartAloneUnlessItIsAskedFor) {
+TEST_F(Fclib, ReadsTheStartOnlyIfRequested) {
   write_contact_problem(file, adhesive_problem());
 
   EXPECT_TRUE(read_contact_problem(file).impulse_guess.empty());

@@ -21,7 +21,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 struct Damage {
   Edit edit;
   std::string dataset;
-  std::string told;
+  std::string message;
 };
 
 class BadFclib : public testing::Test {
@@ -38,7 +38,8 @@ class BadFclib : public testing::Test {
       const std::string error = io_error([&] { read_contact_problem(file); });
 
       EXPECT_TRUE(error.starts_with(file + ": " + damage.dataset)) << error;
-      EXPECT_NE(error.find(damage.told), std::string::npos) << error << " lacks " << damage.told;
+      EXPECT_NE(error.find(damage.message), std::string::npos)
+          << error << " lacks " << damage.message;
       EXPECT_EQ(error.find('\n'), std::string::npos) << error;
     }
   }
@@ -79,7 +80,7 @@ TEST_F(BadFclib, IsNamedWhenPartsAreMissing) {
   expect_errors(global_problem(), damages);
 }
 
-TEST_F(BadFclib, IsNamedWhenItAsksForWhatIsNotSupported) {
+TEST_F(BadFclib, IsNamedWhenItHoldsWhatIsNotSupported) {
   expect_errors(
       local_problem(),
       {{[](Hdf5Editor& e) { e.dataset<Int>("fclib_local/spacedim", {1}, {2}); },

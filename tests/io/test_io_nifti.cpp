@@ -277,7 +277,7 @@ TEST(Nifti, RefusesNamesAndSizesOfOtherFormats) {
   EXPECT_EQ(folder.entry_count(), 0);
 }
 
-TEST(Nifti, IsToldByContent) {
+TEST(Nifti, IsRecognizedByContent) {
   const ScratchFolder folder;
   write_nifti(folder / "v.nii.gz", counting_volume(PixelType::uint8));
   std::filesystem::rename(folder / "v.nii.gz", folder / "v.vtkhdf");

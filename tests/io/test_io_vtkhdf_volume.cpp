@@ -248,7 +248,7 @@ TEST(VtkhdfVolume, KeepsTheFingerprint) {
   EXPECT_EQ(read_fingerprint(folder / "none.vtkhdf"), std::nullopt);
 }
 
-TEST(VtkhdfVolume, IsToldApartFromAMeshByContent) {
+TEST(VtkhdfVolume, IsDistinguishedFromAMeshByContent) {
   const ScratchFolder folder;
   const Volume volume = counting_volume(PixelType::uint8);
   write_volumes(folder / "v", {&volume});

@@ -189,12 +189,12 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
     const char* name;
     std::string text;
     MeshImportOptions options;
-    const char* told;
+    const char* expected;
   } cases[] = {
       {"a.vtk", wedge, {}, "cell 2 is a vtkWedge"},
       {"b.vtk", surface, {}, "holds no tetrahedron"},
-      {"s.vtk", short_cell, {}, "cell 0 has not the nodes of a vtkTetra, from 0 to 4"},
-      {"t.vtk", stray_node, {}, "cell 2 has not the nodes of a vtkTetra, from 0 to 4"},
+      {"s.vtk", short_cell, {}, "cell 0 does not have the nodes of a vtkTetra, each from 0 to 4"},
+      {"t.vtk", stray_node, {}, "cell 2 does not have the nodes of a vtkTetra, each from 0 to 4"},
       {"c.vtk", legacy_file(), {.displacement = "u"}, "the file has heat, displacement"},
       {"d.vtk", legacy_file(), {.displacement = "heat"}, "three components"},
       {"e.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\n", {}, "no unstructured"},
@@ -204,13 +204,13 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
       {"i.msh", msh2_file(), {.displacement = "u"}, "the file has displacement"},
   };
   for (const auto& bad : cases) {
-    const std::string told = complaint(bad.name, bad.text, bad.options);
-    if (told.empty()) {
+    const std::string message = complaint(bad.name, bad.text, bad.options);
+    if (message.empty()) {
       EXPECT_NE(error.find("install lib"), std::string::npos) << error;
       continue;
     }
-    EXPECT_NE(told.find(bad.told), std::string::npos) << bad.name << ": " << told;
-    EXPECT_EQ(told.find('\n'), std::string::npos) << told;
+    EXPECT_NE(message.find(bad.expected), std::string::npos) << bad.name << ": " << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
   EXPECT_NE(complaint("j.stl", "").find(".msh, .vtu or .vtk"), std::string::npos);
 }

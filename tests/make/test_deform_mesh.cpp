@@ -148,7 +148,7 @@ TEST(Deform, RandomStaysSmallAndTurnsNothingInsideOut) {
 TEST(Deform, NamesAreParsedBack) {
   for (const Deformation kind : all_kinds) EXPECT_EQ(parse<Deformation>(name_of(kind)), kind);
   EXPECT_EQ(message_of([] { parse<Deformation>("fold"); }),
-            "'fold' is none of twist, bend, swim, random, rotate, translate");
+            "'fold' is not one of twist, bend, swim, random, rotate, translate");
 }
 
 TEST(Deform, BadArgumentsAreNamed) {

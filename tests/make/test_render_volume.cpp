@@ -105,7 +105,7 @@ TEST(Render, DrawsTheNormOfVectors) {
   EXPECT_EQ(gray_at(image, 20, 20), 128);
 }
 
-TEST(Render, SurvivesConstantAndNonFiniteVolumes) {
+TEST(Render, AcceptsConstantAndNonFiniteVolumes) {
   Grid grid;
   grid.dims = {4, 4, 4};
   Volume volume = make_volume(grid, PixelType::float32);

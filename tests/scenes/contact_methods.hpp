@@ -11,6 +11,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/sweeps/method_names.hpp"
 #include "tests/scenes/contact_samples.hpp"
 
 namespace tetwarp::test {
@@ -73,12 +74,6 @@ inline ContactProblem joined(ContactProblem a, const ContactProblem& b) {
     a.block_start.push_back(static_cast<std::int32_t>(dofs) + b.block_start[k]);
   }
   return a;
-}
-
-inline std::string name_of(ContactMethod method) {
-  static constexpr const char* names[] = {"automatic", "gauss_seidel",   "nonlinear_cg",
-                                          "anderson",  "mass_splitting", "newton"};
-  return names[static_cast<int>(method)];
 }
 
 /// Everything a solve computes.

@@ -65,7 +65,7 @@ Volume uniform_volume(std::int64_t nx, float value) {
 }
 
 /// Voxels 0 to 39 along i; a voxel at x reads samples x - shift and the next one.
-TYPED_TEST(CellWork, FillsCellsThatSeeOneValue) {
+TYPED_TEST(CellWork, FillsCellsThatSampleOneValue) {
   Volume volume = uniform_volume(40, 2.5f);
   volume.samples<float>()[39] = 7;  // at (39, 0, 0), in the last block
 

@@ -68,7 +68,7 @@ TEST(FaceSign, FindsTheTetrahedralNumbers) {
   }
 }
 
-TEST(FaceSign, SeesASingleQuantum) {
+TEST(FaceSign, ResolvesASingleQuantum) {
   const TetNodes touching = nodes_of(corner_tet(3 * quanta));
   const TetNodes short_of = nodes_of(corner_tet(3 * quanta - 1));
   const TetNodes past = nodes_of(corner_tet(3 * quanta + 1));

@@ -77,17 +77,17 @@ TEST(HexMap, FindsThePlaceThatTheTrilinearMapTakesToAPoint) {
         hex.at[a][axis] = 10 * (unit_corner(a, axis) + 0.5 * scenes::uniform(seed, draw));
       }
     }
-    double wanted[3], x[3], u[3] = {0.5, 0.5, 0.5};
+    double expected[3], x[3], u[3] = {0.5, 0.5, 0.5};
     for (std::uint64_t axis = 0; axis < 3; ++axis) {
-      wanted[axis] = 1.2 * scenes::uniform(seed, 100 + axis) - 0.1;
+      expected[axis] = 1.2 * scenes::uniform(seed, 100 + axis) - 0.1;
     }
     Matrix3 gradient;
-    map_hex(hex, wanted, x, gradient);
+    map_hex(hex, expected, x, gradient);
     if (determinant(gradient) < 50) continue;  // of 1000 when it is a cube: nearly folded there
 
     invert_hex(hex, x, u);
 
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(u[axis], wanted[axis], 1e-9) << seed;
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(u[axis], expected[axis], 1e-9) << seed;
   }
 }
 

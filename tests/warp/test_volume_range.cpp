@@ -22,7 +22,7 @@ class VolumeRange : public EachExec<Exec> {
 };
 TYPED_TEST_SUITE(VolumeRange, Execs, ExecNames);
 
-TYPED_TEST(VolumeRange, SeesEverySample) {
+TYPED_TEST(VolumeRange, ReadsEverySample) {
   for (const std::size_t size : {1u, 4095u, 4096u, 4097u, 10000u}) {
     for (const std::size_t at : {std::size_t{0}, size / 2, size - 1}) {
       std::vector<std::int16_t> samples(size, 7);

@@ -82,7 +82,7 @@ TYPED_TEST(VolumeUniform, CountsTheBlocksToTheNextOddSample) {
   EXPECT_EQ(found.wide, 7);
 }
 
-TYPED_TEST(VolumeUniform, SeesEverySampleOfABlock) {
+TYPED_TEST(VolumeUniform, ReadsEverySampleOfABlock) {
   for (int v = 0; v < 512; ++v) {
     Samples<std::uint8_t> samples(8, 8, 8, 3);
     samples.data[static_cast<std::size_t>(v)] = 2;

@@ -114,10 +114,10 @@ TEST_P(WarpTypes, TheBackgroundIsRoundedAndSaturated) {
   WarpOptions options;
   options.filter = filter_of(GetParam());
   options.backend = Backend::cpu;
-  const auto gone = moved(grid, mesh.rest_positions, {50, 0, 0});
+  const auto far_away = moved(grid, mesh.rest_positions, {50, 0, 0});
   for (const double background : {2.5, -1e30, 1e30}) {
     options.background = background;
-    const Volume volume = warp(random_bits(grid, GetParam(), 1), mesh, gone, options).volume;
+    const Volume volume = warp(random_bits(grid, GetParam(), 1), mesh, far_away, options).volume;
 
     with_pixel_type(GetParam(), [&]<class T>(T) {
       using Limits = std::numeric_limits<T>;

@@ -53,7 +53,7 @@ TEST(WarpArguments, NameTheMesh) {
   wide.mesh.rest_positions[0][0] = -0x1p21;
 
   EXPECT_EQ(none.complaint(), "mesh: no tetrahedra or hexahedra");
-  EXPECT_EQ(wild.complaint(), "mesh: tetrahedron 2 names node 99999, expected 0 to 79");
+  EXPECT_EQ(wild.complaint(), "mesh: tetrahedron 2 refers to node 99999, expected 0 to 79");
   EXPECT_EQ(infinite.complaint(), "mesh: rest position of node 3 is not finite");
   EXPECT_EQ(far.complaint(),
             "mesh: rest position of node 5 is over 2^40 voxels from the source grid");
@@ -132,7 +132,7 @@ TEST(WarpArguments, NameThePixelType) {
   EXPECT_EQ(infinite.complaint(), "background: not a finite number, which int16 cannot hold");
 }
 
-TEST(WarpArguments, NameWhatIsNoLabel) {
+TEST(WarpArguments, NameArraysThatAreNotLabels) {
   Call real, several;
   real.source = make_volume(real.source.grid, PixelType::float32);
   several.source = make_volume(several.source.grid, PixelType::uint8, 3);
@@ -241,7 +241,7 @@ TEST(WarpArguments, CudaWithoutADeviceGivesTheReason) {
   call.options.backend = Backend::automatic;
   const WarpResult result = warp(call.source, call.mesh, call.deformed, call.options);
   EXPECT_EQ(result.report.backend, Backend::cpu);
-  EXPECT_EQ(result.report.backend_reason, "no CUDA device answers (" + status.reason + ")");
+  EXPECT_EQ(result.report.backend_reason, "no usable CUDA device (" + status.reason + ")");
 }
 
 class WarpProgress : public ::testing::TestWithParam<Backend> {};
@@ -254,16 +254,16 @@ TEST_P(WarpProgress, RisesToOneAndChangesNothing) {
   Call call;
   call.options.backend = GetParam();
   Warper warper(call.source, call.mesh, call.options);
-  std::vector<double> told;
+  std::vector<double> fractions;
 
   const Warped watched = run_step(warper, call.source, call.deformed, [&](double fraction) {
-    told.push_back(fraction);
+    fractions.push_back(fraction);
     return true;
   });
 
-  EXPECT_TRUE(std::ranges::is_sorted(told));
-  EXPECT_GE(told.front(), 0);
-  EXPECT_EQ(told.back(), 1);
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_GE(fractions.front(), 0);
+  EXPECT_EQ(fractions.back(), 1);
   EXPECT_EQ(watched.volume.data, run_step(warper, call.source, call.deformed).volume.data);
 }
 

@@ -219,10 +219,10 @@ TEST_P(WarpHexahedra, HaveFieldsOfTheTrilinearMap) {
                            .fields = fields.target(),
                            .holds_previous = holds_previous});
   };
-  const std::vector<std::int32_t> nobody(static_cast<std::size_t>(scene.output_grid.voxel_count()),
-                                         -99);
+  const std::vector<std::int32_t> no_owners(
+      static_cast<std::size_t>(scene.output_grid.voxel_count()), -99);
   FieldBuffers here(scene.output_grid, true), judge(scene.output_grid, true);
-  std::vector<std::int32_t> owners = nobody, true_owners = nobody;
+  std::vector<std::int32_t> owners = no_owners, true_owners = no_owners;
   Warper warper(views, scene.mesh, {.backend = GetParam()});
   Warper reference(views, scene.mesh, {.backend = Backend::reference});
   for (const bool is_update : {false, true}) {
@@ -263,7 +263,7 @@ TEST_P(WarpHexahedra, AreCheckedBeforeUse) {
   scene.mesh.hexes[5][7] = 1000;
 
   EXPECT_EQ(message_of([&] { run(ramp(1, 0, 0), scene); }),
-            "mesh: hexahedron 5 names node 1000, expected 0 to 79");
+            "mesh: hexahedron 5 refers to node 1000, expected 0 to 79");
 }
 }  // namespace
 }  // namespace tetwarp::test

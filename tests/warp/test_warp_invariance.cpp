@@ -184,7 +184,7 @@ TEST(WarpForms, AgreeWithEachOther) {
   EXPECT_EQ(volume.data, expected.volume.data);
   EXPECT_EQ(result.volume.name, "density");
   EXPECT_EQ(result.report.backend, Backend::cpu);
-  EXPECT_EQ(result.report.backend_reason, "asked for");
+  EXPECT_EQ(result.report.backend_reason, "requested");
   EXPECT_EQ(result.report.position_quantum, 0x1p-20);
 }
 }  // namespace

@@ -174,7 +174,7 @@ TEST(WarpQuantities, AreRefusedWhereTheyCannotBe) {
         [&] { warp(make_volume(grid, type, components), scene.mesh, scene.deformed, options); });
   };
   EXPECT_EQ(complaint(PixelType::float32, 1, {.filter = Filter::nearest, .antialias = true}),
-            "antialias: averages samples, which nearest and labels must not; use another filter");
+            "antialias: cannot average samples with nearest and labels; use another filter");
   EXPECT_EQ(complaint(PixelType::float32, 2, {.quantities = {Quantity::vector}}),
             "quantities: a vector has 3 components, the source 2");
   EXPECT_EQ(complaint(PixelType::float32, 3, {.quantities = {Quantity::principal_tensor}}),

@@ -283,7 +283,7 @@ class CudaContactDevice final : public ContactDevice {
   DeviceArrays indices_in_memory_, input_in_memory_;
   ContactIndices indices_;  ///< views of indices_in_memory_
   Problem<double> float64_;
-  Problem<float> float32_;  ///< set if the options ask for float32
+  Problem<float> float32_;  ///< set if options_.precision is float32
   BlockJacobiMemory<GridContactExec> block_jacobi_memory_;
   DeviceVector<double> guess_, next_intensity_, next_gap_;
   DeviceVector<std::int32_t> labels_;

@@ -71,7 +71,7 @@ void check_rows(const std::string& field, const SparseMatrix& matrix) {
     if (starts[row - 1] <= starts[row]) continue;
     throw ContactProblemError(field + ".row_start",
                               at(static_cast<std::int64_t>(row)) + std::to_string(starts[row]) +
-                                  " is below the one before; row starts never fall");
+                                  " is less than the previous entry; row starts must not decrease");
   }
   if (starts.back() != entries) {
     throw ContactProblemError(field + ".row_start",

@@ -25,9 +25,10 @@ void check_form(const ContactProblem& problem) {
   const bool global = !problem.system.empty() || !problem.jacobian.empty() ||
                       !problem.load.empty() || !problem.velocity_offset.empty();
   if (local && global) {
-    throw ContactProblemError("delassus",
-                              ": given beside system, jacobian, load or velocity_offset; a problem "
-                              "has one form, clear the members of the other");
+    throw ContactProblemError(
+        "delassus",
+        ": set together with system, jacobian, load or velocity_offset; clear the "
+        "members of the local or of the global form");
   }
   if (!local && !global) {
     throw ContactProblemError("system",
@@ -51,8 +52,8 @@ void check_blocks(const ContactProblem& problem) {
   for (std::size_t b = 1; b < starts.size(); ++b) {
     if (starts[b - 1] < starts[b]) continue;
     throw ContactProblemError("block_start", at(static_cast<std::int64_t>(b)) + count(starts[b]) +
-                                                 " does not lie above the one before; every block "
-                                                 "has a dof");
+                                                 " is not greater than the previous entry; every "
+                                                 "block has at least one dof");
   }
   if (starts.back() != problem.dof_count()) {
     throw ContactProblemError(
@@ -78,7 +79,7 @@ void check_diagonal(const ContactProblem& problem,
                     const std::string& field,
                     std::span<const double> diagonal) {
   static constexpr const char* remedy =
-      "; no impulse moves this contact, leave out contacts between immovable bodies";
+      "; impulses do not change its velocity, leave out contacts between fixed bodies";
   for (std::size_t c = 0; c < problem.friction.size(); ++c) {
     const auto row = 3 * static_cast<std::int64_t>(c);
     if (!(diagonal[3 * c] > 0)) {
@@ -108,7 +109,7 @@ void check_local(const ContactProblem& problem) {
   check_finite("free_velocity", problem.free_velocity);
   if (!problem.block_start.empty()) {
     throw ContactProblemError("block_start",
-                              ": given beside delassus, which has no dofs; clear it");
+                              ": set together with delassus, a form without dofs; clear it");
   }
   std::vector<double> diagonal(static_cast<std::size_t>(rows), 0.0);
   for (std::size_t row = 0; row < diagonal.size(); ++row) {
@@ -202,7 +203,7 @@ void check_adhesion(const ContactProblem& problem) {
     if (adhesion.intensity[c] <= 1) continue;
     throw ContactProblemError("adhesion.intensity",
                               at(static_cast<std::int64_t>(c)) + text_of(adhesion.intensity[c]) +
-                                  " is over 1; 0 is debonded, 1 fully bonded");
+                                  " is above 1; 0 is debonded, 1 fully bonded");
   }
   if (!(adhesion.time_step >= 0) || std::isinf(adhesion.time_step) ||
       (any_adheres && adhesion.time_step == 0)) {

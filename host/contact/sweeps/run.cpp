@@ -1,30 +1,22 @@
 #include "host/contact/sweeps/run.hpp"
 
+#include "host/contact/sweeps/method_names.hpp"
+
 namespace tetwarp {
 namespace {
-/// Report name of the method that ContactMethods::run() starts with.
-const char* first_method(ContactMethod method) {
-  switch (method) {
-    case ContactMethod::gauss_seidel:
-      return "gauss_seidel";
-    case ContactMethod::nonlinear_cg:
-      return "nonlinear_cg";
-    case ContactMethod::mass_splitting:
-      return "mass_splitting";
-    case ContactMethod::automatic:
-    case ContactMethod::anderson:
-    case ContactMethod::newton:
-      break;
-  }
-  return "anderson";
+/// The method with which ContactMethods::run() starts.
+ContactMethod first_method(ContactMethod method) {
+  const bool starts_with_anderson =
+      method == ContactMethod::automatic || method == ContactMethod::newton;
+  return starts_with_anderson ? ContactMethod::anderson : method;
 }
 }  // namespace
 
 void IslandOutcome::add(const IslandEnd& end, ContactMethod method, std::int64_t contacts) {
   reason = end.reason;
   contact_updates += (end.sweeps - sweeps) * contacts;
-  if (end.sweeps > sweeps) methods.push_back(first_method(method));
-  if (end.has_switched) methods.push_back("nonlinear_cg");
+  if (end.sweeps > sweeps) methods.push_back(report_name_of(first_method(method)));
+  if (end.has_switched) methods.push_back(report_name_of(ContactMethod::nonlinear_cg));
   sweeps = end.sweeps;
 }
 

@@ -39,11 +39,11 @@ inline Eigen::Vector3d carried_normal(const ContactRecord& record,
   return sum.norm() > 0 ? sum.normalized() : rotation_of(pose_a) * vector_of(record.normal_a);
 }
 
-/// Tangent 1: `wanted` projected onto the plane of the unit `normal`, normalized; where the
+/// Tangent 1: `direction` projected onto the plane of the unit `normal`, normalized; where the
 /// projection vanishes, that of the coordinate axis with the largest angle to the normal.
-inline Eigen::Vector3d tangent_of(const Eigen::Vector3d& normal, const Eigen::Vector3d& wanted) {
-  const Eigen::Vector3d across = wanted - normal.dot(wanted) * normal;
-  if (across.norm() > 1e-9 * wanted.norm()) return across.normalized();
+inline Eigen::Vector3d tangent_of(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d across = direction - normal.dot(direction) * normal;
+  if (across.norm() > 1e-9 * direction.norm()) return across.normalized();
   Eigen::Index axis = 0;
   normal.cwiseAbs().minCoeff(&axis);
   const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);

@@ -36,9 +36,10 @@ void check_materials(const std::vector<ContactMaterial>& materials) {
 }
 
 void check_bodies(const ContactKey& key, std::size_t body_count) {
-  if (key.body_a == key.body_b) refuse(name_of(key), "joins a body with itself");
+  if (key.body_a == key.body_b) refuse(name_of(key), "has the same body on both sides");
   if (key.body_a < 0 || static_cast<std::size_t>(key.body_b) >= body_count) {
-    refuse(name_of(key), "names a body without a pose, there are " + std::to_string(body_count));
+    refuse(name_of(key),
+           "has a body index out of range, there are " + std::to_string(body_count) + " poses");
   }
 }
 
@@ -47,14 +48,15 @@ void check_report(const ReportedContact& report,
                   std::size_t material_count) {
   check_bodies(report.key, body_count);
   if (!(std::abs(vector_of(report.normal).norm() - 1) <= 1e-6)) {
-    refuse(name_of(report.key), "has a normal that is no unit vector");
+    refuse(name_of(report.key), "has a normal that is not a unit vector");
   }
   if (!(report.area >= 0) || !std::isfinite(report.area)) {
-    refuse(name_of(report.key), "has the area " + std::to_string(report.area));
+    refuse(name_of(report.key),
+           "has area " + std::to_string(report.area) + ", expected a finite number of 0 or more");
   }
   if (report.material < 0 || static_cast<std::size_t>(report.material) >= material_count) {
-    refuse(name_of(report.key), "has material " + std::to_string(report.material) + " of " +
-                                    std::to_string(material_count));
+    refuse(name_of(report.key), "has material " + std::to_string(report.material) + ", there are " +
+                                    std::to_string(material_count) + " materials");
   }
   const Vector3d sum =
       vector_of(report.point_a_world) + vector_of(report.point_b_world) + vector_of(report.tangent);
@@ -156,7 +158,8 @@ ContactTracker::ContactTracker(ContactTrackerOptions options, std::vector<Contac
     }
     if (!(record.intensity >= 0 && record.intensity <= 1) || record.material < 0 ||
         static_cast<std::size_t>(record.material) >= options_.materials.size()) {
-      refuse(name_of(record.key), "has an intensity outside [0, 1] or no such material");
+      refuse(name_of(record.key),
+             "has an intensity outside [0, 1] or a material index out of range");
     }
   }
 }

@@ -18,8 +18,8 @@
 #include "host/reference/warp/fields.hpp"
 #include "host/reference/warp/overlap.hpp"
 #include "host/reference/warp/ownership.hpp"
-#include "host/reference/warp/rule.hpp"
 #include "host/reference/warp/sample.hpp"
+#include "host/reference/warp/sample_transform.hpp"
 
 namespace tetwarp {
 namespace {
@@ -78,14 +78,14 @@ class ReferenceBackend : public WarpBackend {
 
  private:
   void make_rules(const double* rest, const double* deformed, Counts& counts) {
-    rules_.assign(plan_.mesh.tets.size(), Rule());
-    for (std::size_t t = 0; t < rules_.size(); ++t) {
+    transforms_.assign(plan_.mesh.tets.size(), SampleTransform());
+    for (std::size_t t = 0; t < transforms_.size(); ++t) {
       const auto number = static_cast<std::int32_t>(t);
       const Corners now = owners_.corners_of(number, deformed, owners_.output);
       if (signed_volume(now) == 0) continue;
-      rules_[t] = rule_of(owners_.corners_of(number, rest, owners_.source), now, owners_.source,
-                          owners_.output, plan_.options);
-      counts.tets_averaged += rules_[t].averages();
+      transforms_[t] = transform_of(owners_.corners_of(number, rest, owners_.source), now,
+                                    owners_.source, owners_.output, plan_.options);
+      counts.tets_averaged += transforms_[t].averages();
     }
   }
 
@@ -127,10 +127,11 @@ class ReferenceBackend : public WarpBackend {
         for (std::int64_t i = plan_.region.begin[0]; i < plan_.region.end[0]; ++i, ++v) {
           T* voxel = out + v * static_cast<std::size_t>(sampler.components());
           if (owners_.owner[v] >= 0) {
-            const Rule& rule = rules_[static_cast<std::size_t>(owners_.owner[v])];
-            store_voxel(s, sampler, owners_.source_position[v], rule, voxel);
+            const SampleTransform& transform =
+                transforms_[static_cast<std::size_t>(owners_.owner[v])];
+            store_voxel(s, sampler, owners_.source_position[v], transform, voxel);
           } else if (plan_.options.outside == Outside::identity) {
-            store_voxel(s, sampler, same_place(i, j, k), outside_rule(), voxel);
+            store_voxel(s, sampler, same_place(i, j, k), outside_transform(), voxel);
           } else {
             std::fill_n(voxel, sampler.components(), sampler.background());
           }
@@ -139,35 +140,36 @@ class ReferenceBackend : public WarpBackend {
     }
   }
 
-  /// Rule of voxels outside the mesh, which sample the source at their own position.
-  Rule outside_rule() const {
-    Rule rule;
-    rule.step = owners_.source.from_world * owners_.output.to_world;
-    if (plan_.options.antialias) rule.parts = parts_of(rule.step);
-    return rule;
+  /// Transform of voxels outside the mesh, which sample the source at their own position.
+  SampleTransform outside_transform() const {
+    SampleTransform transform;
+    transform.step = owners_.source.from_world * owners_.output.to_world;
+    if (plan_.options.antialias) transform.parts = parts_of(transform.step);
+    return transform;
   }
 
   /// Writes one voxel: a sample, or the mean of samples at the midpoints of its parts, changed by
-  /// its rule.
+  /// its transform.
   template <class T>
   void store_voxel(std::size_t s,
                    const Sampler<T>& sampler,
                    const Eigen::Vector3d& x,
-                   const Rule& rule,
+                   const SampleTransform& transform,
                    T* voxel) const {
     const WarpOptions& options = plan_.options;
     const Quantity quantity =
         options.quantities.empty() ? Quantity::components : options.quantities[s];
-    const bool turns = quantity != Quantity::components && !rule.is_still && !rule.is_singular;
-    if (!turns && !rule.averages() && rule.scale == 1) return sampler.store(x, voxel);
+    const bool turns =
+        quantity != Quantity::components && !transform.is_still && !transform.is_singular;
+    if (!turns && !transform.averages() && transform.scale == 1) return sampler.store(x, voxel);
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(sampler.components());
     int count = 0;
-    for (int c = 0; c < rule.parts(2); ++c) {
-      for (int b = 0; b < rule.parts(1); ++b) {
-        for (int a = 0; a < rule.parts(0); ++a) {
+    for (int c = 0; c < transform.parts(2); ++c) {
+      for (int b = 0; b < transform.parts(1); ++b) {
+        for (int a = 0; a < transform.parts(0); ++a) {
           const Eigen::Array3d part = Eigen::Vector3i(a, b, c).cast<double>();
-          const Eigen::Array3d within = (part + 0.5) / rule.parts.cast<double>().array() - 0.5;
-          count += sampler.add(x + rule.step * within.matrix(), mean);
+          const Eigen::Array3d within = (part + 0.5) / transform.parts.cast<double>().array() - 0.5;
+          count += sampler.add(x + transform.step * within.matrix(), mean);
         }
       }
     }
@@ -176,8 +178,8 @@ class ReferenceBackend : public WarpBackend {
       return;
     }
     sampler.clamp(mean /= count);
-    if (turns) mean = reoriented(mean, quantity, rule.forward);
-    for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * rule.scale);
+    if (turns) mean = reoriented(mean, quantity, transform.forward);
+    for (int c = 0; c < sampler.components(); ++c) voxel[c] = stored<T>(mean(c) * transform.scale);
   }
 
   /// Calls body(v, index) for every voxel of the region.
@@ -241,7 +243,7 @@ class ReferenceBackend : public WarpBackend {
   std::vector<double> positions_[2];
   StepReport reports_[2];
   Ownership owners_;
-  std::vector<Rule> rules_;  ///< of every tetrahedron
+  std::vector<SampleTransform> transforms_;  ///< of every tetrahedron
 };
 }  // namespace
 

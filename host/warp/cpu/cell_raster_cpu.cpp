@@ -54,7 +54,7 @@ template <class T>
 void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& progress) {
   const CpuExec::Clock clock(exec, "warp/raster");
   const std::int64_t pieces = LineGrid(job.frame).piece_count();
-  const std::int64_t batches = progress.is_wanted() ? 32 : 1;
+  const std::int64_t batches = progress.is_requested() ? 32 : 1;
   RasterCounts sum = {0, 0, 0, 0};
   for (std::int64_t batch = 0; batch < batches; ++batch) {
     const std::int64_t end = pieces * (batch + 1) / batches;

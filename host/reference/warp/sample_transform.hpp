@@ -1,4 +1,4 @@
-/// @file rule.hpp
+/// @file sample_transform.hpp
 /// Averages, reorientation and density in the reference, from the definitions.
 #pragma once
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@
 namespace tetwarp::reference {
 
 /// The change of samples in one tetrahedron.
-struct Rule {
+struct SampleTransform {
   Eigen::Vector3i parts = {1, 1, 1};                      ///< samples along each axis of a voxel
   Eigen::Matrix3d step = Eigen::Matrix3d::Identity();     ///< source index by output index
   Eigen::Matrix3d forward = Eigen::Matrix3d::Identity();  ///< deformation gradient in the world
@@ -25,12 +25,12 @@ struct Rule {
 /// @param step  source index by output index
 Eigen::Vector3i parts_of(const Eigen::Matrix3d& step);
 
-/// The rule of a tetrahedron that is not flat.
-Rule rule_of(const Corners& rest,
-             const Corners& now,
-             const IndexSpace& source,
-             const IndexSpace& output,
-             const WarpOptions& options);
+/// The transform of a tetrahedron that is not flat.
+SampleTransform transform_of(const Corners& rest,
+                             const Corners& now,
+                             const IndexSpace& source,
+                             const IndexSpace& output,
+                             const WarpOptions& options);
 
 /// Components of a quantity after a deformation.
 /// @param forward  deformation gradient in world axes

@@ -1,4 +1,4 @@
-#include "host/reference/warp/rule.hpp"
+#include "host/reference/warp/sample_transform.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,27 +63,27 @@ Eigen::Vector3i parts_of(const Eigen::Matrix3d& step) {
   return parts;
 }
 
-Rule rule_of(const Corners& rest,
-             const Corners& now,
-             const IndexSpace& source,
-             const IndexSpace& output,
-             const WarpOptions& options) {
-  Rule rule;
-  if (source.to_world == output.to_world && whole_shift(rest, now)) return rule;
+SampleTransform transform_of(const Corners& rest,
+                             const Corners& now,
+                             const IndexSpace& source,
+                             const IndexSpace& output,
+                             const WarpOptions& options) {
+  SampleTransform transform;
+  if (source.to_world == output.to_world && whole_shift(rest, now)) return transform;
   const Eigen::Matrix3d rest_edges = edges_of(rest), edges = edges_of(now);
-  rule.is_still = false;
-  rule.step = rest_edges * edges.inverse();
-  if (options.antialias) rule.parts = parts_of(rule.step);
-  rule.is_singular = signed_volume(rest) == 0;
-  if (!rule.is_singular) {
-    rule.forward = output.to_world * edges * (source.to_world * rest_edges).inverse();
+  transform.is_still = false;
+  transform.step = rest_edges * edges.inverse();
+  if (options.antialias) transform.parts = parts_of(transform.step);
+  transform.is_singular = signed_volume(rest) == 0;
+  if (!transform.is_singular) {
+    transform.forward = output.to_world * edges * (source.to_world * rest_edges).inverse();
   }
   if (options.intensity != Intensity::value) {
     const double ratio = source.to_world.determinant() / output.to_world.determinant();
-    rule.scale = std::abs(static_cast<double>(signed_volume(rest)) /
-                          static_cast<double>(signed_volume(now)) * ratio);
+    transform.scale = std::abs(static_cast<double>(signed_volume(rest)) /
+                               static_cast<double>(signed_volume(now)) * ratio);
   }
-  return rule;
+  return transform;
 }
 
 Eigen::VectorXd reoriented(const Eigen::VectorXd& values,
