@@ -1,6 +1,7 @@
 # Benchmarks: tetwarp_bench times warps on all back ends, tetwarp_bench_contact contact solvers.
 find_package(benchmark REQUIRED)
 find_package(fmt REQUIRED)
+include(cmake/OpenMp.cmake)
 
 # Written into every results file: the commit and the compiler flags that change code.
 execute_process(COMMAND git describe --always --dirty --abbrev=12 --exclude=*

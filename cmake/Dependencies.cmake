@@ -56,17 +56,9 @@ function(tetwarp_wrap name)  # tetwarp_wrap(NAME build-time targets... INSTALLED
   target_link_libraries(${name} INTERFACE "$<INSTALL_INTERFACE:${arg_INSTALLED}>")
 endfunction()
 
-find_package(OpenMP COMPONENTS CXX)
-if(OpenMP_CXX_FOUND)
-  tetwarp_wrap(tetwarp_openmp OpenMP::OpenMP_CXX INSTALLED ${OpenMP_CXX_LIBRARIES})
-  target_compile_options(tetwarp_openmp INTERFACE
-    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=${OpenMP_CXX_FLAGS}>>)
-else()
-  add_library(tetwarp_openmp INTERFACE)
-  target_compile_options(tetwarp_openmp INTERFACE
-    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CXX>:-Wno-unknown-pragmas>>
-    $<BUILD_INTERFACE:$<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wno-unknown-pragmas>>)
-endif()
+set(THREADS_PREFER_PTHREAD_FLAG OFF)
+find_package(Threads REQUIRED)
+tetwarp_wrap(tetwarp_threads Threads::Threads INSTALLED ${CMAKE_THREAD_LIBS_INIT})
 
 find_path(TETWARP_HWY_INCLUDE hwy/highway.h REQUIRED)
 find_library(TETWARP_HWY_LIBRARY hwy REQUIRED)

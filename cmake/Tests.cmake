@@ -9,6 +9,7 @@
 #   long       inputs at the limits, large volumes: left out by `./dev test`, run by `./dev check`
 find_package(GTest REQUIRED)
 include(GoogleTest)
+include(cmake/OpenMp.cmake)
 
 # Shared by several programs: synthetic inputs, and precompiled headers.
 add_library(tetwarp_scenes STATIC
@@ -108,6 +109,7 @@ if(NOT BUILD_SHARED_LIBS)
 
   tetwarp_add_tests(tetwarp_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_units}
+    tests/base/test_parallel.cpp
     tests/base/test_report.cpp
     tests/make/test_deform_mesh.cpp
     tests/make/test_lattice_mesh.cpp

@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "host/base/parallel.hpp"
 #include "host/exec/host_buffer.hpp"
 #include "kernels/base/view.hpp"
 
@@ -43,12 +44,7 @@ class CpuContactExec {
   /// body(i) for i in [0, count), any order.
   template <class Body>
   void for_each(const char*, std::int64_t count, const Body& body) const {
-    if (threads_ == 1 || count < serial_below) {
-      for (std::int64_t i = 0; i < count; ++i) body(i);
-      return;
-    }
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (std::int64_t i = 0; i < count; ++i) body(i);
+    parallel_for(threads_for(count), count, body);
   }
 
   template <class T>
@@ -63,12 +59,7 @@ class CpuContactExec {
     const auto run = [&](std::int64_t i) {
       body.template run<run_length>(i * run_length, std::min((i + 1) * run_length, count));
     };
-    if (threads_ == 1 || count < serial_below) {
-      for (std::int64_t i = 0; i < runs; ++i) run(i);
-      return;
-    }
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (std::int64_t i = 0; i < runs; ++i) run(i);
+    parallel_for(threads_for(count), runs, run);
   }
   /// body(0), by a single thread.
   template <class Body>
@@ -93,9 +84,7 @@ class CpuContactExec {
     return *value;
   }
   /// Whether the host reads results after this step. A device returns true every few steps only.
-  bool is_sync_point(std::int64_t) const {
-    return true;
-  }
+  bool is_sync_point(std::int64_t) const { return true; }
   static constexpr bool reads_need_sync = false;
 
   /// As sum(), into executor memory.
@@ -133,6 +122,8 @@ class CpuContactExec {
   static constexpr int run_length = 64;
   static constexpr std::int64_t serial_below = 1024;  ///< with fewer indices one thread is faster
 
+  int threads_for(std::int64_t count) const { return count < serial_below ? 1 : threads_; }
+
   template <class Sum, class Run>
   Sum add_runs(std::int64_t first, std::int64_t last, const Run& body) const {
     const std::int64_t runs = (last - first + run_length - 1) / run_length;
@@ -141,14 +132,14 @@ class CpuContactExec {
       return body(begin, std::min(begin + run_length, last));
     };
     Sum total{};
-    if (threads_ == 1 || last - first < serial_below) {
+    const int threads = threads_for(last - first);
+    if (threads == 1) {
       for (std::int64_t run = 0; run < runs; ++run) total += run_sum(run);
       return total;
     }
     std::vector<Sum> sums(static_cast<std::size_t>(runs));
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (std::int64_t run = 0; run < runs; ++run)
-      sums[static_cast<std::size_t>(run)] = run_sum(run);
+    parallel_for(threads, runs,
+                 [&](std::int64_t run) { sums[static_cast<std::size_t>(run)] = run_sum(run); });
     for (const Sum& sum : sums) total += sum;
     return total;
   }

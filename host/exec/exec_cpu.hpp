@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host/base/parallel.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/exec/host_buffer.hpp"
 #include "kernels/base/cell_pair.hpp"
@@ -82,8 +83,7 @@ class CpuExec {
   template <class Body>
   void for_each(const char* label, std::int64_t count, const Body& body) {
     const Clock clock(*this, label);
-#pragma omp parallel for schedule(static) num_threads(threads_) if (count > serial_below)
-    for (std::int64_t i = 0; i < count; ++i) body(i);
+    parallel_for(threads_for(count), count, body);
   }
 
   /// Calls body(segment, local, item) for every item of every segment: offsets[segment] + local =
@@ -111,8 +111,7 @@ class CpuExec {
     const std::int64_t segments = offsets.size - 1;
     const std::int64_t items = std::min(offsets[segments], capacity);
     const std::int64_t chunks = (items + chunk_ - 1) / chunk_;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (items > serial_below)
-    for (std::int64_t chunk = 0; chunk < chunks; ++chunk) {
+    parallel_tasks(threads_for(items), chunks, [&](std::int64_t chunk) {
       const std::int64_t end = std::min(items, (chunk + 1) * chunk_);
       std::int64_t item = chunk * chunk_;
       std::int64_t segment =
@@ -122,7 +121,7 @@ class CpuExec {
         if (item < past) body(segment, item - begin, past - begin, item);
         item = past;
       }
-    }
+    });
   }
 
   /// Replaces values[i] by the sum of the values before it. The last entry becomes the total; its
@@ -209,13 +208,14 @@ class CpuExec {
   };
 
  private:
+  int threads_for(std::int64_t count) const { return count > serial_below ? threads_ : 1; }
+
   /// Calls work(part, begin, end) for the part of [0, count) of every thread; parts ascend.
   template <class Work>
   void for_each_part(std::int64_t count, const Work& work) {
-#pragma omp parallel for schedule(static, 1) num_threads(threads_) if (count > serial_below)
-    for (int part = 0; part < threads_; ++part) {
-      work(part, count * part / threads_, count * (part + 1) / threads_);
-    }
+    parallel_tasks(threads_for(count), threads_, [&](std::int64_t part) {
+      work(static_cast<int>(part), count * part / threads_, count * (part + 1) / threads_);
+    });
   }
 
   /// One pass of the radix sort: stable, by `bits` bits from bit `shift` on.
@@ -242,8 +242,7 @@ class CpuExec {
     });
   }
 
-  static constexpr std::int64_t serial_below =
-      2048;  ///< items; fewer take less time than starting threads
+  static constexpr std::int64_t serial_below = 2048;  ///< with fewer items one thread is faster
   static constexpr std::int64_t chunk_ = 4096;
   static constexpr int radix_bits = 11;
 

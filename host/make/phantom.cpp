@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/base/counter_hash.hpp"
+#include "host/base/parallel.hpp"
 #include "host/make/phantom_shapes.hpp"
 
 namespace tetwarp {
@@ -159,13 +160,12 @@ Volume make_phantom(const std::array<std::int64_t, 3>& dims) {
   Volume volume = make_volume(grid_of(dims), PixelType::float32, 1, "phantom");
   const Anatomy anatomy = make_torso();
   float* samples = volume.samples<float>().data();
-#pragma omp parallel for schedule(dynamic)
-  for (std::int64_t k = 0; k < dims[2]; ++k) {
+  parallel_tasks(thread_count(0), dims[2], [&](std::int64_t k) {
     Slice slice(volume.grid, k);
     slice.paint_trunk(anatomy);
     for (const Organ& organ : anatomy.organs) slice.paint(organ);
     slice.store(samples + k * dims[0] * dims[1]);
-  }
+  });
   return volume;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/base/counter_hash.hpp"
+#include "host/base/parallel.hpp"
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp {
@@ -128,8 +129,7 @@ Plane draw(const Volume& volume, const PanelView& view, const Window& window) {
   plane.gray.resize(static_cast<std::size_t>(plane.width * plane.height));
   with_pixel_type(volume.type, [&]<class T>(T) {
     const T* samples = volume.samples<T>().data();
-#pragma omp parallel for
-    for (std::int64_t y = 0; y < plane.height; ++y) {
+    parallel_for(thread_count(0), plane.height, [&](std::int64_t y) {
       const std::int64_t row = view.points_up ? plane.height - 1 - y : y;
       double* gray = plane.gray.data() + y * plane.width;
       for (std::int64_t d = first; d < last; ++d) {
@@ -140,7 +140,7 @@ Plane draw(const Volume& volume, const PanelView& view, const Window& window) {
           gray[x] = std::max(gray[x], window.gray_of(value));
         }
       }
-    }
+    });
   });
   return plane;
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -7,6 +8,7 @@
 #include <tetwarp/blocks.hpp>
 #include <utility>
 
+#include "host/base/parallel.hpp"
 #include "host/warp/bad_positions.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/hex_split.hpp"
@@ -129,20 +131,20 @@ void BlockPlanner::State::set_footprints(const PositionsView& deformed, BlockPla
   // An average takes samples up to half an output voxel away on either side.
   const double spread = options.antialias ? 0.5 : 0;
   footprints.resize(mesh.tets.size());
-  std::int64_t inverted = 0, flat = 0, bad = tet_count;
-#pragma omp parallel for reduction(+ : inverted, flat) reduction(min : bad)
-  for (std::int64_t t = 0; t < tet_count; ++t) {
+  std::atomic<std::int64_t> inverted = 0, flat = 0, bad = tet_count;
+  parallel_for(thread_count(options.threads), tet_count, [&](std::int64_t t) {
     TetSetup setup = {};
     const TetClass tet_class = body.set_up(t, setup);
     inverted += tet_class == TetClass::inverted;
     flat += tet_class == TetClass::flat;
     if (tet_class == TetClass::bad_position || tet_class == TetClass::too_large) {
-      bad = std::min(bad, t);
+      for (std::int64_t first = bad; t < first && !bad.compare_exchange_weak(first, t);) {
+      }
     }
     if (tet_class != TetClass::regular && tet_class != TetClass::inverted) setup = {};
     footprints[static_cast<std::size_t>(t)] =
         footprint_of(setup, tet_nodes(rest, ids + 4 * t), spread);
-  }
+  });
   if (bad < tet_count) {
     TetSetup setup = {};
     throw_on_bad_position(body.set_up(bad, setup), bad);

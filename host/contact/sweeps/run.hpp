@@ -7,6 +7,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/base/parallel.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
@@ -113,15 +114,14 @@ class ContactRun {
       }
     }
     const bool is_worth_it = threads_ > 1 && small.size() > 1 && system_.constants.size() > 128;
-#pragma omp parallel for schedule(dynamic) num_threads(threads_) if (is_worth_it)
-    for (std::size_t k = 0; k < small.size(); ++k) go_on(small[k], 1, options_.method);
+    parallel_tasks(is_worth_it ? threads_ : 1, std::ssize(small), [&](std::int64_t k) {
+      go_on(small[static_cast<std::size_t>(k)], 1, options_.method);
+    });
   }
 
   /// Continues one island with nonlinear conjugate gradients until it converges or the budget of
   /// sweeps is used up.
-  void run_to_budget(std::int64_t i) {
-    go_on(i, threads_, ContactMethod::nonlinear_cg);
-  }
+  void run_to_budget(std::int64_t i) { go_on(i, threads_, ContactMethod::nonlinear_cg); }
 
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
@@ -131,12 +131,8 @@ class ContactRun {
   double excess(std::int64_t i, const ContactSums& sums) const {
     return criteria_[static_cast<std::size_t>(i)].excess_of(sums);
   }
-  bool is_done(std::int64_t i, const ContactSums& sums) const {
-    return excess(i, sums) <= 1;
-  }
-  const std::vector<StopCriterion>& criteria() const {
-    return criteria_;
-  }
+  bool is_done(std::int64_t i, const ContactSums& sums) const { return excess(i, sums) <= 1; }
+  const std::vector<StopCriterion>& criteria() const { return criteria_; }
 
  private:
   /// Number of contacts from which an island uses all threads. Starting threads for one color costs

@@ -5,12 +5,14 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "host/warp/cpu/cell_raster_cpu.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "host/base/parallel.hpp"
 #include "host/base/pixel_dispatch.hpp"
 #include "host/warp/cpu/cell_line-inl.hpp"
 #include "host/warp/cpu/line_grid.hpp"
@@ -59,19 +61,14 @@ void cell_raster(CpuExec& exec, const RasterJob<T>& job, const ProgressPart& pro
   for (std::int64_t batch = 0; batch < batches; ++batch) {
     const std::int64_t end = pieces * (batch + 1) / batches;
     std::atomic<std::int64_t> next = pieces * batch / batches;
-    std::int64_t covered = 0, inside_tests = 0, exact_tests = 0, copied = 0;
-#pragma omp parallel num_threads(exec.threads()) \
-    reduction(+ : covered, inside_tests, exact_tests, copied)
-    {
+    std::mutex adding;
+    parallel_tasks(exec.threads(), exec.threads(), [&](std::int64_t) {
       RasterCounts counts = {0, 0, 0, 0};
       HWY_DYNAMIC_DISPATCH(raster_pieces)(pixel_type_of<T>(), &job, next, end, counts);
-      covered += counts.covered;
-      inside_tests += counts.inside_tests;
-      exact_tests += counts.exact_tests;
-      copied += counts.copied;
-    }
-    sum = {sum.covered + covered, sum.inside_tests + inside_tests, sum.exact_tests + exact_tests,
-           sum.copied + copied};
+      const std::lock_guard lock(adding);
+      sum = {sum.covered + counts.covered, sum.inside_tests + counts.inside_tests,
+             sum.exact_tests + counts.exact_tests, sum.copied + counts.copied};
+    });
     progress.report(static_cast<double>(batch + 1) / static_cast<double>(batches));
   }
   if (job.counts != nullptr) *job.counts = sum;

@@ -1,0 +1,145 @@
+#include "host/base/parallel.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace tetwarp {
+namespace {
+/// True on a thread that executes a task.
+thread_local bool is_in_task = false;
+
+/// The tasks of one call; lives on the stack of the calling thread.
+struct Loop {
+  std::int64_t count;
+  const void* context;
+  void (*call)(const void*, std::int64_t);
+  int free_places;                     ///< threads of the pool that may still join
+  std::atomic<std::int64_t> next = 0;  ///< first task that no thread has taken
+  std::atomic<int> helpers = 0;        ///< threads of the pool that execute tasks
+
+  void run_tasks() {
+    is_in_task = true;
+    for (std::int64_t i = next++; i < count; i = next++) call(context, i);
+    is_in_task = false;
+  }
+};
+
+/// Waits until the condition holds, for 20 microseconds at most: between the loops of one step,
+/// less than it takes to wake a thread. Other threads of the processor go first.
+template <class Condition>
+bool wait_briefly(const Condition& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::microseconds(20);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+class ThreadPool {
+ public:
+  /// Executes the tasks of a loop on the calling thread and on free_places others.
+  void run(Loop& loop) {
+    const int helpers = loop.free_places;
+    int sleepers = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      start_threads(helpers);
+      loops_.push_back(&loop);
+      ++published_;
+      sleepers = std::min(helpers, sleeping_);
+    }
+    for (int k = 0; k < sleepers; ++k) wake_.notify_one();
+    loop.run_tasks();
+    {
+      const std::lock_guard lock(mutex_);
+      loops_.erase(std::find(loops_.begin(), loops_.end(), &loop));
+    }
+    const auto is_done = [&] { return loop.helpers == 0; };
+    wait_briefly(is_done);
+    // Helpers change the number while they hold the mutex and do not touch the loop afterwards.
+    std::unique_lock lock(mutex_);
+    finished_.wait(lock, is_done);
+  }
+
+ private:
+  /// @pre the mutex is held
+  void start_threads(int wanted) {
+    try {
+      for (; threads_ < wanted; ++threads_) std::thread([this] { serve(); }).detach();
+    } catch (const std::system_error&) {
+      // The system allows no more: the calling threads do more of the work.
+    }
+  }
+
+  void serve() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      const auto open = std::find_if(loops_.begin(), loops_.end(),
+                                     [](const Loop* loop) { return loop->free_places > 0; });
+      if (open == loops_.end()) {
+        wait_for_a_loop(lock);
+        continue;
+      }
+      Loop& loop = **open;
+      --loop.free_places;
+      ++loop.helpers;
+      lock.unlock();
+      loop.run_tasks();
+      lock.lock();
+      if (--loop.helpers == 0) finished_.notify_all();
+    }
+  }
+
+  void wait_for_a_loop(std::unique_lock<std::mutex>& lock) {
+    const std::uint64_t seen = published_;
+    const auto is_new = [&] { return published_ != seen; };
+    lock.unlock();
+    const bool found = wait_briefly(is_new);
+    lock.lock();
+    if (found) return;
+    ++sleeping_;
+    wake_.wait(lock, is_new);
+    --sleeping_;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;      ///< a loop was published
+  std::condition_variable finished_;  ///< a loop has no helpers left
+  std::vector<Loop*> loops_;          ///< with tasks that may be left
+  std::atomic<std::uint64_t> published_ = 0;
+  int threads_ = 0;   ///< of the pool
+  int sleeping_ = 0;  ///< of these
+};
+
+/// Never destroyed: its threads use it until the process ends.
+ThreadPool& thread_pool() {
+  static ThreadPool* const pool = new ThreadPool;
+  return *pool;
+}
+}  // namespace
+
+int thread_count(int requested) {
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  return std::clamp(requested > 0 ? requested : processors, 1, most_threads);
+}
+
+void run_parallel_tasks(int threads,
+                        std::int64_t count,
+                        const void* context,
+                        void (*call)(const void*, std::int64_t)) {
+  if (is_in_task) {
+    for (std::int64_t i = 0; i < count; ++i) call(context, i);
+    return;
+  }
+  const auto helpers = std::min<std::int64_t>({threads, count, most_threads}) - 1;
+  Loop loop{count, context, call, static_cast<int>(helpers)};
+  thread_pool().run(loop);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,49 @@
+/// @file parallel.hpp
+/// Loops on several host threads. The threads belong to the process, are started when first needed
+/// and sleep while there is no loop.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+namespace tetwarp {
+
+/// Most threads that a loop uses; larger numbers are reduced to it.
+inline constexpr int most_threads = 1024;
+
+/// Threads for loops: `requested`, or where it is 0 one per processor that this process may use.
+int thread_count(int requested);
+
+/// Calls call(context, i) once for every i in [0, count). Internal to parallel_tasks().
+void run_parallel_tasks(int threads,
+                        std::int64_t count,
+                        const void* context,
+                        void (*call)(const void* context, std::int64_t i));
+
+/// task(i) once for every i in [0, count), in any order, on at most `threads` threads, the calling
+/// one included. It returns when all tasks are done. The calling thread also takes the tasks that
+/// no other thread has started, so a processor that is busy with other programs delays it by one
+/// task at most. Calls from within a task run on the thread of that task alone.
+/// @pre task does not throw
+template <class Task>
+void parallel_tasks(int threads, std::int64_t count, const Task& task) {
+  if (threads <= 1 || count <= 1) {
+    for (std::int64_t i = 0; i < count; ++i) task(i);
+    return;
+  }
+  run_parallel_tasks(threads, count, &task, [](const void* context, std::int64_t i) {
+    (*static_cast<const Task*>(context))(i);
+  });
+}
+
+/// body(i) once for every i in [0, count), as parallel_tasks(), in contiguous ranges: four per
+/// thread, so that threads which start late take fewer.
+template <class Body>
+void parallel_for(int threads, std::int64_t count, const Body& body) {
+  const std::int64_t ranges = threads <= 1 ? 1 : std::min<std::int64_t>(count, 4 * threads);
+  parallel_tasks(threads, ranges, [&](std::int64_t range) {
+    const std::int64_t end = count * (range + 1) / ranges;
+    for (std::int64_t i = count * range / ranges; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace tetwarp
