@@ -127,6 +127,7 @@ class RowSampler {
     }
   }
 
+  /// Writes the units of `taps`. Out of line: inlined at each call, it takes long to compile.
   template <bool Rim>
   HWY_NOINLINE void flush(RowTaps<Rim>& taps) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
