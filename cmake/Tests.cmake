@@ -46,7 +46,8 @@ function(tetwarp_add_tests program)
   add_executable(${program} ${arg_SOURCES})
   tetwarp_test_target(${program} tetwarp_scenes ${arg_LIBRARIES})
   if(arg_UNITY)
-    set_target_properties(${program} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${arg_UNITY})
+    set_target_properties(${program} PROPERTIES
+      UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE ${arg_UNITY})
   endif()
 endfunction()
 
@@ -92,19 +93,24 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_volume_prefilter.cpp
     tests/warp/test_volume_range.cpp
     tests/warp/test_volume_uniform.cpp)
-  # Two units of six files: nvcc parses GoogleTest three times per unit, which takes seconds. A 13th
-  # file needs a third unit, which begins at 12.
-  foreach(first 0 6)
-    list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
-    list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
-    list(JOIN unit "\n" TETWARP_UNIT)
-    set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cpp)
-    if(tetwarp_device_tests)
-      set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
-    endif()
-    file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
-    list(APPEND tetwarp_stage_units ${file})
-  endforeach()
+  if(TETWARP_UNITY OR tetwarp_device_tests)
+    # Units of six files: nvcc parses GoogleTest three times per unit, which takes seconds.
+    list(LENGTH tetwarp_stage_tests count)
+    math(EXPR last "${count} - 1")
+    foreach(first RANGE 0 ${last} 6)
+      list(SUBLIST tetwarp_stage_tests ${first} 6 unit)
+      list(TRANSFORM unit REPLACE "(.+)" "#include \"\\1\"")
+      list(JOIN unit "\n" TETWARP_UNIT)
+      set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cpp)
+      if(tetwarp_device_tests)
+        set(file ${PROJECT_BINARY_DIR}/test_stages_${first}.cu)
+      endif()
+      file(CONFIGURE OUTPUT ${file} CONTENT "@TETWARP_UNIT@\n" @ONLY)
+      list(APPEND tetwarp_stage_units ${file})
+    endforeach()
+  else()
+    set(tetwarp_stage_units ${tetwarp_stage_tests})
+  endif()
   set_source_files_properties(${tetwarp_stage_units} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 
   tetwarp_add_tests(tetwarp_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES

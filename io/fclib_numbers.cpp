@@ -50,7 +50,7 @@ std::string read_bytes(const h5::Handle& dataset, const h5::Handle& type) {
   if (H5Tis_variable_str(type.id()) > 0) {
     char* bytes = nullptr;
     if (H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &bytes) < 0) return {};
-    const std::string text = bytes == nullptr ? "" : bytes;
+    std::string text = bytes == nullptr ? "" : bytes;
     H5free_memory(bytes);
     return text;
   }

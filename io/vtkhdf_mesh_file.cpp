@@ -5,9 +5,6 @@
 
 namespace tetwarp {
 namespace {
-constexpr int vtk_tetra = 10;
-constexpr int vtk_hexahedron = 12;
-
 /// VTK's own names of its cell types.
 std::string cell_type_name(std::int64_t type) {
   static constexpr std::pair<int, const char*> names[] = {{0, "VTK_EMPTY_CELL"},

@@ -13,6 +13,10 @@
 
 namespace tetwarp {
 
+/// Values of the dataset Types.
+constexpr std::uint8_t vtk_tetra = 10;
+constexpr std::uint8_t vtk_hexahedron = 12;
+
 /// The rows of one part of one step: first row and number in each dataset.
 struct MeshPart {
   std::int64_t node_count = 0;

@@ -17,6 +17,7 @@ std::int64_t voxel_bytes(const ArrayHeader& array) {
 
 std::vector<Edges> row_chunks(const Grid& grid, const std::vector<ArrayHeader>& arrays) {
   std::vector<Edges> chunks;
+  chunks.reserve(arrays.size());
   for (const ArrayHeader& array : arrays)
     chunks.push_back(row_chunk(grid.dims, voxel_bytes(array)));
   return chunks;

@@ -5,13 +5,11 @@
 #include <stdexcept>
 #include <tetwarp/io.hpp>
 
+#include "io/vtkhdf_mesh_file.hpp"
 #include "io/vtkhdf_output.hpp"
 
 namespace tetwarp {
 namespace {
-constexpr std::uint8_t vtk_tetra = 10;
-constexpr std::uint8_t vtk_hexahedron = 12;
-
 void check_arguments(const std::string& path,
                      const Mesh& mesh,
                      const std::vector<std::vector<Point3>>& displacements,

@@ -85,6 +85,7 @@ std::vector<Timing> time_in_turn(std::span<const std::function<void()>> jobs,
     if (all_done || (attempt >= protocol.repetitions && spent > protocol.seconds)) break;
   }
   std::vector<Timing> timings;
+  timings.reserve(repetitions.size());
   for (const std::vector<Repetition>& all : repetitions) {
     timings.push_back(timing_of(all, protocol));
   }

@@ -144,6 +144,7 @@ std::string today() {
 }
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): an exception ends the program with its message
 int main(int argc, char** argv) {
   if (argc < 2) {
     std::fprintf(stderr, "usage: tetwarp_bench_peers RESULTS.json [WORKLOAD]\n");

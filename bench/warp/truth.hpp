@@ -25,9 +25,9 @@ struct Truth {
 
 /// The index of a voxel as a position [voxel].
 inline Point3 position_of(std::int64_t voxel, const Grid& grid) {
-  return {static_cast<double>(voxel % grid.dims[0]),
-          static_cast<double>(voxel / grid.dims[0] % grid.dims[1]),
-          static_cast<double>(voxel / (grid.dims[0] * grid.dims[1]))};
+  const std::int64_t row = voxel / grid.dims[0], slice = row / grid.dims[1];
+  return {static_cast<double>(voxel % grid.dims[0]), static_cast<double>(row % grid.dims[1]),
+          static_cast<double>(slice)};
 }
 
 /// All voxels for sources of up to 128^3, else 100,000 seeded ones.

@@ -7,8 +7,8 @@
 
 namespace tetwarp {
 namespace {
-template <std::size_t N>
-void check_nodes(const std::vector<std::array<std::int32_t, N>>& cells,
+template <std::size_t nodes_per_cell>
+void check_nodes(const std::vector<std::array<std::int32_t, nodes_per_cell>>& cells,
                  std::size_t nodes,
                  const std::string& what) {
   const auto node_count = static_cast<std::int64_t>(nodes);

@@ -32,10 +32,12 @@ int run_render(const RenderArguments& arguments) {
   }
   check_output_file(arguments.output, inputs);
   std::vector<Volume> volumes;
+  volumes.reserve(inputs.size());
   for (const std::string& input : inputs) {
     volumes.push_back(read_volume(input, arguments.array, arguments.step));
   }
   std::vector<const Volume*> rows;
+  rows.reserve(volumes.size());
   for (const Volume& volume : volumes) rows.push_back(&volume);
   const Image image = render(rows, arguments.render);
   write_png(arguments.output, image);

@@ -170,7 +170,7 @@ void VolumeRun::run_temporal(Fingerprint fingerprint) {
 std::shared_ptr<VolumeRun::Step> VolumeRun::read_step(std::int64_t number) {
   stop_if_interrupted();
   finish_writing();
-  const auto step = std::make_shared<Step>();
+  auto step = std::make_shared<Step>();
   step->report.step = number;
   const Stopwatch watch;
   step->positions = plan_.mesh.read_step(number);

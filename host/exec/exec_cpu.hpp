@@ -110,10 +110,10 @@ class CpuExec {
     const Clock clock(*this, label);
     const std::int64_t segments = offsets.size - 1;
     const std::int64_t items = std::min(offsets[segments], capacity);
-    const std::int64_t chunks = (items + chunk_ - 1) / chunk_;
+    const std::int64_t chunks = (items + chunk_items - 1) / chunk_items;
     parallel_tasks(threads_for(items), chunks, [&](std::int64_t chunk) {
-      const std::int64_t end = std::min(items, (chunk + 1) * chunk_);
-      std::int64_t item = chunk * chunk_;
+      const std::int64_t end = std::min(items, (chunk + 1) * chunk_items);
+      std::int64_t item = chunk * chunk_items;
       std::int64_t segment =
           std::upper_bound(offsets.data, offsets.data + offsets.size, item) - offsets.data - 1;
       for (; item < end; ++segment) {
@@ -243,7 +243,7 @@ class CpuExec {
   }
 
   static constexpr std::int64_t serial_below = 2048;  ///< with fewer items one thread is faster
-  static constexpr std::int64_t chunk_ = 4096;
+  static constexpr std::int64_t chunk_items = 4096;
   static constexpr int radix_bits = 11;
 
   int threads_;

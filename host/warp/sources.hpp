@@ -124,7 +124,7 @@ class WarpSources {
         work.reserve(entries);
         volume_prefilter(exec_, view, tolerance, work.view(entries), to);
         Real first;
-        exec_.read(View<const Real>(to.data, 1),
+        exec_.read(View<const Real>{to.data, 1},
                    &first);  // waits until the scratch memory is no longer in use
       }
       found.has_coefficients = true;

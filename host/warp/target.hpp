@@ -20,6 +20,7 @@ inline std::vector<void*> arrays_of(const WarpTarget& target) {
 /// Bytes per voxel of each array.
 inline std::vector<std::int64_t> voxel_bytes_of(const std::vector<VolumeView>& sources) {
   std::vector<std::int64_t> bytes;
+  bytes.reserve(sources.size() + extra_outputs.size());
   for (const VolumeView& source : sources) {
     bytes.push_back(source.components * static_cast<std::int64_t>(size_of(source.type)));
   }

@@ -16,9 +16,9 @@ constexpr int raster_threads = 128;
 
 /// Minimum blocks per multiprocessor: five leave 96 registers to a thread. The general kernel needs
 /// more on every architecture, float64 arithmetic on sm_120: with fewer blocks none spills.
-template <class T, bool General>
+template <class T, bool is_general>
 constexpr int raster_blocks() {
-  if (General) return 2;
+  if (is_general) return 2;
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 1200
   return sizeof(ArithmeticOf<T>) == 8 ? 4 : 5;
 #else
@@ -118,7 +118,7 @@ __device__ __forceinline__ unsigned voxels_in_output(
 
 /// Stores a voxel whose owner is tetrahedron `slot` of the chunk.
 /// @param work  of the cell, see RasterGeometry::cell_work
-template <bool General, class T>
+template <bool is_general, class T>
 __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
                                               const RasterChunk<ArithmeticOf<T>>& chunk,
                                               int slot,
@@ -126,30 +126,30 @@ __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
                                               const CellVoxel& voxel,
                                               RasterCounts& mine) {
   const int t = chunk.tet[slot];
-  const bool transformed = General && has_transform(job, t);
+  const bool transformed = is_general && has_transform(job, t);
   ++mine.covered;
   mine.copied += chunk.copied[slot] && !transformed;
   if (work >= 0) {
     store_filled(job, work, voxel.offset);
   } else if (transformed) {
     store_transformed_voxel(job, t, voxel);
-  } else if ((General || sizeof(ArithmeticOf<T>) == 4) && chunk.own_map[slot]) {
-    store_owned<General, T, double>(job, t, voxel);
+  } else if ((is_general || sizeof(ArithmeticOf<T>) == 4) && chunk.own_map[slot]) {
+    store_owned<is_general, T, double>(job, t, voxel);
   } else {
-    store_sample<General>(job, chunk.copied[slot] ? Filter::nearest : job.filter, chunk.maps[slot],
-                          voxel);
+    store_sample<is_general>(job, chunk.copied[slot] ? Filter::nearest : job.filter,
+                             chunk.maps[slot], voxel);
   }
   if (job.mask != nullptr) job.mask[voxel.offset] = 1;
   if (job.tet != nullptr) job.tet[voxel.offset] = t;
 }
 
 /// Stores a voxel of the output that no tetrahedron covers.
-template <bool General, class T>
+template <bool is_general, class T>
 __device__ __forceinline__ void store_uncovered(const RasterJob<T>& job, const CellVoxel& voxel) {
-  if (General && has_outside_transform(job)) {
+  if (is_general && has_outside_transform(job)) {
     store_transformed_outside(job, voxel);
   } else {
-    store_outside<General>(job, voxel);
+    store_outside<is_general>(job, voxel);
   }
   if (job.mask != nullptr) job.mask[voxel.offset] = 0;
   if (job.tet != nullptr) job.tet[voxel.offset] = -1;
@@ -180,9 +180,9 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
 ///
 /// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
 /// 2.1 KiB with float32, 2.9 KiB with float64 arithmetic.
-/// @tparam General  whether the job may have wide filters, transforms or hexahedra
-template <class T, bool General>
-__global__ void __launch_bounds__(raster_threads, raster_blocks<T, General>())
+/// @tparam is_general  whether the job may have wide filters, transforms or hexahedra
+template <class T, bool is_general>
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>())
     cell_raster_kernel(RasterJob<T> job) {
   __shared__ RasterChunk<ArithmeticOf<T>> chunk;
   __shared__ int block_counts[4];
@@ -216,11 +216,11 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks<T, General>())
       const int slot = find_owner(job, chunk, count, corner, i, j, k, mine);
       if (slot < 0) continue;
       open &= ~(1u << d);
-      store_covered<General>(job, chunk, slot, work, voxel_at(k), mine);
+      store_covered<is_general>(job, chunk, slot, work, voxel_at(k), mine);
     }
   }
   for (int d = 0; d < raster_depth; ++d) {
-    if ((open >> d & 1) != 0) store_uncovered<General>(job, voxel_at(k_first + 2 * d));
+    if ((open >> d & 1) != 0) store_uncovered<is_general>(job, voxel_at(k_first + 2 * d));
   }
 
   __syncthreads();

@@ -201,12 +201,12 @@ struct CellVoxel {
 };
 
 /// Stores one voxel: the source's samples at position whole + x, or the background outside it.
-/// @tparam General  whether the filter may be wide; false saves registers
-template <bool General, class T, class Real>
+/// @tparam is_general  whether the filter may be wide; false saves registers
+template <bool is_general, class T, class Real>
 TETWARP_HD void store_position(
     const RasterJob<T>& job, Filter filter, const int* whole, const Real* x, std::int64_t voxel) {
   T* out = job.volume + voxel * job.source.components;
-  if constexpr (General) {
+  if constexpr (is_general) {
     if (is_wide(filter)) return store_wide_sample(job, filter, whole, x, out);
   }
   const Tap<Real> tap = tap_of(job.source, filter, whole, x);
@@ -216,14 +216,14 @@ TETWARP_HD void store_position(
 }
 
 /// The same for a voxel of a cell at the position that `map` gives.
-template <bool General, class T, class Real>
+template <bool is_general, class T, class Real>
 TETWARP_HD void store_sample(const RasterJob<T>& job,
                              Filter filter,
                              const SourceMap<Real>& map,
                              const CellVoxel& voxel) {
   Real x[3];
   local_position(map, voxel.i, voxel.j, voxel.k, x);
-  store_position<General>(job, filter, map.whole, x, voxel.offset);
+  store_position<is_general>(job, filter, map.whole, x, voxel.offset);
 }
 
 /// The map of the hexahedron that tetrahedron t belongs to. Out of line: inlined, it makes the
@@ -233,7 +233,7 @@ TETWARP_HD_RARE HexMap hex_map_of(const RasterGeometry& job, std::int64_t t) {
 }
 
 /// Stores frame voxel x, which tetrahedron `tet` owns, a part of the hexahedron that `map` is for.
-template <bool General, class T>
+template <bool is_general, class T>
 TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
                                      const TetSetup& tet,
                                      const HexMap& map,
@@ -243,7 +243,7 @@ TETWARP_HD_RARE void store_hex_voxel(const RasterJob<T>& job,
   double at[3];
   hex_source_position(tet, map, x, whole, at);
   for (int axis = 0; axis < 3; ++axis) whole[axis] -= job.source.origin[axis];
-  store_position<General>(job, job.filter, whole, at, voxel);
+  store_position<is_general>(job, job.filter, whole, at, voxel);
 }
 
 /// Whether the tetrahedron moved by whole voxels: its voxels copy one sample with any filter.
@@ -253,21 +253,21 @@ TETWARP_HD bool is_copied(const RasterGeometry& job, const TetSetup& tet) {
 
 /// Stores a voxel that tetrahedron t owns. Computes the map for this voxel alone: for the few
 /// voxels that cannot use the map of the cell.
-template <bool General, class T, class Real>
+template <bool is_general, class T, class Real>
 TETWARP_HD void store_owned(const RasterJob<T>& job, std::int64_t t, const CellVoxel& voxel) {
   const TetSetup& tet = job.setups[t];
-  if constexpr (General) {
+  if constexpr (is_general) {
     if (tet.kind == MapKind::trilinear) {
       const int x[3] = {voxel.corner[0] + voxel.i, voxel.corner[1] + voxel.j,
                         voxel.corner[2] + voxel.k};
-      store_hex_voxel<General>(job, tet, hex_map_of(job, t), x, voxel.offset);
+      store_hex_voxel<is_general>(job, tet, hex_map_of(job, t), x, voxel.offset);
       return;
     }
   }
   double start[3], linear[3][3];
   map_start(tet, voxel.corner, start, linear);
-  store_sample<General>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
-                        make_source_map<Real>(job.source, start, linear), voxel);
+  store_sample<is_general>(job, is_copied(job, tet) ? Filter::nearest : job.filter,
+                           make_source_map<Real>(job.source, start, linear), voxel);
 }
 
 /// Stores the value around voxel `from`, where the source is constant.
@@ -280,14 +280,14 @@ TETWARP_HD void store_filled(const RasterJob<T>& job, std::int64_t from, std::in
 }
 
 /// Stores a voxel that no tetrahedron covers.
-template <bool General, class T>
+template <bool is_general, class T>
 TETWARP_HD void store_outside(const RasterJob<T>& job, const CellVoxel& voxel) {
   if (job.outside.use_source) {
     double start[3];
     outside_start(job.outside, voxel.corner, start);
     const bool copies = job.copy_whole_shifts && job.outside.is_copy;
-    store_sample<General>(job, copies ? Filter::nearest : job.filter,
-                          make_source_map<double>(job.source, start, job.outside.linear), voxel);
+    store_sample<is_general>(job, copies ? Filter::nearest : job.filter,
+                             make_source_map<double>(job.source, start, job.outside.linear), voxel);
     return;
   }
   T* out = job.volume + voxel.offset * job.source.components;

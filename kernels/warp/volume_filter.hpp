@@ -146,34 +146,34 @@ TETWARP_HD FilterTaps<Real> filter_taps(const SourceView<T>& source,
   return taps;
 }
 
-/// near + sum of weight (sample - near) over Taps^3 samples, summed along y, then z, then x.
-/// @tparam Contiguous  whether taps along x are adjacent in memory
-template <bool Contiguous, int Taps, class Real, class Sample>
+/// near + sum of weight (sample - near) over width^3 samples, summed along y, then z, then x.
+/// @tparam is_contiguous  whether taps along x are adjacent in memory
+template <bool is_contiguous, int width, class Real, class Sample>
 TETWARP_HD Real blended(const FilterTaps<Real>& taps, const Sample* samples) {
   const Real near = static_cast<Real>(samples[taps.near]);
-  Real column[Taps] = {};
-  for (int z = 0; z < Taps; ++z) {
-    Real part[Taps] = {};
-    for (int y = 0; y < Taps; ++y) {
+  Real column[width] = {};
+  for (int z = 0; z < width; ++z) {
+    Real part[width] = {};
+    for (int y = 0; y < width; ++y) {
       const Sample* line = samples + (taps.offset[2][z] + taps.offset[1][y]);
-      if constexpr (Contiguous) line += taps.offset[0][0];
-      for (int x = 0; x < Taps; ++x) {
-        const Sample sample = line[Contiguous ? x : taps.offset[0][x]];
+      if constexpr (is_contiguous) line += taps.offset[0][0];
+      for (int x = 0; x < width; ++x) {
+        const Sample sample = line[is_contiguous ? x : taps.offset[0][x]];
         part[x] += taps.weight[1][y] * (static_cast<Real>(sample) - near);
       }
     }
-    for (int x = 0; x < Taps; ++x) column[x] += taps.weight[2][z] * part[x];
+    for (int x = 0; x < width; ++x) column[x] += taps.weight[2][z] * part[x];
   }
   Real sum = 0;
-  for (int x = 0; x < Taps; ++x) sum += taps.weight[0][x] * column[x];
+  for (int x = 0; x < width; ++x) sum += taps.weight[0][x] * column[x];
   return near + sum;
 }
 
 /// blended() of one component, out of line.
-template <int Taps, class Real, class Sample>
+template <int width, class Real, class Sample>
 TETWARP_HD_RARE Real filtered(const FilterTaps<Real>& taps, const Sample* samples) {
-  return taps.is_contiguous ? blended<true, Taps>(taps, samples)
-                            : blended<false, Taps>(taps, samples);
+  return taps.is_contiguous ? blended<true, width>(taps, samples)
+                            : blended<false, width>(taps, samples);
 }
 
 /// A component's value as stored: clamped to source.range if there is one, rounded to T.

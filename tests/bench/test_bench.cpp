@@ -172,8 +172,9 @@ TEST(BenchFloor, SamplesEveryVoxelThroughItsMap) {
         Truth truth;
         std::vector<std::int32_t> owner;
         for (std::int64_t v = 0; v < output.voxel_count(); ++v) {
-          const double ijk[3] = {static_cast<double>(v % 37), static_cast<double>(v / 37 % 20),
-                                 static_cast<double>(v / (37 * 20))};
+          const std::int64_t row = v / 37, slice = row / 20;
+          const double ijk[3] = {static_cast<double>(v % 37), static_cast<double>(row % 20),
+                                 static_cast<double>(slice)};
           Point3 x;
           bool is_inside = true;
           for (std::size_t a = 0; a < 3; ++a) {

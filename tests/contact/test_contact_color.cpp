@@ -55,7 +55,7 @@ Colors colors_of(const Exec& exec, const Lists& groups, std::int64_t group_count
 
 Colors colors_of(const Lists& groups, std::int64_t group_count) {
   int rounds = 0;
-  const Colors colors = colors_of(CpuContactExec(1), groups, group_count, rounds);
+  Colors colors = colors_of(CpuContactExec(1), groups, group_count, rounds);
   EXPECT_EQ(rounds, 1);
   return colors;
 }

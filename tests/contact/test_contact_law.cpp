@@ -29,7 +29,7 @@ class ContactLaw : public ::testing::Test {
  protected:
   static constexpr Wide rounding = std::numeric_limits<T>::epsilon();
 
-  Wide unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  Wide unit() { return std::uniform_real_distribution<double>(0, 1)(random); }
   Wide symmetric() { return 2 * unit() - 1; }
   Wide power(Wide low, Wide high) { return std::pow(Wide(10), low + (high - low) * unit()); }
 
@@ -70,7 +70,7 @@ class ContactLaw : public ::testing::Test {
     return impulse;
   }
 
-  std::mt19937 random_{41};
+  std::mt19937 random{41};
 };
 using Scalars = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(ContactLaw, Scalars);

@@ -40,6 +40,7 @@ struct BadProblem {
   const char* text;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest calls it
 void PrintTo(const BadProblem& bad, std::ostream* out) {
   *out << bad.name;
 }

@@ -105,17 +105,17 @@ class GlobalResidual : public testing::TestWithParam<double> {
  protected:
   GlobalResidual() {
     std::mt19937 random(11);
-    problem_ = samples::random_global(random, 5, 6, GetParam(), 0.4);
-    impulse_ = list_of(samples::random_vector(random, 3 * problem_.contact_count()));
-    const Eigen::MatrixXd jacobian = make_dense(problem_.jacobian);
-    const Eigen::MatrixXd system = make_dense(problem_.system);
-    const Eigen::VectorXd load = vector_of(problem_.load);
-    delassus_ = jacobian * samples::solve_spd(system, jacobian.transpose());
-    velocity_ = samples::solve_spd(system, load + jacobian.transpose() * vector_of(impulse_));
-    local_.delassus = samples::sparse_of(delassus_);
-    local_.free_velocity =
-        list_of(jacobian * samples::solve_spd(system, load) + vector_of(problem_.velocity_offset));
-    local_.friction = problem_.friction;
+    problem = samples::random_global(random, 5, 6, GetParam(), 0.4);
+    impulse = list_of(samples::random_vector(random, 3 * problem.contact_count()));
+    const Eigen::MatrixXd jacobian = make_dense(problem.jacobian);
+    const Eigen::MatrixXd system = make_dense(problem.system);
+    const Eigen::VectorXd load = vector_of(problem.load);
+    delassus = jacobian * samples::solve_spd(system, jacobian.transpose());
+    velocity = samples::solve_spd(system, load + jacobian.transpose() * vector_of(impulse));
+    local_problem.delassus = samples::sparse_of(delassus);
+    local_problem.free_velocity =
+        list_of(jacobian * samples::solve_spd(system, load) + vector_of(problem.velocity_offset));
+    local_problem.friction = problem.friction;
   }
 
   static Eigen::MatrixXd make_dense(const SparseMatrix& matrix) {
@@ -129,27 +129,27 @@ class GlobalResidual : public testing::TestWithParam<double> {
     return dense;
   }
 
-  ContactProblem problem_;
-  ContactProblem local_;  ///< the same problem
-  std::vector<double> impulse_;
-  Eigen::VectorXd velocity_;
-  Eigen::MatrixXd delassus_;
+  ContactProblem problem;
+  ContactProblem local_problem;  ///< the same problem
+  std::vector<double> impulse;
+  Eigen::VectorXd velocity;
+  Eigen::MatrixXd delassus;
 };
 
 TEST_P(GlobalResidual, HasTheDelassusBlocksOfTheWholeSystem) {
   const std::vector<Eigen::Matrix3d> blocks =
-      Delassus(problem_, std::numeric_limits<double>::infinity()).diagonal_blocks();
+      Delassus(problem, std::numeric_limits<double>::infinity()).diagonal_blocks();
 
   for (std::size_t c = 0; c < blocks.size(); ++c) {
     const auto row = 3 * static_cast<Eigen::Index>(c);
-    EXPECT_TRUE(blocks[c].isApprox(delassus_.block<3, 3>(row, row), 1e-13)) << "contact " << c;
+    EXPECT_TRUE(blocks[c].isApprox(delassus.block<3, 3>(row, row), 1e-13)) << "contact " << c;
   }
 }
 
 TEST_P(GlobalResidual, AgreesWithTheLocalForm) {
   for (const FrictionLaw law : both_laws) {
-    const ContactResidual global = residual_of(problem_, impulse_, {}, {.law = law});
-    const ContactResidual local = residual_of(local_, impulse_, {}, {.law = law});
+    const ContactResidual global = residual_of(problem, impulse, {}, {.law = law});
+    const ContactResidual local = residual_of(local_problem, impulse, {}, {.law = law});
 
     EXPECT_NEAR(global.eta, local.eta, 1e-12 * local.eta);
     EXPECT_NEAR(global.fclib, local.fclib, 1e-12 * local.fclib);
@@ -161,13 +161,13 @@ TEST_P(GlobalResidual, AgreesWithTheLocalForm) {
 }
 
 TEST_P(GlobalResidual, FindsGivenVelocitiesOutOfBalance) {
-  const Eigen::VectorXd wrong = 1.25 * velocity_;
+  const Eigen::VectorXd wrong = 1.25 * velocity;
 
-  const ContactResidual right = residual_of(problem_, impulse_, list_of(velocity_));
-  const ContactResidual residual = residual_of(problem_, impulse_, list_of(wrong));
+  const ContactResidual right = residual_of(problem, impulse, list_of(velocity));
+  const ContactResidual residual = residual_of(problem, impulse, list_of(wrong));
 
-  const Eigen::VectorXd pushed = make_dense(problem_.jacobian).transpose() * vector_of(impulse_);
-  const Eigen::VectorXd load = vector_of(problem_.load);
+  const Eigen::VectorXd pushed = make_dense(problem.jacobian).transpose() * vector_of(impulse);
+  const Eigen::VectorXd load = vector_of(problem.load);
   EXPECT_LE(right.balance, 1e-14);
   EXPECT_NEAR(residual.balance,
               (0.25 * (pushed + load)).norm() / std::max(pushed.norm(), load.norm()), 1e-13);
@@ -175,14 +175,15 @@ TEST_P(GlobalResidual, FindsGivenVelocitiesOutOfBalance) {
 
 TEST_P(GlobalResidual, IsTheSameInOtherUnits) {
   // Lengths times 8, times times 4, masses times 1024: v 2, r 2048, W 1/1024.
-  ContactProblem scaled = problem_;
+  ContactProblem scaled = problem;
   for (double& value : scaled.system.value) value *= 1024;
   for (double& value : scaled.load) value *= 2048;
   for (double& value : scaled.velocity_offset) value *= 2;
-  std::vector<double> impulse = impulse_;
-  for (double& value : impulse) value *= 2048;
+  std::vector<double> scaled_impulse = impulse;
+  for (double& value : scaled_impulse) value *= 2048;
 
-  EXPECT_NEAR(residual_of(scaled, impulse, {}).eta, residual_of(problem_, impulse_, {}).eta, 1e-14);
+  EXPECT_NEAR(residual_of(scaled, scaled_impulse, {}).eta, residual_of(problem, impulse, {}).eta,
+              1e-14);
 }
 
 INSTANTIATE_TEST_SUITE_P(CoupledBy, GlobalResidual, testing::Values(0.0, 0.3), [](auto& info) {

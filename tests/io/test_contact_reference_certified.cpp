@@ -66,16 +66,16 @@ std::vector<Certificate> certificates() {
 class ReferenceCertified : public testing::Test {
  protected:
   void SetUp() override {
-    if (all_.empty()) {
+    if (certified.empty()) {
       GTEST_SKIP() << "no certified problems; set TETWARP_CONTACT_DATA to their folder";
     }
   }
 
-  const std::vector<Certificate> all_ = certificates();
+  const std::vector<Certificate> certified = certificates();
 };
 
 TEST_F(ReferenceCertified, SolutionsHaveNoResidual) {
-  for (const Certificate& certificate : all_) {
+  for (const Certificate& certificate : certified) {
     SCOPED_TRACE(certificate.file + certificate.group);
     const std::vector<double> impulse =
         test::numbers_of(certificate.file, certificate.group + "/r");
@@ -97,7 +97,7 @@ TEST_F(ReferenceCertified, SmallProblemsAreSolvedToTheCertifiedVelocity) {
   // The reference takes too long on larger stacks and packings.
   constexpr std::int64_t max_contacts = 32;
   int compared = 0;
-  for (const Certificate& certificate : all_) {
+  for (const Certificate& certificate : certified) {
     SCOPED_TRACE(certificate.file + certificate.group);
     const ContactProblem problem = read_contact_problem(certificate.file);
     if (problem.contact_count() > max_contacts) continue;

@@ -58,6 +58,7 @@ std::vector<Region> bricks_of(const Grid& grid, const std::array<std::int64_t, 3
 
 std::vector<ArrayHeader> headers_of(const std::vector<Volume>& volumes) {
   std::vector<ArrayHeader> headers;
+  headers.reserve(volumes.size());
   for (const Volume& v : volumes) headers.push_back({v.name, v.type, v.components});
   return headers;
 }

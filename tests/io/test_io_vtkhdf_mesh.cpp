@@ -228,7 +228,7 @@ TEST(VtkhdfMesh, KeepsTetrahedraAndHexahedraApart) {
   Mesh mesh = two_tets();
   for (int n = 0; n < 8; ++n) {
     mesh.rest_positions.push_back({1.0 * (n == 1 || n == 2 || n == 5 || n == 6),
-                                   1.0 * (n == 2 || n == 3 || n == 6 || n == 7), 1.0 * (n / 4)});
+                                   1.0 * (n == 2 || n == 3 || n == 6 || n == 7), 1.0 * (n >= 4)});
   }
   const auto first = static_cast<std::int32_t>(two_tets().rest_positions.size());
   mesh.hexes = {

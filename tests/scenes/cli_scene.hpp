@@ -38,6 +38,7 @@ inline Mesh box_mesh() {
 /// Displacements of the box by `shift` voxels along i, one step per entry.
 inline std::vector<std::vector<Point3>> shifts(const std::vector<double>& voxels) {
   std::vector<std::vector<Point3>> steps;
+  steps.reserve(voxels.size());
   for (const double shift : voxels) {
     steps.emplace_back(box_mesh().rest_positions.size(), Point3{2 * shift, 0, 0});
   }

@@ -6,16 +6,11 @@
 #include <utility>
 
 #include "host/base/counter_hash.hpp"
+#include "tests/scenes/vectors.hpp"
 
 namespace tetwarp::scenes {
 namespace {
 constexpr double gravity = 9.81;
-
-using Vector = std::array<double, 3>;
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 /// Seeded numbers in [-1, 1), one after the other.
 class Dice {

@@ -8,17 +8,12 @@
 #include "host/base/counter_hash.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 #include "tests/scenes/scenes.hpp"
+#include "tests/scenes/vectors.hpp"
 
 namespace tetwarp::scenes {
 namespace {
-using Vector = std::array<double, 3>;
-
 Vector minus(const Point3& a, const Point3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 double dot(const Vector& a, const Vector& b) {

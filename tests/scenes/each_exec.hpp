@@ -27,6 +27,7 @@ using Execs = ::testing::Types<CpuExec>;
 /// Suite suffixes of TYPED_TEST_SUITE.
 struct ExecNames {
   template <class Exec>
+  // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest calls it
   static std::string GetName(int) {
     return std::is_same_v<Exec, CpuExec> ? "cpu" : "cuda";
   }

@@ -106,7 +106,7 @@ ContactProblem make_elastic_problem(const ElasticBlock& block) {
   problem.jacobian = {0, problem.system.columns, {0}, {}, {}};
   AdhesionState& adhesion = problem.adhesion;
   adhesion.time_step = block.time_step;
-  const double side = per_edge * (per_edge / 2);  // nodes of half the top
+  const int side = per_edge * (per_edge / 2);  // nodes of half the top
   for (int j = 0; j < per_edge; ++j) {
     for (int i = 0; i < per_edge; ++i) {
       if (2 * i != per_edge - 1) {

@@ -92,6 +92,7 @@ class RunningCommand {
     words.insert(words.begin(), TETWARP_COMMAND);
     words.insert(words.begin(), options.launcher.begin(), options.launcher.end());
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     child_ = fork();

@@ -23,7 +23,7 @@ class Series {
   std::vector<std::int32_t> owner;
   FieldBuffers fields;
 
-  Series(const std::vector<Volume>& sources, const scenes::Scene& scene, WarpOptions options)
+  Series(const std::vector<Volume>& sources, const scenes::Scene& scene, const WarpOptions& options)
       : warper_(views_of(sources), scene.mesh, with_grid(options, scene)) {
     const Grid& grid = warper_.output_grid();
     for (const Volume& source : sources) {

@@ -62,11 +62,12 @@ TEST(SourceEnd, IsNotReadBeyond) {
         options.threads = 1;
         Warper near(std::span(&view, 1), mesh, options), far(volume, mesh, options);
         for (int shift = 0; shift < 27; ++shift) {
+          const int row = shift / 3, slice = row / 3;
           std::vector<Point3> deformed = mesh.rest_positions;
           for (Point3& p : deformed) {
             p[0] -= 0.2 * (shift % 3);
-            p[1] -= 0.2 * (shift / 3 % 3);
-            p[2] -= 0.2 * (shift / 9);
+            p[1] -= 0.2 * (row % 3);
+            p[2] -= 0.2 * slice;
           }
 
           EXPECT_EQ(near.step(deformed).data, far.step(deformed).data);

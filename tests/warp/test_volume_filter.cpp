@@ -95,14 +95,14 @@ std::vector<double> fractions() {
 template <class Real>
 void expect_defined_weights(double tolerance) {
   for (const Filter filter : wide_filters) {
-    const int count = tap_count(filter);
+    const int count = tap_count(filter), first = 1 - count / 2;
     for (const double fraction : fractions()) {
       const Real t = static_cast<Real>(fraction);
       Real weights[max_taps];
       filter_weights(filter, t, weights);
       double sum = 0, expected_sum = 0, expected[max_taps];
       for (int i = 0; i < count; ++i) {
-        expected[i] = reference::weight_of(filter, static_cast<double>(t) - (i + 1 - count / 2));
+        expected[i] = reference::weight_of(filter, static_cast<double>(t) - (i + first));
         expected_sum += expected[i];
         sum += weights[i];
       }

@@ -65,6 +65,7 @@ TEST(VolumeLabel, IsTheLargestOfInterpolatedIndicators) {
                                ((corner & 4) != 0 ? f[2] : 1 - f[2]);
     }
     std::vector<std::pair<double, int>> ranked;
+    ranked.reserve(share.size());
     for (const auto& [label, weight] : share) ranked.emplace_back(-weight, label);
     std::sort(ranked.begin(), ranked.end());
     if (ranked.size() > 1 && ranked[1].first - ranked[0].first < 0x1p-18) {

@@ -128,8 +128,9 @@ ValueErrors value_errors(Backend backend, Filter filter, int n, double rim = 0) 
   grid.origin = {h / 2, h / 2, h / 2};
   Volume image = make_volume(grid, pixel_type_of<T>());
   const auto point_of = [&](std::int64_t voxel) {
-    return grid.world_of({static_cast<double>(voxel % n), static_cast<double>(voxel / n % n),
-                          static_cast<double>(voxel / n / n)});
+    const std::int64_t row = voxel / n, slice = row / n;
+    return grid.world_of(
+        {static_cast<double>(voxel % n), static_cast<double>(row % n), static_cast<double>(slice)});
   };
   for (std::int64_t voxel = 0; voxel < grid.voxel_count(); ++voxel) {
     image.samples<T>()[static_cast<std::size_t>(voxel)] = static_cast<T>(image_at(point_of(voxel)));

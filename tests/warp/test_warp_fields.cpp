@@ -55,9 +55,9 @@ Vector vector_of(const Point3& point) {
 Vector place_of(const Grid& grid, std::size_t voxel) {
   const auto v = static_cast<std::int64_t>(voxel);
   const auto& n = grid.dims;
-  return vector_of(
-      grid.world_of({static_cast<double>(v % n[0]), static_cast<double>(v / n[0] % n[1]),
-                     static_cast<double>(v / n[0] / n[1])}));
+  const std::int64_t row = v / n[0], slice = row / n[1];
+  return vector_of(grid.world_of({static_cast<double>(v % n[0]), static_cast<double>(row % n[1]),
+                                  static_cast<double>(slice)}));
 }
 
 /// Largest difference of a voxel's components from what they should be.

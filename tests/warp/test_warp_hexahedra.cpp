@@ -22,7 +22,7 @@ namespace tetwarp::test {
 namespace {
 class WarpHexahedra : public EachBackend {
  protected:
-  Warped run(const Volume& source, const scenes::Scene& scene, WarpOptions options = {}) {
+  Warped run(const Volume& source, const scenes::Scene& scene, const WarpOptions& options = {}) {
     return run_warp(source, scene, GetParam(), options);
   }
 };

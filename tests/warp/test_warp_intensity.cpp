@@ -89,6 +89,7 @@ TEST(WarpIntensity, ReportsTheTotalsOfAllSources) {
     Warper warper(sources, scene.mesh, options);
     std::vector<Volume> outputs(3, make_volume(warper.output_grid(), source.type, 9));
     std::vector<void*> arrays;
+    arrays.reserve(outputs.size());
     for (Volume& output : outputs) arrays.push_back(output.data.data());
     const Totals all = warper.step(scene.deformed, {.volumes = arrays}).totals;
     ASSERT_EQ(all.before.size(), 27u);

@@ -108,14 +108,14 @@ inline std::optional<Barycentric> barycentric_of(const Corners& tet, const Quant
 
 /// The whole-voxel shift from deformed to rest nodes, or nothing when a node deviates from it by
 /// more than a quantum.
-template <std::size_t N>
-std::optional<Eigen::Vector3d> whole_shift(const std::array<Quanta, N>& rest,
-                                           const std::array<Quanta, N>& deformed) {
+template <std::size_t node_count>
+std::optional<Eigen::Vector3d> whole_shift(const std::array<Quanta, node_count>& rest,
+                                           const std::array<Quanta, node_count>& deformed) {
   Eigen::Vector3d shift;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double first = static_cast<double>(rest[0][axis] - deformed[0][axis]) / one_voxel;
     const double whole = std::floor(first + 0.5);
-    for (std::size_t node = 0; node < N; ++node) {
+    for (std::size_t node = 0; node < node_count; ++node) {
       const std::int64_t moved = rest[node][axis] - deformed[node][axis];
       if (std::abs(moved - static_cast<std::int64_t>(whole) * one_voxel_int) > 1) {
         return std::nullopt;

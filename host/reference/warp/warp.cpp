@@ -94,6 +94,7 @@ class ReferenceBackend : public WarpBackend {
   void conserve(
       std::size_t s, const double* rest, const double* deformed, T* out, StepReport& report) const {
     std::vector<MovedTet> tets;
+    tets.reserve(plan_.mesh.tets.size());
     for (std::int32_t t = 0; t < std::ssize(plan_.mesh.tets); ++t) {
       tets.push_back({owners_.corners_of(t, rest, owners_.source),
                       owners_.corners_of(t, deformed, owners_.output)});

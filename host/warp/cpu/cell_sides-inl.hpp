@@ -142,15 +142,15 @@ HWY_INLINE hn::Vec<SideByteTag> row_bits(hn::Vec<SideTag> begin, hn::Vec<SideTag
   return hn::TruncateTo(SideByteTag(), hn::BitCast(hn::RebindToUnsigned<SideIntTag>(), bits));
 }
 
-/// Stores the rows of a vector, `Rows` per slice, from row (j, k) on.
-template <int Rows>
+/// Stores the rows of a vector, `slice_rows` per slice, from row (j, k) on.
+template <int slice_rows>
 HWY_INLINE void store_rows(hn::Vec<SideByteTag> rows, int j, int k, CellBits& bits) {
   constexpr int lanes = static_cast<int>(hn::MaxLanes(SideTag()));
   std::uint8_t part[lanes];
   hn::StoreU(rows, SideByteTag(), part);
-  for (int slice = 0; slice < std::max(lanes / Rows, 1); ++slice) {
+  for (int slice = 0; slice < std::max(lanes / slice_rows, 1); ++slice) {
     auto* row = reinterpret_cast<std::uint8_t*>(&bits.slice[k + slice]) + j;
-    std::memcpy(row, part + Rows * slice, std::min(lanes, Rows));
+    std::memcpy(row, part + slice_rows * slice, std::min(lanes, slice_rows));
   }
 }
 
@@ -175,9 +175,9 @@ HWY_INLINE void cut_flat_faces(const CellPlanes& planes,
   }
 }
 
-/// cell_sides() for `Rows` rows of each slice, from `j_first` on. A vector holds one row per lane;
-/// wider vectors hold the rows of several slices.
-template <int Rows>
+/// cell_sides() for `slice_rows` rows of each slice, from `j_first` on. A vector holds one row per
+/// lane; wider vectors hold the rows of several slices.
+template <int slice_rows>
 inline void packed_sides(const CellPlanes& planes,
                          const RowBox& box,
                          int j_first,
@@ -186,14 +186,15 @@ inline void packed_sides(const CellPlanes& planes,
   const SideTag d;
   const SideIntTag di;
   constexpr int lanes = static_cast<int>(hn::MaxLanes(d));
-  constexpr int slices = std::max(lanes / Rows, 1);
+  constexpr int slices = std::max(lanes / slice_rows, 1);
+  constexpr int slice_bits = slice_rows == 8 ? 3 : 2;
   const RowCrossings rows(planes);
   const auto width = hn::Set(d, rows.width);
   const auto never = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto lane = hn::Iota(di, 0);
-  const auto lane_k = hn::ConvertTo(d, hn::ShiftRight < Rows == 8 ? 3 : 2 > (lane));
-  const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, Rows - 1)));
-  for (int j_part = 0; j_part < Rows; j_part += lanes) {
+  const auto lane_k = hn::ConvertTo(d, hn::ShiftRight<slice_bits>(lane));
+  const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, slice_rows - 1)));
+  for (int j_part = 0; j_part < slice_rows; j_part += lanes) {
     const auto j = hn::Add(lane_j, hn::Set(d, static_cast<float>(j_first + j_part)));
     const int k_first = box.k_begin - box.k_begin % slices;
     hn::Vec<decltype(d)> at[4];
@@ -216,11 +217,11 @@ inline void packed_sides(const CellPlanes& planes,
       const auto slice = hn::Add(lane_k, hn::Set(d, static_cast<float>(k)));
       cut_flat_faces(planes, rows.flat, j, slice, past, past_late);
       const auto sure = row_bits(begin, past);
-      store_rows<Rows>(sure, j_first + j_part, k, inside);
+      store_rows<slice_rows>(sure, j_first + j_part, k, inside);
       const auto is_sure = hn::And(hn::Eq(begin, begin_early), hn::Eq(past, past_late));
       const bool all_sure = hn::AllTrue(d, is_sure);
-      store_rows<Rows>(all_sure ? sure : row_bits(begin_early, past_late), j_first + j_part, k,
-                       possible);
+      store_rows<slice_rows>(all_sure ? sure : row_bits(begin_early, past_late), j_first + j_part,
+                             k, possible);
     }
   }
 }

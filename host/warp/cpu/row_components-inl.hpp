@@ -44,10 +44,10 @@ HWY_INLINE hn::Vec<ComponentTag> read_components(const T* samples) {
 
 /// Values of all units of `taps`. The blends are those of sample(), in its order: equal bits.
 /// @param values  out, [voxel][component]; followed by up to three more values
-template <bool Rim, class T>
+template <bool is_rim, class T>
 inline void sample_components(const SourceView<T>& view,
                               bool nearest,
-                              const RowTaps<Rim>& taps,
+                              const RowTaps<is_rim>& taps,
                               float* values) {
   const ComponentTag d;
   const std::ptrdiff_t components = view.components;
@@ -56,8 +56,8 @@ inline void sample_components(const SourceView<T>& view,
   for (int v = 0; v < voxels; ++v, values += components) {
     const T* line[4];  // (y, z), (y+1, z), (y, z+1), (y+1, z+1)
     for (int l = 0; l < 4; ++l) {
-      line[l] = view.data + components * taps.offset[Rim ? l : 0][v];
-      if constexpr (!Rim) line[l] += (l % 2) * up + (l / 2) * far;
+      line[l] = view.data + components * taps.offset[is_rim ? l : 0][v];
+      if constexpr (!is_rim) line[l] += (l % 2) * up + (l / 2) * far;
     }
     const auto fx = hn::Set(d, taps.fraction[0][v]);
     const auto fy = hn::Set(d, taps.fraction[1][v]), fz = hn::Set(d, taps.fraction[2][v]);

@@ -127,8 +127,9 @@ class RowSampler {
     }
   }
 
-  template <bool Rim>
-  HWY_NOINLINE void flush(RowTaps<Rim>& taps) {
+  /// Writes the units of `taps`. Out of line: inlined at each call, it takes long to compile.
+  template <bool is_rim>
+  HWY_NOINLINE void flush(RowTaps<is_rim>& taps) {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (taps.count == 0) return;
       const int components = job_.source.components;
@@ -146,7 +147,7 @@ class RowSampler {
         } else {
           store_components(values, unit.inside, components, out);
         }
-        if constexpr (Rim) {
+        if constexpr (is_rim) {
           for (unsigned bits = unit.bits & ~unsigned{unit.inside}; bits != 0; bits &= bits - 1) {
             std::fill_n(out + std::countr_zero(bits) * components, components, job_.background);
           }

@@ -35,17 +35,17 @@ struct RowUnit {
 };
 
 /// Taps of up to `row_units` units.
-/// @tparam Rim  neighbours may be clamped, so that every voxel needs the offsets of its four lines;
-///              otherwise these are at fixed distances from the first
-template <bool Rim>
+/// @tparam is_rim  neighbours may be clamped, so that every voxel needs the offsets of its four
+///                 lines; otherwise these are at fixed distances from the first
+template <bool is_rim>
 struct RowTaps {
   static constexpr int row_units = 16;
 
   int count = 0;
   RowUnit unit[row_units];
-  /// Offset of the lower neighbour along x on line (y, z), with Rim also on (y+1, z), (y, z+1) and
-  /// (y+1, z+1) [voxel].
-  alignas(64) std::int32_t offset[Rim ? 4 : 1][cell_edge * row_units];
+  /// Offset of the lower neighbour along x on line (y, z), with is_rim also on (y+1, z), (y, z+1)
+  /// and (y+1, z+1) [voxel].
+  alignas(64) std::int32_t offset[is_rim ? 4 : 1][cell_edge * row_units];
   alignas(64) float fraction[3][cell_edge * row_units];
 };
 
@@ -62,10 +62,10 @@ inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
 }
 
 /// Positions of a vector of voxels, as local and whole parts like in SourceMap.
-template <bool Rim>
+template <bool is_rim>
 struct RowPositions {
   hn::Vec<RowTag> local[3];
-  hn::Vec<RowIntTag> whole[Rim ? 3 : 1];  ///< per axis; without Rim RowSource::origin()
+  hn::Vec<RowIntTag> whole[is_rim ? 3 : 1];  ///< per axis; without is_rim RowSource::origin()
 };
 
 /// Local positions at the start of row (j, k), the first sums of local_position().
@@ -80,19 +80,19 @@ struct RowStart {
 };
 
 /// local_position() of the voxels of a row from `lane` on.
-template <bool Rim>
-inline RowPositions<Rim> row_positions(const RowSource& source,
-                                       const RowStart& start,
-                                       std::size_t lane) {
+template <bool is_rim>
+inline RowPositions<is_rim> row_positions(const RowSource& source,
+                                          const RowStart& start,
+                                          std::size_t lane) {
   const RowTag d;
   const auto i = hn::Iota(d, static_cast<float>(lane));
-  RowPositions<Rim> positions;
+  RowPositions<is_rim> positions;
   for (int axis = 0; axis < 3; ++axis) {
     positions.local[axis] =
         hn::Add(hn::Set(d, start.at[axis]), hn::Mul(hn::Set(d, source.axis[0][axis]), i));
-    if constexpr (Rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
+    if constexpr (is_rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
   }
-  if constexpr (!Rim) {
+  if constexpr (!is_rim) {
     positions.whole[0] = hn::Set(RowIntTag(), static_cast<std::int32_t>(source.origin()));
   }
   return positions;
@@ -100,24 +100,24 @@ inline RowPositions<Rim> row_positions(const RowSource& source,
 
 /// Positions of the voxels of row (j, k) of a cell from `lane` on, each by the map of its own run.
 /// Voxels of no run use the map of the first: their taps are readable, their values not used.
-template <bool Rim>
-HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
-                                            const RowRun* runs,
-                                            int run_count,
-                                            const RowStart& first_start,
-                                            int j,
-                                            int k,
-                                            std::size_t lane) {
-  RowPositions<Rim> x = row_positions<Rim>(sources[runs[0].source], first_start, lane);
+template <bool is_rim>
+HWY_INLINE RowPositions<is_rim> unit_positions(const RowSource* sources,
+                                               const RowRun* runs,
+                                               int run_count,
+                                               const RowStart& first_start,
+                                               int j,
+                                               int k,
+                                               std::size_t lane) {
+  RowPositions<is_rim> x = row_positions<is_rim>(sources[runs[0].source], first_start, lane);
   for (int r = 1; r < run_count; ++r) {
     const RowSource& source = sources[runs[r].source];
-    const RowPositions<Rim> more = row_positions<Rim>(source, RowStart(source, j, k), lane);
+    const RowPositions<is_rim> more = row_positions<is_rim>(source, RowStart(source, j, k), lane);
     const auto mine = lanes_of(runs[r].bits, lane);
     const auto mine_int = hn::RebindMask(RowIntTag(), mine);
     for (int axis = 0; axis < 3; ++axis) {
       x.local[axis] = hn::IfThenElse(mine, more.local[axis], x.local[axis]);
     }
-    for (int part = 0; part < (Rim ? 3 : 1); ++part) {
+    for (int part = 0; part < (is_rim ? 3 : 1); ++part) {
       x.whole[part] = hn::IfThenElse(mine_int, more.whole[part], x.whole[part]);
     }
   }
@@ -126,24 +126,24 @@ HWY_INLINE RowPositions<Rim> unit_positions(const RowSource* sources,
 
 /// Neighbours of a vector of voxels along one axis.
 struct AxisTaps {
-  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without Rim less the whole part
+  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without is_rim less the whole part
   hn::Vec<RowTag> fraction;    ///< from it to the upper one
-  hn::Vec<RowIntTag> step;     ///< to the upper one in memory [voxel]; Rim only
-  hn::Mask<RowTag> in_source;  ///< Rim only
+  hn::Vec<RowIntTag> step;     ///< to the upper one in memory [voxel]; is_rim only
+  hn::Mask<RowTag> in_source;  ///< is_rim only
 };
 
 /// @param near    local positions, for nearest plus one half
 /// @param stride  from a voxel to the next along the axis in memory [voxel]
-template <bool Rim>
+template <bool is_rim>
 HWY_INLINE AxisTaps
-axis_taps(const RowPositions<Rim>& x, hn::Vec<RowTag> near, int axis, int dim, int stride) {
+axis_taps(const RowPositions<is_rim>& x, hn::Vec<RowTag> near, int axis, int dim, int stride) {
   const RowTag d;
   const RowIntTag di;
   AxisTaps taps;
   const auto floor = hn::Floor(near);
   taps.fraction = hn::Sub(near, floor);
   taps.voxel = hn::ConvertTo(di, floor);
-  if constexpr (Rim) {
+  if constexpr (is_rim) {
     taps.voxel = hn::Add(taps.voxel, x.whole[axis]);
     const int last = dim - 1;
     const auto whole = hn::ConvertTo(d, x.whole[axis]);
@@ -161,13 +161,13 @@ axis_taps(const RowPositions<Rim>& x, hn::Vec<RowTag> near, int axis, int dim, i
 }
 
 /// Stores offsets and fractions of some voxels at place `to` of `taps`.
-/// @returns which of them lie inside the source; without Rim all
-template <bool Rim>
+/// @returns which of them lie inside the source; without is_rim all
+template <bool is_rim>
 HWY_INLINE hn::Mask<RowTag> store_taps(const SourceShape& source,
                                        bool nearest,
-                                       const RowPositions<Rim>& x,
+                                       const RowPositions<is_rim>& x,
                                        std::size_t to,
-                                       RowTaps<Rim>& taps) {
+                                       RowTaps<is_rim>& taps) {
   const RowTag d;
   const RowIntTag di;
   const int stride[3] = {1, source.dims[0], source.dims[0] * source.dims[1]};
@@ -175,15 +175,15 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceShape& source,
   auto in_source = hn::Eq(hn::Zero(d), hn::Zero(d));
   for (int axis = 0; axis < 3; ++axis) {
     const auto near = nearest ? hn::Add(x.local[axis], hn::Set(d, 0.5f)) : x.local[axis];
-    along[axis] = axis_taps<Rim>(x, near, axis, source.dims[axis], stride[axis]);
-    if constexpr (Rim) in_source = hn::And(in_source, along[axis].in_source);
+    along[axis] = axis_taps<is_rim>(x, near, axis, source.dims[axis], stride[axis]);
+    if constexpr (is_rim) in_source = hn::And(in_source, along[axis].in_source);
     hn::Store(along[axis].fraction, d, taps.fraction[axis] + to);
   }
   const auto row = hn::Add(hn::Mul(along[2].voxel, hn::Set(di, source.dims[1])), along[1].voxel);
   auto offset = hn::Add(hn::Mul(row, hn::Set(di, source.dims[0])), along[0].voxel);
-  if constexpr (!Rim) offset = hn::Add(offset, x.whole[0]);
+  if constexpr (!is_rim) offset = hn::Add(offset, x.whole[0]);
   hn::Store(offset, di, taps.offset[0] + to);
-  if constexpr (Rim) {
+  if constexpr (is_rim) {
     const auto above = hn::Add(offset, along[2].step);
     hn::Store(hn::Add(offset, along[1].step), di, taps.offset[1] + to);
     hn::Store(above, di, taps.offset[2] + to);
@@ -193,7 +193,7 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceShape& source,
 }
 
 /// Adds one unit: row (j, k) of one cell, given by `runs`. @pre no run is of RowKind::alone
-template <bool Rim>
+template <bool is_rim>
 inline void add_unit(const SourceShape& source,
                      bool nearest,
                      const RowSource* sources,
@@ -201,16 +201,16 @@ inline void add_unit(const SourceShape& source,
                      int run_count,
                      int j,
                      int k,
-                     RowTaps<Rim>& taps) {
+                     RowTaps<is_rim>& taps) {
   const auto at = static_cast<std::size_t>(cell_edge * taps.count);
-  unsigned bits = 0, inside = Rim ? 0 : 0xff;
+  unsigned bits = 0, inside = is_rim ? 0 : 0xff;
   for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
   const RowSource& first = sources[runs[0].source];
   const RowStart first_start(first, j, k);
   for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(RowTag())) {
-    const auto x = unit_positions<Rim>(sources, runs, run_count, first_start, j, k, lane);
+    const auto x = unit_positions<is_rim>(sources, runs, run_count, first_start, j, k, lane);
     const auto in_source = store_taps(source, nearest, x, at + lane, taps);
-    if constexpr (Rim) inside |= bits_of(in_source, lane);
+    if constexpr (is_rim) inside |= bits_of(in_source, lane);
   }
   // The processor does not prefetch across the distance to the next rows.
   for (const std::size_t voxel : {0, cell_edge / 2}) {

@@ -28,17 +28,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 using PairTag = hn::CappedTag<std::uint64_t, 4>;  ///< one x-pair of samples per lane
 using PairFloatTag = hn::Repartition<float, PairTag>;
 
-/// Eight bytes from each of N samples on, by loads and shuffles: half the time of a gather
+/// Eight bytes from each of `count` samples on, by loads and shuffles: half the time of a gather
 /// instruction on the processors measured.
-template <std::size_t N, class T>
-HWY_INLINE hn::Vec<hn::Simd<std::uint64_t, N, 0>> load_words(const T* samples,
-                                                             const std::int32_t* offset) {
-  const hn::Simd<std::uint64_t, N, 0> d;
-  if constexpr (N == 1) {
+template <std::size_t count, class T>
+HWY_INLINE hn::Vec<hn::Simd<std::uint64_t, count, 0>> load_words(const T* samples,
+                                                                 const std::int32_t* offset) {
+  const hn::Simd<std::uint64_t, count, 0> d;
+  if constexpr (count == 1) {
     return hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(samples + *offset));
   } else {
-    const auto low = load_words<N / 2>(samples, offset);
-    return hn::Combine(d, load_words<N / 2>(samples, offset + N / 2), low);
+    const auto low = load_words<count / 2>(samples, offset);
+    return hn::Combine(d, load_words<count / 2>(samples, offset + count / 2), low);
   }
 }
 
@@ -83,13 +83,13 @@ HWY_INLINE hn::Vec<PairFloatTag> both(const float* from) {
 }
 
 /// Pairs of the voxels from `at` on, blended along y and z.
-template <bool Rim, class T>
+template <bool is_rim, class T>
 HWY_INLINE hn::Vec<PairFloatTag> blended_pairs(const SourceView<T>& view,
-                                               const RowTaps<Rim>& taps,
+                                               const RowTaps<is_rim>& taps,
                                                std::size_t at) {
   const std::ptrdiff_t up = view.dims[0], far = up * view.dims[1];
   const auto pairs = [&](int line, std::ptrdiff_t distance) {
-    if constexpr (Rim) return read_pairs(view.data, taps.offset[line] + at);
+    if constexpr (is_rim) return read_pairs(view.data, taps.offset[line] + at);
     return read_pairs(view.data + distance, taps.offset[0] + at);
   };
   const auto fy = both(taps.fraction[1] + at);
@@ -99,10 +99,10 @@ HWY_INLINE hn::Vec<PairFloatTag> blended_pairs(const SourceView<T>& view,
 }
 
 /// Values of all units of `taps`, eight per unit.
-template <bool Rim, class T>
+template <bool is_rim, class T>
 inline void sample_units(const SourceView<T>& view,
                          bool nearest,
-                         const RowTaps<Rim>& taps,
+                         const RowTaps<is_rim>& taps,
                          float* values) {
   const PairFloatTag d;
   constexpr std::size_t pairs = hn::MaxLanes(PairTag());

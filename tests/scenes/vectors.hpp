@@ -1,0 +1,13 @@
+/// @file vectors.hpp
+/// Vectors of three numbers.
+#pragma once
+#include <array>
+
+namespace tetwarp::scenes {
+using Vector = std::array<double, 3>;
+
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+}  // namespace tetwarp::scenes
