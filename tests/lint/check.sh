@@ -100,10 +100,9 @@ check_tidy() {
       --extra-arg=-Wno-unknown-warning-option -p "$folder"
 }
 
-# Without tetwarp::io and OpenMP.
+# Without tetwarp::io.
 check_small() {
-  configure "$root/build/check-small" -DTETWARP_CUDA=OFF -DTETWARP_IO=OFF -DCMAKE_CXX_FLAGS=-Werror \
-    -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON
+  configure "$root/build/check-small" -DTETWARP_CUDA=OFF -DTETWARP_IO=OFF -DCMAKE_CXX_FLAGS=-Werror
   cmake --build "$root/build/check-small"
   run_tests "$root/build/check-small" -LE long
 }
