@@ -1,6 +1,11 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>
+#include <thread>
 
+#include "host/base/thread_count.hpp"
 #include "host/base/warp_backend.hpp"
 
 namespace tetwarp {
@@ -22,6 +27,15 @@ std::pair<Backend, std::string> choose_backend(Backend requested, int device) {
     throw CudaError("back end cuda: " + cuda.reason + "; use cpu or auto");
   }
   return {Backend::cpu, "no usable CUDA device (" + cuda.reason + ")"};
+}
+
+int thread_count(int requested) {
+  if (requested < 0 || requested > max_threads) {
+    throw std::invalid_argument("threads: " + std::to_string(requested) +
+                                ", expected 0 (all cores) to " + std::to_string(max_threads));
+  }
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return requested > 0 ? requested : std::clamp(cores, 1, max_threads);
 }
 
 }  // namespace tetwarp

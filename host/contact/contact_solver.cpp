@@ -9,11 +9,11 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <tetwarp/version.hpp>
 
+#include "host/base/thread_count.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/problem/imbalance.hpp"
@@ -38,7 +38,7 @@ void check_options(const ContactOptions& options) {
   }
   if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
   if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
-  if (options.threads < 0) fail("threads: expected 0 (all cores) or more");
+  thread_count(options.threads);
 }
 
 /// Measures of the whole problem, summed over its islands.
@@ -206,8 +206,7 @@ struct ContactSolver::State {
 
 ContactSolver::ContactSolver(const ContactOptions& options) {
   check_options(options);
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const int threads = options.threads > 0 ? options.threads : std::max(cores, 1);
+  const int threads = thread_count(options.threads);
   const Backend backend = choose_contact_backend(options.backend, options.device).first;
   std::unique_ptr<ContactDevice> device;
   if (backend == Backend::cuda) device = make_contact_device(options.device);

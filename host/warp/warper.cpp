@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "host/base/region_grid.hpp"
+#include "host/base/thread_count.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/warp/hex_split.hpp"
 #include "host/warp/step_queue.hpp"
@@ -79,7 +80,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   check_transforms(plan.sources, options);
   check_mesh(mesh);
   plan.mesh = with_split_hexes(mesh);
-  if (options.threads < 0) throw std::invalid_argument("threads: negative");
+  thread_count(options.threads);
   const Grid& source_grid = plan.sources.front().grid;
   plan.source_region =
       options.source_window ? options.source_window->region : Region{{0, 0, 0}, source_grid.dims};

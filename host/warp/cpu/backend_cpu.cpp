@@ -1,10 +1,9 @@
 /// @file backend_cpu.cpp
 /// Back end cpu: the pipeline on host threads.
-#include <algorithm>
 #include <fstream>
 #include <string>
-#include <thread>
 
+#include "host/base/thread_count.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 #include "host/warp/cpu/cell_raster_cpu.hpp"
@@ -22,8 +21,7 @@ std::string processor_name() {
 }
 
 std::unique_ptr<WarpBackend> make_cpu_backend(const WarpPlan& plan) {
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  const int threads = plan.options.threads > 0 ? plan.options.threads : std::max(cores, 1);
+  const int threads = thread_count(plan.options.threads);
   return std::make_unique<WarpPipeline<CpuExec>>(plan, CpuExec(threads));
 }
 
