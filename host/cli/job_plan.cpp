@@ -197,7 +197,8 @@ JobPlan plan_job(const WarpArguments& arguments) {
   if (!several) {
     check_hdf_name(arguments.output);
     const fs::path folder = fs::path(arguments.output).parent_path();
-    if (arguments.makes_folder && !folder.empty() && !fs::exists(folder)) {
+    std::error_code error;
+    if (arguments.makes_folder && !folder.empty() && !fs::exists(folder, error)) {
       plan.output_folder = folder.string();
     }
   }

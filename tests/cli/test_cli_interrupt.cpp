@@ -184,9 +184,10 @@ TEST(ProgressBar, StaysOnOneLineAndNeverRunsBackwards) {
   write_long_mesh(scene, 2000);
   for (const std::uint16_t columns : std::vector<std::uint16_t>{80, 44}) {
     Terminal terminal(columns);
-    RunningCommand command(
-        scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", std::to_string(columns) + ".vtkhdf"},
-        {.err = terminal.name()});
+    RunningCommand command(scene,
+                           {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o",
+                            std::to_string(columns) + ".vtkhdf", "--temporal"},
+                           {.err = terminal.name()});
     const std::string text = terminal.text_until_end_of(command);
     EXPECT_EQ(command.wait().exit_code, 0);
     double percent = 0, step = 0;
