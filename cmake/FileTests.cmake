@@ -66,6 +66,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp
   tests/cli/test_cli_fields.cpp
+  tests/cli/test_cli_interrupt.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp

@@ -8,7 +8,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <string>
 #include <tetwarp/error.hpp>
+
+#include "io/leftover_files.hpp"
 
 namespace tetwarp {
 namespace {
@@ -49,7 +52,19 @@ std::string reason() {
 }
 }  // namespace
 
-FinishedFile::FinishedFile(const std::string& path) : path_(path) {
+std::string link_target(const std::string& path) {
+  std::string target = path;
+  std::array<char, 4096> text{};
+  for (int links = 0; links < 40; ++links) {
+    const ssize_t size = readlink(target.c_str(), text.data(), text.size());
+    if (size < 0 || size == std::ssize(text)) break;
+    const std::string next(text.data(), static_cast<std::size_t>(size));
+    target = next.starts_with('/') ? next : folder_of(target) + next;
+  }
+  return target;
+}
+
+FinishedFile::FinishedFile(const std::string& path) : path_(path), final_(link_target(path)) {
   static std::atomic<int> count{0};
   struct stat status {};
   if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
@@ -57,13 +72,13 @@ FinishedFile::FinishedFile(const std::string& path) : path_(path) {
                   S_ISDIR(status.st_mode) ? "is a folder, give the name of a file"
                                           : "exists and is not a plain file, give another name");
   }
-  const std::string folder = folder_of(path);
-  const std::string name = path.substr(folder.size());
+  const std::string folder = folder_of(final_);
+  const std::string name = final_.substr(folder.size());
   if (name.empty()) throw IoError(path, "", "is not the name of a file");
+  remove_leftovers_once(folder);
   int descriptor = -1;
   do {
-    temporary_ =
-        folder + "." + std::to_string(getpid()) + "." + std::to_string(count++) + ".tmp." + name;
+    temporary_ = folder + temporary_start() + std::to_string(count++) + ".tmp." + name;
     descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) {
@@ -89,13 +104,13 @@ std::int64_t FinishedFile::finish() {
   const std::string problem = is_flushed ? "" : reason();
   if (descriptor >= 0) close(descriptor);
   if (!is_flushed) throw IoError(path_, "", "cannot be flushed: " + problem);
-  if (rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (rename(temporary_.c_str(), final_.c_str()) != 0) {
     throw IoError(path_, "", "cannot be moved from its temporary name: " + reason());
   }
   temporary_.clear();
   unlist_name(slot_);
   // Flushes the new name as well; a folder that cannot be flushed is not an error.
-  const std::string folder = folder_of(path_);
+  const std::string folder = folder_of(final_);
   const int parent = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (parent >= 0) {
     fsync(parent);

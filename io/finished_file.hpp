@@ -12,8 +12,11 @@ namespace tetwarp {
 /// A file that is being written under a temporary name in the folder of `path`; finish() renames
 /// it.
 ///
-/// The temporary name is `.<pid>.<count>.tmp.<name>`, which keeps the extension. The constructor
-/// creates it empty, so that a folder without write permission is found before any work.
+/// A symbolic link stays: the file that it leads to is written. The temporary name is
+/// `.<pid>-<place>.<count>.tmp.<name>`, which keeps the extension; <place> stands for the machine
+/// and its numbering of processes. The constructor creates it empty, so that a folder without write
+/// permission is found before any work. Before the first file in a folder it removes the temporary
+/// files there of processes of this machine that no longer exist.
 class FinishedFile {
  public:
   /// Throws IoError when the folder cannot be written to or `path` exists and is not a plain file.
@@ -34,9 +37,13 @@ class FinishedFile {
 
  private:
   std::string path_;
+  std::string final_;  // the file that path_ leads to
   std::string temporary_;
   int slot_ = -1;  // in the list of remove_unfinished_files(); -1: not listed
 };
+
+/// The file that a path leads to through symbolic links, also when it does not exist yet.
+TETWARP_IO_EXPORT std::string link_target(const std::string& path);
 
 /// Writes `content` as the file `path`. Throws IoError.
 /// @returns bytes of the file

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -125,8 +127,12 @@ ThreadPool& thread_pool() {
 }  // namespace
 
 int thread_count(int requested) {
-  const int processors = static_cast<int>(std::thread::hardware_concurrency());
-  return std::clamp(requested > 0 ? requested : processors, 1, most_threads);
+  if (requested < 0 || requested > max_threads) {
+    throw std::invalid_argument("threads: " + std::to_string(requested) +
+                                ", expected 0 (all cores) to " + std::to_string(max_threads));
+  }
+  const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+  return requested > 0 ? requested : std::clamp(cores, 1, max_threads);
 }
 
 void run_parallel_tasks(int threads,
@@ -137,7 +143,7 @@ void run_parallel_tasks(int threads,
     for (std::int64_t i = 0; i < count; ++i) call(context, i);
     return;
   }
-  const auto helpers = std::min<std::int64_t>({threads, count, most_threads}) - 1;
+  const auto helpers = std::min<std::int64_t>({threads, count, max_threads}) - 1;
   Loop loop{count, context, call, static_cast<int>(helpers)};
   thread_pool().run(loop);
 }

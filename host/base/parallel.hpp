@@ -7,10 +7,12 @@
 
 namespace tetwarp {
 
-/// Most threads that a loop uses; larger numbers are reduced to it.
-inline constexpr int most_threads = 1024;
+/// Most threads that a loop uses.
+inline constexpr int max_threads = 1024;
 
-/// Threads for loops: `requested`, or where it is 0 one per processor that this process may use.
+/// Number of threads for an option.
+/// @param requested  0: one per processor that this process may use, at most max_threads
+/// @throws std::invalid_argument  it is not from 0 to max_threads
 int thread_count(int requested);
 
 /// Calls call(context, i) once for every i in [0, count). Internal to parallel_tasks().

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tetwarp/error.hpp>
+#include <tetwarp/version.hpp>
 
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
@@ -24,6 +25,16 @@ struct Outcome {
   int skipped = 0;
   Json reports = Json::array();
 };
+
+/// @param is_ended  false: jobs are left to run
+void write_report(const std::string& path, const Outcome& outcome, bool is_ended) {
+  if (path.empty()) return;
+  const char* const ended = outcome.failed > 0 ? "failed" : "done";
+  const Json report{{"version", TETWARP_VERSION},      {"status", is_ended ? ended : "interrupted"},
+                    {"jobs_done", outcome.done},       {"jobs_failed", outcome.failed},
+                    {"jobs_skipped", outcome.skipped}, {"jobs", outcome.reports}};
+  write_finished_file(path, report.dump(2) + "\n");
+}
 
 /// The files that a job will write. Where planning fails, e.g. because an earlier job makes the
 /// input, the output that the job names.
@@ -72,7 +83,8 @@ void fail(Outcome& outcome, const std::string& name, Json report, const std::str
 
 void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
   const std::string name = fmt::format("job {}", number);
-  Json report{{"job", number}};
+  Json report{
+      {"job", number}, {"volumes", job.volumes}, {"mesh", job.mesh}, {"output", job.output}};
   if (!job.error.empty()) {
     fail(outcome, name, report, job.error);
     return;
@@ -80,7 +92,7 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
   try {
     const JobResult result = run_warp_job(job.arguments, {.label = name, .shows_progress = !quiet});
     report.update(Json::parse(report_json(result)));
-    ++(result.written == 0 ? outcome.skipped : outcome.done);
+    ++(result.written == 0 && result.plans.empty() ? outcome.skipped : outcome.done);
     outcome.reports.push_back(report);
     if (!quiet) fmt::print("{}: {}", name, summary(result));
   } catch (const Cancelled&) {
@@ -101,8 +113,8 @@ int run_batch(const WarpArguments& shared, const CLI::App& defaults) {
   Outcome outcome;
   for (std::size_t j = 0; j < jobs.size() && !is_interrupted(); ++j) {
     run_job(jobs[j], static_cast<int>(j) + 1, shared.quiet, outcome);
+    write_report(shared.report, outcome, j + 1 == jobs.size() && !is_interrupted());
   }
-  if (!shared.report.empty()) write_finished_file(shared.report, outcome.reports.dump(2) + "\n");
   if (!shared.quiet) {
     fmt::print("{} done, {} failed, {} skipped\n", outcome.done, outcome.failed, outcome.skipped);
   }

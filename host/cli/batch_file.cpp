@@ -78,6 +78,22 @@ class JobReader {
     return files;
   }
 
+  /// Stores the names of files that are given as text, for the report of a job that may have
+  /// errors.
+  void name_files(const Json& job, BatchJob& named) const {
+    const auto names = [&](const char* key) {
+      Words located_names;
+      const Json value = job.is_object() && job.contains(key) ? job[key] : Json();
+      for (const Json& one : value.is_array() ? value : Json::array({value})) {
+        if (one.is_string()) located_names.push_back(located(one.get<std::string>()));
+      }
+      return located_names;
+    };
+    named.volumes = names("volume");
+    for (const std::string& mesh : names("mesh")) named.mesh = mesh;
+    for (const std::string& output : names("output")) named.output = output;
+  }
+
  private:
   std::string located(const std::string& path) const { return (folder_ / path).string(); }
 
@@ -144,8 +160,10 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
   std::vector<BatchJob> jobs;
   for (const Json& job : batch["jobs"]) {
     BatchJob& parsed = jobs.emplace_back();
+    reader.name_files(job, parsed);
     try {
       parsed.arguments = parse_warp_arguments(reader.words_of(job));
+      parsed.arguments.makes_folder = true;
     } catch (const CLI::ParseError& error) {
       parsed.error = one_line(error.what());
     } catch (const std::invalid_argument& error) {

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -22,6 +24,7 @@ struct DeformArguments {
   std::string output;
   int steps = 8;
   DeformOptions deform;
+  bool quiet = false;
 };
 
 int run_deform(const DeformArguments& arguments) {
@@ -30,6 +33,7 @@ int run_deform(const DeformArguments& arguments) {
   check_output_file(arguments.output, {arguments.input});
   const MeshReader reader(arguments.input);
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
+  if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
              reader.mesh().cell_count(), arguments.steps, name_of(arguments.deform.kind),
              arguments.output);
@@ -61,11 +65,12 @@ void add_deform_command(CLI::App& app, Run& run) {
       ->type_name("A");
   add_choice(*command, "--axis", deform.axis, axes, "axis of twist, bend, swim and rotate [z]");
   command->add_option("--seed", deform.seed, "seed of random [1]")
-      ->check(at_least_zero())
+      ->check(at_least(0, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   command->add_option("--offset", deform.offset, "offset of translate, in world units [0,0,0]")
       ->delimiter(',')
       ->type_name("X,Y,Z");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] {
     if (!std::isfinite(arguments->deform.amount)) {
       throw CLI::ValidationError("--amount", "expected a finite number");

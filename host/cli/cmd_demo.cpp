@@ -22,6 +22,7 @@ struct DemoArguments {
   std::array<std::int64_t, 3> dims{256, 160, 122};
   int steps = 8;
   int cells = 6;
+  bool quiet = false;
 };
 
 struct DemoFiles {
@@ -44,6 +45,7 @@ void make_inputs(const DemoArguments& arguments, const DemoFiles& files) {
   write_volumes(files.volume, {&volume});
   const Mesh mesh = make_lattice_mesh(volume, {.cells = arguments.cells, .threshold = {}});
   write_deformed_mesh(files.mesh, mesh, {.kind = Deformation::twist}, arguments.steps);
+  if (arguments.quiet) return;
   fmt::print("phantom of {} x {} x {} voxels, {} tetrahedra, {} steps of twisting\n",
              arguments.dims[0], arguments.dims[1], arguments.dims[2], mesh.tets.size(),
              arguments.steps);
@@ -82,8 +84,9 @@ int run_demo(const DemoArguments& arguments) {
   warp.files = {files.volume, files.mesh};
   warp.output = files.warped;
   warp.report = files.report;
-  const JobResult result = run_warp_job(warp, {.label = "demo"});
+  const JobResult result = run_warp_job(warp, {.label = "demo", .shows_progress = !arguments.quiet});
   draw(files, result.outputs.back());
+  if (arguments.quiet) return 0;
   fmt::print("{}", summary(result));
   print_timings(result.report);
   fmt::print("look at {}, or open {} and {} in ParaView\n", files.picture, files.mesh,
@@ -109,6 +112,7 @@ void add_demo_command(CLI::App& app, Run& run) {
   command->add_option("--cells", arguments->cells, "cubes of the mesh along the longest side [6]")
       ->check(between(1, 100))
       ->type_name("N");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_demo(*arguments); }; });
 }
 

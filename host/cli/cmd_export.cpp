@@ -17,6 +17,7 @@ struct ExportArguments {
   std::string array;
   std::int64_t step = 0;
   std::optional<NiftiVectors> vectors;
+  bool quiet = false;
 };
 
 /// --vectors, or without it LPS for displacement fields of the warp, which ITK and ANTs read.
@@ -34,6 +35,7 @@ int run_export(const ExportArguments& arguments) {
   const Volume volume = read_volume(arguments.input, arguments.array, arguments.step);
   const NiftiVectors vectors = vectors_of(arguments, volume);
   write_nifti(arguments.output, volume, vectors);
+  if (arguments.quiet) return 0;
   fmt::print("{} of {}{}: {}\n", volume.name, name_of(volume.type),
              vectors == NiftiVectors::lps ? " as LPS displacements" : "", arguments.output);
   return 0;
@@ -53,7 +55,7 @@ void add_export_command(CLI::App& app, Run& run) {
       ->type_name("FILE");
   command->add_option("--array", arguments->array, "array to write [first]")->type_name("NAME");
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   command
       ->add_option_function<std::string>(
@@ -64,6 +66,7 @@ void add_export_command(CLI::App& app, Run& run) {
           "axes of vectors: the file's, or those of ITK and ANTs, x and y negated [lps for "
           "tetwarp_displacement and tetwarp_forward, else world]")
       ->type_name("world|lps");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_export(*arguments); }; });
 }
 

@@ -16,6 +16,7 @@ struct ImportArguments {
   std::string output;
   VolumeWriteOptions write;
   MeshImportOptions mesh;
+  bool quiet = false;
 };
 
 void run_volume_import(const ImportArguments& arguments) {
@@ -27,6 +28,7 @@ void run_volume_import(const ImportArguments& arguments) {
   }
   const Volume volume = read_nifti(arguments.input);
   write_volumes(arguments.output, {&volume}, arguments.write);
+  if (arguments.quiet) return;
   fmt::print("{} x {} x {} voxels of {}: {}\n", volume.grid.dims[0], volume.grid.dims[1],
              volume.grid.dims[2], name_of(volume.type), arguments.output);
 }
@@ -34,6 +36,7 @@ void run_volume_import(const ImportArguments& arguments) {
 void run_mesh_import(const ImportArguments& arguments) {
   const ImportedMesh mesh = import_mesh(arguments.input, arguments.mesh);
   write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times);
+  if (arguments.quiet) return;
   std::string skipped;
   for (const auto& [kind, count] : mesh.skipped) {
     skipped += fmt::format("{}{} {}", skipped.empty() ? ", left out: " : ", ", count, kind);
@@ -80,6 +83,7 @@ void add_import_command(CLI::App& app, Run& run) {
                    "of a mesh: point array (Gmsh: node data) of three components to keep as "
                    "displacement [displacement]")
       ->type_name("NAME");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_import(*arguments); }; });
 }
 

@@ -22,6 +22,7 @@ struct InfoArguments {
   std::string file;
   bool stats = false;
   bool json = false;
+  bool quiet = false;
 };
 
 Json times_json(const std::vector<double>& times) {
@@ -168,6 +169,7 @@ int run_info(const InfoArguments& arguments) {
                         "; info reads VTKHDF volumes, VTKHDF meshes, NIfTI images and FCLIB "
                         "contact problems");
   }
+  if (arguments.quiet) return 0;
   if (arguments.json) {
     fmt::print("{}\n", json.dump(2));
   } else {
@@ -186,6 +188,7 @@ void add_info_command(CLI::App& app, Run& run) {
       ->type_name("");
   command->add_flag("--stats", arguments->stats, "read the samples and show their range");
   command->add_flag("--json", arguments->json, "print JSON");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_info(*arguments); }; });
 }
 

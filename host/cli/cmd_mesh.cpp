@@ -18,6 +18,7 @@ struct MeshArguments {
   std::string array;
   std::int64_t step = 0;
   LatticeOptions lattice;
+  bool quiet = false;
 };
 
 int run_mesh(const MeshArguments& arguments) {
@@ -32,6 +33,7 @@ int run_mesh(const MeshArguments& arguments) {
     throw IoError(arguments.volume, volume.name, error.what());
   }
   write_mesh(arguments.output, mesh);
+  if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} {}: {}\n", mesh.rest_positions.size(), mesh.cell_count(),
              arguments.lattice.hexahedra ? "hexahedra" : "tetrahedra", arguments.output);
   return 0;
@@ -60,8 +62,9 @@ void add_mesh_command(CLI::App& app, Run& run) {
   command->add_option("--array", arguments->array, "array to compare with the threshold [first]")
       ->type_name("NAME");
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_mesh(*arguments); }; });
 }
 

@@ -19,6 +19,7 @@ struct RenderArguments {
   std::string array;
   std::int64_t step = 0;
   RenderOptions render;
+  bool quiet = false;
 };
 
 int run_render(const RenderArguments& arguments) {
@@ -41,6 +42,7 @@ int run_render(const RenderArguments& arguments) {
   for (const Volume& volume : volumes) rows.push_back(&volume);
   const Image image = render(rows, arguments.render);
   write_png(arguments.output, image);
+  if (arguments.quiet) return 0;
   fmt::print("{} x {} pixels: {}\n", image.width, image.height, arguments.output);
   return 0;
 }
@@ -60,7 +62,7 @@ void add_render_command(CLI::App& app, Run& run) {
       ->type_name("VOLUME");
   command->add_option("--array", arguments->array, "array to draw [first]")->type_name("NAME");
   command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   command->add_option("--low", arguments->render.low, "value drawn black [1st percentile]")
       ->type_name("V");
@@ -69,6 +71,7 @@ void add_render_command(CLI::App& app, Run& run) {
   command->add_option("--height", arguments->render.height, "height of a panel, in pixels [360]")
       ->check(between(16, 4096))
       ->type_name("N");
+  add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_render(*arguments); }; });
 }
 

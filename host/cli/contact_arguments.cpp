@@ -1,7 +1,10 @@
 #include "host/cli/contact_arguments.hpp"
 
+#include <cstdint>
+#include <limits>
 #include <vector>
 
+#include "host/base/parallel.hpp"
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
@@ -37,7 +40,7 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
              "what the tolerance bounds: energy-weighted residual or FCLIB's error [eta]");
   app.add_option("--max-sweeps", options.max_sweeps,
                  "maximum number of passes over all contacts [20000]")
-      ->check(above_zero())
+      ->check(at_least(1, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
   add_choice(app, "--solver", options.method, choices_of<ContactMethod>(),
              "solution method [auto]");
@@ -48,7 +51,7 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
       ->check(above_zero())
       ->type_name("W");
   app.add_option("--inner", options.inner_sweeps, "sweeps per outer iteration [5]")
-      ->check(above_zero())
+      ->check(at_least(1))
       ->type_name("N");
   app.add_flag_callback(
       "--warm-start", [&arguments] { arguments.start = ContactStart::stored; },
@@ -82,15 +85,15 @@ void declare_running(CLI::App& app, ContactArguments& arguments) {
   add_choice(app, "--precision", options.precision, choices_of<ContactPrecision>(),
              "floating-point format of the iterations [double]");
   app.add_option("--device", options.device, "CUDA device number [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   app.add_option("--threads", options.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(at_least_zero())
+      ->check(between(0, max_threads))
       ->type_name("N");
   declare_skips(app, options.skip);
   app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
       ->type_name("FILE");
-  app.add_flag("--quiet", arguments.quiet, "print no summary");
+  add_quiet(app, arguments.quiet);
 }
 }  // namespace
 

@@ -1,7 +1,11 @@
 #include "host/cli/declare.hpp"
 
+#include <fmt/format.h>
+
 #include <cctype>
+#include <charconv>
 #include <memory>
+#include <system_error>
 
 namespace tetwarp::cli {
 namespace {
@@ -21,7 +25,27 @@ class UsageFormatter : public CLI::Formatter {
  private:
   std::string synopsis_;
 };
+
+/// @param range  the accepted numbers in words, for the message
+CLI::Validator whole_number(std::int64_t low, std::int64_t high, const std::string& range) {
+  const auto check = [=](const std::string& text) -> std::string {
+    std::int64_t number = 0;
+    const char* const end = text.data() + text.size();
+    const auto [past, error] = std::from_chars(text.data(), end, number);
+    const bool is_whole = past == end && !text.empty();
+    if (is_whole && error == std::errc() && number >= low && number <= high) return {};
+    const bool is_large =
+        is_whole && text.front() != '-' && (error != std::errc() || number > high);
+    return is_large ? fmt::format("'{}' is above {}", text, high)
+                    : fmt::format("'{}' is not a whole number {}", text, range);
+  };
+  return {check, ""};
+}
 }  // namespace
+
+void add_quiet(CLI::App& app, bool& is_quiet) {
+  app.add_flag("--quiet", is_quiet, "print nothing but errors");
+}
 
 CLI::App* add_subcommand(CLI::App& app,
                          const std::string& name,
@@ -57,12 +81,12 @@ std::string listed(const std::vector<std::string>& words) {
   return CLI::detail::join(words, ", ");
 }
 
-CLI::Validator between(int low, int high) {
-  return CLI::Range(low, high).description("");
+CLI::Validator between(std::int64_t low, std::int64_t high) {
+  return whole_number(low, high, fmt::format("from {} to {}", low, high));
 }
 
-CLI::Validator at_least_zero() {
-  return CLI::Validator(CLI::NonNegativeNumber).description("");
+CLI::Validator at_least(std::int64_t low, std::int64_t high) {
+  return whole_number(low, high, fmt::format("of {} or more", low));
 }
 
 CLI::Validator above_zero() {

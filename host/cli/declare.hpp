@@ -3,12 +3,17 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <tetwarp/names.hpp>
 #include <utility>
 #include <vector>
 
 namespace tetwarp::cli {
+
+/// Declares the option --quiet: print nothing but errors.
+void add_quiet(CLI::App& app, bool& is_quiet);
 
 /// Adds a subcommand.
 /// @param synopsis  what follows the name in the usage line, e.g. "VOLUME -o MESH"
@@ -25,10 +30,12 @@ std::string one_line(const std::string& text);
 /// "a, b, c".
 std::string listed(const std::vector<std::string>& words);
 
-/// Validators of numbers that add nothing to the help.
-CLI::Validator between(int low, int high);
-CLI::Validator at_least_zero();
-CLI::Validator above_zero();  // accepts infinity
+/// Validators of whole numbers that add nothing to the help; their messages name the range.
+CLI::Validator between(std::int64_t low, std::int64_t high);
+CLI::Validator at_least(std::int64_t low, std::int64_t high = std::numeric_limits<int>::max());
+
+/// Validator of a number above 0 that adds nothing to the help; accepts infinity.
+CLI::Validator above_zero();
 
 /// Words and their values, in the order in which help shows them.
 template <class T>

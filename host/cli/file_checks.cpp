@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "io/finished_file.hpp"
+
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 
@@ -17,6 +19,13 @@ void check_output_folder(const std::string& folder, const std::string& output) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw IoError(output, "", "no permission to write in folder '" + folder + "'");
   }
+}
+
+void check_new_folder(const std::string& folder, const std::string& output) {
+  std::error_code error;
+  fs::path above = fs::absolute(folder, error);
+  while (!fs::exists(above, error) && above.has_relative_path()) above = above.parent_path();
+  check_output_folder(above.string(), output);
 }
 
 void check_output_file(const std::string& output, const std::vector<std::string>& inputs) {
@@ -34,7 +43,7 @@ void check_output_file(const std::string& output, const std::vector<std::string>
       throw IoError(output, "", "is also an input; name another output");
     }
   }
-  const std::string folder = fs::path(output).parent_path().string();
+  const std::string folder = fs::path(link_target(output)).parent_path().string();
   check_output_folder(folder.empty() ? "." : folder, output);
 }
 
@@ -57,7 +66,7 @@ void check_kind(const std::string& path, FileKind expected, const std::string& r
 
 std::string canonical_path(const std::string& path) {
   std::error_code error;
-  const fs::path canonical = fs::weakly_canonical(fs::absolute(path), error);
+  const fs::path canonical = fs::weakly_canonical(fs::absolute(link_target(path)), error);
   return error ? path : canonical.string();
 }
 

@@ -14,6 +14,10 @@ void check_output_file(const std::string& output, const std::vector<std::string>
 /// Checks that a folder exists and is writable. @param output  named in the message
 void check_output_folder(const std::string& folder, const std::string& output);
 
+/// Checks that a folder that does not exist can be made: the nearest folder above it that exists is
+/// writable. @param output  named in the message
+void check_new_folder(const std::string& folder, const std::string& output);
+
 /// Checks that a name ends in .vtkhdf, .hdf or .h5.
 void check_hdf_name(const std::string& output);
 

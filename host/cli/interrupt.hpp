@@ -1,6 +1,7 @@
 /// @file interrupt.hpp
-/// Ctrl-C and SIGTERM. The command removes its temporary files and exits with code 130: at the next
-/// check of a flag while an InterruptFlag exists, at once elsewhere.
+/// Ctrl-C and SIGTERM. The command prints a line at once, removes its temporary files and exits
+/// with code 130: at the next check of a flag while an InterruptFlag exists, but no later than 0.7
+/// s after the signal; at once elsewhere.
 #pragma once
 
 namespace tetwarp::cli {
@@ -12,10 +13,13 @@ constexpr int interrupted_exit_code = 130;
 /// full disk, with a message, and temporary files are removed.
 void install_interrupt_handlers();
 
-/// From now on the first signal ends the process at once, whether or not an InterruptFlag exists.
+/// From now on the first signal ends the process at once and without a line, whether or not an
+/// InterruptFlag exists: for processes under mpirun, which sends signals after errors, too.
 void exit_on_first_signal();
 
-/// While one exists the first signal only sets a flag; the second ends the process at once.
+/// While one exists the first signal sets a flag, so that the work in hand can be ended in order:
+/// e.g. the report of a batch is written. The second signal ends the process at once, and so does a
+/// timer where the flag is not checked in time.
 class InterruptFlag {
  public:
   InterruptFlag();

@@ -135,11 +135,12 @@ VolumePlan plan_volume(const std::string& path,
   return plan;
 }
 
-/// Checks that the folder for several volumes can be written to, or made.
-void check_folder(const std::string& folder) {
+/// Checks that the folder of the outputs can be written to, or made.
+/// @param makes_parents  the folders above it, too
+void check_folder(const std::string& folder, bool makes_parents) {
   std::error_code error;
   if (!fs::exists(folder, error)) {
-    check_output_file(folder, {});
+    makes_parents ? check_new_folder(folder, folder) : check_output_file(folder, {});
   } else if (!fs::is_directory(folder, error)) {
     throw IoError(folder, "", "is a file; the output of several volumes is a folder");
   } else {
@@ -149,14 +150,16 @@ void check_folder(const std::string& folder) {
 
 /// Checks that outputs and report can be written and that no two of them are the same file.
 void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
-  if (!plan.output_folder.empty()) check_folder(plan.output_folder);
+  const fs::path folder = plan.output_folder;
+  if (!folder.empty()) check_folder(folder.string(), arguments.makes_folder);
   std::vector<std::string> outputs = plan.outputs();
   if (!arguments.report.empty()) outputs.push_back(arguments.report);
   std::set<std::string> seen;
   for (const std::string& output : outputs) {
     std::error_code error;
-    const bool folder_is_made = !plan.output_folder.empty() && output != arguments.report &&
-                                !fs::exists(plan.output_folder, error);
+    const bool is_in_folder =
+        output != arguments.report || fs::path(output).parent_path() == folder;
+    const bool folder_is_made = !folder.empty() && is_in_folder && !fs::exists(folder, error);
     if (!folder_is_made) check_output_file(output, inputs_of(arguments));
     if (!seen.insert(canonical_path(output)).second) {
       throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
@@ -191,7 +194,14 @@ JobPlan plan_job(const WarpArguments& arguments) {
   const std::vector<std::string> volumes = arguments.volumes();
   const bool several = volumes.size() > 1;
   if (several) plan.output_folder = arguments.output;
-  if (!several) check_hdf_name(arguments.output);
+  if (!several) {
+    check_hdf_name(arguments.output);
+    const fs::path folder = fs::path(arguments.output).parent_path();
+    std::error_code error;
+    if (arguments.makes_folder && !folder.empty() && !fs::exists(folder, error)) {
+      plan.output_folder = folder.string();
+    }
+  }
   for (const std::string& volume : volumes) {
     const fs::path output = several ? fs::path(arguments.output) / fs::path(volume).filename()
                                     : fs::path(arguments.output);

@@ -34,7 +34,7 @@ struct JobPlan {
   std::vector<std::int64_t> steps;  ///< ascending
   Backend backend;                  ///< never automatic
   std::string backend_reason;       ///< why this one
-  std::string output_folder;        ///< created when missing; empty: a single volume
+  std::string output_folder;        ///< created when missing; empty: it exists
   std::vector<VolumePlan> volumes;
 
   std::vector<std::string> outputs() const;

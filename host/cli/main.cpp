@@ -91,7 +91,7 @@ int guarded_main(int argument_count, const char* const* arguments) {
   try {
     return run_main(argument_count, arguments);
   } catch (const Cancelled&) {
-    return print_error("interrupted", interrupted_exit_code);
+    return interrupted_exit_code;  // the handler of the signal has printed a line
   } catch (const std::bad_alloc&) {
     return print_error("out of memory; use a smaller problem or, for volumes, --roi or --dims",
                        failed_exit_code);

@@ -2,33 +2,70 @@
 /// Progress of a series of steps on a terminal.
 #pragma once
 #include <chrono>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace tetwarp::cli {
 
+/// What a progress bar shows.
+struct ProgressState {
+  std::string label;        ///< shown first, e.g. "warp" or "job 3"
+  double share = 0;         ///< of the work that is done, 0 to 1
+  double step = 1;          ///< number of the current step, from 1
+  double step_count = 1;    ///< steps of the whole job
+  double voxel_rate = 0;    ///< output voxels per second
+  double seconds_left = 0;  /// negative: not known yet
+  std::string phase;        ///< shown instead of the remaining time; empty: computing
+};
+
+/// The line of a progress bar, at most `width` characters: a short bar, then no rate, where all
+/// does not fit.
+std::string progress_line(const ProgressState& state, std::size_t width);
+
 /// One line on standard error, redrawn at most ten times a second and cleared by the destructor:
-/// share done, Mvoxel/s, steps/s, remaining time. Draws only to a terminal.
+/// share done, Mvoxel/s, remaining time. Never runs backwards. Draws only to a terminal, within its
+/// width, and not after an interrupt.
 class ProgressBar {
  public:
-  /// @param is_enabled false: never draw
+  /// @param is_enabled  false: never draw
   /// @param label       shown first, e.g. "warp" or "job 3"
-  /// @param step_count  steps of the whole job
-  ProgressBar(bool is_enabled, std::string label, double step_count);
+  /// @param step_work   work of each step of the job in the order in which they are computed, in
+  ///                    units that take equal time
+  ProgressBar(bool is_enabled, std::string label, std::vector<double> step_work);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// @param steps_done   steps finished, with the finished share of the current one
+  /// @param steps_done   steps since the last that was finished, with the share of the current one
   /// @param voxels_done  output voxels computed so far
   void update(double steps_done, double voxels_done);
+
+  /// One more step is computed and written.
+  void finish_step() { ++finished_; }
+
+  /// The next steps need no work: --resume keeps them.
+  void skip_steps(std::size_t count);
+
+  /// Shows what is done while no share is reported, e.g. "writing"; until the next update.
+  void show_phase(const std::string& phase);
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  double work_before(double step) const;
+  void draw();
+
   bool draws_;
-  std::string label_;
-  double step_count_;
-  Clock::time_point start_ = Clock::now();
+  ProgressState state_;
+  std::vector<double> step_work_;
+  std::size_t finished_ = 0;  ///< steps, skipped ones included
+  double work_ = 0;           ///< done
+  double voxels_ = 0;         ///< done
+  bool has_begun_ = false;    ///< update() has been called
+  double work_at_begin_ = 0;  ///< and voxels are counted from the first update on: rates
+  double voxels_at_begin_ = 0;
+  Clock::time_point begin_{};
   Clock::time_point drawn_{};
 };
 

@@ -61,6 +61,7 @@ VolumeRun::VolumeRun(const WarpArguments& arguments,
 
 void VolumeRun::run() {
   const Stopwatch watch;
+  bar_.show_phase("reading");
   const Fingerprint inputs = is_whole_ ? read_sources() : scan_sources();
   result_.report.timings.read += watch.seconds();
   if (arguments_.temporal) {
@@ -132,12 +133,14 @@ void VolumeRun::run_each_step(const Fingerprint& inputs) {
     start_writing();
     if (keeps) {
       finish_all();
+      bar_.skip_steps(1);
       finish_step(step->report);
     } else {
       run_step(step);
     }
   }
   stop_if_interrupted();
+  bar_.show_phase("writing");
   finish_all();
 }
 
@@ -149,7 +152,10 @@ void VolumeRun::run_temporal(Fingerprint fingerprint) {
     fingerprint.add(plan_.mesh.read_step(step));
   }
   const std::string& output = volume_.outputs.front();
-  if (may_keep(output, fingerprint)) return;
+  if (may_keep(output, fingerprint)) {
+    bar_.skip_steps(plan_.steps.size());
+    return;
+  }
   begin_file(output, fingerprint, true);
   for (const std::int64_t number : plan_.steps) {
     const std::shared_ptr<Step> step = read_step(number);
@@ -158,6 +164,7 @@ void VolumeRun::run_temporal(Fingerprint fingerprint) {
     run_step(step);
   }
   stop_if_interrupted();
+  bar_.show_phase("writing");
   finish_all();
   const Stopwatch watch;
   if (!writer_) return;
@@ -206,7 +213,6 @@ void VolumeRun::finish_step(const StepReport& report) {
   total.counts += report.counts;
   total.steps.push_back(report);
   total.steps.back().timings.total += report.timings.read + report.timings.write;
-  bar_.update(static_cast<double>(total.steps.size()), static_cast<double>(total.counts.voxels));
 }
 
 double VolumeRun::fixed_bytes() const {

@@ -48,7 +48,10 @@ void VolumeRun::start_writing() {
   finish_writing();
   writing_part_ = *std::exchange(computed_, {});
   writing_ = files_.run([this, part = writing_part_] { write(part); });
-  if (!writes_beside_) finish_writing();
+  if (!writes_beside_) {
+    bar_.show_phase("writing");
+    finish_writing();
+  }
 }
 
 /// @throws the error of the write
@@ -62,6 +65,8 @@ void VolumeRun::finish_writing() {
   report.timings.write += part.step->write_seconds;
   if (!part.step->output.empty()) ++result_.written;
   finish_step(report);
+  bar_.finish_step();
+  bar_.update(0, static_cast<double>(result_.report.counts.voxels));
 }
 
 void VolumeRun::finish_all() {

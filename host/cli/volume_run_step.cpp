@@ -163,14 +163,18 @@ std::shared_ptr<VolumeRun::Samples> VolumeRun::outputs_for(const Region& region)
 }
 
 Progress VolumeRun::progress_of(const Part& part) const {
-  const Report& total = result_.report;
-  const bool is_other_written = writing_.valid() && writing_part_.step != part.step;
   const auto before = static_cast<double>(part.step->report.counts.voxels);
-  double steps_done = static_cast<double>(total.steps.size());
-  double voxels_done = static_cast<double>(total.counts.voxels) + before;
-  if (is_other_written) {
+  double steps_done = 0;
+  double voxels_done = static_cast<double>(result_.report.counts.voxels) + before;
+  // Earlier steps that are not finished yet: in flight on a device, computed, being written.
+  const Step* later = part.step.get();
+  for (const Step* step :
+       {begun_ ? begun_->step.get() : later, computed_ ? computed_->step.get() : later,
+        writing_.valid() ? writing_part_.step.get() : later}) {
+    if (step == later || step == part.step.get()) continue;
     steps_done += 1;
-    voxels_done += static_cast<double>(writing_part_.step->report.counts.voxels);
+    voxels_done += static_cast<double>(step->report.counts.voxels);
+    later = step;
   }
   const auto voxels = static_cast<double>(part.region.voxel_count());
   const double all = static_cast<double>(volume_.written_grid.voxel_count()) / ranks_.count();

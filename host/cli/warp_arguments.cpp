@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "host/base/parallel.hpp"
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
@@ -108,7 +109,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       ->type_name("NAME");
   app.add_option("--source-step", arguments.source_step,
                  "step of a volume file with several steps [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
@@ -117,7 +118,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,
                  "step that holds the rest positions of moving points [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
 }
 
@@ -167,10 +168,10 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
   add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
   app.add_option("--device", warp.device, "CUDA device number [0]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(at_least_zero())
+      ->check(between(0, max_threads))
       ->type_name("N");
   using Switch = std::vector<bool SkipOptions::*>;
   const Choices<Switch> skips{
@@ -199,7 +200,7 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
-  app.add_flag("--quiet", arguments.quiet, "print no progress and no summary");
+  add_quiet(app, arguments.quiet);
   app.add_option("--batch", arguments.batch,
                  "run the jobs of a JSON file; other options are their defaults")
       ->type_name("FILE");

@@ -35,6 +35,7 @@ struct WarpArguments {
   bool quiet = false;
   std::string report;
   std::string batch;
+  bool makes_folder = false;  ///< of the output, if it does not exist; of jobs in a batch
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }

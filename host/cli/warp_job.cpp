@@ -16,12 +16,20 @@
 
 namespace tetwarp::cli {
 namespace {
-/// Steps that the progress bar of the root counts: only its own if outputs are divided among ranks.
-std::size_t progress_steps(const JobPlan& plan, const Ranks& ranks) {
-  const std::size_t outputs = plan.outputs().size();
+/// Work of the steps that the progress bar of the root counts [voxels of all arrays]: only its own
+/// steps, taken as equal, if outputs are divided among ranks.
+std::vector<double> progress_work(const WarpArguments& arguments,
+                                  const JobPlan& plan,
+                                  const Ranks& ranks) {
+  std::vector<double> work;
+  for (const VolumePlan& volume : plan.volumes) {
+    const auto arrays = static_cast<double>(volume.arrays.size() + arguments.extra.size());
+    const auto voxels = static_cast<double>(volume.written_grid.voxel_count());
+    work.insert(work.end(), plan.steps.size(), voxels * arrays);
+  }
   const auto count = static_cast<std::size_t>(ranks.count());
-  if (outputs == 1) return plan.steps.size();
-  return (plan.volumes.size() * plan.steps.size() + count - 1) / count;
+  if (count > 1 && plan.outputs().size() > 1) work.assign((work.size() + count - 1) / count, 1);
+  return work;
 }
 
 std::string plan_text(const StepPlan& plan) {
@@ -50,13 +58,13 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   result.report.backend_reason = plan.backend_reason;
   if (ranks.is_root()) {
     if (!plan.output_folder.empty() && !arguments.dry_run) {
-      std::filesystem::create_directory(plan.output_folder);
+      std::filesystem::create_directories(plan.output_folder);
     }
     ranks.wait_for_all();
   }
   {
     ProgressBar bar(context.shows_progress && ranks.is_root(), context.label,
-                    static_cast<double>(progress_steps(plan, ranks)));
+                    progress_work(arguments, plan, ranks));
     std::size_t task = 0;
     for (const VolumePlan& volume : plan.volumes) {
       if (!arguments.dry_run) {
@@ -96,7 +104,7 @@ std::string report_json(const JobResult& result) {
 std::string summary(const JobResult& result) {
   const Report& report = result.report;
   const Counts& counts = report.counts;
-  std::string text = fmt::format("{}: {}\n", name_of(report.backend), report.backend_reason);
+  std::string text;
   for (const StepPlan& plan : result.plans) text += plan_text(plan);
   if (!result.plans.empty()) return text;
   text += fmt::format("{} written", result.written);
@@ -104,7 +112,8 @@ std::string summary(const JobResult& result) {
   if (counts.voxels > 0) {
     text += fmt::format(", {} of {} voxels covered", counts.covered, counts.voxels);
   }
-  text += fmt::format(", {:.2f} s: {}", report.timings.total, result.outputs.front());
+  text += fmt::format(", {:.2f} s on {}: {}", report.timings.total, name_of(report.backend),
+                      result.outputs.front());
   if (result.outputs.size() > 1) text += " to " + result.outputs.back();
   return text + "\n";
 }

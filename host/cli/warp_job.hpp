@@ -51,7 +51,8 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
 /// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped".
 std::string report_json(const JobResult& result);
 
-/// Two lines to print: the back end and why; outputs, covered voxels, seconds and file names.
+/// A line to print: outputs, covered voxels, seconds, back end and file names. After --dry-run the
+/// plan of each output.
 std::string summary(const JobResult& result);
 
 }  // namespace tetwarp::cli

@@ -38,7 +38,7 @@ void check_options(const ContactOptions& options) {
   }
   if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
   if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
-  if (options.threads < 0) fail("threads: expected 0 (all cores) or more");
+  thread_count(options.threads);
 }
 
 /// Measures of the whole problem, summed over its islands.

@@ -10,16 +10,17 @@
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
+#include "host/warp/overlap_batches.hpp"
 #include "host/warp/pairs.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/step_counters.hpp"
+#include "host/warp/step_shares.hpp"
 #include "host/warp/totals.hpp"
 #include "host/warp/transforms.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/voxel_cells.hpp"
 #include "kernels/warp/voxel_count.hpp"
-#include "kernels/warp/voxel_overlap.hpp"
 
 namespace tetwarp {
 
@@ -127,6 +128,7 @@ class WarpPipeline : public WarpBackend {
   void compute(Flight& flight, const Progress& progress) {
     exec_.begin_compute(flight.target.stream);
     run(flight.positions, flight.target, flight.age, progress);
+    ProgressPart{progress, 0, 1}.report(1.0);
     flight.counters.reserve(1);
     exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
     if (totals_.are_requested()) {
@@ -148,8 +150,9 @@ class WarpPipeline : public WarpBackend {
     if (age > 0 && pairs_.are_updates(age)) stale_ = pairs_.touched_in(age);
     if (plan_.options.count_folded) count_folded();
     const WarpTarget extra = outputs_.extra(target);
+    const StepShares shares(plan_, extra.fields);
     for (std::size_t s = 0; s < sources_.size(); ++s) {
-      raster(s, outputs_.volume(s, target), extra, progress);
+      raster(s, outputs_.volume(s, target), extra, shares.of_source(s, progress));
     }
     const View<std::int32_t> owners{extra.owner,
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
@@ -181,9 +184,8 @@ class WarpPipeline : public WarpBackend {
   }
 
   /// Owners and samples of source s.
-  /// @param volume  where the executor writes the samples
-  /// @param extra   where it writes mask and owners, with the first source
-  void raster(std::size_t s, void* volume, const WarpTarget& extra, const Progress& progress) {
+  /// @param volume, extra  where the executor writes samples, and with source 0 mask and owners
+  void raster(std::size_t s, void* volume, const WarpTarget& extra, const ProgressPart& part) {
     with_pixel_type(plan_.sources[s].type, [&]<class T>(T) {
       const OutputFrame& frame = geometry_.frame;
       RasterJob<T> job;
@@ -210,8 +212,6 @@ class WarpPipeline : public WarpBackend {
       job.outside_transform = transforms_.outside();
       job.reorientation = transforms_.reorientation(s);
       choose_work(s, job);
-      const double share = 1.0 / static_cast<double>(sources_.size());
-      const ProgressPart part{progress, static_cast<double>(s) * share, share};
       if (plan_.options.intensity == Intensity::conservative) {
         overlap(s, job, part);
       } else {
@@ -237,9 +237,9 @@ class WarpPipeline : public WarpBackend {
                              number_view(job.volume)};
     job.filter = Filter::nearest;
     job.transforms = {};
-    if (s == 0) cell_raster(exec_, job, progress);
-    voxel_overlap(exec_, body);
-    progress.report(1.0);
+    constexpr double raster = 0.01;  // of the time of this source
+    if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
+    overlap_in_batches(exec_, body, part_of(progress, s == 0 ? raster : 0, 1));
   }
 
   void report_totals(Flight& flight) {

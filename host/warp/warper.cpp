@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "host/base/parallel.hpp"
 #include "host/base/region_grid.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/warp/hex_split.hpp"
@@ -79,7 +80,7 @@ WarpPlan make_plan(std::span<const VolumeView> sources,
   check_transforms(plan.sources, options);
   check_mesh(mesh);
   plan.mesh = with_split_hexes(mesh);
-  if (options.threads < 0) throw std::invalid_argument("threads: negative");
+  thread_count(options.threads);
   const Grid& source_grid = plan.sources.front().grid;
   plan.source_region =
       options.source_window ? options.source_window->region : Region{{0, 0, 0}, source_grid.dims};

@@ -70,7 +70,7 @@ void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> m
                              setup.setups, setup.corner_counts, setup.pair_counts});
 }
 
-/// One index = one voxel of the output; any order.
+/// One index = one voxel of the output, counted from `first`; any order.
 struct VoxelOverlapBody {
   static constexpr int resident_blocks = 1;  ///< allows all registers: no spills
   View<const TetSetup> setups;
@@ -82,6 +82,7 @@ struct VoxelOverlapBody {
   int dims[3];
   int components;
   NumberView volume;
+  std::int64_t first = 0;  ///< voxel of index 0
 
   /// Scratch: the part of the voxel's box in the tetrahedron, a spare one, and one part per axis of
   /// the source.
@@ -90,7 +91,8 @@ struct VoxelOverlapBody {
     ConvexPart* spare;
   };
 
-  TETWARP_HD void operator()(std::int64_t voxel) const {
+  TETWARP_HD void operator()(std::int64_t index) const {
+    const std::int64_t voxel = first + index;
     int x[3];
     frame.set_voxel(voxel, x);
     const std::int64_t cell = frame.cell_of_voxel(x);
@@ -186,21 +188,22 @@ struct VoxelOverlapBody {
   }
 };
 
-/// Sets every voxel to the integral of the deformed source over its box, divided by the volume of a
+/// Sets voxels to the integral of the deformed source over its box, divided by the volume of a
 /// voxel. The total over the output is the total of the source over the mesh at rest.
 ///
 /// Exact but for rounding of float64 sums, added in the order of tetrahedra and of source voxels.
 /// Where tetrahedra overlap, their contributions add up; flat ones contribute nothing.
 /// @param exec  where to run
 /// @param body  input and output, see VoxelOverlapBody
+/// @param count  voxels to set, from body.first on
 /// @pre body.components is at most max_transform_components; the public calls check it
 ///
 /// Determinism: values agree within 2^-44 relative between back ends. Cost: microseconds per voxel,
 /// one cut by a plane for each pair of a source and an output voxel that intersect.
 /// Source: ours; integration over intersections in a remap that keeps totals: J. K. Dukowicz, 1984.
 template <class Exec>
-void voxel_overlap(Exec& exec, const VoxelOverlapBody& body) {
-  exec.for_each("warp/raster", body.frame.voxel_count(), body);
+void voxel_overlap(Exec& exec, const VoxelOverlapBody& body, std::int64_t count) {
+  exec.for_each("warp/raster", count, body);
 }
 
 }  // namespace tetwarp

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -63,8 +64,10 @@ TEST(Parallel, LoopsWithinTasksAndFromManyThreadsEnd) {
   EXPECT_EQ(sum, 4 * 200 * 10 * 45);
 }
 
-TEST(Parallel, MoreThreadsThanASystemHasAreFewer) {
-  EXPECT_EQ(thread_count(1 << 30), most_threads);
+TEST(Parallel, RefusesNumbersOutOfRange) {
+  EXPECT_EQ(thread_count(max_threads), max_threads);
+  EXPECT_THROW(thread_count(max_threads + 1), std::invalid_argument);
+  EXPECT_THROW(thread_count(-1), std::invalid_argument);
   EXPECT_EQ(thread_count(1), 1);
   EXPECT_GE(thread_count(0), 1);
 }

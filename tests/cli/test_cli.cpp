@@ -2,6 +2,7 @@
 /// The command: files, text and exit codes of each subcommand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -168,14 +169,48 @@ TEST(Cli, ReportsCountsTimesAndOutputsAsJson) {
   EXPECT_EQ(report["counts"]["bytes_written"], bytes);
 }
 
-TEST(Cli, PrintsTheBackEndAndTheReasonForItsChoice) {
+TEST(Cli, NamesTheBackEndInItsOneLineAndTheReasonForItInTheReport) {
   const Scene scene;
 
-  const CommandResult result =
+  const CommandResult chosen =
       scene.warp({"-o", "out.vtkhdf", "--backend", "reference", "--steps", "0"});
+  const CommandResult automatic =
+      scene.warp({"-o", "auto.vtkhdf", "--steps", "0", "--report", "report.json"});
 
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(result.out.starts_with("reference: requested\n")) << result.out;
+  EXPECT_EQ(chosen.exit_code, 0) << chosen.err;
+  EXPECT_TRUE(chosen.out.starts_with("1 written, ")) << chosen.out;
+  EXPECT_TRUE(chosen.out.ends_with(" s on reference: out.vtkhdf\n")) << chosen.out;
+  EXPECT_EQ(automatic.out.find("CUDA"), std::string::npos) << automatic.out;
+  EXPECT_EQ(std::count(automatic.out.begin(), automatic.out.end(), '\n'), 1) << automatic.out;
+  const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+  EXPECT_FALSE(report["backend_reason"].get<std::string>().empty());
+}
+
+TEST(Cli, WritesTheFileThatALinkLeadsTo) {
+  const Scene scene;
+  fs::create_directory(scene / "elsewhere");
+  fs::create_symlink("elsewhere/out.vtkhdf", scene / "link.vtkhdf");
+  fs::create_symlink("link.vtkhdf", scene / "second.vtkhdf");
+
+  for (const std::string output : {"link.vtkhdf", "second.vtkhdf"}) {
+    const CommandResult result = scene.warp({"-o", output, "--steps", "0"});
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(fs::is_symlink(scene / output));
+    EXPECT_EQ(read_volume(scene / "elsewhere/out.vtkhdf").data,
+              read_volume(scene / "volume.vtkhdf").data);
+    fs::remove(scene / "elsewhere/out.vtkhdf");
+  }
+}
+
+TEST(Cli, RefusesALinkToAnInput) {
+  const Scene scene;
+  fs::create_symlink("volume.vtkhdf", scene / "link.vtkhdf");
+
+  const CommandResult result = scene.warp({"-o", "link.vtkhdf", "--steps", "0"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("link.vtkhdf: is also an input"), std::string::npos) << result.err;
 }
 
 /// Back ends other than cpu begin a step before the previous one is finished; step 2 repeats step

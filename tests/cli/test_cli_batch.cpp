@@ -94,12 +94,51 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   EXPECT_NE(result.err.find("tetwarp: job 5: is not a JSON object\n"), std::string::npos);
   EXPECT_TRUE(result.out.ends_with("1 done, 5 failed, 0 skipped\n")) << result.out;
   const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
-  ASSERT_EQ(report.size(), 6u);
-  EXPECT_EQ(report[1]["status"], "failed");
-  EXPECT_EQ(report[1]["error"], "unknown key 'filtre'");
-  EXPECT_EQ(report[5]["status"], "done");
-  EXPECT_EQ(report[5]["job"], 6);
-  EXPECT_EQ(report[5]["counts"]["voxels"], 960);
+  EXPECT_EQ(report["status"], "failed");
+  EXPECT_EQ(report["jobs_done"], 1);
+  EXPECT_EQ(report["jobs_failed"], 5);
+  EXPECT_EQ(report["jobs_skipped"], 0);
+  const auto jobs = report["jobs"];
+  ASSERT_EQ(jobs.size(), 6u);
+  EXPECT_EQ(jobs[1]["status"], "failed");
+  EXPECT_EQ(jobs[1]["error"], "unknown key 'filtre'");
+  EXPECT_EQ(jobs[1]["volumes"], Names{"jobs/../volume.vtkhdf"});
+  EXPECT_EQ(jobs[1]["mesh"], "jobs/../mesh.vtkhdf");
+  EXPECT_EQ(jobs[1]["output"], "jobs/b.vtkhdf");
+  EXPECT_EQ(jobs[3]["mesh"], "");
+  EXPECT_EQ(jobs[3]["output"], "jobs/d.vtkhdf");
+  EXPECT_EQ(jobs[5]["status"], "done");
+  EXPECT_EQ(jobs[5]["job"], 6);
+  EXPECT_EQ(jobs[5]["counts"]["voxels"], 960);
+}
+
+TEST_F(Batch, MakesTheFoldersOfItsOutputs) {
+  const CommandResult result = run(batch_of(
+      {job("new/deep/a.vtkhdf", ""), job("new/b.vtkhdf", R"(, "steps": 0, "report": "new/b.json")"),
+       R"({"volume": ["../volume.vtkhdf", "new/b.vtkhdf"], "mesh": "../mesh.vtkhdf",
+                        "output": "new/several/both", "steps": 0})"}));
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const std::string name : {"new/deep/a_0003.vtkhdf", "new/b.vtkhdf", "new/b.json",
+                                 "new/several/both/volume.vtkhdf", "new/several/both/b.vtkhdf"}) {
+    EXPECT_TRUE(exists("jobs/" + name)) << name;
+  }
+}
+
+TEST_F(Batch, MakesNoFolderForADryRun) {
+  EXPECT_EQ(run(batch_of({job("new/a.vtkhdf", "")}), {"--dry-run"}).exit_code, 0);
+
+  EXPECT_FALSE(exists("jobs/new"));
+}
+
+TEST_F(Batch, RefusesAFolderThatItMayNotMake) {
+  if (geteuid() == 0) GTEST_SKIP() << "root can write to any folder";
+  fs::create_directory(scene / "closed");
+  fs::permissions(scene / "closed", fs::perms::owner_read | fs::perms::owner_exec);
+  const CommandResult result = run(batch_of({job("../closed/new/a.vtkhdf", "")}));
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("no permission to write in folder"), std::string::npos) << result.err;
 }
 
 TEST_F(Batch, RefusesTwoJobsThatWriteTheSameFile) {

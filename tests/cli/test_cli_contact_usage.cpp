@@ -49,6 +49,7 @@ TEST_F(ContactCommand, ExitsWithTwoOnBadUsage) {
                                                {"--inner", "0"},
                                                {"--recovery-speed", "-1"},
                                                {"--threads", "-1"},
+                                               {"--threads", "100000"},
                                                {"--no-skip", "work"},
                                                {"other.hdf5"}}) {
     const CommandResult result = solve(words);

@@ -1,8 +1,6 @@
 /// @file test_cli_resume.cpp
-/// --resume, interruption and full disks: a file under its final name is complete and correct.
+/// --resume and full disks: a file under its final name is complete and correct.
 #include <gtest/gtest.h>
-#include <poll.h>
-#include <sys/inotify.h>
 
 #include <chrono>
 #include <string>
@@ -112,68 +110,6 @@ TEST(Temporal, ResumesOnlyWhenEveryStepIsTheSame) {
   write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0, 1, 1, 4}), {0, 0.5, 1, 1.5});
   EXPECT_EQ(scene.warp(words).exit_code, 0);
   EXPECT_NE(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
-}
-
-/// A mesh with so many steps that the command still runs when its first file exists.
-void write_long_mesh(const Scene& scene) {
-  std::vector<double> voxels(20000);
-  for (std::size_t s = 0; s < voxels.size(); ++s) voxels[s] = 1e-4 * static_cast<double>(s);
-  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts(voxels), voxels);
-}
-
-/// Watches a folder for the first file that is created after construction.
-class FolderWatch {
- public:
-  explicit FolderWatch(const TemporaryFolder& folder) : notifier_(inotify_init()) {
-    inotify_add_watch(notifier_, folder.path().c_str(), IN_CREATE);
-  }
-  ~FolderWatch() { close(notifier_); }
-  FolderWatch(const FolderWatch&) = delete;
-  FolderWatch& operator=(const FolderWatch&) = delete;
-
-  /// Waits for that file; false after half a minute.
-  bool sees_new_file() const {
-    pollfd events{notifier_, POLLIN, 0};
-    return poll(&events, 1, 30'000) == 1;
-  }
-
- private:
-  int notifier_;
-};
-
-TEST(Interrupt, LeavesNoTemporalFileAndNoTemporary) {
-  const Scene scene;
-  write_long_mesh(scene);
-  const FolderWatch watch(scene);
-  RunningCommand command(
-      scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--temporal"});
-  ASSERT_TRUE(watch.sees_new_file());
-
-  kill(command.process(), SIGINT);
-  const CommandResult result = command.wait();
-
-  EXPECT_EQ(result.exit_code, 130);
-  EXPECT_EQ(result.err, "tetwarp: interrupted\n");
-  EXPECT_EQ(scene.names(), scene.inputs);
-}
-
-TEST(Interrupt, LeavesOnlyCompleteStepsThatResumeKeeps) {
-  const Scene scene;
-  write_long_mesh(scene);
-  const FolderWatch watch(scene);
-  RunningCommand command(scene, {"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"});
-  ASSERT_TRUE(watch.sees_new_file());
-
-  kill(command.process(), SIGTERM);
-  const CommandResult result = command.wait();
-
-  EXPECT_EQ(result.exit_code, 130);
-  for (const std::string& name : scene.names()) {
-    EXPECT_FALSE(name.starts_with(".")) << name;
-    if (name.starts_with("out")) {
-      EXPECT_TRUE(read_fingerprint(scene / name).has_value()) << name;
-    }
-  }
 }
 
 TEST(FullDisk, IsOneLineAndLeavesNothing) {

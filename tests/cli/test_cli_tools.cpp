@@ -39,6 +39,27 @@ TEST(Cli, LeadsFromAVolumeToAPicture) {
   EXPECT_EQ(MeshReader(folder / "moving.vtkhdf").header().times, (std::vector<double>{0, 0.5, 1}));
 }
 
+TEST(Cli, QuietPrintsNothingOnEveryCommand) {
+  const Scene scene;
+  for (const Names& command : std::vector<Names>{
+           {"mesh", "volume.vtkhdf", "-o", "lattice.vtkhdf", "--cells", "3"},
+           {"deform", "lattice.vtkhdf", "-o", "moving.vtkhdf", "--steps", "2"},
+           {"warp", "volume.vtkhdf", "moving.vtkhdf", "-o", "out.vtkhdf", "--steps", "1"},
+           {"render", "out.vtkhdf", "-o", "picture.png"},
+           {"export", "out.vtkhdf", "-o", "out.nii.gz"},
+           {"import", "out.nii.gz", "-o", "back.vtkhdf"},
+           {"info", "back.vtkhdf"},
+           {"demo", "-o", "demo", "--dims", "16,16,16", "--steps", "2"}}) {
+    Names words = command;
+    words.push_back("--quiet");
+
+    const CommandResult result = run_command(scene, words);
+
+    EXPECT_EQ(result.exit_code, 0) << command.front() << ": " << result.err;
+    EXPECT_EQ(result.out + result.err, "") << command.front();
+  }
+}
+
 TEST(Cli, WarpsByHexahedraAsTheLibraryDoes) {
   const TemporaryFolder folder;
   const Volume phantom = make_phantom({24, 16, 12});

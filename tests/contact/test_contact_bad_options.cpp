@@ -46,6 +46,7 @@ const std::vector<OptionsCase> cases = {
     {"RecoverySpeedNan", {.recovery_speed = nan}, "recovery_speed"},
     {"RecoverySpeedZero", {.recovery_speed = 0}, ""},
     {"ThreadsNegative", {.threads = -1}, "threads"},
+    {"ThreadsBeyondTheLimit", {.threads = 100000}, "threads"},
     {"ThreadsOne", {.threads = 1}, ""}};
 INSTANTIATE_TEST_SUITE_P(Of, ContactBadOptions, ::testing::ValuesIn(cases), [](const auto& info) {
   return std::string(info.param.name);

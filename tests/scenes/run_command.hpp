@@ -79,6 +79,7 @@ struct CommandResult {
 struct RunOptions {
   rlim_t file_size_limit = RLIM_INFINITY;  ///< bytes; a larger write fails as on a full disk
   std::string out = {};                    ///< file for standard output; empty: collected
+  std::string err = {};                    ///< the same for standard error, e.g. a terminal
   std::vector<std::string> launcher = {};  ///< words before the command's name
 };
 
@@ -88,7 +89,8 @@ class RunningCommand {
   RunningCommand(const TemporaryFolder& folder,
                  std::vector<std::string> words,
                  const RunOptions& options = {})
-      : out_(options.out.empty() ? streams_ / "out" : options.out), err_(streams_ / "err") {
+      : out_(options.out.empty() ? streams_ / "out" : options.out),
+        err_(options.err.empty() ? streams_ / "err" : options.err) {
     words.insert(words.begin(), TETWARP_COMMAND);
     words.insert(words.begin(), options.launcher.begin(), options.launcher.end());
     std::vector<char*> arguments;
@@ -108,7 +110,8 @@ class RunningCommand {
     wait4(child_, &status, 0, &used);
     const bool ended = WIFEXITED(status);
     return {ended ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-            fs::is_regular_file(out_) ? text_of(out_) : "", text_of(err_),
+            fs::is_regular_file(out_) ? text_of(out_) : "",
+            fs::is_regular_file(err_) ? text_of(err_) : "",
             1024.0 * static_cast<double>(used.ru_maxrss)};
   }
 

@@ -143,14 +143,16 @@ TEST(WarpArguments, NameArraysThatAreNotLabels) {
 }
 
 TEST(WarpArguments, NameTheOptions) {
-  Call empty, outside, threads;
+  Call empty, outside, threads, many_threads;
   empty.options.region = Region{{2, 3, 4}, {3, 3, 5}};
   outside.options.region = Region{{2, 3, 4}, {3, 4, 9}};
   threads.options.threads = -1;
+  many_threads.options.threads = 100000;
 
   EXPECT_EQ(empty.complaint(), "region: 3 to 3 on axis 1 is empty or not within 0 to 8");
   EXPECT_EQ(outside.complaint(), "region: 4 to 9 on axis 2 is empty or not within 0 to 8");
-  EXPECT_EQ(threads.complaint(), "threads: negative");
+  EXPECT_EQ(threads.complaint(), "threads: -1, expected 0 (all cores) to 1024");
+  EXPECT_EQ(many_threads.complaint(), "threads: 100000, expected 0 (all cores) to 1024");
 }
 
 TEST(WarpArguments, NameTheGrid) {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tetwarp/make.hpp>
 #include <vector>
 
 #include "tests/scenes/affine_scenes.hpp"
 #include "tests/scenes/skip_series.hpp"
+#include "tests/scenes/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -31,6 +33,28 @@ Step run(const Volume& source,
   Step step = {warper.step(scene.deformed), {}};
   step.report = warper.report().steps.front();
   return step;
+}
+
+/// A column of voxels through a volume of several batches.
+TEST(WarpIntensity, ReportsItsProgressWhereTotalsAreKept) {
+  Grid grid;
+  grid.dims = {96, 96, 96};
+  const Volume source = make_volume(grid, PixelType::float32);
+  grid.dims = {12, 12, 96};
+  const Mesh mesh =
+      make_lattice_mesh(make_volume(grid, PixelType::float32), {.cells = 8, .threshold = {}});
+  Warper warper(source, mesh, {.intensity = Intensity::conservative, .backend = Backend::cpu});
+  std::vector<double> fractions;
+
+  run_step(warper, source, mesh.rest_positions, [&](double fraction) {
+    fractions.push_back(fraction);
+    return true;
+  });
+
+  const auto is_between = [](double fraction) { return fraction > 0.05 && fraction < 0.95; };
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_EQ(fractions.back(), 1);
+  EXPECT_GE(std::ranges::count_if(fractions, is_between), 5);
 }
 
 /// Turned, shrunk, stretched and waved meshes, one of them folded over itself, in outputs that hold
