@@ -126,9 +126,11 @@ void declare_grid(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--grid", grid.base,
                  "output grid: the source's, the deformed mesh's box on it, or a volume's [same]")
       ->type_name("same|bounds|FILE");
-  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK", "voxels of the output grid");
+  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
+              "voxels of the output grid; alone it keeps the base's box [--spacing]");
   add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
-  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z", "distance of its voxel centres");
+  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z",
+              "distance of its voxel centres; alone it keeps the base's box [--dims]");
   add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
   add_parsed(app, "--roi", arguments.warp.region, parse_region, "I0:I1,J0:J1,K0:K1",
              "part of the output grid to compute, half-open");
