@@ -241,6 +241,8 @@ enum class FileKind {
   contact_problem,  ///< FCLIB
   hdf5,             ///< any other HDF5 file, also a damaged one
   nifti,            ///< NIfTI-1 in a single file, plain or gzip
+  nifti2,           ///< NIfTI-2, plain or gzip
+  image_pair,       ///< NIfTI or Analyze in two files, .hdr and .img
   unknown
 };
 template <>
