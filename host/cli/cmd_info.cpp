@@ -68,6 +68,8 @@ Json volume_json(const InfoArguments& arguments) {
     if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
     json["arrays"][array.name] = entry;
   }
+  if (header.arrays.size() > 1) json["active"] = header.active;
+  if (!header.not_read.empty()) json["not_read"] = header.not_read;
   if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
   return json;
 }

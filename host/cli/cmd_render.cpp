@@ -9,6 +9,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
+#include "host/cli/read_array.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -33,7 +34,7 @@ int run_render(const RenderArguments& arguments) {
   check_output_file(arguments.output, inputs);
   std::vector<Volume> volumes;
   for (const std::string& input : inputs) {
-    volumes.push_back(read_volume(input, arguments.array, arguments.step));
+    volumes.push_back(read_array(input, arguments.array, arguments.step));
   }
   std::vector<const Volume*> rows;
   for (const Volume& volume : volumes) rows.push_back(&volume);
@@ -56,7 +57,8 @@ void add_render_command(CLI::App& app, Run& run) {
       ->type_name("FILE.png");
   command->add_option("--beside", arguments->beside, "second volume, drawn with the same window")
       ->type_name("VOLUME");
-  command->add_option("--array", arguments->array, "array to draw [first]")->type_name("NAME");
+  command->add_option("--array", arguments->array, "array to draw [active scalars]")
+      ->type_name("NAME");
   command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");

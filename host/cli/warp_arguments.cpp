@@ -110,6 +110,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
                  "step of a volume file with several steps [0]")
       ->check(at_least_zero())
       ->type_name("N");
+  app.add_flag("--pair", arguments.pair, "warp step n of the volume by step n of the mesh");
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
       "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
@@ -198,6 +199,8 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
   app.add_flag("--dry-run", arguments.dry_run,
                "print the plan and the memory it needs; compute nothing");
+  app.add_flag("--strict", arguments.strict,
+               "treat warnings as errors, before the output that they concern gets its name");
   app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
@@ -220,6 +223,12 @@ void check_complete(const WarpArguments& arguments) {
   if (arguments.warp.antialias && (filter == Filter::nearest || filter == Filter::labels)) {
     throw CLI::ValidationError(
         "--antialias", "cannot average samples with nearest and labels; use another --filter");
+  }
+  if (arguments.pair && arguments.source_step) {
+    throw CLI::ValidationError("--pair", "takes all steps of the volume; leave out --source-step");
+  }
+  if (arguments.warp.intensity == Intensity::conservative && filter != Filter::linear) {
+    throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {

@@ -48,6 +48,7 @@ TEST(UsageError, ExitsWithTwoAndNamesTheHelp) {
            {warp_with({"--overshoot", "cut"}), "keep, clamp"},
            {warp_with({"--background", "black"}), "--background"},
            {warp_with({"--antialias", "--filter", "nearest"}), "use another --filter"},
+           {warp_with({"--intensity", "conservative", "--filter", "cubic"}), "--filter: "},
            {warp_with({"--intensity", "mass"}), "value, density, conservative"},
            {warp_with({"--vectors", "flow=twisted"}), "rotate, covariant, contravariant"},
            {warp_with({"--dims", "1,2"}), "--dims"},
