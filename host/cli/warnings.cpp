@@ -2,27 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
+#include <limits>
 #include <map>
 #include <stdexcept>
+#include <type_traits>
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/cli/declare.hpp"
-#include "io/vtkhdf_array.hpp"
 
 namespace tetwarp::cli {
 namespace {
-/// The value that a sample of this type gets.
+/// The value that a sample of this type gets; integers are rounded half to even and saturate.
+/// @pre  of integers: the value is finite
 double stored_value(PixelType type, double value) {
-  const std::vector<std::byte> bytes = sample_bytes(type, value);
   double stored = 0;
-  with_pixel_type(type, [&]<class T>(T sample) {
-    std::memcpy(&sample, bytes.data(), sizeof sample);
-    stored = static_cast<double>(sample);
+  with_pixel_type(type, [&]<class T>(T) {
+    if constexpr (std::is_integral_v<T>) {
+      using Limits = std::numeric_limits<T>;
+      stored = std::clamp(std::nearbyint(value), static_cast<double>(Limits::min()),
+                          static_cast<double>(Limits::max()));
+    } else {
+      stored = static_cast<double>(static_cast<T>(value));
+    }
   });
   return stored;
 }
