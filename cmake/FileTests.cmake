@@ -3,6 +3,7 @@
 if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_io_tests UNITY 3 LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
+    tests/io/test_io_arrays.cpp
     tests/io/test_io_blocks.cpp
     tests/io/test_io_vtkhdf_volume.cpp
     tests/io/test_io_vtkhdf_mesh.cpp
@@ -61,17 +62,21 @@ function(tetwarp_add_cli_tests program)
 endfunction()
 tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
+  tests/cli/test_cli_arrays.cpp
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_batch.cpp
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp
   tests/cli/test_cli_fields.cpp
   tests/cli/test_cli_interrupt.cpp
+  tests/cli/test_cli_grid.cpp
+  tests/cli/test_cli_pair.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
   tests/cli/test_cli_skip.cpp
-  tests/cli/test_cli_tools.cpp)
+  tests/cli/test_cli_tools.cpp
+  tests/cli/test_cli_warnings.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
 tetwarp_add_cli_tests(tetwarp_cli_memory_tests tests/cli/test_cli_memory.cpp)
 tetwarp_discover(tetwarp_cli_memory_tests long)

@@ -98,6 +98,10 @@ bool has_child(const Object& parent, const std::string& name);
 /// Names of all children, sorted.
 std::vector<std::string> child_names(const Object& parent);
 
+/// Names of all children in the order in which they were created, where the group tracks it, else
+/// sorted.
+std::vector<std::string> child_names_as_created(const Object& group);
+
 /// True when the child is a group.
 bool is_group(const Object& parent, const std::string& name);
 
@@ -108,7 +112,7 @@ Object open_group(const Object& parent, const std::string& name);
 Dataset open_dataset(const Object& parent, const std::string& name);
 
 /// The pixel type nearest to the elements of a dataset: integers of 1, 2, 4, 8 bytes and floats up
-/// to 8, in any byte order. Throws IoError for strings, compounds and the like.
+/// to 8, in any byte order, and booleans as h5py stores them, which are uint8. Throws IoError for strings, compounds and the like.
 PixelType pixel_type_of(const Dataset& dataset);
 
 /// True when pixel_type_of() does not throw.
@@ -150,6 +154,9 @@ std::string read_text_attribute(const Object& object, const std::string& name);
 // ---- writing: h5_write.cpp ----
 
 Object create_group(const Object& parent, const std::string& name);
+
+/// Creates a group that tracks the order in which its children are created.
+Object create_ordered_group(const Object& parent, const std::string& name);
 
 /// Creates a dataset; `properties` may be H5P_DEFAULT.
 Object create_dataset(

@@ -46,6 +46,18 @@ void check_storage(const Dataset& dataset) {
   }
 }
 
+std::vector<std::string> names_by(const Object& group, H5_index_t order) {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Literate(group.id(), order, H5_ITER_INC, nullptr, append, &names) < 0) {
+    group.fail_with_reason("damaged group");
+  }
+  return names;
+}
+
 template <class T>
 std::vector<T> read_column(const Dataset& dataset, hid_t memory_type) {
   if (!is_numeric(dataset)) dataset.fail("holds no numbers");
@@ -57,6 +69,18 @@ std::vector<T> read_column(const Dataset& dataset, hid_t memory_type) {
   const std::vector<std::int64_t> start(dataset.dims.size(), 0);
   read_block(dataset, memory_type, start, dataset.dims, values.data());
   return values;
+}
+
+/// True for an enumeration of one byte with the names FALSE for 0 and TRUE for 1: h5py's booleans.
+bool is_boolean(const Handle& type) {
+  if (H5Tget_class(type.id()) != H5T_ENUM || H5Tget_size(type.id()) != 1 ||
+      H5Tget_nmembers(type.id()) != 2) {
+    return false;
+  }
+  const Handle whole(H5Tget_super(type.id()), H5Tclose);
+  std::uint8_t off = 1, on = 0;
+  return whole && is_sound(whole) && H5Tenum_valueof(type.id(), "FALSE", &off) >= 0 &&
+         H5Tenum_valueof(type.id(), "TRUE", &on) >= 0 && off == 0 && on == 1;
 }
 }  // namespace
 
@@ -101,16 +125,17 @@ bool has_child(const Object& parent, const std::string& name) {
 }
 
 std::vector<std::string> child_names(const Object& parent) {
-  std::vector<std::string> names;
-  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
-  };
-  if (H5Literate(parent.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &names) < 0) {
-    parent.fail_with_reason("damaged group");
-  }
+  std::vector<std::string> names = names_by(parent, H5_INDEX_NAME);
   std::sort(names.begin(), names.end());
   return names;
+}
+
+std::vector<std::string> child_names_as_created(const Object& group) {
+  const Handle properties(H5Gget_create_plist(group.id()), H5Pclose);
+  unsigned flags = 0;
+  const bool is_tracked = properties && H5Pget_link_creation_order(properties.id(), &flags) >= 0 &&
+                          (flags & H5P_CRT_ORDER_TRACKED) != 0;
+  return is_tracked ? names_by(group, H5_INDEX_CRT_ORDER) : child_names(group);
 }
 
 bool is_group(const Object& parent, const std::string& name) {
@@ -149,9 +174,9 @@ Dataset open_dataset(const Object& parent, const std::string& name) {
     dataset.dims.push_back(static_cast<std::int64_t>(dim));
   }
   if (!is_sound(type)) dataset.fail("damaged type of its elements");
-  dataset.type_class = H5Tget_class(type.id());
+  dataset.type_class = is_boolean(type) ? H5T_INTEGER : H5Tget_class(type.id());
   dataset.type_size = H5Tget_size(type.id());
-  dataset.is_signed = dataset.type_class == H5T_INTEGER && H5Tget_sign(type.id()) == H5T_SGN_2;
+  dataset.is_signed = H5Tget_class(type.id()) == H5T_INTEGER && H5Tget_sign(type.id()) == H5T_SGN_2;
   check_storage(dataset);
   return dataset;
 }

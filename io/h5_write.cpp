@@ -30,14 +30,25 @@ void write_row(const Object& object,
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
   write_values(object, name, file_type, memory_type, space, values.data());
 }
+
+Object create_group_with(const Object& parent, const std::string& name, hid_t properties) {
+  Object group{parent.file, parent.name + "/" + name, {}};
+  group.handle =
+      Handle(H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose);
+  if (!group.handle) group.fail_with_reason(write_problem);
+  return group;
+}
 }  // namespace
 
 Object create_group(const Object& parent, const std::string& name) {
-  Object group{parent.file, parent.name + "/" + name, {}};
-  group.handle = Handle(
-      H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-  if (!group.handle) group.fail_with_reason(write_problem);
-  return group;
+  return create_group_with(parent, name, H5P_DEFAULT);
+}
+
+Object create_ordered_group(const Object& parent, const std::string& name) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_link_creation_order(properties.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_obj_track_times(properties.id(), false);  // the same content gives the same bytes
+  return create_group_with(parent, name, properties.id());
 }
 
 Object create_dataset(

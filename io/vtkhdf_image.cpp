@@ -4,6 +4,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "io/vtkhdf_input.hpp"
+
 namespace tetwarp {
 namespace {
 /// Checks arguments before the file is created.
@@ -56,7 +58,7 @@ ImageFile::ImageFile(const std::string& path,
       headers_(arrays),
       is_temporal_(is_temporal),
       output_(path, "ImageData", is_temporal),
-      point_data_(h5::create_group(output_.root(), "PointData")) {
+      point_data_(h5::create_ordered_group(output_.root(), "PointData")) {
   std::array<std::int32_t, 6> extent{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     extent[2 * axis + 1] = static_cast<std::int32_t>(grid.dims[axis] - 1);
@@ -68,7 +70,9 @@ ImageFile::ImageFile(const std::string& path,
   if (!options.fingerprint.empty()) {
     h5::write_text_attribute(output_.root(), "tetwarp_fingerprint", options.fingerprint);
   }
-  h5::write_text_attribute(point_data_, "Scalars", arrays.front().name);
+  std::vector<std::string> names;
+  for (const ArrayHeader& array : arrays) names.push_back(array.name);
+  h5::write_text_attribute(point_data_, "Scalars", active_array(names, options.scalars));
   for (std::size_t a = 0; a < arrays.size(); ++a) {
     arrays_.emplace_back(output_, point_data_, grid.dims, arrays[a], chunks[a], options,
                          is_temporal);

@@ -1,5 +1,6 @@
 #include "io/vtkhdf_input.hpp"
 
+#include <algorithm>
 #include <tetwarp/io.hpp>
 
 namespace tetwarp {
@@ -76,6 +77,13 @@ std::vector<std::int64_t> read_point_data_offsets(const VtkhdfInput& file,
                                                   const std::string& array) {
   if (!h5::is_group(file.steps, "PointDataOffsets")) return {};
   return read_step_offsets(file, h5::open_group(file.steps, "PointDataOffsets"), array);
+}
+
+std::string active_array(const std::vector<std::string>& names, const std::string& scalars) {
+  if (std::ranges::find(names, scalars) != names.end()) return scalars;
+  const auto is_image = [](const std::string& name) { return !name.starts_with("tetwarp_"); };
+  const auto image = std::ranges::find_if(names, is_image);
+  return image == names.end() ? names.front() : *image;
 }
 
 }  // namespace tetwarp

@@ -35,4 +35,11 @@ std::vector<std::int64_t> read_step_offsets(const VtkhdfInput& file,
 std::vector<std::int64_t> read_point_data_offsets(const VtkhdfInput& file,
                                                   const std::string& array);
 
+/// The array that stands for a volume.
+/// @param names    of its arrays, not empty, in the order in which they are stored
+/// @param scalars  the active scalars
+/// @returns `scalars` if it is one of the names, else the first one that does not begin with
+///          `tetwarp_`, else the first one
+std::string active_array(const std::vector<std::string>& names, const std::string& scalars);
+
 }  // namespace tetwarp

@@ -84,15 +84,48 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
   return array;
 }
 
-std::vector<std::string> numeric_arrays(const VtkhdfInput& file) {
+/// @param others  out, may be null: names of what is no array of numbers
+std::vector<std::string> numeric_arrays(const VtkhdfInput& file,
+                                        std::vector<std::string>* others = nullptr) {
   const h5::Object point_data = h5::open_group(file.root, "PointData");
   std::vector<std::string> names;
-  for (const std::string& name : h5::child_names(point_data)) {
-    if (h5::is_group(point_data, name)) continue;
-    if (h5::is_numeric(h5::open_dataset(point_data, name))) names.push_back(name);
+  for (const std::string& name : h5::child_names_as_created(point_data)) {
+    if (!h5::is_group(point_data, name) && h5::is_numeric(h5::open_dataset(point_data, name))) {
+      names.push_back(name);
+    } else if (others != nullptr) {
+      others->push_back(name);
+    }
   }
   if (names.empty()) point_data.fail("holds no array of numbers");
   return names;
+}
+
+/// VolumeHeader::not_read, from the names in PointData that are no arrays of numbers.
+std::vector<std::string> not_read(const VtkhdfInput& file,
+                                  const std::vector<std::string>& point_names) {
+  std::vector<std::string> paths;
+  for (const std::string& name : point_names) paths.push_back("PointData/" + name);
+  for (const std::string group : {"CellData", "FieldData"}) {
+    if (!h5::is_group(file.root, group)) continue;
+    for (const std::string& name : h5::child_names(h5::open_group(file.root, group))) {
+      paths.push_back(group + "/" + name);
+    }
+  }
+  return paths;
+}
+
+/// VolumeHeader::active of the numeric arrays of a file. An attribute that is no text names none.
+std::string active_of(const VtkhdfInput& file, const std::vector<std::string>& names) {
+  const h5::Object point_data = h5::open_group(file.root, "PointData");
+  std::string scalars;
+  try {
+    if (h5::has_attribute(point_data, "Scalars")) {
+      scalars = h5::read_text_attribute(point_data, "Scalars");
+    }
+  } catch (const IoError&) {
+    scalars.clear();
+  }
+  return active_array(names, scalars);
 }
 
 /// The row of the time axis that holds a step of an array.
@@ -113,9 +146,16 @@ VolumeHeader read_volume_header(const std::string& path) {
   VolumeHeader header;
   header.grid = read_grid(file.root);
   header.times = file.times;
-  for (const std::string& name : numeric_arrays(file)) {
-    header.arrays.push_back(open_array(file, header.grid, name).header);
+  std::vector<std::string> others;
+  const std::vector<std::string> names = numeric_arrays(file, &others);
+  header.active = active_of(file, names);
+  for (const std::string& name : names) {
+    const PointArray array = open_array(file, header.grid, name);
+    header.arrays.push_back(array.header);
+    const h5::Dataset& dataset = array.dataset;
+    if (dataset.type_class == H5T_FLOAT && dataset.type_size < 4) header.widened.push_back(name);
   }
+  header.not_read = not_read(file, others);
   return header;
 }
 
@@ -131,7 +171,8 @@ VolumeReader::VolumeReader(const std::string& path, const std::string& array, st
   VtkhdfInput file = open_vtkhdf(path, "ImageData");
   const Grid grid = read_grid(file.root);
   file.check_step(step);
-  PointArray source = open_array(file, grid, array.empty() ? numeric_arrays(file).front() : array);
+  PointArray source =
+      open_array(file, grid, array.empty() ? active_of(file, numeric_arrays(file)) : array);
   const std::int64_t row = file.is_temporal() ? time_row(file, source, step) : 0;
   state_.reset(new State{std::move(file), grid, std::move(source), row});
 }
@@ -145,6 +186,11 @@ const Grid& VolumeReader::grid() const {
 
 const ArrayHeader& VolumeReader::array() const {
   return state_->source.header;
+}
+
+std::vector<std::string> VolumeReader::array_names() const {
+  const h5::Silence silence;
+  return numeric_arrays(state_->file);
 }
 
 double VolumeReader::chunk_bytes() const {

@@ -1,9 +1,6 @@
-#include <algorithm>
-#include <stdexcept>
 #include <string>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>
-#include <thread>
 
 #include "host/base/warp_backend.hpp"
 

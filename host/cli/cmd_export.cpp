@@ -8,6 +8,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
+#include "host/cli/read_array.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -32,7 +33,7 @@ int run_export(const ExportArguments& arguments) {
     throw IoError(arguments.output, "", "the name of a NIfTI image ends in .nii or .nii.gz");
   }
   check_output_file(arguments.output, {arguments.input});
-  const Volume volume = read_volume(arguments.input, arguments.array, arguments.step);
+  const Volume volume = read_array(arguments.input, arguments.array, arguments.step);
   const NiftiVectors vectors = vectors_of(arguments, volume);
   write_nifti(arguments.output, volume, vectors);
   if (arguments.quiet) return 0;
@@ -53,7 +54,8 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("-o,--output", arguments->output, "image to write, .nii or .nii.gz")
       ->required()
       ->type_name("FILE");
-  command->add_option("--array", arguments->array, "array to write [first]")->type_name("NAME");
+  command->add_option("--array", arguments->array, "array to write [active scalars]")
+      ->type_name("NAME");
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");

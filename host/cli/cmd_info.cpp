@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -31,18 +32,28 @@ Json times_json(const std::vector<double>& times) {
   return json;
 }
 
-/// Adds the smallest and the largest sample, NaN left out; null when there is no other.
+/// Adds the smallest and the largest finite sample, null when there is none; of floating-point
+/// samples also the numbers of NaN and of infinities.
 void add_range(Json& json, const Volume& volume) {
-  double low = std::numeric_limits<double>::quiet_NaN(), high = low;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low = infinity, high = -infinity;
+  std::int64_t nans = 0, infinities = 0;
   with_pixel_type(volume.type, [&]<class T>(T) {
-    for (const T sample : volume.samples<T>()) {
-      // fmin and fmax prefer the number over a NaN.
-      low = std::fmin(low, static_cast<double>(sample));
-      high = std::fmax(high, static_cast<double>(sample));
+    for (const T stored : volume.samples<T>()) {
+      const auto sample = static_cast<double>(stored);
+      if (std::isfinite(sample)) {
+        low = std::min(low, sample);
+        high = std::max(high, sample);
+      } else {
+        ++(std::isnan(sample) ? nans : infinities);
+      }
     }
   });
-  json["min"] = low;
+  json["min"] = low;  // JSON has no infinity: null
   json["max"] = high;
+  if (is_integer(volume.type)) return;
+  json["nan"] = nans;
+  json["infinite"] = infinities;
 }
 
 Json volume_json(const InfoArguments& arguments) {
@@ -58,6 +69,8 @@ Json volume_json(const InfoArguments& arguments) {
     if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
     json["arrays"][array.name] = entry;
   }
+  if (header.arrays.size() > 1) json["active"] = header.active;
+  if (!header.not_read.empty()) json["not_read"] = header.not_read;
   if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
   return json;
 }

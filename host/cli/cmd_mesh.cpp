@@ -9,6 +9,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
+#include "host/cli/read_array.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -25,7 +26,7 @@ int run_mesh(const MeshArguments& arguments) {
   check_kind(arguments.volume, FileKind::volume, "usage: tetwarp mesh VOLUME -o MESH");
   check_hdf_name(arguments.output);
   check_output_file(arguments.output, {arguments.volume});
-  const Volume volume = read_volume(arguments.volume, arguments.array, arguments.step);
+  const Volume volume = read_array(arguments.volume, arguments.array, arguments.step);
   Mesh mesh;
   try {
     mesh = make_lattice_mesh(volume, arguments.lattice);
@@ -59,7 +60,9 @@ void add_mesh_command(CLI::App& app, Run& run) {
       ->type_name("V");
   command->add_flag("--hexahedra", arguments->lattice.hexahedra,
                     "keep the cubes as trilinear hexahedra, instead of five tetrahedra each");
-  command->add_option("--array", arguments->array, "array to compare with the threshold [first]")
+  command
+      ->add_option("--array", arguments->array,
+                   "array to compare with the threshold [active scalars]")
       ->type_name("NAME");
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least(0))

@@ -9,6 +9,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
+#include "host/cli/read_array.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -35,7 +36,7 @@ int run_render(const RenderArguments& arguments) {
   std::vector<Volume> volumes;
   volumes.reserve(inputs.size());
   for (const std::string& input : inputs) {
-    volumes.push_back(read_volume(input, arguments.array, arguments.step));
+    volumes.push_back(read_array(input, arguments.array, arguments.step));
   }
   std::vector<const Volume*> rows;
   rows.reserve(volumes.size());
@@ -60,7 +61,8 @@ void add_render_command(CLI::App& app, Run& run) {
       ->type_name("FILE.png");
   command->add_option("--beside", arguments->beside, "second volume, drawn with the same window")
       ->type_name("VOLUME");
-  command->add_option("--array", arguments->array, "array to draw [first]")->type_name("NAME");
+  command->add_option("--array", arguments->array, "array to draw [active scalars]")
+      ->type_name("NAME");
   command->add_option("--step", arguments->step, "step of volume files with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <tetwarp/mesh_import.hpp>
 
 #include "io/finished_file.hpp"
 
@@ -55,13 +56,27 @@ void check_hdf_name(const std::string& output) {
   }
 }
 
+namespace {
+/// How a file becomes one of the expected kind; empty: not by a conversion.
+std::string conversion_of(const std::string& path, FileKind kind, FileKind expected) {
+  const bool is_image = expected == FileKind::volume || expected == FileKind::nifti;
+  if (is_image && (kind == FileKind::nifti2 || kind == FileKind::image_pair)) {
+    return "write it as a single NIfTI-1 file, .nii or .nii.gz, and convert that with tetwarp "
+           "import";
+  }
+  const bool is_imported = (kind == FileKind::nifti && expected == FileKind::volume) ||
+                           (expected == FileKind::mesh && has_mesh_extension(path));
+  return is_imported ? "convert it first: tetwarp import " + path + " -o NAME.vtkhdf" : "";
+}
+}  // namespace
+
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
   const FileKind kind = kind_of(path);
-  if (kind != expected) {
-    throw IoError(
-        path, "",
-        std::string("is a ") + name_of(kind) + ", expected a " + name_of(expected) + "; " + remedy);
-  }
+  if (kind == expected) return;
+  const std::string conversion = conversion_of(path, kind, expected);
+  throw IoError(path, "",
+                std::string("is a ") + name_of(kind) + ", expected a " + name_of(expected) + "; " +
+                    (conversion.empty() ? remedy : conversion));
 }
 
 std::string canonical_path(const std::string& path) {

@@ -61,6 +61,23 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
   return chosen;
 }
 
+/// Checks that the volume has the steps that are to be warped.
+void check_source_steps(const std::string& path,
+                        const VolumeHeader& header,
+                        const WarpArguments& arguments,
+                        const std::vector<std::int64_t>& steps) {
+  const auto count = std::max<std::int64_t>(1, std::ssize(header.times));
+  const std::int64_t last = arguments.source_step_of(steps.back());
+  if (last < count) return;
+  throw IoError(path, "",
+                arguments.pair
+                    ? fmt::format("--pair: step {} of the mesh has no pair, the volume has {} (0 "
+                                  "to {}); choose steps of the mesh with --steps",
+                                  last, count, count - 1)
+                    : fmt::format("--source-step {} does not exist, the volume has {} (0 to {})",
+                                  last, count, count - 1));
+}
+
 /// True when writing a step while the next one is computed saves time: on a device, with fewer
 /// threads than processors, or with compression, which uses one thread.
 bool leaves_time(Backend backend, const WarpArguments& arguments) {
@@ -102,17 +119,16 @@ VolumePlan plan_volume(const std::string& path,
                        Backend backend,
                        const std::vector<std::int64_t>& steps) {
   const VolumeHeader header = read_volume_header(path);
-  const auto step_count = std::max<std::int64_t>(1, std::ssize(header.times));
-  if (arguments.source_step >= step_count) {
-    throw IoError(path, "",
-                  fmt::format("--source-step {} does not exist, the volume has {} (0 to {})",
-                              arguments.source_step, step_count, step_count - 1));
-  }
+  check_source_steps(path, header, arguments, steps);
   VolumePlan plan;
   plan.path = path;
   plan.arrays = choose_arrays(header, arguments, path);
+  plan.active = header.active;
   plan.source_grid = header.grid;
   check_arrays(path, plan.source_grid, plan.arrays, arguments);
+  plan.warnings = volume_warnings(path, header, mesh.header(), arguments);
+  const Warnings more = array_warnings(path, plan.arrays, arguments);
+  plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
   plan.output_grid = resolve_grid(arguments.grid, header.grid, mesh, steps);
   try {
     const Region region = checked_region(plan.output_grid, arguments.warp.region);
@@ -184,7 +200,9 @@ JobPlan plan_job(const WarpArguments& arguments) {
                .backend = backend,
                .backend_reason = reason,
                .output_folder = {},
-               .volumes = {}};
+               .volumes = {},
+               .warnings = {}};
+  plan.warnings = mesh_warnings(plan.mesh.header(), arguments);
   const std::int64_t step_count = std::max<std::int64_t>(1, std::ssize(plan.mesh.header().times));
   try {
     plan.steps = arguments.steps.of(step_count);
@@ -206,6 +224,8 @@ JobPlan plan_job(const WarpArguments& arguments) {
     const fs::path output = several ? fs::path(arguments.output) / fs::path(volume).filename()
                                     : fs::path(arguments.output);
     plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, backend, plan.steps));
+    const Warnings& more = plan.volumes.back().warnings;
+    plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
   }
   check_outputs(plan, arguments);
   return plan;

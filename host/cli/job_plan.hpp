@@ -9,6 +9,7 @@
 #include <tetwarp/io.hpp>
 #include <tetwarp/warp.hpp>
 
+#include "host/cli/warnings.hpp"
 #include "host/cli/warp_arguments.hpp"
 
 namespace tetwarp::cli {
@@ -17,6 +18,7 @@ namespace tetwarp::cli {
 struct VolumePlan {
   std::string path;
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
+  std::string active;               ///< VolumeHeader::active
   Grid source_grid;
   Grid output_grid;  ///< without regard to the region
   Grid written_grid;
@@ -26,6 +28,7 @@ struct VolumePlan {
   double memory = 0;                 ///< of sources and outputs as a whole [byte]
   bool writes_beside = false;        ///< write a step while the next one is computed
   bool overlaps = false;  ///< begin a step before the previous one is copied back and written
+  Warnings warnings;
 };
 
 /// A whole job.
@@ -36,6 +39,7 @@ struct JobPlan {
   std::string backend_reason;       ///< why this one
   std::string output_folder;        ///< created when missing; empty: it exists
   std::vector<VolumePlan> volumes;
+  Warnings warnings;  ///< those of the volumes included
 
   std::vector<std::string> outputs() const;
 };

@@ -24,6 +24,7 @@ Fingerprint fingerprint_of_options(const WarpArguments& arguments,
   fingerprint.add(warp_options(arguments, plan, volume));
   for (const std::size_t e : arguments.extra) fingerprint.add(e);
   fingerprint.add(volume.written_grid);
+  fingerprint.add(volume.active);
   fingerprint.add(plan.mesh.mesh().tets);
   fingerprint.add(plan.mesh.mesh().hexes);
   fingerprint.add(plan.mesh.mesh().rest_positions);
@@ -36,11 +37,14 @@ bool is_up_to_date(const WarpArguments& arguments,
   return arguments.resume && read_fingerprint(output) == fingerprint.text();
 }
 
-VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerprint& fingerprint) {
+VolumeWriteOptions write_options(const WarpArguments& arguments,
+                                 const VolumePlan& volume,
+                                 const Fingerprint& fingerprint) {
   return {.compress = arguments.compress,
           .background = arguments.warp.background,
           .skip_background_chunks = arguments.warp.skip.background_chunks,
-          .fingerprint = fingerprint.text()};
+          .fingerprint = fingerprint.text(),
+          .scalars = volume.active};
 }
 
 void repeat_report(const StepReport& last, StepReport& report) {

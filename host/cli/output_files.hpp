@@ -26,7 +26,9 @@ bool is_up_to_date(const WarpArguments& arguments,
                    const std::string& output,
                    const Fingerprint& fingerprint);
 
-VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerprint& fingerprint);
+VolumeWriteOptions write_options(const WarpArguments& arguments,
+                                 const VolumePlan& volume,
+                                 const Fingerprint& fingerprint);
 
 /// Fills the report of a step that equals the last one: counts that describe the outputs are
 /// copied, counts of work stay zero.

@@ -58,6 +58,32 @@ Grid bounds_grid(const Grid& source,
   grid.origin = source.world_of(first);
   return grid;
 }
+
+/// The grid with `dims` or `spacing` of the choice, the other one and the origin such that the box
+/// of its voxels stays. What check_grid() refuses is left for it.
+Grid with_box_kept(const GridChoice& choice, const Grid& base) {
+  Grid grid = base;
+  Point3 first{};  // centre of the first voxel, in voxels of the base
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double length = static_cast<double>(base.dims[axis]) * base.spacing[axis];
+    if (choice.spacing) {
+      grid.spacing[axis] = (*choice.spacing)[axis];
+      if (!(grid.spacing[axis] > 0)) continue;
+      // The tolerance is for quotients that are whole but for rounding.
+      const double count = std::max(std::ceil(length / grid.spacing[axis] - 1e-6), 1.0);
+      grid.dims[axis] = static_cast<std::int64_t>(std::min(count, 0x1p40));
+    } else {
+      grid.dims[axis] = (*choice.dims)[axis];
+      if (grid.dims[axis] < 1) continue;
+      grid.spacing[axis] = length / static_cast<double>(grid.dims[axis]);
+    }
+    const double between_centres =
+        static_cast<double>(grid.dims[axis] - 1) * grid.spacing[axis] / base.spacing[axis];
+    first[axis] = 0.5 * (static_cast<double>(base.dims[axis] - 1) - between_centres);
+  }
+  if (!choice.direction) grid.origin = base.world_of(first);
+  return grid;
+}
 }  // namespace
 
 Grid resolve_grid(const GridChoice& choice,
@@ -70,6 +96,7 @@ Grid resolve_grid(const GridChoice& choice,
   } else if (choice.base != "same") {
     grid = read_volume_header(choice.base).grid;
   }
+  if (choice.dims.has_value() != choice.spacing.has_value()) grid = with_box_kept(choice, grid);
   grid.dims = choice.dims.value_or(grid.dims);
   grid.origin = choice.origin.value_or(grid.origin);
   grid.spacing = choice.spacing.value_or(grid.spacing);

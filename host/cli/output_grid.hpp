@@ -21,7 +21,10 @@ struct GridChoice {
   std::optional<std::array<double, 9>> direction;
 };
 
-/// The base grid with those parts replaced that are given.
+/// The base grid with those parts replaced that are given. Of dims and spacing, one that is given
+/// alone determines the other: the box of the base grid's voxels is kept. Where voxels of that
+/// spacing do not fill the box, they protrude equally on both sides. A given origin or direction
+/// keeps the origin from moving along with the size of the voxels.
 /// Throws std::invalid_argument when the result is no valid grid.
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,

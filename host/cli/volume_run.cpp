@@ -52,22 +52,16 @@ VolumeRun::VolumeRun(const WarpArguments& arguments,
   // glibc returns the memory of a block to the system when it is freed.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   options_.skip.unchanged_tets = false;  // a block is not computed twice
-  for (const ArrayHeader& array : volume.arrays) {
-    readers_.emplace_back(volume.path, array.name, arguments.source_step);
-  }
+  open_readers(arguments.source_step_of(plan.steps.front()));
   planner_.emplace(volume.source_grid, plan.mesh.mesh(), options_);
   fixed_bytes_ = fixed_bytes();
 }
 
 void VolumeRun::run() {
-  const Stopwatch watch;
-  bar_.show_phase("reading");
-  const Fingerprint inputs = is_whole_ ? read_sources() : scan_sources();
-  result_.report.timings.read += watch.seconds();
   if (arguments_.temporal) {
-    run_temporal(inputs);
+    run_temporal();
   } else {
-    run_each_step(inputs);
+    run_each_step();
   }
 }
 
@@ -93,13 +87,42 @@ void VolumeRun::plan_only() {
   }
 }
 
-/// Reads the sources of a whole volume.
+void VolumeRun::open_readers(std::int64_t source_step) {
+  readers_.clear();
+  for (const ArrayHeader& array : volume_.arrays) {
+    readers_.emplace_back(volume_.path, array.name, source_step);
+  }
+}
+
+/// Makes a step of the volume the source of the steps that follow, unless it is that already. All
+/// that depends on the one before is finished and discarded.
 /// @returns what the outputs depend on, except for positions
-Fingerprint VolumeRun::read_sources() {
+Fingerprint VolumeRun::take_sources(std::int64_t source_step) {
+  if (source_step_ == source_step) return inputs_;
+  finish_all();
+  warper_.reset();
+  last_.reset();
+  const Stopwatch watch;
+  bar_.show_phase("reading");
+  if (is_whole_) {
+    inputs_ = read_sources(source_step);
+  } else {
+    open_readers(source_step);
+    inputs_ = scan_sources();
+  }
+  source_step_ = source_step;
+  result_.report.timings.read += watch.seconds();
+  return inputs_;
+}
+
+/// Reads the sources of a whole volume.
+/// @returns as take_sources()
+Fingerprint VolumeRun::read_sources(std::int64_t source_step) {
   Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
+  sources_.clear();
   for (const ArrayHeader& array : volume_.arrays) {
     stop_if_interrupted();
-    Volume source = read_volume(volume_.path, array.name, arguments_.source_step);
+    Volume source = read_volume(volume_.path, array.name, source_step);
     result_.report.counts.bytes_read += static_cast<std::int64_t>(source.data.size());
     fingerprint.add(source);
     sources_.push_back(std::move(source));
@@ -108,7 +131,7 @@ Fingerprint VolumeRun::read_sources() {
 }
 
 /// Reads the sources part by part, for --resume and their ranges.
-/// @returns as read_sources(), at the root
+/// @returns as take_sources(), at the root
 Fingerprint VolumeRun::scan_sources() {
   Fingerprint fingerprint = fingerprint_of_options(arguments_, plan_, volume_);
   const bool needs_range = arguments_.warp.overshoot == Overshoot::clamp;
@@ -123,8 +146,9 @@ Fingerprint VolumeRun::scan_sources() {
   return fingerprint;
 }
 
-void VolumeRun::run_each_step(const Fingerprint& inputs) {
+void VolumeRun::run_each_step() {
   for (std::size_t s = 0; s < volume_.steps.size(); ++s) {
+    const Fingerprint inputs = take_sources(arguments_.source_step_of(volume_.steps[s]));
     const std::shared_ptr<Step> step = read_step(volume_.steps[s]);
     step->output = volume_.outputs[s];
     step->fingerprint = inputs;
@@ -144,10 +168,15 @@ void VolumeRun::run_each_step(const Fingerprint& inputs) {
   finish_all();
 }
 
-void VolumeRun::run_temporal(Fingerprint fingerprint) {
+void VolumeRun::run_temporal() {
   const std::vector<double>& times = plan_.mesh.header().times;
+  // With --pair the sources are read twice: here for the fingerprint, and to be warped.
+  Fingerprint fingerprint = take_sources(arguments_.source_step_of(plan_.steps.front()));
   for (const std::int64_t step : plan_.steps) {
     stop_if_interrupted();
+    if (arguments_.pair) {
+      fingerprint.add(take_sources(arguments_.source_step_of(step)).text());
+    }
     fingerprint.add(times[static_cast<std::size_t>(step)]);
     fingerprint.add(plan_.mesh.read_step(step));
   }
@@ -158,6 +187,7 @@ void VolumeRun::run_temporal(Fingerprint fingerprint) {
   }
   begin_file(output, fingerprint, true);
   for (const std::int64_t number : plan_.steps) {
+    take_sources(arguments_.source_step_of(number));
     const std::shared_ptr<Step> step = read_step(number);
     step->time = times[static_cast<std::size_t>(number)];
     start_writing();
@@ -201,8 +231,9 @@ void VolumeRun::begin_file(const std::string& output,
                            const Fingerprint& fingerprint,
                            bool is_temporal) {
   if (!ranks_.is_root()) return;
-  writer_.emplace(output, volume_.written_grid, outputs_, write_options(arguments_, fingerprint),
-                  is_temporal, is_whole_ ? ChunkShape::rows : ChunkShape::bricks);
+  writer_.emplace(output, volume_.written_grid, outputs_,
+                  write_options(arguments_, volume_, fingerprint), is_temporal,
+                  is_whole_ ? ChunkShape::rows : ChunkShape::bricks);
 }
 
 /// Adds a step that is complete to the report of the job.

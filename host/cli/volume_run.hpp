@@ -90,10 +90,12 @@ class VolumeRun {
   };
 
   // volume_run.cpp: sources, steps and files.
-  Fingerprint read_sources();
+  void open_readers(std::int64_t source_step);
+  Fingerprint take_sources(std::int64_t source_step);
+  Fingerprint read_sources(std::int64_t source_step);
   Fingerprint scan_sources();
-  void run_each_step(const Fingerprint& inputs);
-  void run_temporal(Fingerprint fingerprint);
+  void run_each_step();
+  void run_temporal();
   std::shared_ptr<Step> read_step(std::int64_t number);
   bool may_keep(const std::string& output, const Fingerprint& fingerprint);
   void begin_file(const std::string& output, const Fingerprint& fingerprint, bool is_temporal);
@@ -138,6 +140,8 @@ class VolumeRun {
   bool overlaps_;                      ///< a step is begun before the one before is finished
   std::vector<ArrayHeader> outputs_;   ///< warped arrays, then the extra ones
   double fixed_bytes_ = 0;             ///< memory besides that of the blocks
+  std::int64_t source_step_ = -1;      ///< of the volume, whose samples are the sources; -1: none
+  Fingerprint inputs_;                 ///< of these sources and of the options
   std::vector<Volume> sources_;        ///< of a whole volume
   std::vector<VolumeReader> readers_;  ///< of the sources of blocks
   std::vector<std::vector<double>> ranges_;  ///< of these, for --overshoot clamp

@@ -46,6 +46,9 @@ void VolumeRun::finish_computing() {
 void VolumeRun::start_writing() {
   if (!computed_) return;
   finish_writing();
+  if (computed_->is_last && arguments_.strict) {
+    refuse_warnings(step_warnings(arguments_.mesh_file(), {&computed_->step->report, 1}));
+  }
   writing_part_ = *std::exchange(computed_, {});
   writing_ = files_.run([this, part = writing_part_] { write(part); });
   if (!writes_beside_) {

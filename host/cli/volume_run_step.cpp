@@ -54,7 +54,7 @@ void VolumeRun::run_blocks(const std::shared_ptr<Step>& step) {
     if (owner != ranks_.rank()) {
       part.outputs = receive(part.region, owner);
       computed_ = std::move(part);
-      start_writing();
+      if (!computed_->is_last) start_writing();
       continue;
     }
     Windows windows;
@@ -71,6 +71,7 @@ void VolumeRun::run_blocks(const std::shared_ptr<Step>& step) {
   add_reports_of_others(step->report);
   describe(step->plan, step->report.counts);
   step->plan = {};
+  start_writing();  // the last block, when all counts of the step are known
   finish_writing();
 }
 
@@ -120,7 +121,7 @@ void VolumeRun::compute(Part part, const WarpBlock& block, const Samples& window
     });
   }
   if (ranks_.is_root()) {
-    start_writing();
+    if (!computed_->is_last) start_writing();
   } else {
     send(*std::exchange(computed_, {}));
   }

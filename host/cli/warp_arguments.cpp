@@ -111,6 +111,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
                  "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");
+  app.add_flag("--pair", arguments.pair, "warp step n of the volume by step n of the mesh");
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
       "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
@@ -127,9 +128,11 @@ void declare_grid(CLI::App& app, WarpArguments& arguments) {
   app.add_option("--grid", grid.base,
                  "output grid: the source's, the deformed mesh's box on it, or a volume's [same]")
       ->type_name("same|bounds|FILE");
-  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK", "voxels of the output grid");
+  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
+              "voxels of the output grid; alone it keeps the base's box [--spacing]");
   add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
-  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z", "distance of its voxel centres");
+  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z",
+              "distance of its voxel centres; alone it keeps the base's box [--dims]");
   add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
   add_parsed(app, "--roi", arguments.warp.region, parse_region, "I0:I1,J0:J1,K0:K1",
              "part of the output grid to compute, half-open");
@@ -197,6 +200,8 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
   app.add_flag("--dry-run", arguments.dry_run,
                "print the plan and the memory it needs; compute nothing");
+  app.add_flag("--strict", arguments.strict,
+               "treat warnings as errors, before the output that they concern gets its name");
   app.add_flag("--count-folded", warp.count_folded, "count voxels inside several tetrahedra");
   app.add_option("--report", arguments.report, "write timings and counts as JSON")
       ->type_name("FILE");
@@ -219,6 +224,12 @@ void check_complete(const WarpArguments& arguments) {
   if (arguments.warp.antialias && (filter == Filter::nearest || filter == Filter::labels)) {
     throw CLI::ValidationError(
         "--antialias", "cannot average samples with nearest and labels; use another --filter");
+  }
+  if (arguments.pair && arguments.source_step) {
+    throw CLI::ValidationError("--pair", "takes all steps of the volume; leave out --source-step");
+  }
+  if (arguments.warp.intensity == Intensity::conservative && filter != Filter::linear) {
+    throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {

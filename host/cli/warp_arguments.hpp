@@ -2,7 +2,9 @@
 /// The arguments of `tetwarp warp`, declared once for command line and batch files.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +19,11 @@ namespace tetwarp::cli {
 
 /// Their syntax is checked; files are not read.
 struct WarpArguments {
-  std::vector<std::string> files;   ///< volumes, then the mesh
-  std::string output;               ///< file, or folder for several volumes
-  std::vector<std::string> arrays;  ///< empty: every array
-  std::int64_t source_step = 0;     ///< of a volume file with several steps
+  std::vector<std::string> files;           ///< volumes, then the mesh
+  std::string output;                       ///< file, or folder for several volumes
+  std::vector<std::string> arrays;          ///< empty: every array
+  std::optional<std::int64_t> source_step;  ///< of volume files with several steps; none: 0
+  bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
   MeshReadOptions mesh;
   GridChoice grid;
@@ -30,6 +33,7 @@ struct WarpArguments {
   int compress = 0;
   bool temporal = false;
   bool resume = false;
+  bool strict = false;   ///< warnings are errors
   double memory = 0;     ///< limit of the process [byte]; 0: the available memory
   bool dry_run = false;  ///< plan only
   bool quiet = false;
@@ -39,6 +43,10 @@ struct WarpArguments {
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
+  /// The step of the volume that a step of the mesh warps.
+  std::int64_t source_step_of(std::int64_t step) const {
+    return pair ? step : source_step.value_or(0);
+  }
   Quantity quantity_of(const std::string& array) const {
     const auto found = quantities.find(array);
     return found == quantities.end() ? Quantity::components : found->second;

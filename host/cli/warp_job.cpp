@@ -52,6 +52,15 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   if (!ranks.is_root()) ranks.wait_for_all();
   const JobPlan plan = plan_job(arguments);
   JobResult result;
+  const auto warn = [&](const Warnings& warnings) {
+    if (!ranks.is_root()) return;
+    if (context.shows_progress) {
+      print_warnings(warnings, context.label == "warp" ? "" : context.label);
+    }
+    result.warnings.insert(result.warnings.end(), warnings.begin(), warnings.end());
+  };
+  if (arguments.strict) refuse_warnings(plan.warnings);
+  warn(plan.warnings);
   result.outputs = plan.outputs();
   result.report.version = TETWARP_VERSION;
   result.report.backend = plan.backend;
@@ -76,6 +85,7 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
     }
   }
   gather_results(ranks, result);
+  warn(step_warnings(arguments.mesh_file(), result.report.steps));
   result.report.timings.total = watch.seconds();
   if (!arguments.report.empty() && ranks.is_root()) {
     write_finished_file(arguments.report, report_json(result) + "\n");
@@ -88,6 +98,7 @@ std::string report_json(const JobResult& result) {
   json["status"] = !result.plans.empty() ? "planned" : result.written == 0 ? "skipped" : "done";
   json["outputs"] = result.outputs;
   json["outputs_skipped"] = result.skipped;
+  json["warnings"] = result.warnings;
   for (const StepPlan& plan : result.plans) {
     json["plans"].push_back({{"volume", plan.volume},
                              {"step", plan.step},

@@ -9,15 +9,16 @@
 #include <tetwarp/report.hpp>
 
 #include "host/cli/ranks.hpp"
+#include "host/cli/warnings.hpp"
 #include "host/cli/warp_arguments.hpp"
 
 namespace tetwarp::cli {
 
 /// Where a job runs.
 struct JobContext {
-  std::string label = "warp";  ///< names the job in the progress bar
-  bool shows_progress = true;
-  Ranks* ranks = nullptr;  ///< processes that share the job; null: one process
+  std::string label = "warp";  ///< names the job in the progress bar and in warnings
+  bool shows_progress = true;  ///< and prints warnings
+  Ranks* ranks = nullptr;      ///< processes that share the job; null: one process
 };
 
 /// The plan of one step, for --dry-run.
@@ -38,6 +39,7 @@ struct JobResult {
   std::vector<StepPlan> plans;       ///< filled by --dry-run, which does nothing else
   std::int64_t written = 0;          ///< outputs written
   std::int64_t skipped = 0;          ///< outputs that --resume found complete and up to date
+  Warnings warnings;                 ///< in the order in which they were found
 };
 
 /// Plans the job, then reads, warps and writes step by step; writes the report last. Nothing is
@@ -48,7 +50,8 @@ struct JobResult {
 /// which the root writes. The result is complete at the root only.
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context);
 
-/// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped".
+/// The report as JSON, with the fields of the command: "status", "outputs", "outputs_skipped",
+/// "warnings".
 std::string report_json(const JobResult& result);
 
 /// A line to print: outputs, covered voxels, seconds, back end and file names. After --dry-run the

@@ -38,15 +38,23 @@ struct ArrayHeader {
 /// What a volume file holds.
 struct VolumeHeader {
   Grid grid;                        ///< dims from 0; the start of WholeExtent moves the origin
-  std::vector<ArrayHeader> arrays;  ///< numeric point arrays, sorted by name
-  std::vector<double> times;        ///< one per step; empty: a static file
+  std::vector<ArrayHeader> arrays;  ///< numeric point arrays as stored, or sorted by name
+  /// The array that is read when none is named: the active scalars of the file, else the first one
+  /// that is no extra output of a warp (their names begin with `tetwarp_`), else the first one.
+  std::string active;
+  /// Arrays that are stored as floats of less than 4 bytes, and read as float32.
+  std::vector<std::string> widened;
+  /// What is not read, as paths below /VTKHDF: point arrays of other elements than numbers and
+  /// booleans, for example complex ones; cell data and field data.
+  std::vector<std::string> not_read;
+  std::vector<double> times;  ///< one per step; empty: a static file
 };
 
 /// Reads the header of a VTKHDF ImageData file.
 TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path);
 
 /// Reads an array of a VTKHDF ImageData file.
-/// @param array  its name; empty: the first array by name
+/// @param array  its name; empty: VolumeHeader::active
 /// @param step   from 0, of a temporal file; a static file has step 0 only
 TETWARP_IO_EXPORT Volume read_volume(const std::string& path,
                                      const std::string& array = {},
@@ -64,6 +72,9 @@ class TETWARP_IO_EXPORT VolumeReader {
 
   const Grid& grid() const;
   const ArrayHeader& array() const;
+
+  /// Names of the numeric arrays of the file, in the order of VolumeHeader::arrays.
+  std::vector<std::string> array_names() const;
 
   /// Memory of HDF5 while it reads: a chunk before and after decompression [byte].
   double chunk_bytes() const;
@@ -120,6 +131,9 @@ struct VolumeWriteOptions {
   double background = 0;               ///< fill value, which chunks that are not stored read as
   bool skip_background_chunks = true;  ///< do not store chunks that hold only the background
   std::string fingerprint = {};  ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
+  /// The array that becomes the active scalars; when it is none of those written, the first one
+  /// whose name does not begin with `tetwarp_`, else the first one.
+  std::string scalars = {};
 };
 
 /// A volume file that was written.
@@ -241,6 +255,8 @@ enum class FileKind {
   contact_problem,  ///< FCLIB
   hdf5,             ///< any other HDF5 file, also a damaged one
   nifti,            ///< NIfTI-1 in a single file, plain or gzip
+  nifti2,           ///< NIfTI-2, plain or gzip
+  image_pair,       ///< NIfTI or Analyze in two files, .hdr and .img
   unknown
 };
 template <>

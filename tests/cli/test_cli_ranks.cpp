@@ -137,5 +137,37 @@ TEST_F(Ranks, PrintACommonErrorOnce) {
     EXPECT_EQ(scene.names(), scene.inputs);
   }
 }
+
+/// The ranks compute one output in blocks.
+TEST_F(Ranks, StopAStrictWarpBeforeTheOutputGetsItsName) {
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({100}), {0});
+  const Names before = scene.names();
+  Names words{"volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"};
+
+  const CommandResult warned = run_three(words);
+  EXPECT_EQ(warned.exit_code, 0) << warned.err;
+  EXPECT_NE(warned.err.find("tetwarp: warning: mesh.vtkhdf: the mesh covers no voxel"),
+            std::string::npos)
+      << warned.err;
+  fs::remove(scene / "out.vtkhdf");
+
+  words.push_back("--strict");
+  const CommandResult refused = run_three(words);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("covers no voxel"), std::string::npos) << refused.err;
+  EXPECT_EQ(scene.names(), before);
+}
+
+TEST_F(Ranks, PairTheStepsOfVolumeAndMesh) {
+  TemporalVolumeWriter writer(scene / "volume.vtkhdf");
+  for (int step = 0; step < 4; ++step) {
+    Volume volume = ramp_volume<float>();
+    for (float& sample : volume.samples<float>()) sample *= static_cast<float>(step + 1);
+    writer.append(step, {&volume});
+  }
+  writer.finish();
+
+  expect_same({".vtkhdf"}, {"--pair", "--temporal", "--overshoot", "clamp"});
+}
 }  // namespace
 }  // namespace tetwarp::test

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <tetwarp/io.hpp>
@@ -100,6 +101,24 @@ TEST(Cli, InfoShowsVolumesAndMeshesForPeopleAndMachines) {
   EXPECT_EQ(json["arrays"]["density"]["max"], 960.0);
   EXPECT_NE(mesh.out.find("kind: mesh\nnodes: 8\ntetrahedra: 5\nsteps: 4\n"), std::string::npos)
       << mesh.out;
+}
+
+TEST(Cli, InfoShowsTheFiniteRangeAndCountsTheOtherSamples) {
+  const TemporaryFolder folder;
+  Volume volume = ramp_volume<float>();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  volume.samples<float>()[0] = std::numeric_limits<float>::quiet_NaN();
+  volume.samples<float>()[7] = infinity;
+  volume.samples<float>()[8] = -infinity;
+  write_volumes(folder / "volume.vtkhdf", {&volume});
+
+  const CommandResult result = run_command(folder, {"info", "volume.vtkhdf", "--stats", "--json"});
+
+  const auto json = nlohmann::json::parse(result.out)["arrays"]["density"];
+  EXPECT_EQ(json["min"], 2.0);
+  EXPECT_EQ(json["max"], 960.0);
+  EXPECT_EQ(json["nan"], 1);
+  EXPECT_EQ(json["infinite"], 2);
 }
 
 TEST(Cli, DemoNeedsNoFileAndWritesAllOutputs) {
