@@ -4,6 +4,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_io_tests UNITY 3 LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti tetwarp_png
     SOURCES
     tests/io/test_io_arrays.cpp
+    tests/io/test_io_axes.cpp
     tests/io/test_io_blocks.cpp
     tests/io/test_io_vtkhdf_volume.cpp
     tests/io/test_io_vtkhdf_mesh.cpp
@@ -41,7 +42,9 @@ find_program(TETWARP_PYTHON python3)
 if(TETWARP_PYTHON)
   add_test(NAME vtk_reader COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  add_test(NAME axes COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(vtk_reader axes PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
@@ -54,7 +57,7 @@ include(cmake/DocTests.cmake)
 # tetwarp_add_cli_tests(PROGRAM SOURCE...): tests that start the command.
 function(tetwarp_add_cli_tests program)
   tetwarp_add_tests(${program} UNITY 3
-    LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json SOURCES ${ARGN})
+    LIBRARIES tetwarp_io tetwarp_hdf5 tetwarp_nifti nlohmann_json::nlohmann_json SOURCES ${ARGN})
   target_compile_definitions(${program} PRIVATE
     TETWARP_COMMAND="$<TARGET_FILE:tetwarp_command>"
     TETWARP_MPIRUN="$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
@@ -63,6 +66,7 @@ endfunction()
 tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
   tests/cli/test_cli_arrays.cpp
+  tests/cli/test_cli_axes.cpp
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_batch.cpp
   tests/cli/test_cli_contact.cpp

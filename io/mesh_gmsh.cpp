@@ -43,6 +43,7 @@ Places add_nodes(const GmshLibrary& gmsh, ImportedMesh& into) {
     into.mesh.rest_positions.push_back(
         {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2]});
   }
+  add_numbers("original_node", false, {tags.data, tags.data + tags.size}, into);
   return places;
 }
 
@@ -57,10 +58,11 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
   return {name.data, dimension, is_kept ? nodes : 0};
 }
 
-void add_cells(const std::string& path,
-               const GmshLibrary& gmsh,
-               const Places& places,
-               ImportedMesh& into) {
+CellNumbers add_cells(const std::string& path,
+                      const GmshLibrary& gmsh,
+                      const Places& places,
+                      ImportedMesh& into) {
+  CellNumbers numbers;
   GmshArray<int> types(gmsh);
   GmshArrays<std::size_t> tags(gmsh), nodes(gmsh);
   gmsh.call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types.data,
@@ -73,9 +75,52 @@ void add_cells(const std::string& path,
           nodes.data[type] + c * static_cast<std::size_t>(kind.kept_nodes);
       add_cell(
           path, kind, static_cast<std::int64_t>(tags.data[type][c]),
-          [&](std::size_t n) { return place_of(path, places, tags_of_cell[n]); }, into);
+          [&](std::size_t n) { return place_of(path, places, tags_of_cell[n]); }, into, numbers);
     }
   }
+  return numbers;
+}
+
+/// Adds to each cell of an entity the physical group of that entity, unless it has one.
+void add_group(const GmshLibrary& gmsh,
+               int entity,
+               int group,
+               std::unordered_map<std::size_t, std::int64_t>& groups) {
+  GmshArray<int> types(gmsh);
+  GmshArrays<std::size_t> tags(gmsh), nodes(gmsh);
+  gmsh.call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types.data,
+                                                &types.size, &tags.data, &tags.sizes, &tags.size,
+                                                &nodes.data, &nodes.sizes, &nodes.size, 3, entity);
+  for (std::size_t type = 0; type < tags.size; ++type) {
+    for (std::size_t c = 0; c < tags.sizes[type]; ++c) groups.emplace(tags.data[type][c], group);
+  }
+}
+
+/// Adds the array `group` where the file has physical groups of volumes. Their names are not kept.
+void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMesh& into) {
+  GmshArray<int> physical(gmsh);  // pairs of dimension and tag
+  gmsh.call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &physical.data,
+                                                  &physical.size, 3);
+  std::unordered_map<std::size_t, std::int64_t> groups;
+  for (std::size_t at = 0; at + 1 < physical.size; at += 2) {
+    const int group = physical[at + 1];
+    GmshArray<int> entities(gmsh);
+    gmsh.call<decltype(gmshModelGetEntitiesForPhysicalGroup)>(
+        "gmshModelGetEntitiesForPhysicalGroup", 3, group, &entities.data, &entities.size);
+    for (std::size_t e = 0; e < entities.size; ++e) add_group(gmsh, entities[e], group, groups);
+    GmshArray<char> name(gmsh);
+    gmsh.call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", 3, group, &name.data);
+    if (name.data != nullptr && *name.data != '\0') {
+      into.left_out.push_back("name '" + std::string(name.data) + "' of group " +
+                              std::to_string(group));
+    }
+  }
+  std::vector<std::int64_t> rows;
+  for (const std::int64_t number : numbers.all()) {
+    const auto found = groups.find(static_cast<std::size_t>(number));
+    rows.push_back(found == groups.end() ? 0 : found->second);
+  }
+  if (!groups.empty()) add_numbers("group", true, rows, into);
 }
 
 /// Adds one step of node data, which every node must have.
@@ -125,15 +170,19 @@ void add_displacement(const std::string& path,
     names.emplace_back(name.data);
   }
   const auto chosen = choose_displacement(path, names, options);
-  for (std::size_t view = 0; chosen && view < views.size; ++view) {
-    if (names[view] != *chosen) continue;
+  bool is_found = false;
+  for (std::size_t view = 0; view < views.size; ++view) {
+    if (is_found || names[view] != chosen) {
+      into.left_out.push_back("data '" + names[view] + "'");
+      continue;
+    }
+    is_found = true;
     double steps = 0;
     gmsh.call<decltype(gmshOptionGetNumber)>("gmshOptionGetNumber",
                                              option(view, "NbTimeStep").c_str(), &steps);
     for (int step = 0; step < static_cast<int>(steps); ++step) {
       add_step(path, gmsh, views[view], step, *chosen, places, into);
     }
-    return;
   }
 }
 }  // namespace
@@ -144,7 +193,9 @@ ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& op
   gmsh.call<decltype(gmshOpen)>("gmshOpen", path.c_str());
   ImportedMesh mesh;
   const Places places = add_nodes(gmsh, mesh);
-  add_cells(path, gmsh, places, mesh);
+  const CellNumbers numbers = add_cells(path, gmsh, places, mesh);
+  add_numbers("original_cell", true, numbers.all(), mesh);
+  add_groups(gmsh, numbers, mesh);
   add_displacement(path, gmsh, places, options, mesh);
   return mesh;
 }

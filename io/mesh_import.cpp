@@ -10,6 +10,12 @@
 #include <tetwarp/error.hpp>
 
 namespace tetwarp {
+namespace {
+/// Between RAS and LPS.
+void turn(std::vector<Point3>& vectors) {
+  for (Point3& vector : vectors) vector = {0 - vector[0], 0 - vector[1], vector[2]};
+}
+}  // namespace
 
 bool has_mesh_extension(const std::string& path) {
   return path.ends_with(".msh") || path.ends_with(".vtu") || path.ends_with(".vtk");
@@ -29,6 +35,11 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   }
   if (mesh.mesh.rest_positions.size() > std::numeric_limits<std::int32_t>::max()) {
     throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
+  }
+  if (options.axes == Axes::lps) {
+    turn(mesh.mesh.rest_positions);
+    for (std::vector<Point3>& displacement : mesh.displacements) turn(displacement);
+    for (MeshArray& array : mesh.arrays) turn_array(array);
   }
   return mesh;
 }

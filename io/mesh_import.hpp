@@ -9,6 +9,8 @@
 
 #include <tetwarp/mesh_import.hpp>
 
+#include "io/mesh_arrays.hpp"
+
 namespace tetwarp {
 
 /// One reader per library; in a build without the library it throws an IoError that names the
@@ -29,7 +31,7 @@ void leave_out_cell(const std::string& path,
                     std::int64_t number,
                     ImportedMesh& into);
 
-/// Adds a cell that is kept, counts one of fewer dimensions.
+/// Adds a cell that is kept and its number, counts one of fewer dimensions.
 /// @param number   of the cell in its file
 /// @param node_at  function from 0, 1 ... in VTK's order of nodes to an index in the mesh
 /// @throws IoError on other cells of three dimensions
@@ -38,15 +40,18 @@ void add_cell(const std::string& path,
               const CellKind& kind,
               std::int64_t number,
               const NodeAt& node_at,
-              ImportedMesh& into) {
+              ImportedMesh& into,
+              CellNumbers& numbers) {
   const auto nodes = [&]<std::size_t count>(std::array<std::int32_t, count> cell) {
     for (std::size_t n = 0; n < count; ++n) cell[n] = static_cast<std::int32_t>(node_at(n));
     return cell;
   };
   if (kind.kept_nodes == 4) {
     into.mesh.tets.push_back(nodes(std::array<std::int32_t, 4>{}));
+    numbers.tets.push_back(number);
   } else if (kind.kept_nodes == 8) {
     into.mesh.hexes.push_back(nodes(std::array<std::int32_t, 8>{}));
+    numbers.hexes.push_back(number);
   } else {
     leave_out_cell(path, kind, number, into);
   }

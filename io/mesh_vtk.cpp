@@ -16,6 +16,7 @@
 #include <tetwarp/error.hpp>
 
 #include "io/mesh_import.hpp"
+#include "io/mesh_vtk_arrays.hpp"
 
 namespace tetwarp {
 namespace {
@@ -38,7 +39,8 @@ CellKind kind_of_type(int type) {
   return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
 }
 
-void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
+CellNumbers add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
+  CellNumbers numbers;
   std::map<int, CellKind> kinds;
   const vtkNew<vtkIdList> nodes;
   for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
@@ -54,8 +56,9 @@ void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh&
                         kinds[type].name + ", each from 0 to " +
                         std::to_string(grid.GetNumberOfPoints() - 1) + ": damaged, write it again");
     };
-    add_cell(path, kinds[type], c, node_at, into);
+    add_cell(path, kinds[type], c, node_at, into, numbers);
   }
+  return numbers;
 }
 
 std::vector<std::string> array_names(vtkPointData& data) {
@@ -87,12 +90,13 @@ void add_step(const std::string& path,
               double time,
               const MeshImportOptions& options,
               ImportedMesh& into) {
-  if (into.mesh.rest_positions.empty()) {
-    into.mesh.rest_positions = rows_of(*grid.GetPoints()->GetData());
-    add_cells(path, grid, into);
-  }
   vtkPointData& data = *grid.GetPointData();
   const auto name = choose_displacement(path, array_names(data), options);
+  if (into.mesh.rest_positions.empty()) {
+    into.mesh.rest_positions = rows_of(*grid.GetPoints()->GetData());
+    const CellNumbers numbers = add_cells(path, grid, into);
+    add_arrays(grid, name, numbers, into);
+  }
   if (!name) return;
   vtkDataArray& array = *data.GetArray(name->c_str());
   if (array.GetNumberOfComponents() != 3 ||
@@ -128,6 +132,9 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
     reader->Update();
     check_grid(path, reader->GetErrorCode() == 0 ? reader->GetOutput() : nullptr);
     add_step(path, *reader->GetOutput(), step, options, mesh);
+  }
+  if (steps > 1 && mesh.arrays.size() > 1) {
+    mesh.left_out.emplace_back("steps after the first of all arrays but the displacement");
   }
   return mesh;
 }

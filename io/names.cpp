@@ -4,8 +4,7 @@
 
 namespace tetwarp {
 namespace {
-constexpr EnumName<NiftiVectors> nifti_vectors_names[] = {{NiftiVectors::world, "world"},
-                                                          {NiftiVectors::lps, "lps"}};
+constexpr EnumName<Axes> axes_names[] = {{Axes::ras, "ras"}, {Axes::lps, "lps"}};
 constexpr EnumName<ContactStart> contact_start_names[] = {{ContactStart::zero, "zero"},
                                                           {ContactStart::stored, "stored"}};
 constexpr EnumName<FileKind> file_kind_names[] = {
@@ -21,8 +20,8 @@ constexpr EnumName<FileKind> file_kind_names[] = {
 }  // namespace
 
 template <>
-TETWARP_IO_EXPORT std::span<const EnumName<NiftiVectors>> names_of() {
-  return nifti_vectors_names;
+TETWARP_IO_EXPORT std::span<const EnumName<Axes>> names_of() {
+  return axes_names;
 }
 template <>
 TETWARP_IO_EXPORT std::span<const EnumName<ContactStart>> names_of() {

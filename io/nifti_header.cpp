@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -111,6 +112,56 @@ PixelType type_of(const std::string& path, int datatype) {
                     "), expected integers or floats of 1 to 8 bytes; convert the samples");
 }
 
+/// True when both forms place the corners of the image within 0.01 voxel of each other.
+bool forms_agree(const nifti_image& image, const Grid& grid) {
+  const double tolerance = 0.01 * *std::ranges::min_element(grid.spacing);
+  for (int corner = 0; corner < 8; ++corner) {
+    const double index[4] = {corner & 1 ? image.nx - 1.0 : 0, corner & 2 ? image.ny - 1.0 : 0,
+                             corner & 4 ? image.nz - 1.0 : 0, 1};
+    for (int row = 0; row < 3; ++row) {
+      double difference = 0;
+      for (int axis = 0; axis < 4; ++axis) {
+        difference +=
+            (double{image.sto_xyz.m[row][axis]} - image.qto_xyz.m[row][axis]) * index[axis];
+      }
+      if (!(std::abs(difference) <= tolerance)) return false;
+    }
+  }
+  return true;
+}
+
+/// A text of a header, which ends at its first zero byte or with the field.
+template <std::size_t size>
+std::string text_of(const char (&field)[size]) {
+  return {field, std::find(field, field + size, '\0')};
+}
+
+/// Copies as much of a text as the field can hold with its zero byte.
+template <std::size_t size>
+void set_text(char (&field)[size], const std::string& text) {
+  std::memcpy(field, text.data(), std::min(text.size(), size - 1));
+}
+
+NiftiFacts facts_of(const nifti_1_header& raw, const nifti_image& image, const Grid& grid) {
+  NiftiFacts facts;
+  facts.sform_code = std::max<int>(0, raw.sform_code);
+  facts.qform_code = std::max<int>(0, raw.qform_code);
+  if (facts.sform_code > 0 && facts.qform_code > 0 && !forms_agree(image, grid)) {
+    facts.qform_code = 0;
+  }
+  facts.xyzt_units = static_cast<unsigned char>(raw.xyzt_units);
+  facts.intent_code = std::max<int>(0, raw.intent_code);
+  facts.intent_p = {raw.intent_p1, raw.intent_p2, raw.intent_p3};
+  facts.intent_name = text_of(raw.intent_name);
+  facts.description = text_of(raw.descrip);
+  return facts;
+}
+
+/// True when voxel sizes alone give the grid: no form is needed.
+bool is_plain(const Grid& grid) {
+  return grid.origin == Point3{0, 0, 0} && grid.direction == Grid{}.direction;
+}
+
 bool is_orthonormal(const Grid& grid) {
   for (std::size_t a = 0; a < 3; ++a) {
     for (std::size_t b = 0; b < 3; ++b) {
@@ -146,6 +197,7 @@ NiftiHeader read_nifti_header(const std::string& path) {
       nifti_convert_nhdr2nim(raw.values, "volume.nii"), nifti_image_free);
   if (!image) throw IoError(path, "", "damaged NIfTI header");
   header.grid = grid_of(path, *image);
+  header.facts = facts_of(raw.values, *image, header.grid);
   if (image->scl_slope != 0) {
     header.slope = image->scl_slope;
     header.intercept = image->scl_inter;
@@ -167,7 +219,9 @@ NiftiHeader read_nifti_header(const std::string& path) {
   return header;
 }
 
-nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) {
+nifti_1_header make_nifti_header(const std::string& path,
+                                 const Volume& volume,
+                                 const NiftiFacts& facts) {
   const Grid& grid = volume.grid;
   int dims[8] = {volume.components > 1 ? 5 : 3, 1, 1, 1, 1, volume.components, 1, 1};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -190,8 +244,13 @@ nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) 
   nifti_1_header header = *made;
   std::memcpy(header.magic, "n+1", 4);
   header.vox_offset = 352;
-  header.xyzt_units = NIFTI_UNITS_MM;
-  if (volume.components > 1) header.intent_code = NIFTI_INTENT_VECTOR;
+  header.xyzt_units = static_cast<char>(facts.xyzt_units);
+  header.intent_code = static_cast<short>(facts.intent_code);
+  header.intent_p1 = static_cast<float>(facts.intent_p[0]);
+  header.intent_p2 = static_cast<float>(facts.intent_p[1]);
+  header.intent_p3 = static_cast<float>(facts.intent_p[2]);
+  set_text(header.intent_name, facts.intent_name);
+  set_text(header.descrip, facts.description);
 
   mat44 world{};
   world.m[3][3] = 1;
@@ -202,12 +261,19 @@ nifti_1_header make_nifti_header(const std::string& path, const Volume& volume) 
     world.m[row][3] = static_cast<float>(grid.origin[row]);
     header.pixdim[row + 1] = static_cast<float>(grid.spacing[row]);
   }
-  header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
-  std::memcpy(header.srow_x, world.m[0], sizeof header.srow_x);
-  std::memcpy(header.srow_y, world.m[1], sizeof header.srow_y);
-  std::memcpy(header.srow_z, world.m[2], sizeof header.srow_z);
-  if (!is_orthonormal(grid)) return header;
-  header.qform_code = NIFTI_XFORM_SCANNER_ANAT;
+  const bool has_qform = facts.qform_code > 0 && is_orthonormal(grid);
+  int sform_code = facts.sform_code;
+  if (sform_code == 0 && !has_qform && !is_plain(grid)) {
+    sform_code = std::max<int>(facts.qform_code, NIFTI_XFORM_SCANNER_ANAT);
+  }
+  if (sform_code > 0) {
+    header.sform_code = static_cast<short>(sform_code);
+    std::memcpy(header.srow_x, world.m[0], sizeof header.srow_x);
+    std::memcpy(header.srow_y, world.m[1], sizeof header.srow_y);
+    std::memcpy(header.srow_z, world.m[2], sizeof header.srow_z);
+  }
+  if (!has_qform) return header;
+  header.qform_code = static_cast<short>(facts.qform_code);
   nifti_mat44_to_quatern(world, &header.quatern_b, &header.quatern_c, &header.quatern_d,
                          &header.qoffset_x, &header.qoffset_y, &header.qoffset_z, &header.pixdim[1],
                          &header.pixdim[2], &header.pixdim[3], &header.pixdim[0]);

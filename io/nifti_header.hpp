@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include <tetwarp/volume.hpp>
+#include <tetwarp/nifti.hpp>
 
 namespace tetwarp {
 
@@ -44,6 +44,7 @@ struct NiftiHeader {
   double slope = 1;         ///< value = slope * sample + intercept
   double intercept = 0;
   std::int64_t data_offset = 352;  ///< first sample [byte], uncompressed
+  NiftiFacts facts{};
 
   bool is_scaled() const { return slope != 1 || intercept != 0; }
 };
@@ -56,6 +57,8 @@ bool has_nifti_header(const std::string& path);
 NiftiHeader read_nifti_header(const std::string& path);
 
 /// The header of a file for `volume`. Throws IoError about `path` when NIfTI-1 cannot hold it.
-nifti_1_header make_nifti_header(const std::string& path, const Volume& volume);
+nifti_1_header make_nifti_header(const std::string& path,
+                                 const Volume& volume,
+                                 const NiftiFacts& facts);
 
 }  // namespace tetwarp

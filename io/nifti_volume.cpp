@@ -6,6 +6,7 @@
 
 #include "io/finished_file.hpp"
 #include "io/h5.hpp"
+#include "io/nifti_components.hpp"
 #include "io/nifti_header.hpp"
 
 namespace tetwarp {
@@ -53,41 +54,20 @@ void copy_strided(const std::byte* in,
   }
 }
 
-/// Negates the samples of a slice of floats.
-template <class T>
-void negate(std::vector<std::byte>& slice) {
-  for (std::size_t at = 0; at < slice.size(); at += sizeof(T)) {
-    T sample;
-    std::memcpy(&sample, slice.data() + at, sizeof sample);
-    sample = T{0} - sample;  // no negative zeros
-    std::memcpy(slice.data() + at, &sample, sizeof sample);
-  }
-}
-
-void negate(PixelType type, std::vector<std::byte>& slice) {
-  type == PixelType::float32 ? negate<float>(slice) : negate<double>(slice);
-}
-
-void check_vectors(const std::string& path, const Volume& volume) {
-  if (volume.components == 3 && !is_integer(volume.type)) return;
-  throw IoError(path, "",
-                "'" + volume.name + "' holds " + std::to_string(volume.components) +
-                    " components of " + name_of(volume.type) +
-                    ", a displacement field has three of float32 or float64; use --vectors world");
-}
-
-/// Stores slope * sample + intercept of one slice as component `c` of `out`.
+/// Stores slope * sample + intercept of one slice, or its negative, as component `c` of `out`.
 void scale_slice(const std::vector<std::byte>& slice,
                  const NiftiHeader& header,
                  Volume& out,
                  std::size_t first,
-                 std::size_t c) {
+                 std::size_t c,
+                 bool is_negated) {
   const auto components = static_cast<std::size_t>(out.components);
   with_type(header.type, [&](auto sample) {
     const std::size_t count = slice.size() / sizeof sample;
     for (std::size_t v = 0; v < count; ++v) {
       std::memcpy(&sample, slice.data() + v * sizeof sample, sizeof sample);
-      const double value = header.slope * static_cast<double>(sample) + header.intercept;
+      double value = header.slope * static_cast<double>(sample) + header.intercept;
+      if (is_negated) value = 0 - value;
       const std::size_t place = (first + v) * components + c;
       if (out.type == PixelType::float64) {
         out.samples<double>()[place] = value;
@@ -99,10 +79,18 @@ void scale_slice(const std::vector<std::byte>& slice,
 }
 }  // namespace
 
-Volume read_nifti(const std::string& path) {
+NiftiFacts read_nifti_facts(const std::string& path, Axes axes) {
+  NiftiFacts facts = read_nifti_header(path).facts;
+  facts.component_axes = axes;
+  return facts;
+}
+
+Volume read_nifti(const std::string& path, Axes axes) {
   const NiftiHeader header = read_nifti_header(path);
   PixelType type = header.type;
   if (header.is_scaled() && type != PixelType::float64) type = PixelType::float32;
+  const ComponentMap map =
+      component_map(path, type, header.components, header.facts.intent_code, axes);
   const double bytes = static_cast<double>(header.grid.voxel_count()) * header.components *
                        static_cast<double>(size_of(type));
   h5::check_memory(path, "", bytes);
@@ -125,9 +113,10 @@ Volume read_nifti(const std::string& path) {
       }
       const std::size_t first = k * slice_voxels;
       if (header.is_scaled()) {
-        scale_slice(slice, header, volume, first, c);
+        scale_slice(slice, header, volume, first, map.place[c], map.is_negated[c]);
       } else {
-        std::byte* out = volume.data.data() + (first * components + c) * size;
+        if (map.is_negated[c]) negate_samples(type, slice);
+        std::byte* out = volume.data.data() + (first * components + map.place[c]) * size;
         copy_strided(slice.data(), 1, out, components, size, slice_voxels);
       }
     }
@@ -136,14 +125,22 @@ Volume read_nifti(const std::string& path) {
   return volume;
 }
 
-void write_nifti(const std::string& path, const Volume& volume, NiftiVectors vectors) {
+void write_nifti(const std::string& path,
+                 const Volume& volume,
+                 Axes axes,
+                 const std::optional<NiftiFacts>& given_facts) {
   const bool is_compressed = path.ends_with(".nii.gz");
   if (!is_compressed && !path.ends_with(".nii")) {
     throw IoError(path, "", "the name of a NIfTI image must end in .nii or .nii.gz");
   }
   static_cast<void>(VolumeView(volume));  // checks that the samples fill the grid
-  if (vectors == NiftiVectors::lps) check_vectors(path, volume);
-  const nifti_1_header header = make_nifti_header(path, volume);
+  NiftiFacts facts = given_facts.value_or(default_nifti_facts(volume.components));
+  if (axes == Axes::lps && facts.intent_code == NIFTI_INTENT_DISPVECT) {
+    facts.intent_code = NIFTI_INTENT_VECTOR;
+  }
+  const ComponentMap map =
+      component_map(path, volume.type, volume.components, facts.intent_code, axes);
+  const nifti_1_header header = make_nifti_header(path, volume, facts);
   const char no_extensions[4] = {0, 0, 0, 0};
   FinishedFile file(path);
   NiftiStream stream(file.temporary(), "wb", is_compressed);
@@ -158,9 +155,10 @@ void write_nifti(const std::string& path, const Volume& volume, NiftiVectors vec
   std::vector<std::byte> slice(slice_voxels * size);
   for (std::size_t c = 0; c < components; ++c) {
     for (std::size_t k = 0; k < slices && is_good; ++k) {
-      const std::byte* in = volume.data.data() + (k * slice_voxels * components + c) * size;
+      const std::byte* in =
+          volume.data.data() + (k * slice_voxels * components + map.place[c]) * size;
       copy_strided(in, components, slice.data(), 1, size, slice_voxels);
-      if (vectors == NiftiVectors::lps && c < 2) negate(volume.type, slice);
+      if (map.is_negated[c]) negate_samples(volume.type, slice);
       is_good = stream.write(slice.data(), slice.size());
     }
   }

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "io/nifti_facts.hpp"
+
 namespace tetwarp {
 namespace {
 constexpr std::int64_t chunk_bytes = std::int64_t{256} << 10;
@@ -121,6 +123,7 @@ ArrayWriter::ArrayWriter(const VtkhdfOutput& output,
   if (!is_good) point_data.fail_with_reason("chunks for " + header.name + " cannot be set up");
   dataset_ = h5::create_dataset(point_data, header.name, h5::file_type_of(type_), space.id(),
                                 properties.id());
+  if (header.nifti) write_fact_attributes(dataset_, *header.nifti);
 }
 
 void ArrayWriter::grow(std::int64_t rows) const {

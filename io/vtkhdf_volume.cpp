@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/h5.hpp"
+#include "io/nifti_facts.hpp"
 #include "io/vtkhdf_input.hpp"
 
 namespace tetwarp {
@@ -56,6 +57,7 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
   array.dataset = h5::open_dataset(point_data, name);
   array.header.name = name;
   array.header.type = h5::pixel_type_of(array.dataset);
+  array.header.nifti = read_fact_attributes(array.dataset);
 
   std::vector<std::int64_t> shape = {grid.dims[2], grid.dims[1], grid.dims[0]};
   if (file.is_temporal()) shape.insert(shape.begin(), array.dataset.rows());

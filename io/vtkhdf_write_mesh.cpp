@@ -2,8 +2,10 @@
 /// Writing VTKHDF UnstructuredGrid: static topology and rest points, displacements over steps.
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
+#include <utility>
 
 #include "io/vtkhdf_mesh_file.hpp"
 #include "io/vtkhdf_output.hpp"
@@ -37,6 +39,26 @@ void check_arguments(const std::string& path,
         throw IoError(path, "/VTKHDF/PointData/displacement",
                       problem + ": node " + std::to_string(node) + " is not finite");
       }
+    }
+  }
+}
+
+void check_arrays(const std::string& path, const Mesh& mesh, const std::vector<MeshArray>& arrays) {
+  std::set<std::pair<bool, std::string>> names{{false, "displacement"}};
+  for (const MeshArray& array : arrays) {
+    const std::size_t rows = array.is_of_cells ? mesh.cell_count() : mesh.rest_positions.size();
+    const std::string name =
+        (array.is_of_cells ? "/VTKHDF/CellData/" : "/VTKHDF/PointData/") + array.name;
+    if (array.name.empty() || array.name.find_first_of("/.") != std::string::npos ||
+        !names.emplace(array.is_of_cells, array.name).second) {
+      throw IoError(path, name, "array names must be unique, not empty, without '/' and '.'");
+    }
+    if (array.components < 1 || array.components > 9 ||
+        array.data.size() !=
+            rows * static_cast<std::size_t>(array.components) * size_of(array.type)) {
+      throw IoError(path, name,
+                    "has " + std::to_string(array.data.size()) + " bytes, expected " +
+                        std::to_string(rows) + " rows of 1 to 9 components");
     }
   }
 }
@@ -98,7 +120,18 @@ void write_displacements(const VtkhdfOutput& output,
   }
 }
 
-void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t node_count) {
+void write_array(const VtkhdfOutput& output, const h5::Object& group, const MeshArray& array) {
+  const auto components = static_cast<hsize_t>(array.components);
+  const hsize_t dims[2] = {array.data.size() / (components * size_of(array.type)), components};
+  h5::write_dataset(group, array.name, h5::file_type_of(array.type), h5::memory_type_of(array.type),
+                    {dims, components > 1 ? std::size_t{2} : std::size_t{1}}, array.data.data());
+  output.check_disk(group);
+}
+
+void write_steps(const h5::Object& root,
+                 std::vector<double> times,
+                 std::int64_t node_count,
+                 const std::vector<MeshArray>& arrays) {
   const h5::Object steps = h5::create_group(root, "Steps");
   const hsize_t count = times.size();
   h5::write_dataset(steps, "Values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, {&count, 1}, times.data());
@@ -114,7 +147,12 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
   write_integers(steps, "PointOffsets", zeros);
   write_integers(steps, "CellOffsets", zeros, true);
   write_integers(steps, "ConnectivityIdOffsets", zeros, true);
-  write_integers(h5::create_group(steps, "PointDataOffsets"), "displacement", rows);
+  const h5::Object point_data = h5::create_group(steps, "PointDataOffsets");
+  const h5::Object cell_data = h5::create_group(steps, "CellDataOffsets");
+  write_integers(point_data, "displacement", rows);
+  for (const MeshArray& array : arrays) {
+    write_integers(array.is_of_cells ? cell_data : point_data, array.name, zeros);
+  }
   h5::write_scalar_attribute(steps, "NSteps", static_cast<std::int64_t>(count));
 }
 }  // namespace
@@ -122,9 +160,11 @@ void write_steps(const h5::Object& root, std::vector<double> times, std::int64_t
 void write_mesh(const std::string& path,
                 const Mesh& mesh,
                 const std::vector<std::vector<Point3>>& displacements,
-                const std::vector<double>& times) {
+                const std::vector<double>& times,
+                const std::vector<MeshArray>& arrays) {
   const h5::Silence silence;
   check_arguments(path, mesh, displacements, times);
+  check_arrays(path, mesh, arrays);
   const bool is_temporal = !displacements.empty();
   VtkhdfOutput output(path, "UnstructuredGrid", is_temporal);
   {
@@ -133,9 +173,12 @@ void write_mesh(const std::string& path,
     h5::write_dataset(root, "Points", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, dims,
                       mesh.rest_positions.front().data());
     write_topology(root, mesh);
-    h5::create_group(root, "CellData");
+    const h5::Object cell_data = h5::create_group(root, "CellData");
     h5::create_group(root, "FieldData");
     const h5::Object point_data = h5::create_group(root, "PointData");
+    for (const MeshArray& array : arrays) {
+      write_array(output, array.is_of_cells ? cell_data : point_data, array);
+    }
     if (is_temporal) {
       write_displacements(output, point_data, displacements);
       std::vector<double> values = times;
@@ -143,7 +186,7 @@ void write_mesh(const std::string& path,
         values.resize(displacements.size());
         std::iota(values.begin(), values.end(), 0.0);
       }
-      write_steps(root, values, static_cast<std::int64_t>(mesh.rest_positions.size()));
+      write_steps(root, values, static_cast<std::int64_t>(mesh.rest_positions.size()), arrays);
     }
   }
   output.finish();

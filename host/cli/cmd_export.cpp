@@ -5,6 +5,7 @@
 #include <string>
 #include <tetwarp/io.hpp>
 
+#include "host/cli/axes_option.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
@@ -17,14 +18,26 @@ struct ExportArguments {
   std::string output;
   std::string array;
   std::int64_t step = 0;
-  std::optional<NiftiVectors> vectors;
+  std::optional<Axes> axes;
   bool quiet = false;
 };
 
-/// --vectors, or without it LPS for displacement fields of the warp, which ITK and ANTs read.
-NiftiVectors vectors_of(const ExportArguments& arguments, const Volume& volume) {
-  const bool is_field = volume.name == "tetwarp_displacement" || volume.name == "tetwarp_forward";
-  return arguments.vectors.value_or(is_field ? NiftiVectors::lps : NiftiVectors::world);
+bool is_displacement(const Volume& volume) {
+  return volume.name == "tetwarp_displacement" || volume.name == "tetwarp_forward";
+}
+
+/// --axes, or without it LPS for displacement fields of the warp, which ITK and ANTs read; for
+/// other arrays the axes of the file that was imported.
+Axes axes_of(const ExportArguments& arguments, const Volume& volume, const NiftiFacts& facts) {
+  if (arguments.axes) return *arguments.axes;
+  return is_displacement(volume) ? Axes::lps : facts.component_axes;
+}
+
+/// " with 3 components along LPS axes"; nothing for scalars.
+std::string axes_text(const Volume& volume, Axes axes) {
+  if (volume.components == 1) return {};
+  return fmt::format(" with {} components along {} axes", volume.components,
+                     axes == Axes::lps ? "LPS" : "RAS");
 }
 
 int run_export(const ExportArguments& arguments) {
@@ -34,11 +47,16 @@ int run_export(const ExportArguments& arguments) {
   }
   check_output_file(arguments.output, {arguments.input});
   const Volume volume = read_array(arguments.input, arguments.array, arguments.step);
-  const NiftiVectors vectors = vectors_of(arguments, volume);
-  write_nifti(arguments.output, volume, vectors);
+  NiftiFacts facts = VolumeReader(arguments.input, volume.name, arguments.step)
+                         .array()
+                         .nifti.value_or(default_nifti_facts(volume.components));
+  const Axes axes = axes_of(arguments, volume, facts);
+  // ITK turns displacements of this intent from RAS to LPS when it reads them.
+  if (is_displacement(volume) && axes == Axes::ras) facts.intent_code = nifti_displacement_intent;
+  write_nifti(arguments.output, volume, axes, facts);
   if (arguments.quiet) return 0;
-  fmt::print("{} of {}{}: {}\n", volume.name, name_of(volume.type),
-             vectors == NiftiVectors::lps ? " as LPS displacements" : "", arguments.output);
+  fmt::print("{} of {}{}: {}\n", volume.name, name_of(volume.type), axes_text(volume, axes),
+             arguments.output);
   return 0;
 }
 }  // namespace
@@ -59,15 +77,10 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");
-  command
-      ->add_option_function<std::string>(
-          "--vectors",
-          [arguments](const std::string& word) {
-            arguments->vectors = meaning_of("--vectors", word, choices_of<NiftiVectors>());
-          },
-          "axes of vectors: the file's, or those of ITK and ANTs, x and y negated [lps for "
-          "tetwarp_displacement and tetwarp_forward, else world]")
-      ->type_name("world|lps");
+  add_axes(*command, arguments->axes,
+           "axes of vectors and tensors in the image; its header is RAS in any case [lps for "
+           "tetwarp_displacement and tetwarp_forward, which ITK and ANTs read; else as imported; "
+           "else ras]");
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_export(*arguments); }; });
 }

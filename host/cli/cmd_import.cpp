@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/mesh_import.hpp>
 
+#include "host/cli/axes_option.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
@@ -16,8 +18,18 @@ struct ImportArguments {
   std::string output;
   VolumeWriteOptions write;
   MeshImportOptions mesh;
+  std::optional<Axes> axes;
   bool quiet = false;
 };
+
+/// ", 3 components along RAS axes"; nothing for scalars.
+std::string components_text(const Volume& volume, const ImportArguments& arguments) {
+  if (volume.components == 1) return {};
+  const bool is_assumed = !arguments.axes && volume.components == 3;
+  return fmt::format(", {} components along {} axes{}", volume.components,
+                     arguments.axes == Axes::lps ? "LPS" : "RAS",
+                     is_assumed ? " (--axes lps for vectors that ITK or ANTs wrote)" : "");
+}
 
 void run_volume_import(const ImportArguments& arguments) {
   check_kind(arguments.input, FileKind::nifti,
@@ -26,16 +38,29 @@ void run_volume_import(const ImportArguments& arguments) {
   if (arguments.mesh.displacement) {
     throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
   }
-  const Volume volume = read_nifti(arguments.input);
-  write_volumes(arguments.output, {&volume}, arguments.write);
+  const Axes axes = arguments.axes.value_or(Axes::ras);
+  const Volume volume = read_nifti(arguments.input, axes);
+  const ArrayHeader header{volume.name, volume.type, volume.components,
+                           read_nifti_facts(arguments.input, axes)};
+  BlockVolumeWriter writer(arguments.output, volume.grid, {header}, arguments.write, false,
+                           ChunkShape::rows);
+  writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+  writer.finish();
   if (arguments.quiet) return;
-  fmt::print("{} x {} x {} voxels of {}: {}\n", volume.grid.dims[0], volume.grid.dims[1],
-             volume.grid.dims[2], name_of(volume.type), arguments.output);
+  fmt::print("{} x {} x {} voxels of {}{}: {}\n", volume.grid.dims[0], volume.grid.dims[1],
+             volume.grid.dims[2], name_of(volume.type), components_text(volume, arguments),
+             arguments.output);
 }
 
 void run_mesh_import(const ImportArguments& arguments) {
-  const ImportedMesh mesh = import_mesh(arguments.input, arguments.mesh);
-  write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times);
+  MeshImportOptions options = arguments.mesh;
+  options.axes = arguments.axes.value_or(Axes::ras);
+  const ImportedMesh mesh = import_mesh(arguments.input, options);
+  write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times, mesh.arrays);
+  if (!mesh.left_out.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
+               one_line(listed(mesh.left_out)));
+  }
   if (arguments.quiet) return;
   std::string skipped;
   for (const auto& [kind, count] : mesh.skipped) {
@@ -83,6 +108,10 @@ void add_import_command(CLI::App& app, Run& run) {
                    "of a mesh: point array (Gmsh: node data) of three components to keep as "
                    "displacement [displacement]")
       ->type_name("NAME");
+  add_axes(*command, arguments->axes,
+           "axes of the file's vectors and tensors, of a mesh also of its nodes; lps is turned to "
+           "ras, in which NIfTI headers place voxels [ras: NIfTI's; meshes have none and stay as "
+           "they are]");
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] { run = [arguments] { return run_import(*arguments); }; });
 }

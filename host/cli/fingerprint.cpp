@@ -54,6 +54,17 @@ void Fingerprint::add(const Grid& grid) {
   add(grid.direction);
 }
 
+void Fingerprint::add(const NiftiFacts& facts) {
+  add(facts.sform_code);
+  add(facts.qform_code);
+  add(facts.xyzt_units);
+  add(facts.intent_code);
+  add(facts.intent_p);
+  add(facts.intent_name);
+  add(facts.description);
+  add(facts.component_axes);
+}
+
 void Fingerprint::add(const WarpOptions& options) {
   add(options.backend);
   add(options.filter);

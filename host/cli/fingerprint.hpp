@@ -38,6 +38,7 @@ class Fingerprint {
   void add(const std::vector<T>& items) { add(std::as_bytes(std::span(items))); }
 
   void add(const Grid& grid);
+  void add(const NiftiFacts& facts);
 
   /// The options that output values depend on; not the region.
   /// @pre  options.output_grid has a value

@@ -23,6 +23,9 @@ Fingerprint fingerprint_of_options(const WarpArguments& arguments,
   fingerprint.add(TETWARP_VERSION);
   fingerprint.add(warp_options(arguments, plan, volume));
   for (const std::size_t e : arguments.extra) fingerprint.add(e);
+  for (const ArrayHeader& array : volume.arrays) {
+    if (array.nifti) fingerprint.add(*array.nifti);
+  }
   fingerprint.add(volume.written_grid);
   fingerprint.add(volume.active);
   fingerprint.add(plan.mesh.mesh().tets);
@@ -45,6 +48,15 @@ VolumeWriteOptions write_options(const WarpArguments& arguments,
           .skip_background_chunks = arguments.warp.skip.background_chunks,
           .fingerprint = fingerprint.text(),
           .scalars = volume.active};
+}
+
+std::optional<NiftiFacts> facts_of_extra(const std::optional<NiftiFacts>& source, int components) {
+  if (!source) return std::nullopt;
+  NiftiFacts facts = default_nifti_facts(components);
+  facts.sform_code = source->sform_code;
+  facts.qform_code = source->qform_code;
+  facts.xyzt_units = source->xyzt_units;
+  return facts;
 }
 
 void repeat_report(const StepReport& last, StepReport& report) {

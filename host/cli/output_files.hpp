@@ -1,6 +1,7 @@
 /// @file output_files.hpp
 /// Options, fingerprints and counts of output files.
 #pragma once
+#include <optional>
 #include <string>
 
 #include <tetwarp/io.hpp>
@@ -29,6 +30,10 @@ bool is_up_to_date(const WarpArguments& arguments,
 VolumeWriteOptions write_options(const WarpArguments& arguments,
                                  const VolumePlan& volume,
                                  const Fingerprint& fingerprint);
+
+/// Facts of an extra output: the codes and the unit of the source's space, else the defaults.
+/// Nothing if the source has none.
+std::optional<NiftiFacts> facts_of_extra(const std::optional<NiftiFacts>& source, int components);
 
 /// Fills the report of a step that equals the last one: counts that describe the outputs are
 /// copied, counts of work stay zero.

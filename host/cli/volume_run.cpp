@@ -46,7 +46,8 @@ VolumeRun::VolumeRun(const WarpArguments& arguments,
       outputs_(volume.arrays) {
   for (const std::size_t e : arguments.extra) {
     const ExtraOutput& extra = extra_outputs[e];
-    outputs_.push_back({extra.array(), extra.type, extra.components});
+    outputs_.push_back({extra.array(), extra.type, extra.components,
+                        facts_of_extra(volume.arrays.front().nifti, extra.components)});
   }
   if (is_whole_) return;
   // glibc returns the memory of a block to the system when it is freed.

@@ -21,7 +21,9 @@
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/mesh_array.hpp>
 #include <tetwarp/names.hpp>
+#include <tetwarp/nifti.hpp>
 #include <tetwarp/volume.hpp>
 
 namespace tetwarp {
@@ -31,6 +33,7 @@ struct ArrayHeader {
   std::string name;
   PixelType type = PixelType::float32;
   int components = 1;
+  std::optional<NiftiFacts> nifti = {};  ///< of the NIfTI file that the array comes from
 
   bool operator==(const ArrayHeader&) const = default;
 };
@@ -213,36 +216,15 @@ TETWARP_IO_EXPORT std::array<std::int64_t, 3> block_step(const Grid& grid,
 /// Writes a mesh as a VTKHDF UnstructuredGrid.
 /// @param displacements  deformed minus rest position [world], per step, per node; may be empty
 /// @param times          one per step
+/// @param arrays         other arrays of nodes and cells, the same at every step
 TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const Mesh& mesh,
                                   const std::vector<std::vector<Point3>>& displacements = {},
-                                  const std::vector<double>& times = {});
+                                  const std::vector<double>& times = {},
+                                  const std::vector<MeshArray>& arrays = {});
 
 /// The attribute `tetwarp_fingerprint` of a file; nothing when there is no such file or attribute.
 TETWARP_IO_EXPORT std::optional<std::string> read_fingerprint(const std::string& path);
-
-/// Reads a NIfTI file (.nii, .nii.gz). The affine map (sform, else qform) becomes the grid, in
-/// NIfTI's world: RAS, mm. With scl_slope and scl_inter other than 1 and 0 samples become float32
-/// (float64 stays). `dim[5]` gives the components; `dim[4]` (time) must be 1. A sform with a shear
-/// is an error: grids have no shear.
-TETWARP_IO_EXPORT Volume read_nifti(const std::string& path);
-
-/// Axes in which a NIfTI file holds samples that are vectors.
-enum class NiftiVectors {
-  world,  ///< the world axes of the volume
-  lps     ///< x and y negated: a displacement field as ITK and ANTs read it
-};
-template <>
-TETWARP_IO_EXPORT std::span<const EnumName<NiftiVectors>> names_of();
-
-/// Writes a NIfTI file. The sform holds the grid, and so does the qform when direction is a
-/// rotation. Samples of several components get the intent code VECTOR.
-///
-/// NIfTI's world is RAS, that of ITK and ANTs is LPS: they convert positions when they read a file,
-/// but not the samples of an image of vectors.
-TETWARP_IO_EXPORT void write_nifti(const std::string& path,
-                                   const Volume& volume,
-                                   NiftiVectors vectors = NiftiVectors::world);
 
 /// Writes an 8-bit RGB PNG.
 TETWARP_IO_EXPORT void write_png(const std::string& path, const Image& image);

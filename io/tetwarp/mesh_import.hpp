@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include <tetwarp/axes.hpp>
 #include <tetwarp/io_export.hpp>
 #include <tetwarp/mesh.hpp>
+#include <tetwarp/mesh_array.hpp>
 
 namespace tetwarp {
 
@@ -18,6 +20,8 @@ struct MeshImportOptions {
   /// Point array (Gmsh: view of node data) of three components, added to the rest positions
   /// [world]. Without a value: `displacement`, where the file has it.
   std::optional<std::string> displacement = {};
+  /// Axes of nodes, displacements and other vectors in the file; LPS is turned to RAS.
+  Axes axes = Axes::ras;
 };
 
 /// The content of a file, in the form that write_mesh() takes.
@@ -27,6 +31,11 @@ struct ImportedMesh {
   std::vector<double> times;                       ///< one per step
   /// Number of cells of fewer than three dimensions, which are left out, by their kind.
   std::map<std::string, std::int64_t> skipped;
+  /// Other arrays of nodes and cells, of the first step. `original_cell` holds the number of each
+  /// cell in the file: in VTK's from 0, in Gmsh's its tag; of Gmsh `original_node` holds the tags
+  /// of nodes, `group` the physical group of each cell (0: none).
+  std::vector<MeshArray> arrays = {};
+  std::vector<std::string> left_out = {};  ///< other content of the file, by kind and name
 };
 
 /// True for names that end in .msh, .vtu or .vtk.

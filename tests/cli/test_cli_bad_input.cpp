@@ -220,8 +220,8 @@ TEST(BadInput, RefusesFieldsThatCannotBe) {
   expect_refused(scene,
                  {warp_with({"--outputs", "forward", "--dims", "5,5,5"}), "leave out --grid"}, 1);
   expect_refused(scene,
-                 {{"export", "volume.vtkhdf", "--vectors", "lps", "-o", "field.nii"},
-                  "a displacement field has three"},
+                 {{"export", "volume.vtkhdf", "--axes", "lps", "-o", "field.nii"},
+                  "--axes lps turns vectors (3)"},
                  1);
   write_text(scene / "mesh.msh", "Exit;");
   fs::remove(scene / "mesh.vtkhdf");

@@ -53,9 +53,9 @@ TEST(CliFields, WritesFieldsOfTheDeformationAndExportsDisplacementsForItk) {
   expect_field("gradient", {1, 0, 0, 0, 1, 0, 0, 0, 1}, false);
   expect_field("strain", {0, 0, 0, 0, 0, 0}, false);
   expect_field("forward", {6, 0, 0}, true);
-  for (const auto& [vectors, x] : {std::pair<Names, float>{{}, 6}, {{"--vectors", "world"}, -6}}) {
+  for (const auto& [axes, x] : {std::pair<Names, float>{{}, 6}, {{"--axes", "ras"}, -6}}) {
     Names words{"export", "out.vtkhdf", "--array", "tetwarp_displacement", "-o", "field.nii"};
-    words.insert(words.end(), vectors.begin(), vectors.end());
+    words.insert(words.end(), axes.begin(), axes.end());
     EXPECT_EQ(run_command(scene, words).exit_code, 0);
     EXPECT_EQ(read_nifti(scene / "field.nii").samples<float>()[3 * 5], x);
   }

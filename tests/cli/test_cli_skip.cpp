@@ -61,7 +61,8 @@ class PartlyMoving : public TemporaryFolder {
   }
 
   void expect_same(const std::string& a, const std::string& b, std::int64_t step = 0) const {
-    for (const auto& [name, type, components] : read_volume_header(*this / a).arrays) {
+    for (const ArrayHeader& header : read_volume_header(*this / a).arrays) {
+      const std::string& name = header.name;
       EXPECT_EQ(read_volume(*this / a, name, step).data, read_volume(*this / b, name, step).data)
           << a << ' ' << name << ' ' << step;
     }

@@ -60,7 +60,7 @@ TEST(ItkWarp, ResamplingByTheExportedFieldIsTheWarp) {
                          .fields = {.displacement = field.samples<float>().data()}});
 
   write_nifti(folder / "source.nii", source);
-  write_nifti(folder / "field.nii.gz", field, NiftiVectors::lps);
+  write_nifti(folder / "field.nii.gz", field, Axes::lps);
   const auto filter = itk::WarpImageFilter<Image, Image, Field>::New();
   const Field::Pointer displacement = read_by_itk<Field>(folder / "field.nii.gz");
   filter->SetInput(read_by_itk<Image>(folder / "source.nii"));

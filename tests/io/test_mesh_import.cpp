@@ -147,6 +147,18 @@ TEST_F(MeshImport, ReadsGmshFilesOfBothVersionsWithSteps) {
   }
 }
 
+/// Half a turn about z; cells keep their orientation.
+TEST_F(MeshImport, TurnsMeshesFromLpsToRas) {
+  for (const auto& [name, text] :
+       {std::pair{"a.vtk", legacy_file()}, {"b.vtu", xml_file()}, {"c.msh", msh4_file()}}) {
+    const auto mesh = imported(name, text, {.axes = Axes::lps});
+    if (!mesh) continue;
+    EXPECT_EQ(mesh->mesh.rest_positions[4], (Point3{-1, -1, 1})) << name;
+    EXPECT_EQ(mesh->mesh.tets, two_tets().tets) << name;
+    EXPECT_EQ(mesh->displacements.back()[2], (Point3{-2, -4, 6})) << name;
+  }
+}
+
 /// A unit cube in Gmsh's numbers and in VTK's, which have one order.
 TEST_F(MeshImport, KeepsHexahedra) {
   const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
@@ -170,6 +182,76 @@ TEST_F(MeshImport, KeepsHexahedra) {
               (std::vector<std::array<std::int32_t, 8>>{{0, 1, 2, 3, 4, 5, 6, 7}}));
     EXPECT_EQ(mesh->mesh.rest_positions[6], (Point3{1, 1, 1}));
   }
+}
+
+/// The array of a name; its samples as doubles.
+std::vector<double> array_of(const ImportedMesh& mesh, const std::string& name, bool is_of_cells) {
+  for (const MeshArray& array : mesh.arrays) {
+    if (array.name != name || array.is_of_cells != is_of_cells) continue;
+    const auto copy = [&]<class T>(T) {
+      const T* const first = reinterpret_cast<const T*>(array.data.data());
+      return std::vector<double>(first, first + array.data.size() / sizeof(T));
+    };
+    if (array.type == PixelType::int64) return copy(std::int64_t{});
+    if (array.type == PixelType::int32) return copy(std::int32_t{});
+    return array.type == PixelType::float32 ? copy(float{}) : copy(double{});
+  }
+  return {};
+}
+
+/// A hexahedron, a triangle and a tetrahedron on it, with arrays of both kinds.
+std::string mixed_file() {
+  return "# vtk DataFile Version 3.0\nmixed\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 9 float\n"
+         "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1 0 0 2\n"
+         "CELLS 3 18\n8 0 1 2 3 4 5 6 7\n3 4 5 8\n4 4 5 7 8\nCELL_TYPES 3\n12\n5\n10\n"
+         "CELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE default\n7 8 9\n"
+         "POINT_DATA 9\nSCALARS heat double 1\nLOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8\n"
+         "VECTORS flow float\n1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3 1 2 3\n"
+         "FIELD FieldData 1\na.b 1 9 float\n0 0 0 0 0 0 0 0 0\n";
+}
+
+/// Tetrahedra come first in a mesh; arrays and numbers follow their cells.
+TEST_F(MeshImport, KeepsArraysAndNumbersOfVtkFilesAndNamesTheRest) {
+  const auto mesh = imported("a.vtk", mixed_file(), {.axes = Axes::lps});
+  if (!mesh) GTEST_SKIP() << error;
+
+  EXPECT_EQ(mesh->mesh.tets, (std::vector<std::array<std::int32_t, 4>>{{4, 5, 7, 8}}));
+  EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{2, 0}));
+  EXPECT_EQ(array_of(*mesh, "material", true), (std::vector<double>{9, 7}));
+  EXPECT_EQ(array_of(*mesh, "heat", false), (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8}));
+  std::vector<double> flow = array_of(*mesh, "flow", false);
+  ASSERT_EQ(flow.size(), 27U);
+  flow.resize(3);
+  EXPECT_EQ(flow, (std::vector<double>{-1, -2, 3}));
+  EXPECT_EQ(mesh->left_out, std::vector<std::string>{"point array 'a.b'"});
+
+  const ScratchFolder folder;
+  write_mesh(folder / "m.vtkhdf", mesh->mesh, {std::vector<Point3>(9), std::vector<Point3>(9)},
+             {0, 1}, mesh->arrays);
+  EXPECT_EQ(MeshReader(folder / "m.vtkhdf").mesh().tets, mesh->mesh.tets);
+  EXPECT_EQ(MeshReader(folder / "m.vtkhdf").header().times.size(), 2U);
+  std::vector<MeshArray> twice = mesh->arrays;
+  twice.push_back(twice.front());
+  const std::string message =
+      io_error([&] { write_mesh(folder / "n.vtkhdf", mesh->mesh, {}, {}, twice); });
+  EXPECT_NE(message.find("must be unique"), std::string::npos) << message;
+  EXPECT_EQ(folder.entry_count(), 1);
+}
+
+TEST_F(MeshImport, KeepsTagsAndGroupsOfGmshFilesAndNamesTheRest) {
+  std::string text = msh2_file("8 4 2 5 2 20 30 40 50");
+  text.replace(text.find("7 4 2 0 1"), 9, "7 4 2 3 1");
+  text.insert(text.find("$Nodes"), "$PhysicalNames\n1\n3 3 \"bone\"\n$EndPhysicalNames\n");
+  const auto mesh = imported("a.msh", text);
+  const auto plain = imported("b.msh", msh4_file());
+  if (!mesh) GTEST_SKIP() << error;
+
+  EXPECT_EQ(array_of(*mesh, "original_node", false), (std::vector<double>{10, 20, 30, 40, 50}));
+  EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{7, 8}));
+  EXPECT_EQ(array_of(*mesh, "group", true), (std::vector<double>{3, 5}));
+  EXPECT_EQ(mesh->left_out, std::vector<std::string>{"name 'bone' of group 3"});
+  EXPECT_EQ(array_of(*plain, "group", true), std::vector<double>());
+  EXPECT_EQ(plain->left_out, std::vector<std::string>());
 }
 
 TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {

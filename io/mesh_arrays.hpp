@@ -1,0 +1,33 @@
+/// @file mesh_arrays.hpp
+/// Arrays and numbers that imported meshes keep.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/mesh_import.hpp>
+
+namespace tetwarp {
+
+/// Numbers of the kept cells in their file.
+struct CellNumbers {
+  std::vector<std::int64_t> tets;
+  std::vector<std::int64_t> hexes;
+
+  /// In the order of a mesh: tetrahedra first.
+  std::vector<std::int64_t> all() const;
+};
+
+/// Adds an array of one number per row.
+void add_numbers(const std::string& name,
+                 bool is_of_cells,
+                 const std::vector<std::int64_t>& numbers,
+                 ImportedMesh& into);
+
+/// True unless a VTKHDF file cannot hold the name, or import writes another array of that name.
+bool is_free_name(const std::string& name);
+
+/// Turns vectors and tensors of floats between RAS and LPS.
+void turn_array(MeshArray& array);
+
+}  // namespace tetwarp

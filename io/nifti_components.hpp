@@ -1,0 +1,35 @@
+/// @file nifti_components.hpp
+/// Order and signs of the components of vectors and tensors in NIfTI files and in other axes.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include <tetwarp/axes.hpp>
+#include <tetwarp/volume.hpp>
+
+namespace tetwarp {
+
+/// From the components of a file to those of a Volume.
+struct ComponentMap {
+  std::array<std::size_t, 9> place;  ///< in the volume, of each component of the file
+  std::array<bool, 9> is_negated;    ///< by component of the file
+
+  bool negates() const;
+};
+
+/// The components of an array whose x and y change their sign between RAS and LPS: of vectors
+/// (three), symmetric tensors (six, in VTK's order) and tensors (nine, row by row).
+/// @returns by component of a volume; all false for other numbers of components
+std::array<bool, 9> turned_components(int components);
+
+/// The map of a NIfTI file; `path` is for messages.
+/// @throws IoError as read_nifti()
+ComponentMap component_map(
+    const std::string& path, PixelType type, int components, int intent_code, Axes axes);
+
+/// Negates samples of float32 or float64 in place; zero stays positive.
+void negate_samples(PixelType type, std::span<std::byte> samples);
+
+}  // namespace tetwarp
