@@ -44,9 +44,9 @@ VolumeWriteOptions write_options(const WarpArguments& arguments, const Fingerpri
 }
 
 void repeat_report(const StepReport& last, StepReport& report) {
-  for (const auto count :
-       {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra, &Counts::inverted,
-        &Counts::flat, &Counts::folded, &Counts::cells, &Counts::tets_averaged}) {
+  for (const auto count : {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra,
+                           &Counts::inverted, &Counts::flat, &Counts::folded, &Counts::cells,
+                           &Counts::tets_averaged, &Counts::values_clipped}) {
     report.counts.*count = last.counts.*count;
   }
   report.counts.steps_unchanged = 1;

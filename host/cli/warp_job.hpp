@@ -54,4 +54,9 @@ std::string report_json(const JobResult& result);
 /// Two lines to print: the back end and why; outputs, covered voxels, seconds and file names.
 std::string summary(const JobResult& result);
 
+/// One line to print on standard error after a warp with Intensity::conservative to integers: what
+/// storing them has changed in the total, of the step and component where that is most. Empty if no
+/// total has changed.
+std::string storing_note(const Report& report);
+
 }  // namespace tetwarp::cli
