@@ -122,6 +122,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/make/test_phantom.cpp
     tests/make/test_render_volume.cpp
     tests/warp/test_convex_part.cpp
+    tests/warp/test_source_shares.cpp
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
@@ -209,6 +210,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_hexahedra.cpp
     tests/warp/test_warp_in_flight.cpp
     tests/warp/test_warp_intensity.cpp
+    tests/warp/test_warp_rounding.cpp
     tests/warp/test_warp_quantities.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES

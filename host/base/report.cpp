@@ -30,6 +30,11 @@ Counts& Counts::operator+=(const Counts& other) {
   return *this;
 }
 
+double Totals::relative_change(std::size_t component) const {
+  const double change = rounding[component] + clipping[component];
+  return change == 0 ? 0 : change / (after[component] - change);
+}
+
 std::string to_json(const Report& report) {
   Json steps = Json::array();
   for (const StepReport& step : report.steps) {
@@ -39,6 +44,12 @@ std::string to_json(const Report& report) {
     if (step.totals.before.empty()) continue;
     steps.back()["total_before"] = step.totals.before;
     steps.back()["total_after"] = step.totals.after;
+    if (step.totals.rounding.empty()) continue;
+    steps.back()["total_rounding"] = step.totals.rounding;
+    steps.back()["total_clipping"] = step.totals.clipping;
+    for (std::size_t c = 0; c < step.totals.after.size(); ++c) {
+      steps.back()["total_relative_change"].push_back(step.totals.relative_change(c));
+    }
   }
   const Json json = {{"version", report.version},
                      {"backend", name_of(report.backend)},

@@ -43,6 +43,7 @@ inline constexpr ReportField<Counts, std::int64_t> count_fields[] = {
     {"voxels_copied", &Counts::voxels_copied},
     {"chunks_background", &Counts::chunks_background},
     {"tets_averaged", &Counts::tets_averaged},
+    {"values_clipped", &Counts::values_clipped},
     {"blocks", &Counts::blocks},
     {"bytes_read", &Counts::bytes_read},
     {"bytes_written", &Counts::bytes_written}};

@@ -94,7 +94,10 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
     report.update(Json::parse(report_json(result)));
     ++(result.written == 0 && result.plans.empty() ? outcome.skipped : outcome.done);
     outcome.reports.push_back(report);
-    if (!quiet) fmt::print("{}: {}", name, summary(result));
+    if (!quiet) {
+      fmt::print(stderr, "{}", storing_note(result.report));
+      fmt::print("{}: {}", name, summary(result));
+    }
   } catch (const Cancelled&) {
     report["status"] = "interrupted";
     outcome.reports.push_back(report);

@@ -24,7 +24,10 @@ int run_warp(WarpArguments arguments) {
   if (devices > 1) arguments.warp.device = launched_local_rank() % devices;
   const JobResult result =
       run_warp_job(arguments, {.shows_progress = !arguments.quiet, .ranks = &ranks});
-  if (!arguments.quiet && ranks.is_root()) fmt::print("{}", summary(result));
+  if (!arguments.quiet && ranks.is_root()) {
+    fmt::print(stderr, "{}", storing_note(result.report));
+    fmt::print("{}", summary(result));
+  }
   ranks.finish();
   return 0;
 }

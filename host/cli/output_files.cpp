@@ -60,9 +60,9 @@ std::optional<NiftiFacts> facts_of_extra(const std::optional<NiftiFacts>& source
 }
 
 void repeat_report(const StepReport& last, StepReport& report) {
-  for (const auto count :
-       {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra, &Counts::inverted,
-        &Counts::flat, &Counts::folded, &Counts::cells, &Counts::tets_averaged}) {
+  for (const auto count : {&Counts::voxels, &Counts::covered, &Counts::outside, &Counts::tetrahedra,
+                           &Counts::inverted, &Counts::flat, &Counts::folded, &Counts::cells,
+                           &Counts::tets_averaged, &Counts::values_clipped}) {
     report.counts.*count = last.counts.*count;
   }
   report.counts.steps_unchanged = 1;

@@ -36,6 +36,10 @@ StepReport step_of(const Json& json) {
     step.totals.before = numbers_of(json["total_before"]);
     step.totals.after = numbers_of(json["total_after"]);
   }
+  if (json.contains("total_rounding")) {
+    step.totals.rounding = numbers_of(json["total_rounding"]);
+    step.totals.clipping = numbers_of(json["total_clipping"]);
+  }
   return step;
 }
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <tetwarp/version.hpp>
@@ -110,6 +112,38 @@ std::string report_json(const JobResult& result) {
                              {"bytes_read", plan.bytes_read}});
   }
   return json.dump(2);
+}
+
+std::string storing_note(const Report& report) {
+  const StepReport* most = nullptr;
+  std::size_t component = 0;
+  double largest = 0;
+  std::size_t totals = 0;
+  for (const StepReport& step : report.steps) {
+    for (std::size_t c = 0; c < step.totals.rounding.size(); ++c) {
+      ++totals;
+      const double change = std::abs(step.totals.relative_change(c));
+      if (most != nullptr && !(change > largest)) continue;
+      most = &step;
+      component = c;
+      largest = change;
+    }
+  }
+  if (most == nullptr) return {};
+  const Totals& total = most->totals;
+  const double rounding = total.rounding[component], clipping = total.clipping[component];
+  if (rounding == 0 && clipping == 0) return {};
+  const std::string where =
+      totals == 1 ? "" : fmt::format(" (step {}, component {})", most->step, component);
+  std::string text = fmt::format(
+      "tetwarp: conservative{}: rounding to integers changed the total by {:+.3g}, clipping by "
+      "{:+.3g}, together {:+.2g} of it",
+      where, rounding, clipping, total.relative_change(component));
+  if (report.counts.values_clipped > 0) {
+    text += fmt::format("; {} values beyond the limits of the pixel type, use float32 to keep them",
+                        report.counts.values_clipped);
+  }
+  return text + "\n";
 }
 
 std::string summary(const JobResult& result) {

@@ -2,6 +2,7 @@
 /// What a warp did: timings, counts, back end. The names in the JSON are those of the members; they
 /// do not change between versions.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ struct TETWARP_EXPORT Counts {
   std::int64_t voxels_copied = 0;    ///< voxels moved by whole voxels: copied, not interpolated
   std::int64_t chunks_background = 0;  ///< file chunks that hold only background: not stored
   std::int64_t tets_averaged = 0;      ///< tetrahedra whose voxels are means of samples (antialias)
+  std::int64_t values_clipped = 0;     ///< integers of Intensity::conservative beyond the limits of
+                                       ///< the pixel type, stored as the limit
   std::int64_t blocks = 0;      ///< parts of the output computed one by one; 0: the whole at once
   std::int64_t bytes_read = 0;  ///< from files
   std::int64_t bytes_written = 0;  ///< to files
@@ -64,6 +67,17 @@ struct Totals {
   /// Of the source, constant in the box of each voxel, over all tetrahedra at rest.
   std::vector<double> before = {};
   std::vector<double> after = {};  ///< of the whole output, including the background
+  /// Of Intensity::conservative, included in `after`: what rounding to integers has added, 0 for
+  /// floating point. Without bias; the standard deviation is at most 0.5 sqrt(n) times the volume
+  /// of a voxel, n the number of voxels whose values are not whole.
+  std::vector<double> rounding = {};
+  /// Of Intensity::conservative, included in `after`: what clipping integers to the limits of the
+  /// pixel type has added, 0 for floating point.
+  std::vector<double> clipping = {};
+
+  /// rounding + clipping of a component relative to the total without them; infinite if that is
+  /// zero, 0 if nothing has changed.
+  TETWARP_EXPORT double relative_change(std::size_t component) const;
 };
 
 /// One step of a series.

@@ -36,7 +36,9 @@ enum class Intensity {
             ///< The integral is preserved up to the error of sampling
   /// An amount per volume, averaged exactly. The source counts as constant in the box of each of
   /// its voxels; an output voxel is the sum of the amounts that all tetrahedra move into its box,
-  /// over the box's volume. The integral is preserved up to rounding; `filter` is not used
+  /// over the box's volume. `filter` is not used. The integral is preserved up to rounding;
+  /// integers are rounded up with the probability of their fraction, by a hash of the index in the
+  /// output grid, so that a region has the numbers of the whole output. See Totals for what is lost
   conservative
 };
 

@@ -39,10 +39,18 @@ class WarpTotals {
         {sums_.view(firsts_.back()).data + firsts_[s], components});
   }
 
-  /// Integrals of the sources, component by component [world].
-  const std::vector<double>& before() const { return before_; }
-  /// Sums of the outputs, to be multiplied by output_voxel().
-  View<const double> sums() const { return sums_.const_view(firsts_.back()); }
+  /// Copies the sums of the outputs to the host, after all preceding stages.
+  void fetch(typename Exec::template PinnedBuffer<double>& sums) {
+    sums.reserve(firsts_.back());
+    exec_.fetch(sums_.const_view(firsts_.back()), sums);
+  }
+  /// Sets the integrals before and after a step from its sums.
+  void report(const typename Exec::template PinnedBuffer<double>& sums, Totals& totals) const {
+    totals.before = before_;
+    for (std::int64_t c = 0; c < firsts_.back(); ++c) {
+      totals.after.push_back(sums.const_view(firsts_.back())[c] * output_voxel());
+    }
+  }
   /// Volume of an output voxel [world].
   double output_voxel() const { return 1 / std::abs(determinant(geometry_.axes.output_index)); }
 
@@ -89,9 +97,9 @@ class WarpTotals {
   Exec& exec_;
   const WarpPlan& plan_;
   const WarpGeometry& geometry_;
-  std::vector<int> firsts_;  ///< place of each source's first component in the lists, then the
-                             ///< number of all; empty: totals are not computed
-  std::vector<double> before_;
+  std::vector<int> firsts_;     ///< place of each source's first component in the lists, then the
+                                ///< number of all; empty: totals are not computed
+  std::vector<double> before_;  ///< integrals of the sources, component by component [world]
   Buffer<double> sums_;
   Buffer<double> scratch_;
 };

@@ -12,6 +12,7 @@
 #include "host/warp/outputs.hpp"
 #include "host/warp/overlap_batches.hpp"
 #include "host/warp/pairs.hpp"
+#include "host/warp/roundings.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/step_counters.hpp"
 #include "host/warp/step_shares.hpp"
@@ -37,7 +38,8 @@ class WarpPipeline : public WarpBackend {
         transforms_(exec_, plan_, geometry_),
         fields_(exec_, plan_, geometry_),
         sources_(exec_, plan_),
-        totals_(exec_, plan_, geometry_) {
+        totals_(exec_, plan_, geometry_),
+        roundings_(exec_, plan_, geometry_) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
   }
@@ -79,7 +81,10 @@ class WarpPipeline : public WarpBackend {
       compute(flight, {});
     }
     flight.report = complete(flight.target, *flight.counters.view(1).data);
-    report_totals(flight);
+    if (totals_.are_requested()) totals_.report(flight.totals, flight.report.totals);
+    if (roundings_.are_requested()) {
+      roundings_.report(flight.roundings, totals_.output_voxel(), flight.report);
+    }
     if (flight.target.memory == Memory::host) flight.window = outputs_.window_of(stale_);
   }
 
@@ -116,6 +121,7 @@ class WarpPipeline : public WarpBackend {
     View<const double> positions;
     typename Exec::template PinnedBuffer<StepCounters> counters;
     typename Exec::template PinnedBuffer<double> totals;
+    typename Exec::template PinnedBuffer<RoundingChange> roundings;
     WarpTarget target;
     int age = 0;          ///< see WarpOutputs::take()
     int slot = 0;         ///< of outputs_
@@ -131,10 +137,8 @@ class WarpPipeline : public WarpBackend {
     ProgressPart{progress, 0, 1}.report(1.0);
     flight.counters.reserve(1);
     exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
-    if (totals_.are_requested()) {
-      flight.totals.reserve(totals_.sums().size);
-      exec_.fetch(totals_.sums(), flight.totals);
-    }
+    if (totals_.are_requested()) totals_.fetch(flight.totals);
+    if (roundings_.are_requested()) roundings_.fetch(flight.roundings);
     exec_.end_compute();
   }
 
@@ -234,21 +238,13 @@ class WarpPipeline : public WarpBackend {
                              number_view(job.source.data),
                              {job.source.dims[0], job.source.dims[1], job.source.dims[2]},
                              job.source.components,
-                             number_view(job.volume)};
+                             roundings_.begin(s, job.cell_work, number_view(job.volume))};
     job.filter = Filter::nearest;
     job.transforms = {};
     constexpr double raster = 0.01;  // of the time of this source
     if (s == 0) cell_raster(exec_, job, part_of(progress, 0, raster));
     overlap_in_batches(exec_, body, part_of(progress, s == 0 ? raster : 0, 1));
-  }
-
-  void report_totals(Flight& flight) {
-    if (!totals_.are_requested()) return;
-    const View<const double> sums = flight.totals.const_view(totals_.sums().size);
-    flight.report.totals.before = totals_.before();
-    for (std::int64_t c = 0; c < sums.size; ++c) {
-      flight.report.totals.after.push_back(sums[c] * totals_.output_voxel());
-    }
+    roundings_.sum(s);
   }
 
   /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
@@ -290,6 +286,7 @@ class WarpPipeline : public WarpBackend {
   WarpFields<Exec> fields_;
   WarpSources<Exec> sources_;
   WarpTotals<Exec> totals_;
+  WarpRoundings<Exec> roundings_;
 
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "kernels/base/hd.hpp"
+#include "kernels/warp/source_shares.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
@@ -41,10 +42,20 @@ TETWARP_HD int add_corner(ConvexPart& part, const double* x) {
   return part.corner_count++;
 }
 
+/// The faces of a box; bit `axis` of a corner is set on the upper side.
+struct BoxFaces {
+  std::uint8_t loop[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                             {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+};
+
+/// Half the extent of a voxel's box along the normal of a tetrahedron's face [voxel].
+TETWARP_HD double box_reach(const TetSetup& tet, int face) {
+  return 0.5 * (fabs(tet.plane[0][face]) + fabs(tet.plane[1][face]) + fabs(tet.plane[2][face]));
+}
+
 /// The box of a voxel.
 TETWARP_HD void set_box_part(ConvexPart& part) {
-  const std::uint8_t loops[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  const BoxFaces faces;
   part.corner_count = 8;
   part.edge_count = 0;
   part.face_count = 6;
@@ -52,7 +63,8 @@ TETWARP_HD void set_box_part(ConvexPart& part) {
     for (int axis = 0; axis < 3; ++axis) part.corner[c][axis] = (c >> axis & 1) - 0.5;
   }
   for (int face = 0; face < 6; ++face) {
-    for (int e = 0; e < 4; ++e) add_edge(part, loops[face][e], loops[face][(e + 1) % 4], face);
+    for (int e = 0; e < 4; ++e)
+      add_edge(part, faces.loop[face][e], faces.loop[face][(e + 1) % 4], face);
   }
 }
 
@@ -157,28 +169,39 @@ TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
   return volume6 / 6;
 }
 
-/// The part of the box of voxel (i, j, k) that lies in a tetrahedron.
-/// @param part, other  memory for the result and scratch
-/// @returns the one of them that holds the result; null if the part is empty
-TETWARP_HD_RARE const ConvexPart* part_in_tet(
-    const TetSetup& tet, int i, int j, int k, ConvexPart& part, ConvexPart& other) {
-  const double from[3] = {static_cast<double>(i - tet.anchor[0]),
-                          static_cast<double>(j - tet.anchor[1]),
-                          static_cast<double>(k - tet.anchor[2])};
-  double height[4];
-  bool cuts[4];
+/// Where the box of a voxel is, in relation to a tetrahedron. Boxes that touch it in a point or a
+/// face only may count as any.
+enum class BoxPlace { outside, inside, across };
+
+/// @param x       the voxel [frame]
+/// @param height  out, distance of its centre from the planes of the faces, positive inside
+TETWARP_HD BoxPlace place_of_box(const TetSetup& tet, const int* x, double* height) {
+  const double from[3] = {static_cast<double>(x[0] - tet.anchor[0]),
+                          static_cast<double>(x[1] - tet.anchor[1]),
+                          static_cast<double>(x[2] - tet.anchor[2])};
+  BoxPlace place = BoxPlace::inside;
   for (int face = 0; face < 4; ++face) {
     height[face] = tet.plane[0][face] * from[0] + tet.plane[1][face] * from[1] +
                    tet.plane[2][face] * from[2] + tet.plane[3][face];
-    const double reach =
-        0.5 * (fabs(tet.plane[0][face]) + fabs(tet.plane[1][face]) + fabs(tet.plane[2][face]));
-    if (height[face] + reach <= 0) return nullptr;
-    cuts[face] = height[face] - reach < 0;
+    const double reach = box_reach(tet, face);
+    if (height[face] + reach <= 0) return BoxPlace::outside;
+    if (height[face] - reach < 0) place = BoxPlace::across;
   }
+  return place;
+}
+
+/// The part of the box of a voxel that lies in a tetrahedron.
+/// @param height       from place_of_box()
+/// @param part, other  memory for the result and scratch
+/// @returns the one of them that holds the result; null if the part is empty
+TETWARP_HD_RARE const ConvexPart* part_in_tet(const TetSetup& tet,
+                                              const double* height,
+                                              ConvexPart& part,
+                                              ConvexPart& other) {
   set_box_part(part);
   ConvexPart *now = &part, *next = &other;
   for (int face = 0; face < 4; ++face) {
-    if (!cuts[face]) continue;
+    if (height[face] - box_reach(tet, face) >= 0) continue;
     const double normal[3] = {tet.plane[0][face], tet.plane[1][face], tet.plane[2][face]};
     if (!clip_part(*now, normal, height[face], *next)) return nullptr;
     ConvexPart* const last = now;
@@ -187,6 +210,39 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(
   }
   return now;
 }
+
+/// The boundaries of the faces of a part, which lists its edges in any order.
+class FaceLoops {
+ public:
+  TETWARP_HD explicit FaceLoops(const ConvexPart& part) {
+    for (int face = 0; face < part.face_count; ++face) {
+      for (int c = 0; c < part.corner_count; ++c) next_[face][c] = none;
+    }
+    for (int e = 0; e < part.edge_count; ++e) {
+      next_[part.edge[e][2]][part.edge[e][0]] = part.edge[e][1];
+    }
+  }
+
+  /// Takes the loop that an edge is part of.
+  /// @param position  of the corners
+  /// @param polygon   out
+  /// @returns false if the loop has been taken already or is flat
+  TETWARP_HD bool take(const std::uint8_t* edge, const double (*position)[3], Polygon& polygon) {
+    polygon.count = 0;
+    std::uint8_t corner = edge[0];
+    while (corner != none && next_[edge[2]][corner] != none) {
+      append_corner(polygon, position[corner][0], position[corner][1], position[corner][2]);
+      const std::uint8_t next = next_[edge[2]][corner];
+      next_[edge[2]][corner] = none;
+      corner = next;
+    }
+    return polygon.count > 2;
+  }
+
+ private:
+  static constexpr std::uint8_t none = 255;
+  std::uint8_t next_[max_faces][max_corners];  ///< corner after a corner of a face
+};
 
 /// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box()
 /// includes only those whose centres may be inside.

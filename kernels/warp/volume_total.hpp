@@ -106,9 +106,14 @@ struct TetSliceMassBody {
     ConvexPart part, other;
     for (int j = setup.begin[1]; j < setup.end[1]; ++j) {
       for (int i = setup.begin[0]; i < setup.end[0]; ++i) {
-        const ConvexPart* const held = part_in_tet(setup, i, j, k, part, other);
-        if (held == nullptr) continue;
-        const double share = volume_of(*held);
+        const int x[3] = {i, j, k};
+        double height[4];
+        const BoxPlace place = place_of_box(setup, x, height);
+        if (place == BoxPlace::outside) continue;
+        const bool is_whole = place == BoxPlace::inside;
+        const ConvexPart* const held = is_whole ? nullptr : part_in_tet(setup, height, part, other);
+        if (!is_whole && held == nullptr) continue;
+        const double share = is_whole ? 1 : volume_of(*held);
         const std::int64_t at = frame.offset_of(i, j, k) * components;
         for (int c = 0; c < components && share > 0; ++c) {
           sums[item * components + c] += share * source.at(at + c);

@@ -50,7 +50,8 @@ TEST(Report, HasTheseFieldsAndNoOthers) {
                 "candidate_pairs", "pairs_rejected", "pairs_accepted",  "pairs_partial",
                 "inside_tests",    "exact_tests",    "steps_unchanged", "tets_unchanged",
                 "cells_unchanged", "cells_constant", "voxels_copied",   "chunks_background",
-                "tets_averaged",   "blocks",         "bytes_read",      "bytes_written"}));
+                "tets_averaged",   "values_clipped", "blocks",          "bytes_read",
+                "bytes_written"}));
   EXPECT_EQ(names_of(json["steps"][0]), (std::set<std::string>{"step", "timings", "counts"}));
   EXPECT_EQ(names_of(json["steps"][0]["counts"]), names_of(json["counts"]));
   EXPECT_EQ(names_of(json["steps"][0]["timings"]), names_of(json["timings"]));
@@ -90,8 +91,8 @@ TEST(Report, MixesUpNoField) {
   Report report;
   report.backend = Backend::reference;
   report.timings = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-  report.counts = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12,
-                   13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24};
+  report.counts = {1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13,
+                   14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25};
   report.timings += report.timings;
   report.counts += report.counts;
 
@@ -104,7 +105,8 @@ TEST(Report, MixesUpNoField) {
         "candidate_pairs", "pairs_rejected", "pairs_accepted",  "pairs_partial",
         "inside_tests",    "exact_tests",    "steps_unchanged", "tets_unchanged",
         "cells_unchanged", "cells_constant", "voxels_copied",   "chunks_background",
-        "tets_averaged",   "blocks",         "bytes_read",      "bytes_written"}) {
+        "tets_averaged",   "values_clipped", "blocks",          "bytes_read",
+        "bytes_written"}) {
     EXPECT_EQ(json["counts"][name], value += 2) << name;
   }
   value = 0;

@@ -2,6 +2,7 @@
 /// Intensity, vectors, tensors and averages by the command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -86,6 +87,37 @@ TEST(CliRules, ReportTotalsOfWhatIsKept) {
   EXPECT_NEAR(before, 24 * 20 * 16, 1e-9);  // a flow of one over the box, which is the grid
   EXPECT_NEAR(after, before, 1e-5 * before);
   EXPECT_NE(total("density").second, after);
+}
+/// A volume of 8 bits at its upper limit, shrunk by four: the total cannot be kept.
+TEST(CliRules, TellWhatStoringIntegersChanges) {
+  const TurnedScene scene;
+  Volume full = make_volume(ramp_volume<float>().grid, PixelType::uint8, 1, "full");
+  std::ranges::fill(full.samples<std::uint8_t>(), std::uint8_t{255});
+  write_volumes(scene / "full.vtkhdf", {&full});
+  const auto warp = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"warp", "full.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"});
+    return run_command(scene, words);
+  };
+
+  const CommandResult result = warp({"--intensity", "conservative", "--report", "report.json"});
+
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+  const auto& step = report["steps"][0];
+  EXPECT_GT(step["counts"]["values_clipped"], 100);
+  EXPECT_LT(step["total_relative_change"][0], -0.5);
+  EXPECT_NEAR(step["total_after"][0].get<double>() - step["total_clipping"][0].get<double>() -
+                  step["total_rounding"][0].get<double>(),
+              step["total_before"][0].get<double>(), 1e-6);
+  EXPECT_NE(result.err.find("conservative: rounding to integers changed the total by "),
+            std::string::npos)
+      << result.err;
+  const std::string clipped = step["counts"]["values_clipped"].dump();
+  EXPECT_NE(result.err.find(clipped + " values beyond the limits of the pixel type"),
+            std::string::npos)
+      << result.err;
+  EXPECT_EQ(warp({"--intensity", "conservative", "--quiet"}).err, "");
+  EXPECT_EQ(warp({}).err.find("total"), std::string::npos);
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -47,6 +47,9 @@ class Series {
     return warper_.step(deformed, target, progress).counts;
   }
 
+  /// Of the last step.
+  const Totals& totals() const { return warper_.report().steps.back().totals; }
+
   /// The next step writes to other memory; the one after it to that of the last.
   void swap_targets() {
     if (other_volumes_.empty()) {

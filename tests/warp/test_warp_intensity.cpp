@@ -125,19 +125,6 @@ TEST(WarpIntensity, ReportsTheTotalsOfAllSources) {
   }
 }
 
-TEST(WarpIntensity, RoundsWhatIsKeptOnce) {
-  const scenes::Scene scene = whole_scenes()[1];
-  const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
-  Volume wide = make_volume(source.grid, PixelType::float64);
-  std::ranges::copy(numbers_of(source), wide.samples<double>().begin());
-  for (const Backend backend : usable_backends()) {
-    SCOPED_TRACE(name_of(backend));
-    auto exact = numbers_of(run(wide, scene, backend, Intensity::conservative).volume);
-    for (double& sample : exact) sample = std::nearbyint(sample);
-    EXPECT_EQ(numbers_of(run(source, scene, backend, Intensity::conservative).volume), exact);
-  }
-}
-
 /// All of a volume that does not move, or moves by whole voxels, is the volume; a part of the
 /// output is that part.
 TEST(WarpIntensity, LeavesAndMovesWholeVoxels) {

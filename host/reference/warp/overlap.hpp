@@ -3,12 +3,15 @@
 /// clipping.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include <tetwarp/warp.hpp>
 
+#include "host/base/counter_hash.hpp"
 #include "host/reference/warp/exact_geometry.hpp"
 #include "host/reference/warp/sample.hpp"
 
@@ -39,16 +42,39 @@ struct MovedTet {
   Corners rest, now;
 };
 
+/// What storing the values of one component as integers adds to their sum.
+struct StoringChange {
+  double rounding = 0, clipping = 0;
+  std::int64_t clipped = 0;  ///< values beyond the limits of the type
+};
+
+/// Rounds up with the probability of the fraction: if this is above entry `index` of the numbers in
+/// [0, 1) that SplitMix64 with seed 0 generates.
+template <class T>
+T stored_by_chance(double value, std::int64_t index, StoringChange& change) {
+  constexpr std::uint64_t increment = 0x9e3779b97f4a7c15;
+  const double chance = unit_of(static_cast<std::uint64_t>(index) * increment);
+  const double whole = std::floor(value) + (value - std::floor(value) > chance ? 1 : 0);
+  const T result = stored<T>(whole);
+  change.rounding += whole - value;
+  change.clipping += static_cast<double>(result) - whole;
+  change.clipped += static_cast<double>(result) != whole;
+  return result;
+}
+
 /// Writes to every voxel of a region the amount that tetrahedra carry into its box, over its
 /// volume.
-/// @param ratio  volume of a source voxel over that of an output voxel
-/// @param out    [voxel of the region][component]
+/// @param region  of an output grid with `grid_dims` voxels
+/// @param ratio   volume of a source voxel over that of an output voxel
+/// @param out     [voxel of the region][component]
+/// @returns what storing has changed, per component
 template <class T>
-void carry(const VolumeView& source,
-           const std::vector<MovedTet>& tets,
-           const Region& region,
-           double ratio,
-           T* out) {
+std::vector<StoringChange> carry(const VolumeView& source,
+                                 const std::vector<MovedTet>& tets,
+                                 const Region& region,
+                                 const Dims& grid_dims,
+                                 double ratio,
+                                 T* out) {
   const T* samples = static_cast<const T*>(source.data);
   const std::int64_t components = source.components;
   Dims dims;
@@ -67,7 +93,21 @@ void carry(const VolumeView& source,
                    }
                  });
   }
-  for (std::size_t v = 0; v < sums.size(); ++v) out[v] = stored<T>(sums[v]);
+  std::vector<StoringChange> changes(static_cast<std::size_t>(components));
+  for (std::int64_t n = 0; n < std::ssize(sums); ++n) {
+    const double sum = sums[static_cast<std::size_t>(n)];
+    if constexpr (std::is_floating_point_v<T>) {
+      out[n] = stored<T>(sum);
+    } else {
+      const std::int64_t v = n / components, c = n % components;
+      const std::int64_t i = region.begin[0] + v % dims[0];
+      const std::int64_t j = region.begin[1] + v / dims[0] % dims[1];
+      const std::int64_t k = region.begin[2] + v / (dims[0] * dims[1]);
+      const std::int64_t index = ((k * grid_dims[1] + j) * grid_dims[0] + i) * components + c;
+      out[n] = stored_by_chance<T>(sum, index, changes[static_cast<std::size_t>(c)]);
+    }
+  }
+  return changes;
 }
 
 /// Integral of a source over the tetrahedra at rest, component by component [source voxel].

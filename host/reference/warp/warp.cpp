@@ -102,7 +102,13 @@ class ReferenceBackend : public WarpBackend {
     const double source_voxel = std::abs(owners_.source.to_world.determinant());
     const double output_voxel = std::abs(owners_.output.to_world.determinant());
     if (plan_.options.intensity == Intensity::conservative) {
-      carry(plan_.sources[s], tets, plan_.region, source_voxel / output_voxel, out);
+      for (const StoringChange& change :
+           carry(plan_.sources[s], tets, plan_.region, plan_.output_grid.dims,
+                 source_voxel / output_voxel, out)) {
+        report.totals.rounding.push_back(change.rounding * output_voxel);
+        report.totals.clipping.push_back(change.clipping * output_voxel);
+        report.counts.values_clipped += change.clipped;
+      }
     }
     const std::vector<double> before = total_held<T>(plan_.sources[s], tets);
     const auto components = static_cast<std::size_t>(plan_.sources[s].components);
