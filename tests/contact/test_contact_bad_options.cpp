@@ -45,6 +45,11 @@ const std::vector<OptionsCase> cases = {
     {"RecoverySpeedNegative", {.recovery_speed = -1e-9}, "recovery_speed"},
     {"RecoverySpeedNan", {.recovery_speed = nan}, "recovery_speed"},
     {"RecoverySpeedZero", {.recovery_speed = 0}, ""},
+    {"SecondsZero", {.max_seconds = 0}, "max_seconds"},
+    {"SecondsNan", {.max_seconds = nan}, "max_seconds"},
+    {"NewtonNegative", {.max_newton = -1}, "max_newton"},
+    {"NewtonZero", {.max_newton = 0}, ""},
+    {"MemoryNegative", {.max_memory = -1}, "max_memory"},
     {"ThreadsNegative", {.threads = -1}, "threads"},
     {"ThreadsOne", {.threads = 1}, ""}};
 INSTANTIATE_TEST_SUITE_P(Of, ContactBadOptions, ::testing::ValuesIn(cases), [](const auto& info) {
