@@ -161,6 +161,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_acceptance.cpp
     tests/contact/test_contact_associated.cpp
     tests/contact/test_contact_bad_options.cpp
+    tests/contact/test_contact_budget.cpp
+    tests/contact/test_contact_truth.cpp
     tests/contact/test_contact_coupled.cpp
     tests/contact/test_contact_limits.cpp
     tests/contact/test_contact_newton.cpp
@@ -188,7 +190,8 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
     tests/contact/test_contact_stress.cpp
     tests/contact/test_contact_stress_invariance.cpp
-    tests/contact/test_contact_stress_stacks.cpp)
+    tests/contact/test_contact_stress_stacks.cpp
+    tests/contact/test_contact_stress_truth.cpp)
   tetwarp_discover(tetwarp_contact_stress_tests long)
 
   # A separate program, because the emulation defines CUDA's names.

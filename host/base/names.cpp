@@ -55,7 +55,8 @@ constexpr EnumName<ContactPrecision> contact_precision_names[] = {
 constexpr EnumName<ContactStatus> contact_status_names[] = {
     {ContactStatus::converged, "converged"},
     {ContactStatus::not_converged, "not converged"},
-    {ContactStatus::infeasible, "infeasible"}};
+    {ContactStatus::infeasible, "infeasible"},
+    {ContactStatus::unbounded, "unbounded"}};
 constexpr EnumName<AdhesionIntegrator> adhesion_integrator_names[] = {
     {AdhesionIntegrator::exact, "exact"}, {AdhesionIntegrator::explicit_euler, "explicit-euler"}};
 }  // namespace

@@ -17,8 +17,8 @@
 
 namespace tetwarp::cli {
 namespace {
-constexpr int infeasible_exit_code = 1;
 constexpr int not_converged_exit_code = 3;
+constexpr int no_solution_exit_code = 4;
 
 struct FileSeconds {
   double read = 0;
@@ -82,14 +82,15 @@ void print_summary(const ContactArguments& arguments, const ContactReport& repor
 /// Prints a line on standard error unless the solve converged. @returns the exit code
 int report_failure(const ContactArguments& arguments, const ContactReport& report) {
   if (report.status == ContactStatus::converged) return 0;
-  const bool is_infeasible = report.status == ContactStatus::infeasible;
+  const bool has_no_solution =
+      report.status == ContactStatus::infeasible || report.status == ContactStatus::unbounded;
   const std::string reason = report.status_reason.empty() ? "" : " (" + report.status_reason + ")";
   const std::string line =
       fmt::format("{}: {}: {}, tolerance {:g}{}; the best iterate is in {}", arguments.problem,
                   name_of(report.status), progress_of(report, arguments.options.measure),
                   arguments.options.tolerance, reason, arguments.output);
   fmt::print(stderr, "tetwarp: {}\n", one_line(line));
-  return is_infeasible ? infeasible_exit_code : not_converged_exit_code;
+  return has_no_solution ? no_solution_exit_code : not_converged_exit_code;
 }
 
 int run_contact(const ContactArguments& arguments) {
@@ -121,7 +122,7 @@ void add_contact_command(CLI::App& app, Run& run) {
       "--report report.json\n"
       "  tetwarp contact glued.hdf5 -o next.hdf5 --rule restrictive --evolve\n"
       "Exit status: 0 converged; 3 not converged, the best iterate is written and marked; "
-      "2 bad usage; 1 any other failure\n");
+      "4 infeasible or unbounded, likewise; 2 bad usage; 1 any other failure\n");
   declare_contact_options(*command, *arguments);
   command->callback([arguments, &run] {
     if (arguments->options.relaxation >= 2) {

@@ -42,6 +42,17 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
                  "maximum number of passes over all contacts [20000]")
       ->check(at_least(1, std::numeric_limits<std::int64_t>::max()))
       ->type_name("N");
+  app.add_option("--max-seconds", options.max_seconds,
+                 "wall time after which the best iterate is written, in seconds [no limit]")
+      ->check(above_zero())
+      ->type_name("T");
+  app.add_option("--max-newton", options.max_newton, "maximum number of Newton steps [no limit]")
+      ->check(at_least_zero())
+      ->type_name("N");
+  app.add_option("--memory", options.max_memory,
+                 "memory limit of a factorization, e.g. 4G [20 times the problem, at least 256M]")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("LIMIT");
   add_choice(app, "--solver", options.method, choices_of<ContactMethod>(),
              "solution method [auto]");
   add_choice(app, "--coupling", options.coupling, choices_of<ContactCoupling>(),

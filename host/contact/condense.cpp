@@ -9,7 +9,7 @@ namespace tetwarp {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-CondensedProblem::CondensedProblem(const ContactProblem& problem)
+CondensedProblem::CondensedProblem(const ContactProblem& problem, SolveBudget* budget)
     : jacobian_(make_eigen(problem.jacobian)) {
   factor_.factorize(make_eigen(problem.system));
   const Index rows = jacobian_.rows(), contacts = rows / 3;
@@ -17,6 +17,7 @@ CondensedProblem::CondensedProblem(const ContactProblem& problem)
   std::vector<double>& blocks = local_.delassus.value;
   blocks.resize(static_cast<std::size_t>(rows * rows));
   for (Index first = 0; first < rows; first += columns_at_once) {
+    if (budget != nullptr && budget->is_over()) throw BudgetOver();
     const Index count = std::min(columns_at_once, rows - first);
     const Eigen::MatrixXd pushes = jacobian_.middleRows(first, count).transpose();
     const Eigen::MatrixXd columns = jacobian_ * factor_.solve(pushes);

@@ -7,6 +7,7 @@
 
 #include <tetwarp/contact_problem.hpp>
 
+#include "host/contact/budget.hpp"
 #include "host/contact/problem/system_factor.hpp"
 
 namespace tetwarp {
@@ -16,8 +17,10 @@ class CondensedProblem {
   /// Cost: a factorization of A, 3 solves per contact, (3 contacts)^2 numbers. A^-1 J^T is computed
   /// 48 columns at a time and never stored as a whole.
   /// @param problem  in global form
+  /// @param budget   read during the constructor only; null: no limits
   /// @throws ContactProblemError  A is not positive definite
-  explicit CondensedProblem(const ContactProblem& problem);
+  /// @throws BudgetOver           the budget was used up before the matrix was complete
+  explicit CondensedProblem(const ContactProblem& problem, SolveBudget* budget = nullptr);
 
   /// Takes load, offsets, friction, adhesion and guess from another problem with the same A and J.
   /// The numbers have the same bits as those of a new condensation. Cost: one solve.

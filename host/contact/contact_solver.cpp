@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,6 +15,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/problem/imbalance.hpp"
+#include "host/contact/status.hpp"
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {
@@ -38,34 +37,10 @@ void check_options(const ContactOptions& options) {
   }
   if (options.inner_sweeps < 1) fail("inner_sweeps: expected 1 or more");
   if (!(options.recovery_speed >= 0)) fail("recovery_speed: expected 0 or more");
+  if (!(options.max_seconds > 0)) fail("max_seconds: expected a number above 0");
+  if (options.max_newton < 0) fail("max_newton: expected 0 or more");
+  if (options.max_memory < 0) fail("max_memory: expected 0 (20 times the problem) or more");
   thread_count(options.threads);
-}
-
-/// Measures of the whole problem, summed over its islands.
-struct WholeResidual {
-  ContactSums sums;        ///< of the solution; contacts by their index in the problem
-  ContactSums free;        ///< without impulses
-  double free_square = 0;  ///< |q|^2
-
-  /// The part of eta that an energy [J] contributes.
-  double eta_of(double square) const {
-    const double scale = std::sqrt(free.eta) + std::sqrt(std::max(sums.work, 0.0));
-    return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
-  }
-  double eta() const { return eta_of(sums.eta); }
-  double fclib() const {
-    return sums.fclib > 0 ? std::sqrt(sums.fclib / std::max(free_square, 1e-300)) : 0;
-  }
-};
-
-WholeResidual whole_residual(const std::vector<IslandOutcome>& outcomes) {
-  WholeResidual whole;
-  for (const IslandOutcome& outcome : outcomes) {
-    whole.sums += outcome.sums;
-    whole.free += outcome.free;
-    whole.free_square += outcome.free_square;
-  }
-  return whole;
 }
 
 /// The residual of the whole problem at each sweep at which any island was measured, of each island
@@ -120,38 +95,6 @@ void count_outcomes(const std::vector<IslandOutcome>& outcomes, ContactReport& r
   }
 }
 
-std::string rounded_text_of(double value) {
-  std::ostringstream text;
-  text << std::setprecision(2) << value;
-  return text.str();
-}
-
-void set_status(const EngineResult& result, const ContactOptions& options, ContactReport& report) {
-  const bool by_eta = options.measure == ContactMeasure::eta;
-  const double residual = by_eta ? report.residual.eta : report.residual.fclib;
-  constexpr double rounding = 1e-10;  // relative, of A v where A is ill-conditioned
-  const bool is_within = residual <= options.tolerance;
-  const bool is_balanced = report.residual.balance <= std::max(options.tolerance, rounding);
-  report.status =
-      is_within && is_balanced ? ContactStatus::converged : ContactStatus::not_converged;
-  if (!is_balanced) {
-    report.status_reason = "relative residual of A v = J^T r + b is " +
-                           rounded_text_of(report.residual.balance) + ", tolerance " +
-                           rounded_text_of(options.tolerance);
-  }
-  if (!is_within) {
-    report.status_reason = std::string(by_eta ? "eta" : "FCLIB error") + " is " +
-                           rounded_text_of(residual) + " after " + std::to_string(report.sweeps) +
-                           " sweeps, tolerance " + rounded_text_of(options.tolerance);
-  }
-  if (result.clamped.empty()) return;
-  report.status = ContactStatus::infeasible;
-  report.status_reason =
-      "no velocity satisfies contact " + std::to_string(result.clamped.front()) +
-      " together with " + std::to_string(result.clamped.size() - 1) +
-      " others; the solution and its residual are those with their normal offsets raised to 0";
-}
-
 /// u = W r + q, or u = J v + w.
 std::vector<double> contact_velocity(const ContactProblem& problem,
                                      const ContactSolution& solution) {
@@ -165,7 +108,10 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
 }
 
 /// Sets the counts and residuals of a report; not the balance, the status and the times.
-void fill_report(const EngineResult& result, ContactMeasure measure, ContactReport& report) {
+void fill_report(const EngineResult& result,
+                 const WholeResidual& whole,
+                 ContactMeasure measure,
+                 ContactReport& report) {
   report.colors = result.colors;
   report.islands = static_cast<std::int64_t>(result.outcomes.size());
   report.rows_skipped = result.savings.rows;
@@ -176,7 +122,6 @@ void fill_report(const EngineResult& result, ContactMeasure measure, ContactRepo
   count_outcomes(result.outcomes, report);
   report.contact_updates -= result.updates_skipped;
 
-  const WholeResidual whole = whole_residual(result.outcomes);
   report.residual.eta = whole.eta();
   report.residual.fclib = whole.fclib();
   report.residual.largest = whole.eta_of(whole.sums.largest);
@@ -185,7 +130,8 @@ void fill_report(const EngineResult& result, ContactMeasure measure, ContactRepo
   const bool by_eta = measure == ContactMeasure::eta;
   const double error = std::sqrt(by_eta ? whole.sums.eta : whole.sums.fclib);
   const double residual = by_eta ? whole.eta() : whole.fclib();
-  report.residual_history = merged_history(result.outcomes, residual > 0 ? error / residual : 1);
+  const bool has_scale = residual > 0 && std::isfinite(residual);
+  report.residual_history = merged_history(result.outcomes, has_scale ? error / residual : 1);
 }
 }  // namespace
 
@@ -223,8 +169,10 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   State& s = *state_;
   if (s.backend == Backend::reference) return solve_contacts_reference(problem, s.options);
   const auto start = Clock::now();
+  SolveBudget budget(s.options, problem);
   check_problem(problem);
-  EngineResult result = s.engine.solve(problem);
+  EngineResult result = s.engine.solve(problem, budget);
+  budget.rethrow();
   ContactSolution solution;
   ContactReport& report = solution.report;
   report.version = TETWARP_VERSION;
@@ -232,12 +180,13 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   report.device = s.device != nullptr ? s.device->name() : processor_name();
   report.threads = s.threads;
   report.contacts = problem.contact_count();
-  fill_report(result, s.options.measure, report);
+  const WholeResidual whole = whole_residual(result.outcomes);
+  fill_report(result, whole, s.options.measure, report);
   solution.impulse = std::move(result.impulse);
   solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);
   report.residual.balance = imbalance(problem, solution.impulse, solution.body_velocity);
-  set_status(result, s.options, report);
+  set_status(result, whole, s.options, budget, solution);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;

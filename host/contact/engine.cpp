@@ -32,14 +32,18 @@ ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)
     : options_(options), threads_(threads), device_(device), islands_(options, threads, device) {}
 
-EngineResult ContactEngine::solve(const ContactProblem& given) {
+EngineResult ContactEngine::solve(const ContactProblem& given, SolveBudget& budget) {
   const auto start = Clock::now();
+  budget_ = &budget;
+  islands_.set_budget(&budget);
   std::optional<ContactProblem> changed;
   if (exceeds(given, options_.recovery_speed)) {
     changed = with_recovery_speed(given, options_.recovery_speed);
   }
   return solve_feasible(given, std::move(changed), [&](const ContactProblem& problem) {
+    budget.is_over();
     set_structure(problem);
+    budget.is_over();
     reset_cache_if_changed(problem);
     EngineResult result = make_result(problem, islands_.structure());
     result.savings = islands_.set_problem(problem);

@@ -34,9 +34,10 @@ class ContactEngine {
   /// @param device  solves the islands, kept by the caller; null: the host solves them
   ContactEngine(const ContactOptions& options, int threads, ContactDevice* device);
 
+  /// @param budget  limits of this solve
   /// @pre check_problem(problem) has passed
   /// @throws ContactProblemError  A as a whole is not positive definite
-  EngineResult solve(const ContactProblem& problem);
+  EngineResult solve(const ContactProblem& problem, SolveBudget& budget);
 
  private:
   void set_structure(const ContactProblem& problem);
@@ -48,6 +49,7 @@ class ContactEngine {
   ContactOptions options_;
   int threads_;
   ContactDevice* device_;
+  SolveBudget* budget_ = nullptr;          ///< of the running solve
   std::optional<ContactPattern> pattern_;  ///< that of the structure
   IslandSolver islands_;
   CoupledIslandCache cache_;

@@ -20,12 +20,23 @@ struct CoupledRoute {
   bool condenses;
 };
 
+/// Outer iterations that make options.max_sweeps sweeps.
+std::int64_t iteration_budget(const ContactOptions& options, const ContactIsland& island) {
+  const int sweeps = sweeps_per_step(options, island);
+  return (options.max_sweeps + sweeps - 1) / sweeps;
+}
+
+/// Memory of a condensed island [bytes]: its Delassus matrix is held three times.
+double condensed_bytes(const ContactIsland& island) {
+  const auto contacts = static_cast<double>(island.contact_count());
+  return 3 * 72 * contacts * contacts;
+}
+
 CoupledRoute coupled_route(const ContactOptions& options, const ContactIsland& island) {
   constexpr std::int64_t cheap = 300'000;      // entries of A^-1 J^T that take about a millisecond
   constexpr std::int64_t max_contacts = 2000;  // 290 MB for the Delassus matrix
   constexpr std::int64_t max_iterations = 1000;
-  const int sweeps = sweeps_per_step(options, island);
-  const std::int64_t budget = (options.max_sweeps + sweeps - 1) / sweeps;
+  const std::int64_t budget = iteration_budget(options, island);
   if (options.method == ContactMethod::mass_splitting || options.method == ContactMethod::newton ||
       options.coupling == ContactCoupling::condensed) {
     return {0, true};
@@ -45,12 +56,13 @@ constexpr std::int64_t condensing_iterations = 7;
 
 /// The contacts of a coupled island with their dense Delassus matrix, and the solver for them.
 struct Condensation {
-  Condensation(const ContactProblem& part, IslandSolver island_solver)
-      : problem(part), solver(std::move(island_solver)) {
+  Condensation(const ContactProblem& part, IslandSolver island_solver, SolveBudget* budget)
+      : problem(part, budget), solver(std::move(island_solver)) {
     solver.set_structure(make_dense_structure(problem.local().contact_count()));
   }
 
-  EngineResult solve() {
+  EngineResult solve(SolveBudget* budget) {
+    solver.set_budget(budget);
     return solve_feasible(problem.local(), {}, [this](const ContactProblem& local) {
       EngineResult result = make_result(local, solver.structure());
       result.savings = solver.set_problem(local);
@@ -88,6 +100,11 @@ void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& r
     if (!island.is_coupled) continue;
     CoupledRoute route = coupled_route(options_, island);
     const std::int64_t rows = 3 * island.contact_count();
+    const bool is_kept =
+        !cache_.islands.empty() && cache_.islands[index_of(i)].condensation != nullptr;
+    if (route.condenses && !is_kept && !budget_->allows_memory(condensed_bytes(island))) {
+      route = {iteration_budget(options_, island), false};
+    }
     const bool sweeps_fast = rows * rows <= static_cast<std::int64_t>(problem.system.value.size());
     if (!cache_.islands.empty() && route.condenses && sweeps_fast &&
         cache_.islands[index_of(i)].outer_iterations >= condensing_iterations * rows) {
@@ -96,7 +113,8 @@ void ContactEngine::solve_coupled(const ContactProblem& problem, EngineResult& r
     if (route.outer_iterations > 0) islands_.iterate(i, route.outer_iterations, result);
     const bool is_solved =
         route.outer_iterations > 0 && result.outcomes[index_of(i)].reason == StopReason::converged;
-    if (!is_solved && route.condenses) condense(problem, i, result);
+    const bool is_over = route.outer_iterations > 0 && budget_->is_over();
+    if (!is_solved && route.condenses && !is_over) condense(problem, i, result);
     if (!cache_.islands.empty()) {
       cache_.islands[index_of(i)].outer_iterations += result.outcomes[index_of(i)].outer_iterations;
     }
@@ -111,13 +129,20 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
   std::shared_ptr<Condensation>& kept =
       cache_.islands.empty() ? temporary : cache_.islands[index_of(i)].condensation;
   if (kept == nullptr) {
-    kept = std::make_shared<Condensation>(part, IslandSolver(options_, threads_, device_));
+    try {
+      kept =
+          std::make_shared<Condensation>(part, IslandSolver(options_, threads_, device_), budget_);
+    } catch (const BudgetOver&) {
+      // The best so far is the result of the iteration; without one, that of its first step.
+      if (result.outcomes[index_of(i)].outer_iterations == 0) islands_.iterate(i, 1, result);
+      return;
+    }
   } else {
     kept->problem.update(part);
     ++result.condensations_kept;
   }
   islands_.forget_device();
-  const EngineResult inner = kept->solve();
+  const EngineResult inner = kept->solve(budget_);
   const std::vector<double> v = kept->problem.body_velocity(inner.impulse);
   scatter_impulses(structure, island, inner.impulse.data(), result.impulse);
   scatter_velocities(structure, island, v.data(), result.body_velocity);
@@ -130,9 +155,15 @@ void ContactEngine::condense(const ContactProblem& problem, std::int64_t i, Engi
   outcome.methods.insert(outcome.methods.begin(), before.methods.begin(), before.methods.end());
   result.updates_skipped += inner.updates_skipped;
   result.colors = std::max(result.colors, inner.colors);
-  for (const std::int32_t c : inner.clamped) {
-    result.clamped.push_back(structure.contact_of_slot[index_of(island.slot_begin + c)]);
-  }
+  const auto append = [&](const std::vector<std::int32_t>& from, std::vector<std::int32_t>& to) {
+    for (const std::int32_t c : from) {
+      to.push_back(structure.contact_of_slot[index_of(island.slot_begin + c)]);
+    }
+  };
+  append(inner.clamped, result.clamped);
+  append(inner.unbounded, result.unbounded);
+  result.clamped_speed = std::max(result.clamped_speed, inner.clamped_speed);
+  result.unbounded_speed = std::max(result.unbounded_speed, inner.unbounded_speed);
 }
 
 }  // namespace tetwarp

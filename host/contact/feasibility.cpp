@@ -37,7 +37,8 @@ double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::v
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t max_sweeps) {
+                                              std::int64_t max_sweeps,
+                                              SolveBudget* budget) {
   const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
   // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
@@ -59,6 +60,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   for (std::int64_t sweep = 1; sweep <= sweeps; ++sweep) {
     std::copy_n(y.data, y.size, before.data());
     pipeline.sweep({});
+    if (budget != nullptr && budget->is_over()) return {};
     if ((sweep & (sweep - 1)) != 0) continue;  // the test is made at powers of two only
     // y is what the last sweep added to the impulses; B y is the velocity change it causes.
     std::vector<double> growth(before.size());
@@ -88,9 +90,12 @@ EngineResult solve_feasible(const ContactProblem& given,
                             std::optional<ContactProblem> changed,
                             const std::function<EngineResult(const ContactProblem&)>& solve_round) {
   std::vector<std::int32_t> clamped;
+  double speed = 0;
   // Each round raises at least one more offset; one or two rounds are usual.
   for (;;) {
     EngineResult result = solve_round(changed ? *changed : given);
+    speed = std::max(speed, result.clamped_speed);
+    result.clamped_speed = speed;
     if (result.clamped.empty()) {
       result.clamped = std::move(clamped);
       return result;

@@ -8,6 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
 #include "host/contact/engine_result.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
@@ -21,11 +22,13 @@ namespace tetwarp {
 /// frictionless sweeps grow without bound along a y for which this is infinite; the slots with
 /// y > 0 are returned.
 /// @param max_sweeps  sweeps at most; never more than 4096
+/// @param budget      ends the search; null: no limits
 /// @pre A does not couple the blocks of the island
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t max_sweeps);
+                                              std::int64_t max_sweeps,
+                                              SolveBudget* budget = nullptr);
 
 /// Solves a problem; as long as contacts that contradict each other are found, raises their
 /// negative normal offsets (local form: free velocities) to 0 and solves again.

@@ -5,12 +5,33 @@
 #include <utility>
 
 #include "host/contact/block_jacobi/block_jacobi.hpp"
+#include "host/contact/certificate.hpp"
 #include "host/contact/feasibility.hpp"
 #include "host/contact/newton/newton.hpp"
 #include "host/contact/structure/extract.hpp"
 #include "host/contact/sweeps/method_names.hpp"
 
 namespace tetwarp {
+namespace {
+/// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
+/// than Newton's take only where many sweeps are allowed, too.
+bool searches_certificates(const ContactOptions& options) {
+  return options.method == ContactMethod::automatic || options.method == ContactMethod::newton ||
+         options.max_sweeps >= 4096;
+}
+
+/// The contacts of an island that a direction of impulses pushes.
+std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
+                                      const ContactStructure& structure,
+                                      const ContactIsland& island) {
+  std::vector<std::int32_t> contacts;
+  for (std::int64_t c = 0; c < island.contact_count(); ++c) {
+    if (!(direction.impulse[index_of(3 * c)] > 1e-6)) continue;
+    contacts.push_back(structure.contact_of_slot[index_of(island.slot_begin + c)]);
+  }
+  return contacts;
+}
+}  // namespace
 
 IslandSolver::IslandSolver(const ContactOptions& options, int threads, ContactDevice* device)
     : options_(options), threads_(threads), device_(device) {}
@@ -51,6 +72,7 @@ void IslandSolver::solve_uncoupled(EngineResult& result) {
     if (island.is_coupled) continue;
     result.colors = std::max(result.colors, island.color_end - island.color_begin - 1);
   }
+  if (device_ != nullptr) device_->budget = budget_;
   device_ != nullptr ? solve_on_device(result) : solve_on_host(result);
 }
 
@@ -58,10 +80,10 @@ void IslandSolver::solve_on_host(EngineResult& result) {
   ContactSystem<double>& system = host_system();
   free_motion_ = system.body_free;
   std::vector<double> start = guess();
-  ContactRun<double> run(options_, threads_, structure_, system, result.outcomes);
+  ContactRun<double> run(options_, threads_, structure_, system, result.outcomes, budget_);
   if (options_.precision == ContactPrecision::float32) {
     const ContactSystem<float> rounded = make_float32(structure_, system);
-    ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes);
+    ContactRun<float> coarse(options_, threads_, structure_, rounded, result.outcomes, budget_);
     coarse.start_from({start.begin(), start.end()});
     coarse.solve();
     start.assign(coarse.state().impulse.begin(), coarse.state().impulse.end());
@@ -91,7 +113,7 @@ void IslandSolver::solve_on_device(EngineResult& result) {
     IslandOutcome& outcome = result.outcomes[index_of(i)];
     if (outcome.reason != StopReason::converged) {
       if (!run) {
-        run.emplace(options_, threads_, structure_, host_system(), result.outcomes);
+        run.emplace(options_, threads_, structure_, host_system(), result.outcomes, budget_);
         run->start_from(impulse);
       }
       finish(i, *run, result);
@@ -123,8 +145,10 @@ void IslandSolver::finish(std::int64_t i, ContactRun<double>& run, EngineResult&
 
 void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result) {
   IslandOutcome& outcome = result.outcomes[index_of(island)];
-  for (const std::int64_t slot : contradicting_slots(
-           structure_, run.system(), structure_.islands[index_of(island)], options_.max_sweeps)) {
+  if (budget_ != nullptr && budget_->is_over()) return;
+  for (const std::int64_t slot :
+       contradicting_slots(structure_, run.system(), structure_.islands[index_of(island)],
+                           options_.max_sweeps, budget_)) {
     result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
   }
   if (!result.clamped.empty()) return;
@@ -132,12 +156,39 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
     polish(island, run, outcome);
   }
   outcome.sums = run.measure(island);
-  if (options_.method != ContactMethod::automatic || run.is_done(island, outcome.sums)) return;
-  run.run_to_budget(island);
-  outcome.sums = run.measure(island);
-  if (run.is_done(island, outcome.sums)) return;
-  polish(island, run, outcome);  // this better start may converge
-  outcome.sums = run.measure(island);
+  if (run.is_done(island, outcome.sums) || !searches_certificates(options_)) return;
+  if (find_contradiction(island, result)) return;
+  if (options_.method == ContactMethod::automatic) {
+    run.run_to_budget(island);
+    outcome.sums = run.measure(island);
+    if (run.is_done(island, outcome.sums)) return;
+    polish(island, run, outcome);  // this better start may converge
+    outcome.sums = run.measure(island);
+  }
+  if (!run.is_done(island, outcome.sums)) find_unbounded(island, result);
+}
+
+/// Searches for a certificate that normal offsets contradict each other. Sweeps, which come first,
+/// need about the square of the number of bodies in a chain to show it.
+bool IslandSolver::find_contradiction(std::int64_t i, EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  const std::optional<ImpulseDirection> found =
+      find_direction(make_island_problem(*problem_, structure_, island), options_,
+                     DirectionCone::normals, budget_);
+  if (!found) return false;
+  result.clamped_speed = found->speed;
+  result.clamped = contacts_of(*found, structure_, island);
+  return true;
+}
+
+void IslandSolver::find_unbounded(std::int64_t i, EngineResult& result) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  const std::optional<ImpulseDirection> found =
+      find_direction(make_island_problem(*problem_, structure_, island), options_,
+                     DirectionCone::friction, budget_);
+  if (!found) return;
+  result.unbounded_speed = found->speed;
+  result.unbounded = contacts_of(*found, structure_, island);
 }
 
 /// Newton's method from the impulses of the sweeps; keeps its impulses unless their error is
@@ -150,9 +201,9 @@ void IslandSolver::polish(std::int64_t i, ContactRun<double>& run, IslandOutcome
   std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
   const std::vector<double> swept = polished;
   const NewtonResult newton = newton_polish(make_island_problem(*problem_, structure_, island),
-                                            options, polished, body_velocity);
+                                            options, polished, body_velocity, budget_);
   outcome.newton_iterations += newton.iterations;
-  outcome.methods.push_back(report_name_of(ContactMethod::newton));
+  if (newton.iterations > 0) outcome.methods.push_back(report_name_of(ContactMethod::newton));
   const double before = run.excess(i, outcome.sums);
   std::copy(polished.begin(), polished.end(), impulse);
   if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
@@ -165,6 +216,7 @@ void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineRe
   std::vector<double> impulse(3 * structure_.contact_of_slot.size());
   std::vector<double> body_velocity(structure_.dof_of_place.size());
   if (device_ != nullptr) {
+    device_->budget = budget_;
     if (!has_device_system_) result.savings = set_device_problem();
     device_->solve_coupled(options_, island, guess, max_iterations, impulse, body_velocity,
                            outcome);
@@ -177,9 +229,14 @@ void IslandSolver::iterate(std::int64_t i, std::int64_t max_iterations, EngineRe
     const ContactNumbers<double> numbers = system.numbers(indices);
     ContactSystem<float> rounded;
     if (options_.precision == ContactPrecision::float32) rounded = make_float32(structure_, system);
-    const CoupledTask task{
-        options_,       island,        indices.color_start, numbers, rounded.numbers(indices),
-        view_of(guess), max_iterations};
+    const CoupledTask task{options_,
+                           island,
+                           indices.color_start,
+                           numbers,
+                           rounded.numbers(indices),
+                           view_of(guess),
+                           max_iterations,
+                           budget_};
     const CoupledSolution best = solve_coupled_island(exec, task, *block_jacobi_memory_, outcome);
     exec.get(best.impulse, impulse.data());
     exec.get(best.body_velocity, body_velocity.data());

@@ -8,6 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/engine_result.hpp"
 #include "host/contact/structure/structure.hpp"
@@ -27,6 +28,9 @@ class IslandSolver {
 
   const ContactStructure& structure() const { return structure_; }
   void set_structure(ContactStructure structure) { structure_ = std::move(structure); }
+
+  /// Limits of the next calls, kept by the caller; null: none.
+  void set_budget(SolveBudget* budget) { budget_ = budget; }
 
   /// Sets the numbers from a problem that has the pattern of the structure.
   /// @param problem  kept by the caller, unchanged, for the calls below
@@ -58,11 +62,14 @@ class IslandSolver {
   void solve_on_device(EngineResult& result);
   void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
+  bool find_contradiction(std::int64_t island, EngineResult& result);
+  void find_unbounded(std::int64_t island, EngineResult& result);
   void polish(std::int64_t island, ContactRun<double>& run, IslandOutcome& outcome);
 
   ContactOptions options_;
   int threads_;
   ContactDevice* device_;
+  SolveBudget* budget_ = nullptr;
   ContactStructure structure_;
   const ContactProblem* problem_ = nullptr;
   ContactSystem<double> system_;    ///< kept, so that its memory is reused

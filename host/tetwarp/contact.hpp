@@ -16,6 +16,7 @@
 /// Sources: Gascon 2010/2013 (adhesion as constraints), Raous, Cangemi, Cocou 1999 (the model).
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -83,6 +84,13 @@ struct ContactSkipOptions {
                                    ///< successive problems whose A and J have the same bits
 };
 
+/// How far a running solve is.
+struct ContactProgress {
+  double seconds = 0;                  ///< since its start
+  std::int64_t sweeps = 0;             ///< of all islands together
+  std::int64_t newton_iterations = 0;  ///< linear systems solved
+};
+
 /// Options of a solve. The defaults suit most problems; the members marked "expert" exist for
 /// comparing methods.
 struct ContactOptions {
@@ -103,13 +111,32 @@ struct ContactOptions {
   int device = 0;                        ///< CUDA device number
   int threads = 0;  ///< of the cpu back end, 0: all cores; any number gives the same bits
   ContactSkipOptions skip = {};
+
+  // Limits of a solve, which then returns the best iterate so far, with status `not_converged` and
+  // the limit in status_reason. Results depend on the clock only if max_seconds is set. Not
+  // interrupted, so that they can exceed a limit of time: a single factorization, the structure of
+  // a new sparsity pattern, a kernel on a device, back end `reference`.
+  double max_seconds = std::numeric_limits<double>::infinity();  ///< wall time of a solve [s], > 0
+  std::int64_t max_newton = std::numeric_limits<std::int64_t>::max();  ///< Newton steps of a solve,
+                                                                       ///< >= 0
+  /// Memory of one factorization [bytes], estimated before it is made; 0: 20 times that of the
+  /// arrays of the problem, at least `least_memory`. Islands that must not be condensed are
+  /// iterated; Newton's method is left out where its factors would be larger.
+  std::int64_t max_memory = 0;
+  static constexpr double least_memory = 256e6;
+  /// Called after every sweep, Newton step and phase, from the thread that solves; returns false to
+  /// end the solve. What it throws leaves solve(). Must not use the solver.
+  std::function<bool(const ContactProgress&)> progress = {};
 };
 
 enum class ContactStatus {
   converged,
   not_converged,  ///< the best iterate is returned
-  infeasible      ///< no velocity satisfies all contacts; negative normal offsets of contacts that
+  infeasible,     ///< no velocity satisfies all contacts; negative normal offsets of contacts that
                   ///< contradict each other were raised to 0
+  unbounded  ///< not converged, and impulses can grow without bound: a direction of impulses in
+             ///< the friction cones causes no velocity, and the contacts approach along it.
+             ///< The best iterate is returned
 };
 
 /// How far impulses and velocities are from a solution.

@@ -141,6 +141,8 @@ class ThinnedEventLog {
     if (writes_) events_[count_] = event;
     ++count_;
   }
+  /// A solve within one launch is not interrupted.
+  __device__ bool stops() const { return false; }
   /// @return  how many residuals are kept
   __device__ std::int64_t end() {
     if (seen_ > 0 && !is_last_kept_) {

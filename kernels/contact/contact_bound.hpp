@@ -30,6 +30,7 @@ struct FreeResidualBoundBody {
     const auto energy = [&](double rho_n, double rho_t) {
       return natural_square(c, natural.switches, rho_n, rho_t, r, u);
     };
+    if (!(sums.eta < INFINITY)) return sums;
     sums.eta = margin * min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
                                min_of(energy(high_n, low_t), energy(high_n, high_t)));
     sums.largest = sums.eta;
@@ -67,7 +68,8 @@ struct ResidualBoundBody {
       square += square_of(slope / sqrt(rho_t) * d_t + (turn > 0 ? turn / sqrt(low) : 0.0));
     }
     const double left = eta_square(c, natural.switches, natural.impulse.data + 3 * i, consistent);
-    sums.eta = sums.largest = square_of(sqrt(left) + sqrt(square));
+    const bool is_finite = sums.eta < INFINITY;
+    sums.eta = sums.largest = is_finite ? square_of(sqrt(left) + sqrt(square)) : INFINITY;
     return sums;
   }
 };

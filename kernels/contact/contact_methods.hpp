@@ -264,7 +264,7 @@ template <class Exec, class T>
 TETWARP_ANY_EXEC IslandSums measure_island(ContactPipeline<Exec, T> pipeline) {
   pipeline.follow_impulses();
   IslandSums result;
-  result.sums = pipeline.measure();
+  result.sums = pipeline.measure(true);
   result.free_square = pipeline.free_square();
   return result;
 }

@@ -112,12 +112,37 @@ class ContactPipeline {
                                state_.body_velocity});
   }
 
-  /// Residual of the current r and v.
-  TETWARP_ANY_EXEC ContactSums measure() {
+  /// Residual of the current r and v. ContactSums::magnitude stays 0 where its bound `reach` shows
+  /// that rounding of the work does not matter, unless `is_final`.
+  TETWARP_ANY_EXEC ContactSums measure(bool is_final = false) {
+    constexpr double cancellation = 0x1p25;
     find_velocities();
-    return contact_residual(exec_, island_.slot_begin, island_.slot_end,
-                            ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
-                                                   state_.velocity, numbers_.free_velocity});
+    ContactSums sums =
+        contact_residual(exec_, island_.slot_begin, island_.slot_end,
+                         ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
+                                                state_.velocity, numbers_.free_velocity});
+    const bool is_needed =
+        is_final ? sums.reach > 0 : sums.reach * sums.reach > cancellation * sums.work;
+    if (is_needed) sums.magnitude = magnitude();
+    return sums;
+  }
+
+  /// |r| . |B| |r| of the current r; see ContactSums. Of coupled islands the share of D^-1, the
+  /// diagonal blocks of A, times the relaxation.
+  TETWARP_ANY_EXEC double magnitude() {
+    if (numbers_.is_local) {
+      return exec_
+          .template sum<PlainSums<1>>("contact/residual", island_.slot_begin, island_.slot_end,
+                                      DelassusMagnitudeBody<T>{numbers_.delassus, state_.impulse})
+          .value[0];
+    }
+    return exec_
+        .template sum<PlainSums<1>>(
+            "contact/residual", island_.block_begin, island_.block_end,
+            BodyMagnitudeBody<T>{numbers_.block_contacts, numbers_.bodies.pairs.dof_start,
+                                 numbers_.bodies.jacobian, numbers_.bodies.response,
+                                 state_.impulse})
+        .value[0];
   }
 
   /// |q|^2 of the island.

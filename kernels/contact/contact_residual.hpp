@@ -3,8 +3,11 @@
 #pragma once
 #include <cstdint>
 
+#include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/contact/body_relax.hpp"
 #include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/contact_sweep.hpp"
 
 namespace tetwarp {
 
@@ -12,15 +15,19 @@ namespace tetwarp {
 struct ContactSums {
   double eta = 0;    ///< e_n^2 / rho_n + |e_t|^2 / rho_t: an energy [J]
   double fclib = 0;  ///< |r - P(r - u~)|^2, P: projection on the friction cone, u~ = u + mu |u_t| n
-  double work = 0;   ///< r . (u - q)
-  double largest = 0;  ///< largest term of `eta`
-  double deepest = 0;  ///< largest -u_n [m/s]
+  double work = 0;   ///< r . (u - q) = r . B r
+  double reach = 0;  ///< sum of |r_i| sqrt(B_ii) over rows: |r| . |B| |r| is at most its square
+  double magnitude = 0;  ///< |r| . |B| |r|, what cancels in `work`; see ContactPipeline::measure()
+  double largest = 0;    ///< largest term of `eta`
+  double deepest = 0;    ///< largest -u_n [m/s]
   std::int64_t largest_contact = -1;
 
   TETWARP_HD ContactSums& operator+=(const ContactSums& other) {
     eta += other.eta;
     fclib += other.fclib;
     work += other.work;
+    reach += other.reach;
+    magnitude += other.magnitude;
     deepest = max_of(deepest, other.deepest);
     if (other.largest > largest) {
       largest = other.largest;
@@ -29,6 +36,21 @@ struct ContactSums {
     return *this;
   }
 };
+
+/// Part of `work` that stands above its own rounding. Without this limit, huge impulses that cause
+/// no velocity (the null space of B) would enlarge the scale of eta by rounding errors, so that a
+/// problem without a solution would look solved.
+TETWARP_HD double resolved_work(const ContactSums& sums) {
+  constexpr double rounding = 0x1p-49;
+  return max_of(sums.work - rounding * sums.magnitude, 0.0);
+}
+
+/// Energy [J] of the rounding errors of the velocities, from which the residual is computed: a
+/// smaller residual is not resolved.
+TETWARP_HD double unresolved_energy(const ContactSums& sums) {
+  constexpr double rounding = 0x1p-51;
+  return square_of(rounding) * sums.magnitude;
+}
 
 /// |e_n|^2 / rho_n + |e_t|^2 / rho_t with e the natural map of the law; zero exactly if the law
 /// holds.
@@ -41,7 +63,9 @@ TETWARP_HD double natural_square(const ContactConstants<T>& c,
                                  const T* velocity) {
   const double kappa_t = c.tangent_spring;
   const double nu_n = impulse[0] + double{c.normal_spring} * velocity[0];
-  const double sum = square_of(min_of(nu_n, rho_n * velocity[0])) / rho_n;
+  // e (e / rho) instead of e^2 / rho: the squares of very small impulses would be 0.
+  const double e_n = min_of(nu_n, rho_n * velocity[0]);
+  const double sum = e_n * (e_n / rho_n);
   if (c.kind == ContactKind::frictionless) return sum;
   const double limit = c.friction * max_of(nu_n, 0.0);
   double spring[2], nu[2], aim[2];
@@ -63,7 +87,8 @@ TETWARP_HD double natural_square(const ContactConstants<T>& c,
     aim[0] *= scale;
     aim[1] *= scale;
   }
-  return sum + (square_of(nu[0] - aim[0]) + square_of(nu[1] - aim[1])) / rho_t;
+  const double e_t[2] = {nu[0] - aim[0], nu[1] - aim[1]};
+  return sum + e_t[0] * (e_t[0] / rho_t) + e_t[1] * (e_t[1] / rho_t);
 }
 
 /// Weights of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
@@ -131,12 +156,67 @@ struct ContactResidualBody {
     const T* r = impulse.data + 3 * c;
     const T* u = velocity.data + 3 * c;
     ContactSums sums;
-    sums.eta = sums.largest = eta_square(constants[c], switches, r, u);
+    sums.eta = eta_square(constants[c], switches, r, u);
     sums.largest_contact = c;
     sums.fclib = fclib_square(constants[c], switches, r, u);
     sums.deepest = max_of(-double{u[0]}, 0.0);
-    for (int a = 0; a < 3; ++a) sums.work += r[a] * (double{u[a]} - free_velocity[3 * c + a]);
+    double parts = 0;
+    for (int a = 0; a < 3; ++a) {
+      sums.work += r[a] * (double{u[a]} - free_velocity[3 * c + a]);
+      sums.reach += fabs(double{r[a]}) * sqrt(fabs(double{constants[c].block[4 * a]}));
+      parts += fabs(double{r[a]}) + fabs(double{u[a]});
+    }
+    // Comparisons with a number that is not finite could hide it from the sums.
+    if (!(parts < INFINITY)) sums.eta = sums.fclib = sums.deepest = INFINITY;
+    sums.largest = sums.eta;
     return sums;
+  }
+};
+
+/// One index = one contact of a Delassus matrix: its term in ContactSums::magnitude.
+template <class T>
+struct DelassusMagnitudeBody {
+  DelassusView<T> delassus;
+  View<const T> impulse;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
+    double change[3] = {0, 0, 0};
+    for (std::int64_t k = delassus.row_start[c]; k < delassus.row_start[c + 1]; ++k) {
+      const T* w = delassus.blocks.data + 9 * k;
+      const T* r = impulse.data + 3 * std::int64_t{delassus.column[k]};
+      for (int e = 0; e < 9; ++e) change[e / 3] += fabs(double{w[e]} * r[e % 3]);
+    }
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) sum += fabs(double{impulse[3 * c + a]}) * change[a];
+    return {{sum}};
+  }
+};
+
+/// One index = one body: its term in ContactSums::magnitude, (|J|^T |r|) . (|A^-1 J^T| |r|). The
+/// sum over bodies is at least |r| . |B| |r|, since velocities are computed body by body.
+template <class T>
+struct BodyMagnitudeBody {
+  BlockContacts contacts;
+  View<const std::int64_t> dof_start;
+  View<const T> jacobian, response, impulse;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t b) const {
+    const std::int64_t size = dof_start[b + 1] - dof_start[b];
+    double sum = 0;
+    for (std::int64_t k = 0; k < size; ++k) {
+      double push = 0, change = 0;
+      for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+        const T* r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+        const T* j = jacobian.data + contacts.value[p] + k;
+        const T* own_response = response.data + contacts.value[p] + 3 * k;
+        for (int a = 0; a < 3; ++a) {
+          push += fabs(double{j[a * size]} * r[a]);
+          change += fabs(double{own_response[a]} * r[a]);
+        }
+      }
+      sum += push * change;
+    }
+    return {{sum}};
   }
 };
 

@@ -9,9 +9,9 @@
 
 namespace tetwarp {
 
-/// An island has converged if error <= allowed + tolerance * sqrt(r . (u - q)); the last term is
-/// for eta only. If all islands have converged, the whole problem is within the tolerance; see
-/// stop_criteria().
+/// An island has converged if error <= allowed + tolerance * sqrt(resolved_work()); the last term
+/// is for eta only, which must also be resolved: see unresolved_energy(). If all islands have
+/// converged, the whole problem is within the tolerance; see stop_criteria().
 struct StopCriterion {
   ContactMeasure measure = ContactMeasure::eta;
   double tolerance = 0;
@@ -21,12 +21,13 @@ struct StopCriterion {
     return sqrt(measure == ContactMeasure::eta ? sums.eta : sums.fclib);
   }
   TETWARP_HD double allowed_at(const ContactSums& sums) const {
-    const double work = measure == ContactMeasure::eta ? sqrt(max_of(sums.work, 0.0)) : 0.0;
+    const double work = measure == ContactMeasure::eta ? sqrt(resolved_work(sums)) : 0.0;
     return allowed + tolerance * work;
   }
   /// Error over allowed error: at most 1 when converged; infinity instead of NaN.
   TETWARP_HD double excess_of(const ContactSums& sums) const {
-    const double error = error_of(sums);
+    double error = error_of(sums);
+    if (measure == ContactMeasure::eta) error = sqrt(sums.eta + unresolved_energy(sums));
     if (error == 0) return 0;
     const double excess = error / max_of(allowed_at(sums), 1e-300);
     return excess < INFINITY ? excess : INFINITY;
@@ -50,7 +51,8 @@ constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of pati
 /// The convergence test of one island, over all methods that work on it. Measuring a residual costs
 /// about as much as a sweep. is_due() is true when the defect of the iteration, which costs
 /// nothing, suggests convergence, and at growing intervals of 4 to 32 sweeps.
-/// @tparam Log  has note(ContactEvent)
+/// @tparam Log  has note(ContactEvent), and stops(), called after every sweep: true ends the
+///              iteration as if its budget of sweeps were used up
 template <class Log>
 class ConvergenceTest {
  public:
@@ -66,7 +68,8 @@ class ConvergenceTest {
         sweep_budget_(sweep_budget),
         sweeps_(sweeps_done),
         measured_sweep_(sweeps_done),
-        drop_sweep_(sweeps_done) {}
+        drop_sweep_(sweeps_done),
+        is_stopped_(log.stops()) {}
 
   TETWARP_HD std::int64_t sweeps() const { return sweeps_; }
   TETWARP_HD double best_excess() const { return best_excess_; }
@@ -79,8 +82,11 @@ class ConvergenceTest {
     drop_excess_ = best_excess_;
     ratio_ = 0;
   }
-  TETWARP_HD void count_sweep() { ++sweeps_; }
-  TETWARP_HD bool is_exhausted() const { return sweeps_ >= sweep_budget_; }
+  TETWARP_HD void count_sweep() {
+    ++sweeps_;
+    is_stopped_ = log_.stops();
+  }
+  TETWARP_HD bool is_exhausted() const { return is_stopped_ || sweeps_ >= sweep_budget_; }
 
   /// Whether to measure the residual now.
   /// @param defect  size of the last change of the impulses
@@ -125,6 +131,7 @@ class ConvergenceTest {
   std::int64_t sweeps_;
   std::int64_t measured_sweep_;
   std::int64_t drop_sweep_;
+  bool is_stopped_;
   std::int64_t patience_ = endless;
   double best_excess_ = INFINITY;
   double drop_excess_ = INFINITY;

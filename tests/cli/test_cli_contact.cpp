@@ -100,12 +100,28 @@ TEST_F(ContactCommand, MarksAndRefusesWhatNoVelocitySatisfies) {
 
   const CommandResult result = solve();
 
-  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.exit_code, 4);
   EXPECT_TRUE(result.has_one_line_error()) << result.err;
   EXPECT_NE(result.err.find("infeasible"), std::string::npos) << result.err;
   EXPECT_EQ(solution_attribute("converged"), 0);
   EXPECT_EQ(read_contact_header(folder / "solved.hdf5").status, "infeasible");
   for (const double r : solved("solution/r")) EXPECT_TRUE(std::isfinite(r));
+}
+
+TEST_F(ContactCommand, StopsAtItsLimits) {
+  store(global_problem());
+
+  for (const std::vector<std::string>& limit : {std::vector<std::string>{"--max-seconds", "1e-9"},
+                                                {"--max-newton", "0"},
+                                                {"--memory", "1k"}}) {
+    std::vector<std::string> arguments = {"--max-sweeps", "2", "--tolerance", "1e-15"};
+    arguments.insert(arguments.end(), limit.begin(), limit.end());
+    const CommandResult result = solve(arguments);
+
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find("max_"), std::string::npos) << result.err;
+  }
 }
 
 TEST_F(ContactCommand, ReportsInJson) {

@@ -151,7 +151,8 @@ class BlockJacobi {
       ++outcome.outer_iterations;
       const View<const T> before = part_of(before_, task_.island.dof_begin, task_.island.dof_end);
       accelerator.observe(before, pipeline_.body_velocity());
-      const bool is_last = outcome.outer_iterations == task_.max_iterations;
+      const bool is_over = task_.is_over();
+      const bool is_last = is_over || outcome.outer_iterations == task_.max_iterations;
       const bool is_first = outcome.outer_iterations == first;
       if (!is_last && !is_first && !exec_.is_sync_point(outcome.outer_iterations)) {
         accelerator.advance(before, pipeline_.body_velocity());
@@ -167,6 +168,7 @@ class BlockJacobi {
       const bool is_due =
           is_last || defect <= estimate_below_ || outcome.outer_iterations >= estimate_at_;
       if (is_due && estimate(defect, is_last, outcome) <= 1) return;
+      if (is_over) return;
       if (std::is_same_v<T, float> && is_at_rounding_limit(defect / start, outcome)) return;
       accelerator.advance(before, pipeline_.body_velocity());
     }

@@ -6,6 +6,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
 #include "kernels/contact/contact_numbers.hpp"
 
 namespace tetwarp {
@@ -20,6 +21,9 @@ struct CoupledTask {
   ContactNumbers<float> rounded;  ///< `numbers` in float32; read if options.precision is float32
   View<const double> guess;       ///< impulses to start from, [3 slots]; empty: zero
   std::int64_t max_iterations;    ///< outer iterations
+  SolveBudget* budget = nullptr;  ///< ends the iteration; null: no limits
+
+  bool is_over() const { return budget != nullptr && budget->is_over(); }
 
   template <class T>
   const ContactNumbers<T>& numbers_in() const {

@@ -44,6 +44,7 @@ class ResidualEstimator {
   /// @param memory  kept by the caller
   ResidualEstimator(Exec& exec, const CoupledTask& task, EstimatorMemory<Exec>& memory)
       : exec_(exec),
+        task_(task),
         options_(task.options),
         numbers_(task.numbers),
         island_(task.island),
@@ -209,7 +210,9 @@ class ResidualEstimator {
   /// Continues the solve of A v = b + J^T r; see CoupledSystem::solve().
   template <class Enough>
   LinearProgress solve_system(const Enough& is_enough) {
-    return system_.solve(view_of(memory_.body_velocity), view_of(memory_.defect), is_enough);
+    return system_.solve(
+        view_of(memory_.body_velocity), view_of(memory_.defect),
+        [&](const LinearProgress& progress) { return is_enough(progress) || task_.is_over(); });
   }
 
   /// u = J v + w.
@@ -234,10 +237,21 @@ class ResidualEstimator {
   /// Bounds of the residual of the current impulses and body velocities.
   ContactSums bounded_sums() {
     find_velocity(memory_.velocity);
-    return exec_.template sum<ContactSums>(
+    ContactSums sums = exec_.template sum<ContactSums>(
         "contact/residual", island_.slot_begin, island_.slot_end,
         ResidualBoundBody{natural(view_of(std::as_const(memory_.velocity))),
                           view_of(std::as_const(memory_.consistent_velocity))});
+    // The share of the diagonal blocks of A; the responses have the relaxation as a factor.
+    sums.magnitude =
+        exec_
+            .template sum<PlainSums<1>>(
+                "contact/residual", island_.block_begin, island_.block_end,
+                BodyMagnitudeBody<double>{numbers_.block_contacts, numbers_.system.dof_start,
+                                          numbers_.bodies.jacobian, numbers_.bodies.response,
+                                          view_of(std::as_const(memory_.impulse))})
+            .value[0] /
+        options_.relaxation;
+    return sums;
   }
 
   static bool is_within(double share, const LinearProgress& progress) {
@@ -272,6 +286,7 @@ class ResidualEstimator {
   }
 
   Exec& exec_;
+  const CoupledTask& task_;
   const ContactOptions& options_;
   const ContactNumbers<double>& numbers_;
   const ContactIsland& island_;

@@ -99,7 +99,7 @@ class CudaContactDevice final : public ContactDevice {
     put(guess, guess_);
     const CoupledTask task{options,          island,           view_of(structure_->color_start),
                            float64_.numbers, float32_.numbers, view_of(std::as_const(guess_)),
-                           max_iterations};
+                           max_iterations, budget};
     const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
     grid_.get(best.impulse, impulse.data());
     grid_.get(best.body_velocity, body_velocity.data());
@@ -221,7 +221,7 @@ class CudaContactDevice final : public ContactDevice {
     if (!small_.empty()) solve_small(options, criteria, problem, work, outcomes);
     for (const std::int64_t i : large_) {
       auto pipeline = pipeline_of(options, i, problem);
-      HostEventLog log;
+      HostEventLog log{.events = {}, .budget = budget};
       const auto k = static_cast<std::size_t>(i);
       const IslandEnd end = solve_island(pipeline, criteria[k], plan_of(options), 0, work, log);
       outcomes[k].add(end, options.method, island(i).contact_count());

@@ -8,6 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 #include "kernels/contact/contact_adhesion.hpp"
@@ -20,6 +21,9 @@ struct IslandOutcome;
 /// kernels/contact/contact_methods.hpp. All vectors are in memory of the host.
 class ContactDevice : public StructureStages {
  public:
+  /// Limits of the running solve, for islands that run stage by stage; null: none.
+  SolveBudget* budget = nullptr;
+
   /// Copies a problem to the device, for the calls that follow.
   /// @param structure  kept by the caller until the next set_problem()
   /// @return  rows and springs that the solve leaves out

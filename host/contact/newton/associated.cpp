@@ -36,8 +36,9 @@ Index row_of(std::size_t c) {
 AssociatedContact::AssociatedContact(const std::vector<MeasuredContact>& contacts,
                                      FrictionLaw law,
                                      const Delassus& delassus,
-                                     NewtonSystem& system)
-    : contacts_(contacts), law_(law), delassus_(delassus), system_(system) {
+                                     NewtonSystem& system,
+                                     SolveBudget* budget)
+    : contacts_(contacts), law_(law), delassus_(delassus), system_(system), budget_(budget) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const double friction = contacts[c].friction, root = std::sqrt(compliance_of(contacts[c]));
     const auto add = [&](const Matrix3d& part) {
@@ -94,6 +95,8 @@ VectorXd AssociatedContact::solve(const VectorXd& lift) {
 /// One predictor-corrector step.
 /// @return false  if the equations are singular or the step is not finite
 bool AssociatedContact::take_step(double mean_gap) {
+  is_over_ = budget_ != nullptr && !budget_->allows_newton_step();
+  if (is_over_) return false;
   for (Cone& cone : cones_) cone.scaling = lorentz::scaling_of(cone.impulse, cone.velocity);
   if (!factorize()) return false;
   const auto complement = [](const Cone& cone) {

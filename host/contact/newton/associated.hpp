@@ -7,6 +7,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
 #include "host/contact/newton/lorentz_cone.hpp"
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/problem/delassus.hpp"
@@ -26,11 +27,13 @@ namespace tetwarp {
 class AssociatedContact {
  public:
   /// @param contacts  with their diagonal blocks
+  /// @param budget    ends the iteration; null: no limits
   /// All references must be valid as long as this object.
   AssociatedContact(const std::vector<MeasuredContact>& contacts,
                     FrictionLaw law,
                     const Delassus& delassus,
-                    NewtonSystem& system);
+                    NewtonSystem& system,
+                    SolveBudget* budget = nullptr);
 
   /// Finds the impulses [N s], [3 contacts], by a primal-dual interior point method.
   ///
@@ -39,11 +42,18 @@ class AssociatedContact {
   /// @param lift  s, [contacts], m/s
   Eigen::VectorXd solve(const Eigen::VectorXd& lift);
 
+  /// The impulses of the last step of the last solve(). Where no impulses solve the problem, they
+  /// have grown along a direction that causes no velocity.
+  const Eigen::VectorXd& last_impulse() const { return impulse_; }
+
   /// The s for which these velocities, [3 contacts], obey Coulomb's law.
   Eigen::VectorXd lift_of(const Eigen::VectorXd& velocity) const;
 
   /// Linear systems solved so far, by all calls of solve().
   std::int64_t iterations() const { return iterations_; }
+
+  /// Whether the budget ended the last call of solve().
+  bool is_over() const { return is_over_; }
 
  private:
   /// g = P nu and z, both in a Lorentz cone [sqrt(J)]; y of a contact is the sum of P^T z over its
@@ -82,6 +92,8 @@ class AssociatedContact {
   Eigen::VectorXd residual_;  ///< P^T z - (u + s n)
   double unit_ = 0;           ///< root of the energy scale of the free motion [sqrt(J)]
   std::int64_t iterations_ = 0;
+  SolveBudget* budget_;
+  bool is_over_ = false;
 };
 
 }  // namespace tetwarp

@@ -61,9 +61,11 @@ class NewtonPolish {
  public:
   NewtonPolish(const ContactProblem& problem,
                const ContactOptions& options,
-               const Delassus& delassus)
+               const Delassus& delassus,
+               SolveBudget* budget)
       : options_(options),
         delassus_(delassus),
+        budget_(budget),
         contacts_(make_contacts(problem, delassus)),
         map_(contacts_, options.law, options.rule),
         system_(problem, delassus) {
@@ -81,16 +83,19 @@ class NewtonPolish {
   Iterate make_iterate(const VectorXd& impulse) const {
     const VectorXd change = delassus_.velocity_change(impulse);
     Iterate iterate{impulse, change + delassus_.free_velocity(), 0, 0};
-    const double scale = std::sqrt(free_energy_) + std::sqrt(std::max(impulse.dot(change), 0.0));
-    iterate.eta = residual_of(iterate) / std::max(scale, std::numeric_limits<double>::min());
+    const double magnitude = delassus_.magnitude(impulse);
+    const double scale =
+        std::sqrt(free_energy_) + std::sqrt(resolved_energy(impulse.dot(change), magnitude));
+    // Rounding of the velocities: a smaller residual is not resolved.
+    const double error = std::hypot(residual_of(iterate), 0x1p-51 * std::sqrt(magnitude));
+    iterate.eta = relative_error(error, scale);
     double square = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       const Index row = 3 * static_cast<Index>(c);
       square += fclib_square(contacts_[c], impulse.segment<3>(row),
                              iterate.velocity.segment<3>(row), options_.law, options_.rule);
     }
-    iterate.fclib = std::sqrt(square) /
-                    std::max(delassus_.free_velocity().norm(), std::numeric_limits<double>::min());
+    iterate.fclib = relative_error(std::sqrt(square), delassus_.free_velocity().norm());
     return iterate;
   }
 
@@ -98,8 +103,8 @@ class NewtonPolish {
     return options_.measure == ContactMeasure::eta ? iterate.eta : iterate.fclib;
   }
 
-  /// The best iterate is within the tolerance, or its error is rounding.
-  bool is_settled() const { return is_done(best_) || error_of(best_) < rounding_error; }
+  /// The best iterate is within the tolerance, its error is rounding, or the budget is used up.
+  bool is_settled() const { return is_over_ || is_done(best_) || error_of(best_) < rounding_error; }
 
   void keep(const Iterate& iterate) {
     if (error_of(iterate) < error_of(best_)) best_ = iterate;
@@ -133,6 +138,8 @@ class NewtonPolish {
 
   const ContactOptions& options_;
   const Delassus& delassus_;
+  SolveBudget* budget_;
+  bool is_over_ = false;  ///< the budget allows no more steps
   const std::vector<MeasuredContact> contacts_;
   const NaturalMap map_;
   NewtonSystem system_;
@@ -160,7 +167,7 @@ void NewtonPolish::advance(Approach& approach, std::int64_t limit) {
   double& epsilon = approach.epsilon;
   int idle = 0;
   const std::int64_t end = iterations_ + limit;
-  while (!is_done(best_) && iterations_ < end) {
+  while (!is_over_ && !is_done(best_) && iterations_ < end) {
     const double best_before = error_of(best_);
     const double steepness = std::pow(epsilon, -steepness_powers[approach.misses % 2]);
     Iterate iterate = approach.center;
@@ -184,13 +191,14 @@ void NewtonPolish::advance(Approach& approach, std::int64_t limit) {
 }
 
 void NewtonPolish::solve_associated(std::int64_t limit) {
-  AssociatedContact associated(contacts_, options_.law, delassus_, system_);
+  AssociatedContact associated(contacts_, options_.law, delassus_, system_, budget_);
   VectorXd lift = VectorXd::Zero(static_cast<Index>(contacts_.size()));
   const std::int64_t end = iterations_ + limit;
   while (!is_settled() && iterations_ < end) {
     const std::int64_t before = associated.iterations();
     Approach approach{.center = make_iterate(associated.solve(lift)), .epsilon = lift_epsilon};
     iterations_ += associated.iterations() - before;
+    is_over_ = associated.is_over();
     keep(approach.center);
     lift = associated.lift_of(approach.center.velocity);
     advance(approach, lift_steps);
@@ -211,6 +219,8 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
       derivatives_[c].by_impulse +=
           derivatives_[c].by_velocity * pull.segment<3>(3 * static_cast<Index>(c)).asDiagonal();
     }
+    is_over_ = budget_ != nullptr && !budget_->allows_newton_step();
+    if (is_over_) return false;
     ++iterations_;
     if (!system_.factorize(derivatives_)) return false;
     const VectorXd impulse_step = system_.solve(-residual);
@@ -238,13 +248,19 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,
                            std::vector<double>& impulse,
-                           std::vector<double>& body_velocity) {
+                           std::vector<double>& body_velocity,
+                           SolveBudget* budget) {
+  if (budget != nullptr) {
+    const bool fits = budget->allows_memory(newton_bytes(problem, budget->memory_limit()));
+    if (!fits || budget->is_over()) return {};
+    budget->start_newton();
+  }
   const Delassus delassus(problem, options.recovery_speed);
   VectorXd start = VectorXd::Zero(3 * static_cast<Index>(problem.contact_count()));
   if (!impulse.empty()) {
     start = Eigen::Map<const VectorXd>(impulse.data(), static_cast<Index>(impulse.size()));
   }
-  NewtonPolish polish(problem, options, delassus);
+  NewtonPolish polish(problem, options, delassus, budget);
   polish.run(start);
   const Iterate& best = polish.best();
   impulse.assign(best.impulse.begin(), best.impulse.end());

@@ -6,6 +6,8 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/budget.hpp"
+
 namespace tetwarp {
 
 struct NewtonResult {
@@ -24,10 +26,12 @@ struct NewtonResult {
 ///
 /// Works for redundant contacts, which make the Jacobian of the problem itself singular. Returns
 /// the best impulses found, never worse than the start. It is cheaper to call it for each island
-/// than for several together. options.max_sweeps has no effect.
+/// than for several together. options.max_sweeps has no effect. Nothing is done if the factors
+/// would take more memory than the budget allows.
 /// @param options        law, rule, measure, tolerance and recovery_speed are read
 /// @param impulse        in: start, [3 contacts], or empty: zeros; out: the best [N s]
 /// @param body_velocity  out: v that the impulses cause, [dofs], m/s; empty in local form
+/// @param budget         ends the iteration; null: no limits
 /// @pre check_problem(problem) has passed
 /// @throws ContactProblemError  A as a whole is not positive definite
 ///
@@ -38,6 +42,7 @@ struct NewtonResult {
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,
                            std::vector<double>& impulse,
-                           std::vector<double>& body_velocity);
+                           std::vector<double>& body_velocity,
+                           SolveBudget* budget = nullptr);
 
 }  // namespace tetwarp

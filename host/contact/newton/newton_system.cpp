@@ -1,6 +1,8 @@
 #include "host/contact/newton/newton_system.hpp"
 
+#include <Eigen/OrderingMethods>
 #include <cstddef>
+#include <vector>
 
 #include "host/contact/problem/matrix.hpp"
 
@@ -69,6 +71,44 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
   has_order_ = true;
   sparse_factor_.factorize(matrix);
   return sparse_factor_.info() == Eigen::Success;
+}
+
+double newton_bytes(const ContactProblem& problem, double limit) {
+  // 8 bytes for the number and 4 for its row; growing arrays are copied, and partial pivoting fills
+  // more than the symmetric order.
+  constexpr double bytes_per_entry = 12 * 2;
+  const auto unknowns =
+      static_cast<double>(problem.is_local() ? 3 * problem.contact_count() : problem.dof_count());
+  const double dense = 2 * bytes_per_entry * unknowns * unknowns / 2;
+  if (dense <= limit) return dense;
+  Matrix pattern = make_eigen(problem.is_local() ? problem.delassus : problem.system);
+  if (!problem.is_local()) {
+    const Matrix jacobian = make_eigen(problem.jacobian).cwiseAbs();
+    pattern = Matrix(pattern.cwiseAbs()) + Matrix(jacobian.transpose()) * jacobian;
+  }
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(pattern, order);
+  const Matrix symmetric = pattern + Matrix(pattern.transpose());
+  Matrix sorted;
+  sorted = symmetric.twistedBy(order.inverse());
+  // Row k of the factor has an entry for every column on the way from the entries of row k up the
+  // elimination tree to k.
+  std::vector<Index> parent(static_cast<std::size_t>(sorted.cols()), -1);
+  std::vector<Index> seen_by(parent.size(), -1);
+  double entries = 0;
+  for (Index k = 0; k < sorted.cols(); ++k) {
+    seen_by[static_cast<std::size_t>(k)] = k;
+    for (Matrix::InnerIterator entry(sorted, k); entry && entry.row() < k; ++entry) {
+      for (Index i = entry.row(); seen_by[static_cast<std::size_t>(i)] != k;
+           i = parent[static_cast<std::size_t>(i)]) {
+        if (parent[static_cast<std::size_t>(i)] < 0) parent[static_cast<std::size_t>(i)] = k;
+        seen_by[static_cast<std::size_t>(i)] = k;
+        ++entries;
+      }
+    }
+    if (2 * entries * bytes_per_entry > limit) break;
+  }
+  return 2 * entries * bytes_per_entry;
 }
 
 VectorXd NewtonSystem::solve(const VectorXd& right_side) {

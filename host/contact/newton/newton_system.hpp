@@ -52,4 +52,9 @@ class NewtonSystem {
   bool has_order_ = false;  ///< the fill-reducing order was computed; the pattern does not change
 };
 
+/// Estimate of the memory [bytes] that the factors of a NewtonSystem take: the fill of a symmetric
+/// elimination of its pattern in minimum-degree order, times a factor for pivoting.
+/// @param limit  counting ends when the estimate exceeds it
+double newton_bytes(const ContactProblem& problem, double limit);
+
 }  // namespace tetwarp

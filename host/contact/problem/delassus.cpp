@@ -99,6 +99,13 @@ VectorXd Delassus::velocity_change(const VectorXd& impulse) const {
   return jacobian_.transpose() * factor_.solve(jacobian_ * impulse).eval();
 }
 
+double Delassus::magnitude(const VectorXd& impulse) const {
+  const VectorXd sizes = impulse.cwiseAbs();
+  if (is_local_) return sizes.dot(matrix_.cwiseAbs() * sizes);
+  const VectorXd push = jacobian_.cwiseAbs() * sizes;
+  return push.dot(factor_.solve(push));
+}
+
 VectorXd Delassus::body_velocity(const VectorXd& impulse) const {
   if (is_local_) return {};
   return factor_.solve(load_ + jacobian_ * impulse);

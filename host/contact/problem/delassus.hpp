@@ -26,6 +26,10 @@ class Delassus {
   /// B r, [3 contacts], m/s.
   Eigen::VectorXd velocity_change(const Eigen::VectorXd& impulse) const;
 
+  /// |r| . |B| |r| [J], the sum of what cancels in r . B r; its rounding error is 2^-49 times this.
+  /// Global form: g . A^-1 g with g = |J|^T |r|, at least that of each body by itself.
+  double magnitude(const Eigen::VectorXd& impulse) const;
+
   /// q: the relative velocities [m/s] without impulses, offset included, [3 contacts].
   const Eigen::VectorXd& free_velocity() const { return free_velocity_; }
 

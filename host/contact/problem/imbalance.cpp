@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "host/contact/problem/measure.hpp"
+
 namespace tetwarp {
 
 void add_product(const SparseMatrix& matrix, std::span<const double> x, std::vector<double>& sum) {
@@ -35,8 +37,7 @@ double imbalance(const ContactProblem& problem,
     push_square += push[dof] * push[dof];
     load_square += problem.load[dof] * problem.load[dof];
   }
-  const double scale = std::sqrt(std::max(push_square, load_square));
-  return square > 0 ? std::sqrt(square) / std::max(scale, 1e-300) : 0;
+  return relative_error(std::sqrt(square), std::sqrt(std::max(push_square, load_square)));
 }
 
 }  // namespace tetwarp

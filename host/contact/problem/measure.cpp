@@ -97,7 +97,8 @@ double natural_energy(const MeasuredContact& contact,
   const Vector3d rho = natural_scale(contact);
   const Vector3d error =
       natural_error(natural_terms(contact, impulse, velocity, law, rule), law, rho);
-  return error(0) * error(0) / rho(0) + error.tail<2>().squaredNorm() / rho(1);
+  // e (e / rho) instead of e^2 / rho: the squares of very small impulses would be 0.
+  return error.dot(error.cwiseQuotient(rho));
 }
 
 double fclib_square(const MeasuredContact& contact,

@@ -3,6 +3,9 @@
 /// float64; and the terms of the natural map, which Newton's method uses too.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -51,6 +54,21 @@ double natural_energy(const MeasuredContact& contact,
                       const Eigen::Vector3d& velocity,
                       FrictionLaw law,
                       AdhesionRule rule);
+
+/// What r . B r adds to the scale of eta [J]: only as far as it stands above its own rounding, so
+/// that huge impulses in the null space of B do not make a problem look solved.
+/// @param work       r . B r
+/// @param magnitude  |r| . |B| |r|
+inline double resolved_energy(double work, double magnitude) {
+  return std::max(work - 0x1p-49 * magnitude, 0.0);
+}
+
+/// error / scale; infinity unless both are finite.
+inline double relative_error(double error, double scale) {
+  const double ratio = error / std::max(scale, std::numeric_limits<double>::min());
+  return std::isfinite(ratio) && std::isfinite(scale) ? ratio
+                                                      : std::numeric_limits<double>::infinity();
+}
 
 /// Squared natural-map error of one contact as FCLIB defines it, without scaling by rho:
 /// |nu - P(nu - u - mu |u_t| n)|^2, P the projection on Coulomb's cone. The pyramid and the

@@ -72,16 +72,33 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
 }
 
 /// Impulses must change the velocity of every normal row and, where something resists sliding, of
-/// one tangential row.
+/// one tangential row, and by more than what rounding leaves of a row that should be zero.
 /// @param diagonal  [3 contacts]: the diagonal of the Delassus matrix, or the largest entry of each
 ///                  row of J
+/// @param rounding  share of the largest diagonal of all at which a row is rounding
 void check_diagonal(const ContactProblem& problem,
                     const std::string& field,
-                    std::span<const double> diagonal) {
+                    std::span<const double> diagonal,
+                    double rounding) {
   static constexpr const char* remedy =
       "; impulses do not change its velocity, leave out contacts between fixed bodies";
+  double largest = 0;
+  for (const double entry : diagonal) largest = std::max(largest, entry);
+  const double smallest = rounding * largest;
   for (std::size_t c = 0; c < problem.friction.size(); ++c) {
     const auto row = 3 * static_cast<std::int64_t>(c);
+    const double push = std::max(diagonal[3 * c + 1], diagonal[3 * c + 2]);
+    const bool is_rounding =
+        diagonal[3 * c] < smallest || (resists_sliding(problem, c) && push < smallest);
+    if (diagonal[3 * c] > 0 && push >= 0 && is_rounding) {
+      throw ContactProblemError(
+          field, ": rows " + count(row) + " to " + count(row + 2) + " of contact " +
+                     count(row / 3) + " have sizes " + text_of(diagonal[3 * c]) + ", " +
+                     text_of(diagonal[3 * c + 1]) + " and " + text_of(diagonal[3 * c + 2]) +
+                     ", which is rounding beside " + text_of(largest) +
+                     ", the largest; leave the contact out, or set its tangent rows and its "
+                     "friction to 0");
+    }
     if (!(diagonal[3 * c] > 0)) {
       throw ContactProblemError(field, ": normal row " + count(row) + " of contact " +
                                            count(row / 3) + " has diagonal " +
@@ -121,7 +138,8 @@ void check_local(const ContactProblem& problem) {
       }
     }
   }
-  check_diagonal(problem, "delassus", diagonal);
+  // A diagonal of W is a square of rows over a mass; masses may differ by twelve digits.
+  check_diagonal(problem, "delassus", diagonal, 1e-30);
 }
 
 void check_global(const ContactProblem& problem) {
@@ -157,7 +175,7 @@ void check_global(const ContactProblem& problem) {
           std::max(sizes[row], std::abs(problem.jacobian.value[static_cast<std::size_t>(e)]));
     }
   }
-  check_diagonal(problem, "jacobian", sizes);
+  check_diagonal(problem, "jacobian", sizes, 1e-14);
 }
 
 /// The normal gap of the adhesion must equal time_step * velocity_offset. Local form has no

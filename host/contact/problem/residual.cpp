@@ -27,12 +27,14 @@ struct Eta {
 };
 
 /// eta = sqrt(energy(r, u)) / (sqrt(energy(0, u - B r)) + sqrt(r . B r)): relative to the residual
-/// without impulses.
+/// without impulses. r . B r counts as far as it is resolved; see resolved_energy().
 /// @param velocity_change  B r
+/// @param magnitude        |r| . |B| |r|
 Eta eta_of(const std::vector<MeasuredContact>& contacts,
            const VectorXd& impulse,
            const VectorXd& velocity,
            const VectorXd& velocity_change,
+           double magnitude,
            const ContactOptions& options) {
   double energy = 0;
   double free_energy = 0;
@@ -46,15 +48,15 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
     energy += share;
     free_energy += natural_energy(contacts[c], Vector3d::Zero(),
                                   u - velocity_change.segment<3>(row), options.law, options.rule);
-    if (share <= largest) continue;
+    if (share <= largest) continue;  // a share that is not a number counts as the largest
     largest = share;
     eta.largest_contact = static_cast<std::int64_t>(c);
   }
   const double scale =
-      std::max(std::sqrt(free_energy) + std::sqrt(std::max(impulse.dot(velocity_change), 0.0)),
-               std::numeric_limits<double>::min());
-  eta.total = std::sqrt(energy) / scale;
-  eta.largest = std::sqrt(largest) / scale;
+      std::sqrt(free_energy) + std::sqrt(resolved_energy(impulse.dot(velocity_change), magnitude));
+  const bool is_finite = impulse.allFinite() && velocity.allFinite();
+  eta.total = relative_error(is_finite ? std::sqrt(energy) : NAN, scale);
+  eta.largest = relative_error(std::sqrt(largest), scale);
   return eta;
 }
 
@@ -69,7 +71,8 @@ double fclib_of(const std::vector<MeasuredContact>& contacts,
     sum += fclib_square(contacts[c], impulse.segment<3>(row), velocity.segment<3>(row), options.law,
                         options.rule);
   }
-  return std::sqrt(sum) / std::max(scale, std::numeric_limits<double>::min());
+  const bool is_finite = impulse.allFinite() && velocity.allFinite();
+  return relative_error(is_finite ? std::sqrt(sum) : NAN, scale);
 }
 
 VectorXd make_vector(std::span<const double> values, Index expected, const char* name) {
@@ -106,10 +109,11 @@ ContactResidual residual_of(const ContactProblem& problem,
     if (!body_velocity.empty()) u = delassus.contact_velocity(v);
     residual.balance = imbalance(problem, impulse, {v.data(), static_cast<std::size_t>(v.size())});
   }
-  Eta eta = eta_of(contacts, r, u, change, options);
+  const double magnitude = delassus.magnitude(r);
+  Eta eta = eta_of(contacts, r, u, change, magnitude, options);
   if (!body_velocity.empty()) {
     // The given velocities may differ from those of the impulses; the larger error counts.
-    const Eta caused = eta_of(contacts, r, implied, change, options);
+    const Eta caused = eta_of(contacts, r, implied, change, magnitude, options);
     if (caused.total > eta.total) eta = caused;
   }
   residual.eta = eta.total;
@@ -117,7 +121,7 @@ ContactResidual residual_of(const ContactProblem& problem,
   residual.largest_contact = eta.largest_contact;
   residual.fclib = fclib_of(contacts, r, u, delassus.free_velocity().norm(), options);
   for (Index row = 0; row < u.size(); row += 3) {
-    residual.penetration = std::max(residual.penetration, -u(row));
+    if (!(-u(row) <= residual.penetration)) residual.penetration = -u(row);
   }
   return residual;
 }

@@ -8,6 +8,7 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/base/parallel.hpp"
+#include "host/contact/budget.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"
@@ -35,8 +36,10 @@ struct IslandOutcome {
 
 struct HostEventLog {
   std::vector<ContactEvent> events;
+  SolveBudget* budget = nullptr;  ///< ends the iteration; null: no limits
 
   void note(const ContactEvent& event) { events.push_back(event); }
+  bool stops() const { return budget != nullptr && budget->count_sweep(); }
 };
 
 inline ContactSwitches switches_of(const ContactOptions& options) {
@@ -66,18 +69,21 @@ class ContactRun {
  public:
   /// Measures the islands without impulses. Arguments are kept by the caller.
   /// @param outcomes  [islands with contacts]; results are added
+  /// @param budget    null: no limits besides those of the sweeps
   ContactRun(const ContactOptions& options,
              int threads,
              const ContactStructure& structure,
              const ContactSystem<T>& system,
-             std::vector<IslandOutcome>& outcomes)
+             std::vector<IslandOutcome>& outcomes,
+             SolveBudget* budget = nullptr)
       : options_(options),
         threads_(threads),
         structure_(structure),
         system_(system),
         numbers_(system.numbers(structure.indices())),
         work_(work_memory_.reserve(static_cast<std::int64_t>(system.constants.size()))),
-        outcomes_(outcomes) {
+        outcomes_(outcomes),
+        budget_(budget) {
     CpuContactExec exec(1);
     state_.reset(exec, numbers_, freezes_contacts(options));
     for (std::int64_t i = 0; i < structure.contact_islands; ++i) {
@@ -160,7 +166,7 @@ class ContactRun {
     CpuContactExec exec(threads);
     ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
-    HostEventLog log;
+    HostEventLog log{.events = {}, .budget = budget_};
     MethodPlan plan = plan_of(options_);
     plan.method = method;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
@@ -179,6 +185,7 @@ class ContactRun {
   MethodWork<T> work_;
   std::vector<StopCriterion> criteria_;
   std::vector<IslandOutcome>& outcomes_;
+  SolveBudget* budget_;
 };
 
 }  // namespace tetwarp

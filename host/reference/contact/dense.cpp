@@ -98,7 +98,9 @@ double residual_energy(const DenseContacts& contacts,
     allowed = target.norm() > bounds(0) ? Vector2d(bounds(0) * target.normalized()) : target;
   }
   const double normal_error = std::min(nu(0), rho_n * u(0));
-  return normal_error * normal_error / rho_n + (nu.tail<2>() - allowed).squaredNorm() / rho_t;
+  const Vector2d tangent_error = nu.tail<2>() - allowed;
+  // Divided before squaring, which would underflow for impulses below 1e-154 N s.
+  return normal_error * (normal_error / rho_n) + tangent_error.dot(tangent_error / rho_t);
 }
 
 double residual_norm(const DenseContacts& contacts,
@@ -148,9 +150,15 @@ double eta_of(const DenseContacts& contacts,
               const ContactOptions& options) {
   const VectorXd none = VectorXd::Zero(impulse.size());
   const double work = impulse.dot(contacts.delassus * impulse);
+  const VectorXd sizes = impulse.cwiseAbs();
+  const double rounding = std::ldexp(sizes.dot(contacts.delassus.cwiseAbs() * sizes), -49);
   const double scale = residual_norm(contacts, none, contacts.free_velocity, options) +
-                       std::sqrt(std::max(work, 0.0));
-  const double error = residual_norm(contacts, impulse, contacts.velocity(impulse), options);
+                       (work > rounding ? std::sqrt(work - rounding) : 0.0);
+  const VectorXd velocity = contacts.velocity(impulse);
+  const double error = residual_norm(contacts, impulse, velocity, options);
+  const bool is_finite =
+      impulse.allFinite() && velocity.allFinite() && std::isfinite(error) && std::isfinite(scale);
+  if (!is_finite) return std::numeric_limits<double>::infinity();
   return error == 0 ? 0 : error / scale;
 }
 

@@ -33,7 +33,8 @@ DenseContacts make_dense(const ContactProblem& problem,
                          double recovery_speed = std::numeric_limits<double>::infinity());
 
 /// ContactMeasure::eta: the energy-weighted natural residual, relative to that without impulses; 0
-/// exactly at a solution.
+/// exactly at a solution; infinity where anything is not finite. r . B r counts in the scale only
+/// as far as it exceeds its own rounding error, 2^-49 |r| . |B| |r|.
 double eta_of(const DenseContacts& contacts,
               const Eigen::VectorXd& impulse,
               const ContactOptions& options);
