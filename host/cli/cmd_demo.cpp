@@ -84,7 +84,8 @@ int run_demo(const DemoArguments& arguments) {
   warp.files = {files.volume, files.mesh};
   warp.output = files.warped;
   warp.report = files.report;
-  const JobResult result = run_warp_job(warp, {.label = "demo", .shows_progress = !arguments.quiet});
+  const JobResult result =
+      run_warp_job(warp, {.label = "demo", .shows_progress = !arguments.quiet});
   draw(files, result.outputs.back());
   if (arguments.quiet) return 0;
   fmt::print("{}", summary(result));
