@@ -97,14 +97,10 @@ class CudaContactDevice final : public ContactDevice {
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
     put(guess, guess_);
-    const CoupledTask task{options,
-                           island,
-                           view_of(structure_->color_start),
-                           float64_.numbers,
-                           float32_.numbers,
-                           view_of(std::as_const(guess_)),
-                           max_iterations,
-                           budget};
+    const auto colors = view_of(structure_->color_start);
+    const auto start = view_of(std::as_const(guess_));
+    const CoupledTask task{options,          island, colors,         float64_.numbers,
+                           float32_.numbers, start,  max_iterations, budget};
     const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
     grid_.get(best.impulse, impulse.data());
     grid_.get(best.body_velocity, body_velocity.data());
