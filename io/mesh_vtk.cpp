@@ -1,5 +1,6 @@
 /// @file mesh_vtk.cpp
 /// Meshes in VTK's XML and legacy formats, read by VTK.
+#include <vtkCellArray.h>
 #include <vtkCellTypes.h>
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
@@ -7,6 +8,7 @@
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -38,7 +40,20 @@ CellKind kind_of_type(int type) {
   return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
 }
 
+/// Checks what VTK's readers take from files unchecked and its accessors rely on.
+void check_cells(const std::string& path, vtkUnstructuredGrid& grid) {
+  if (grid.GetNumberOfCells() == 0) return;
+  vtkUnsignedCharArray* const types = grid.GetCellTypesArray();
+  if (types == nullptr || types->GetNumberOfValues() != grid.GetNumberOfCells() ||
+      !grid.GetCells()->IsValid()) {
+    throw IoError(path, "",
+                  "offsets, types and nodes of its cells contradict each other: damaged, write it "
+                  "again");
+  }
+}
+
 void add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
+  check_cells(path, grid);
   std::map<int, CellKind> kinds;
   const vtkNew<vtkIdList> nodes;
   for (vtkIdType c = 0; c < grid.GetNumberOfCells(); ++c) {
