@@ -80,5 +80,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_skip.cpp
   tests/cli/test_cli_tools.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
-tetwarp_add_cli_tests(tetwarp_cli_memory_tests tests/cli/test_cli_memory.cpp)
+tetwarp_add_cli_tests(tetwarp_cli_memory_tests
+  tests/cli/test_cli_memory.cpp
+  tests/cli/test_cli_memory_peak.cpp)
 tetwarp_discover(tetwarp_cli_memory_tests long)

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <stdexcept>
 #include <tetwarp/backend.hpp>
 
 #include "host/cli/batch.hpp"
@@ -25,6 +26,7 @@ int run_warp(WarpArguments arguments) {
   const JobResult result =
       run_warp_job(arguments, {.shows_progress = !arguments.quiet, .ranks = &ranks});
   if (!arguments.quiet && ranks.is_root()) fmt::print("{}", summary(result));
+  if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
   ranks.finish();
   return 0;
 }

@@ -48,6 +48,12 @@ bool has(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
+/// True for templates of the standard library, of which all libraries share one copy.
+bool is_standard(const char* symbol) {
+  const std::string name = symbol == nullptr ? "" : symbol;
+  return name.starts_with("_ZNSt") || name.starts_with("_ZNKSt") || name.starts_with("_ZSt");
+}
+
 /// Attributes a crash to the first frame outside of the C and C++ libraries and the sanitizers.
 void on_crash(int) {
   std::array<void*, 64> frames{};
@@ -59,7 +65,8 @@ void on_crash(int) {
     if (dladdr(frames[static_cast<std::size_t>(frame)], &where) == 0) continue;
     const std::string object = where.dli_fname == nullptr ? "" : where.dli_fname;
     if (has(object, "libc.so") || has(object, "[vdso]") || has(object, "libasan") ||
-        has(object, "libubsan") || has(object, "libstdc++") || has(object, "libgcc")) {
+        has(object, "libubsan") || has(object, "libstdc++") || has(object, "libgcc") ||
+        is_standard(where.dli_sname)) {
       continue;
     }
     if (where.dli_fbase == here.dli_fbase) *crash_place = Place::project;
