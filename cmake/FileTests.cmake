@@ -18,7 +18,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_fclib.cpp
     tests/io/test_io_fclib_bad.cpp
     tests/io/test_io_fclib_solution.cpp
-    tests/io/test_skip_chunks.cpp)
+    tests/io/test_skip_chunks.cpp
+    tests/io/test_mesh_child.cpp)
   tetwarp_discover(tetwarp_io_tests io)
   include(cmake/ItkTests.cmake)
 endif()
@@ -35,6 +36,13 @@ target_include_directories(fuzz_io PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(fuzz_io PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
 add_test(NAME fuzz_io COMMAND fuzz_io 5 1)
 set_tests_properties(fuzz_io PROPERTIES LABELS io)
+if(NOT BUILD_SHARED_LIBS)
+  add_executable(fuzz_mesh tests/io/fuzz_mesh.cpp)
+  target_include_directories(fuzz_mesh PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(fuzz_mesh PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
+  add_test(NAME fuzz_mesh COMMAND fuzz_mesh 5 1)
+  set_tests_properties(fuzz_mesh PROPERTIES LABELS io)
+endif()
 
 # The distribution's interpreter first: its VTK is what the packages in ./dev install.
 find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
@@ -82,5 +90,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_warnings.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)
-tetwarp_add_cli_tests(tetwarp_cli_memory_tests tests/cli/test_cli_memory.cpp)
+tetwarp_add_cli_tests(tetwarp_cli_memory_tests
+  tests/cli/test_cli_memory.cpp
+  tests/cli/test_cli_memory_peak.cpp)
 tetwarp_discover(tetwarp_cli_memory_tests long)

@@ -31,15 +31,21 @@ std::size_t place_of(const std::string& path, const Places& places, std::size_t 
   throw IoError(path, "", "has no node " + std::to_string(tag) + ": damaged, write it again");
 }
 
-Places add_nodes(const GmshLibrary& gmsh, ImportedMesh& into) {
+/// Throws IoError unless the library has returned what it documents.
+void check(const std::string& path, bool is_sound, const std::string& problem) {
+  if (!is_sound) throw IoError(path, "", problem + ": damaged, write it again");
+}
+
+Places add_nodes(const std::string& path, const GmshLibrary& gmsh, ImportedMesh& into) {
   GmshArray<std::size_t> tags(gmsh);
   GmshArray<double> positions(gmsh), parameters(gmsh);
   gmsh.call<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes", &tags.data, &tags.size,
                                              &positions.data, &positions.size, &parameters.data,
                                              &parameters.size, -1, -1, 0, 0);
+  check(path, positions.size == 3 * tags.size, "does not have three coordinates for every node");
   Places places;
   for (std::size_t n = 0; n < tags.size; ++n) {
-    places.emplace(tags[n], n);
+    check(path, places.emplace(tags[n], n).second, "has two nodes " + std::to_string(tags[n]));
     into.mesh.rest_positions.push_back(
         {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2]});
   }
@@ -55,7 +61,8 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
       "gmshModelMeshGetElementProperties", type, &name.data, &dimension, &order, &nodes,
       &positions.data, &positions.size, &primary_nodes);
   const bool is_kept = type == gmsh_tetrahedron || type == gmsh_hexahedron;
-  return {name.data, dimension, is_kept ? nodes : 0};
+  return {name.data == nullptr ? "cell of type " + std::to_string(type) : name.data, dimension,
+          is_kept ? nodes : 0};
 }
 
 CellNumbers add_cells(const std::string& path,
@@ -68,8 +75,11 @@ CellNumbers add_cells(const std::string& path,
   gmsh.call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types.data,
                                                 &types.size, &tags.data, &tags.sizes, &tags.size,
                                                 &nodes.data, &nodes.sizes, &nodes.size, -1, -1);
+  check(path, tags.size == types.size && nodes.size == types.size, "lacks cells");
   for (std::size_t type = 0; type < types.size; ++type) {
     const CellKind kind = kind_of_type(gmsh, types[type]);
+    check(path, nodes.sizes[type] >= tags.sizes[type] * static_cast<std::size_t>(kind.kept_nodes),
+          "lacks nodes of its cells");
     for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
       const std::size_t* const tags_of_cell =
           nodes.data[type] + c * static_cast<std::size_t>(kind.kept_nodes);
@@ -139,12 +149,14 @@ void add_step(const std::string& path,
   gmsh.call<decltype(gmshViewGetModelData)>("gmshViewGetModelData", view, step, &kind.data,
                                             &tags.data, &tags.size, &data.data, &data.sizes,
                                             &data.size, &time, &components);
-  if (std::strcmp(kind.data, "NodeData") != 0 || components != 3 || tags.size != places.size()) {
+  if (kind.data == nullptr || std::strcmp(kind.data, "NodeData") != 0 || components != 3 ||
+      tags.size != places.size() || data.size != tags.size) {
     throw IoError(path, name,
                   "step " + std::to_string(step) + ": expected three components for every node");
   }
   std::vector<Point3> displacement(places.size());
   for (std::size_t n = 0; n < tags.size; ++n) {
+    check(path, data.sizes[n] >= 3, "lacks numbers of '" + name + "'");
     const double* const row = data.data[n];
     displacement[place_of(path, places, tags[n])] = {row[0], row[1], row[2]};
   }
@@ -167,7 +179,7 @@ void add_displacement(const std::string& path,
     GmshArray<char> name(gmsh);
     gmsh.call<decltype(gmshOptionGetString)>("gmshOptionGetString", option(view, "Name").c_str(),
                                              &name.data);
-    names.emplace_back(name.data);
+    names.emplace_back(name.data == nullptr ? "" : name.data);
   }
   const auto chosen = choose_displacement(path, names, options);
   bool is_found = false;
@@ -192,7 +204,7 @@ ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& op
   const GmshLibrary gmsh(path);
   gmsh.call<decltype(gmshOpen)>("gmshOpen", path.c_str());
   ImportedMesh mesh;
-  const Places places = add_nodes(gmsh, mesh);
+  const Places places = add_nodes(path, gmsh, mesh);
   const CellNumbers numbers = add_cells(path, gmsh, places, mesh);
   add_numbers("original_cell", true, numbers.all(), mesh);
   add_groups(gmsh, numbers, mesh);

@@ -18,6 +18,9 @@ namespace tetwarp {
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
 
+/// Reads a mesh in this process and leaves most checks to import_mesh(), which calls it in a child.
+ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options);
+
 /// A kind of cell.
 struct CellKind {
   std::string name;  ///< in the format's words

@@ -1,5 +1,7 @@
 /// @file mesh_vtk.cpp
 /// Meshes in VTK's XML and legacy formats, read by VTK.
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
 #include <vtkCellTypes.h>
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
@@ -7,6 +9,7 @@
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkPointData.h>
+#include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
@@ -20,16 +23,26 @@
 
 namespace tetwarp {
 namespace {
-/// Turns off the warnings and errors that VTK prints.
-class QuietVtk {
+/// Notes the errors that a reader reports, by which it may drop arrays without failing.
+class ErrorNotes {
  public:
-  QuietVtk() { vtkObject::GlobalWarningDisplayOff(); }
-  QuietVtk(const QuietVtk&) = delete;
-  QuietVtk& operator=(const QuietVtk&) = delete;
-  ~QuietVtk() { vtkObject::SetGlobalWarningDisplay(was_on_); }
+  explicit ErrorNotes(vtkObject& reader) {
+    vtkObject::GlobalWarningDisplayOn();  // else errors are not reported
+    callback_->SetClientData(&has_error_);
+    callback_->SetCallback([](vtkObject*, unsigned long, void* has_error, void*) {
+      *static_cast<bool*>(has_error) = true;
+    });
+    reader.AddObserver(vtkCommand::ErrorEvent, callback_);
+    reader.AddObserver(vtkCommand::WarningEvent, silence_);
+  }
+  ErrorNotes(const ErrorNotes&) = delete;
+  ErrorNotes& operator=(const ErrorNotes&) = delete;
+
+  bool has_error() const { return has_error_; }
 
  private:
-  int was_on_ = vtkObject::GetGlobalWarningDisplay();
+  vtkNew<vtkCallbackCommand> callback_, silence_;
+  bool has_error_ = false;
 };
 
 CellKind kind_of_type(int type) {
@@ -39,7 +52,20 @@ CellKind kind_of_type(int type) {
   return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
 }
 
+/// Checks what VTK's readers take from files unchecked and its accessors rely on.
+void check_cells(const std::string& path, vtkUnstructuredGrid& grid) {
+  if (grid.GetNumberOfCells() == 0) return;
+  vtkUnsignedCharArray* const types = grid.GetCellTypesArray();
+  if (types == nullptr || types->GetNumberOfValues() != grid.GetNumberOfCells() ||
+      !grid.GetCells()->IsValid()) {
+    throw IoError(path, "",
+                  "offsets, types and nodes of its cells contradict each other: damaged, write it "
+                  "again");
+  }
+}
+
 CellNumbers add_cells(const std::string& path, vtkUnstructuredGrid& grid, ImportedMesh& into) {
+  check_cells(path, grid);
   CellNumbers numbers;
   std::map<int, CellKind> kinds;
   const vtkNew<vtkIdList> nodes;
@@ -109,11 +135,13 @@ void add_step(const std::string& path,
 
 ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkUnstructuredGridReader> reader;
+  const ErrorNotes notes(*reader);
   reader->SetFileName(path.c_str());
   reader->ReadAllVectorsOn();
   reader->ReadAllFieldsOn();
   if (reader->IsFileUnstructuredGrid() != 0) reader->Update();
-  check_grid(path, reader->GetErrorCode() == 0 ? reader->GetOutput() : nullptr);
+  const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
+  check_grid(path, is_good ? reader->GetOutput() : nullptr);
   ImportedMesh mesh;
   add_step(path, *reader->GetOutput(), 0, options, mesh);
   return mesh;
@@ -122,6 +150,7 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
 /// VTK's reader does not pass on the times of steps: times are 0, 1 and so on.
 ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkXMLUnstructuredGridReader> reader;
+  const ErrorNotes notes(*reader);
   ImportedMesh mesh;
   if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
   reader->SetFileName(path.c_str());
@@ -130,7 +159,8 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
   for (int step = 0; step < steps; ++step) {
     if (steps > 1) reader->SetTimeStep(step);
     reader->Update();
-    check_grid(path, reader->GetErrorCode() == 0 ? reader->GetOutput() : nullptr);
+    const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
+    check_grid(path, is_good ? reader->GetOutput() : nullptr);
     add_step(path, *reader->GetOutput(), step, options, mesh);
   }
   if (steps > 1 && mesh.arrays.size() > 1) {
@@ -141,7 +171,6 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
 }  // namespace
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options) {
-  const QuietVtk quiet;
   return path.ends_with(".vtu") ? read_xml(path, options) : read_legacy(path, options);
 }
 

@@ -92,6 +92,11 @@ void run_job(const BatchJob& job, int number, bool quiet, Outcome& outcome) {
   try {
     const JobResult result = run_warp_job(job.arguments, {.label = name, .shows_progress = !quiet});
     report.update(Json::parse(report_json(result)));
+    if (!result.refusal.empty()) {
+      if (!quiet) fmt::print("{}: {}", name, summary(result));
+      fail(outcome, name, report, result.refusal);
+      return;
+    }
     ++(result.written == 0 && result.plans.empty() ? outcome.skipped : outcome.done);
     outcome.reports.push_back(report);
     if (!quiet) {

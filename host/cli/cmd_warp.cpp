@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <stdexcept>
 #include <tetwarp/backend.hpp>
 
 #include "host/cli/batch.hpp"
@@ -28,6 +29,7 @@ int run_warp(WarpArguments arguments) {
     fmt::print(stderr, "{}", storing_note(result.report));
     fmt::print("{}", summary(result));
   }
+  if (!result.refusal.empty()) throw std::runtime_error(result.refusal);
   ranks.finish();
   return 0;
 }

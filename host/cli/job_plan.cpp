@@ -142,8 +142,8 @@ VolumePlan plan_volume(const std::string& path,
                                 ": --outputs forward is on the volume's own grid; leave out "
                                 "--grid, --dims, --origin, --spacing and --direction");
   }
-  plan.writes_beside =
-      plan_memory(plan, arguments) && steps.size() > 1 && leaves_time(backend, arguments);
+  plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && steps.size() > 1 &&
+                       leaves_time(backend, arguments);
   // On the cpu begin_step() computes the step: the previous one is finished and written first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.steps = steps;

@@ -25,7 +25,8 @@ struct VolumePlan {
   std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
   double memory_limit = 0;           ///< limit for computing in blocks [byte]; 0: as a whole
-  double memory = 0;                 ///< of sources and outputs as a whole [byte]
+  double memory = 0;                 ///< of the process that computes the whole [byte]
+  std::string refusal;               ///< with --dry-run: why it cannot run here
   bool writes_beside = false;        ///< write a step while the next one is computed
   bool overlaps = false;  ///< begin a step before the previous one is copied back and written
   Warnings warnings;

@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <thread>
 
+#include "host/cli/output_files.hpp"
 #include "io/memory.hpp"
+#include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -13,8 +19,7 @@ void check_blocks(const VolumePlan& plan, const WarpArguments& arguments) {
   const std::string reason = needs_all_at_once(arguments);
   if (reason.empty()) return;
   throw IoError(plan.path, "",
-                fmt::format("{}: source and output need {}, allow more --memory", reason,
-                            bytes_text(plan.memory)));
+                fmt::format("{}, or give --memory at least {}", reason, limit_text(plan.memory)));
 }
 
 /// Bytes per sample that a filter keeps in addition, at its peak.
@@ -22,7 +27,85 @@ double filter_bytes(Filter filter, PixelType type) {
   if (filter != Filter::bspline) return 0;
   return size_of(type) <= 2 || type == PixelType::float32 ? 12 : 8;
 }
+
+/// Lists of cells and tetrahedra of a whole output, at their largest over all steps.
+double list_memory(const VolumePlan& plan,
+                   const WarpArguments& arguments,
+                   const MeshReader& mesh,
+                   const std::vector<std::int64_t>& steps) {
+  WarpOptions options = arguments.warp;
+  options.output_grid = plan.output_grid;
+  BlockPlanner planner(plan.source_grid, mesh.mesh(), options);
+  BlockLimits without_samples;
+  without_samples.source_voxel = without_samples.output_voxel = 0;
+  double bytes = 0;
+  for (const std::int64_t step : steps) {
+    const BlockPlan whole = planner.plan(mesh.read_step(step), without_samples);
+    bytes = std::max(bytes, whole.blocks.front().host_bytes);
+  }
+  return bytes;
+}
 }  // namespace
+
+double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
+  double bytes = 0;
+  for (const ArrayHeader& array : arrays) {
+    bytes += array.components * static_cast<double>(size_of(array.type));
+  }
+  return bytes;
+}
+
+std::vector<ArrayHeader> arrays_written(const VolumePlan& plan, const WarpArguments& arguments) {
+  std::vector<ArrayHeader> arrays = plan.arrays;
+  for (const std::size_t e : arguments.extra) {
+    const ExtraOutput& extra = extra_outputs[e];
+    arrays.push_back({extra.array(), extra.type, extra.components,
+                      facts_of_extra(plan.arrays.front().nifti, extra.components)});
+  }
+  return arrays;
+}
+
+double fixed_memory(const VolumePlan& plan,
+                    const WarpArguments& arguments,
+                    const MeshHeader& mesh) {
+  constexpr double mebibyte = 1 << 20;
+  // Pages of code that a run touches first, the heap, HDF5's lists of freed buffers and its index.
+  constexpr double growth = 10 * mebibyte;
+  constexpr double thread_bytes = mebibyte / 4;  // stack and heap in use
+  // HDF5's cache of chunks per array, and a buffer for converted numbers or for deflate.
+  constexpr double cache = mebibyte, buffer = mebibyte;
+  const auto threads = arguments.warp.threads > 0
+                           ? static_cast<double>(arguments.warp.threads)
+                           : static_cast<double>(std::thread::hardware_concurrency());
+  // Footprints, lists of tetrahedra, and positions in several forms.
+  double bytes = resident_memory() + growth + thread_bytes * threads +
+                 160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
+                 120 * static_cast<double>(mesh.node_count);
+  for (const ArrayHeader& array : plan.arrays) {
+    // A chunk as it is stored, while it grows during inflation, and as it was before it grew.
+    const VolumeReader reader(plan.path, array.name, arguments.source_step);
+    bytes += cache + buffer + 1.5 * reader.chunk_bytes();
+  }
+  const auto outputs = static_cast<double>(arrays_written(plan, arguments).size());
+  return bytes + outputs * cache + (arguments.compress > 0 ? buffer : 0);
+}
+
+std::string limit_text(double bytes) {
+  // One more, because the memory of the process differs a little between runs.
+  return fmt::format("{:.0f}M", std::ceil(bytes / (1 << 20)) + 1);
+}
+
+double least_block_memory(BlockPlanner& planner,
+                          const std::vector<Point3>& positions,
+                          BlockLimits limits) {
+  limits.host = limits.device = std::numeric_limits<double>::infinity();
+  limits.max_voxels = 1;
+  double least = 0;
+  for (const WarpBlock& block : planner.plan(positions, limits).blocks) {
+    least = std::max(least, block.host_bytes);
+  }
+  return least;
+}
 
 std::string needs_all_at_once(const WarpArguments& arguments) {
   if (arguments.extra.contains(forward_output)) {
@@ -37,41 +120,41 @@ std::string needs_all_at_once(const WarpArguments& arguments) {
   return {};
 }
 
-bool plan_memory(VolumePlan& plan, const WarpArguments& arguments) {
+bool plan_memory(VolumePlan& plan,
+                 const WarpArguments& arguments,
+                 const MeshReader& mesh,
+                 const std::vector<std::int64_t>& steps) {
   const auto source_voxels = static_cast<double>(plan.source_grid.voxel_count());
   const auto output_voxels = static_cast<double>(plan.written_grid.voxel_count());
-  double source_bytes = 0, output_bytes = 0;
-  for (const std::size_t e : arguments.extra) {
-    output_bytes += output_voxels * extra_outputs[e].components *
-                    static_cast<double>(size_of(extra_outputs[e].type));
-  }
+  const double output_bytes = output_voxels * voxel_bytes(arrays_written(plan, arguments));
+  double source_bytes = source_voxels * voxel_bytes(plan.arrays);
   for (const ArrayHeader& array : plan.arrays) {
-    const double voxel_bytes = array.components * static_cast<double>(size_of(array.type));
     source_bytes +=
-        source_voxels *
-        (voxel_bytes + array.components * filter_bytes(arguments.warp.filter, array.type));
-    output_bytes += output_voxels * voxel_bytes;
+        source_voxels * array.components * filter_bytes(arguments.warp.filter, array.type);
   }
-  const double bytes = source_bytes + output_bytes;
-  plan.memory = bytes;
+  const double samples = source_bytes + output_bytes;
+  const double resident = resident_memory();
+  const double limit = arguments.memory > 0
+                           ? std::min(arguments.memory, resident + available_memory())
+                           : resident + available_memory();
+  plan.memory = samples + fixed_memory(plan, arguments, mesh.header());
+  const bool is_exact = arguments.memory > 0 || arguments.dry_run;
+  plan.memory += is_exact ? list_memory(plan, arguments, mesh, steps) : 0.01 * samples;
   if (arguments.memory > 0) {
-    // 1 % is for lists of cells and tetrahedra; the memory of the process is in use already.
-    const double limit = arguments.memory - 1.1 * resident_memory() - 0.01 * bytes;
-    if (bytes > limit) {
-      plan.memory_limit = arguments.memory;
+    if (plan.memory > limit) {
+      plan.memory_limit = limit;
       check_blocks(plan, arguments);
     }
-    return bytes + output_bytes <= limit;
-  }
-  const double available = available_memory();
-  if (bytes > available && !arguments.dry_run) {
-    throw std::invalid_argument(fmt::format(
+  } else if (plan.memory > limit) {
+    const std::string refusal = fmt::format(
         "{}: {} x {} x {} output voxels need {} of memory with the source, {} are available; use "
         "--memory to stream them, a smaller --roi, coarser --dims and --spacing, or fewer arrays",
         plan.path, plan.written_grid.dims[0], plan.written_grid.dims[1], plan.written_grid.dims[2],
-        bytes_text(bytes), bytes_text(available)));
+        bytes_text(plan.memory), bytes_text(limit));
+    if (!arguments.dry_run) throw std::invalid_argument(refusal);
+    plan.refusal = refusal;
   }
-  return bytes + output_bytes <= available;
+  return plan.memory + output_bytes <= limit;
 }
 
 }  // namespace tetwarp::cli

@@ -1,7 +1,11 @@
 /// @file memory_plan.hpp
 /// Whether a volume and its outputs fit in memory.
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include <tetwarp/blocks.hpp>
 
 #include "host/cli/job_plan.hpp"
 
@@ -10,9 +14,31 @@ namespace tetwarp::cli {
 /// Why an output cannot be computed in blocks, with a remedy; empty: it can.
 std::string needs_all_at_once(const WarpArguments& arguments);
 
-/// Sets `memory` and `memory_limit` of a plan. Sources, outputs and extra outputs must fit in
-/// memory, with --memory at least block by block. Throws std::invalid_argument, IoError.
+/// Bytes of one voxel of all arrays.
+double voxel_bytes(const std::vector<ArrayHeader>& arrays);
+
+/// The warped arrays of a volume, then the extra outputs.
+std::vector<ArrayHeader> arrays_written(const VolumePlan& plan, const WarpArguments& arguments);
+
+/// Memory of a run besides samples and lists of cells [byte]: the process as it is now, what it
+/// loads later, threads, mesh, caches and buffers of the files.
+double fixed_memory(const VolumePlan& plan, const WarpArguments& arguments, const MeshHeader& mesh);
+
+/// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Sources, outputs and
+/// extra outputs must fit in memory, with --memory at least block by block. Throws
+/// std::invalid_argument, IoError.
 /// @returns whether a second set of outputs also fits
-bool plan_memory(VolumePlan& plan, const WarpArguments& arguments);
+bool plan_memory(VolumePlan& plan,
+                 const WarpArguments& arguments,
+                 const MeshReader& mesh,
+                 const std::vector<std::int64_t>& steps);
+
+/// The value of --memory that allows so much: "39M".
+std::string limit_text(double bytes);
+
+/// Host memory of the largest block of a step that is cut as finely as possible [byte].
+double least_block_memory(BlockPlanner& planner,
+                          const std::vector<Point3>& positions,
+                          BlockLimits limits);
 
 }  // namespace tetwarp::cli

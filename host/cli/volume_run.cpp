@@ -2,30 +2,22 @@
 /// Sources, steps and files of a run.
 #include "host/cli/volume_run.hpp"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "host/base/warp_backend.hpp"
 #include "host/cli/interrupt.hpp"
+#include "host/cli/memory_plan.hpp"
 #include "host/cli/output_files.hpp"
 #include "host/cli/source_scan.hpp"
 #include "host/cli/stopwatch.hpp"
 #include "io/memory.hpp"
-#include "kernels/base/hex_view.hpp"
 
 namespace tetwarp::cli {
-namespace {
-double voxel_bytes(const std::vector<ArrayHeader>& arrays) {
-  double bytes = 0;
-  for (const ArrayHeader& array : arrays) {
-    bytes += array.components * static_cast<double>(size_of(array.type));
-  }
-  return bytes;
-}
-}  // namespace
-
 VolumeRun::VolumeRun(const WarpArguments& arguments,
                      const JobPlan& plan,
                      const VolumePlan& volume,
@@ -43,19 +35,14 @@ VolumeRun::VolumeRun(const WarpArguments& arguments,
       is_whole_(volume.memory_limit == 0 && ranks.count() == 1),
       writes_beside_(!is_whole_ || volume.writes_beside),
       overlaps_(is_whole_ && volume.overlaps),
-      outputs_(volume.arrays) {
-  for (const std::size_t e : arguments.extra) {
-    const ExtraOutput& extra = extra_outputs[e];
-    outputs_.push_back({extra.array(), extra.type, extra.components,
-                        facts_of_extra(volume.arrays.front().nifti, extra.components)});
-  }
+      outputs_(arrays_written(volume, arguments)) {
   if (is_whole_) return;
   // glibc returns the memory of a block to the system when it is freed.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
   options_.skip.unchanged_tets = false;  // a block is not computed twice
   open_readers(arguments.source_step_of(plan.steps.front()));
   planner_.emplace(volume.source_grid, plan.mesh.mesh(), options_);
-  fixed_bytes_ = fixed_bytes();
+  fixed_bytes_ = fixed_memory(volume, arguments, plan.mesh.header());
 }
 
 void VolumeRun::run() {
@@ -247,17 +234,6 @@ void VolumeRun::finish_step(const StepReport& report) {
   total.steps.back().timings.total += report.timings.read + report.timings.write;
 }
 
-double VolumeRun::fixed_bytes() const {
-  // Memory in use, the mesh included, and memory for planning, threads and files: footprints, lists
-  // of tetrahedra, positions in several forms, chunks.
-  const MeshHeader& mesh = plan_.mesh.header();
-  double bytes = resident_memory() + 8e6 +
-                 160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
-                 120 * static_cast<double>(mesh.node_count);
-  for (const VolumeReader& reader : readers_) bytes += reader.chunk_bytes() + 1e6;
-  return bytes;
-}
-
 BlockLimits VolumeRun::limits() const {
   BlockLimits limits;
   if (volume_.memory_limit > 0) limits.host = volume_.memory_limit - fixed_bytes_;
@@ -283,7 +259,28 @@ BlockPlan VolumeRun::plan_step(const std::vector<Point3>& positions) {
   BlockLimits common = limits();
   common.host = ranks_.smallest(common.host);
   common.device = ranks_.smallest(common.device);
-  return planner_->plan(positions, common);
+  try {
+    return planner_->plan(positions, common);
+  } catch (const std::invalid_argument&) {
+    check_limit(positions, common);
+    throw;
+  }
+}
+
+/// Throws std::invalid_argument with the least limit when --memory is too low for the smallest
+/// blocks of these positions.
+void VolumeRun::check_limit(const std::vector<Point3>& positions, const BlockLimits& limits) {
+  double least = least_block_memory(*planner_, positions, limits);
+  if (least <= limits.host) return;
+  finish_writing();  // HDF5 may be used by one thread at a time
+  for (const std::int64_t step : plan_.steps) {
+    least = std::max(least, least_block_memory(*planner_, plan_.mesh.read_step(step), limits));
+  }
+  throw std::invalid_argument(fmt::format(
+      "{}: --memory is too low: the program takes {}, a block and its source {} more; give at "
+      "least {}",
+      volume_.path, bytes_text(fixed_bytes_), bytes_text(least),
+      limit_text(std::min(fixed_bytes_ + least, volume_.memory))));
 }
 
 }  // namespace tetwarp::cli

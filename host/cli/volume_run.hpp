@@ -100,9 +100,9 @@ class VolumeRun {
   bool may_keep(const std::string& output, const Fingerprint& fingerprint);
   void begin_file(const std::string& output, const Fingerprint& fingerprint, bool is_temporal);
   void finish_step(const StepReport& report);
-  double fixed_bytes() const;
   BlockLimits limits() const;
   BlockPlan plan_step(const std::vector<Point3>& positions);
+  void check_limit(const std::vector<Point3>& positions, const BlockLimits& limits);
 
   // volume_run_step.cpp: the blocks of a step are read and computed.
   void run_step(const std::shared_ptr<Step>& step);

@@ -82,6 +82,7 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
         run_volume(arguments, plan, volume, ranks, task, bar, result);
       } else if (ranks.is_root()) {
         plan_only(arguments, plan, volume, bar, result);
+        if (result.refusal.empty()) result.refusal = volume.refusal;
       }
       task += volume.outputs.size();
     }

@@ -37,6 +37,7 @@ struct JobResult {
   Report report;
   std::vector<std::string> outputs;  ///< of all steps and volumes, also those skipped
   std::vector<StepPlan> plans;       ///< filled by --dry-run, which does nothing else
+  std::string refusal;               ///< with --dry-run: why the job cannot run here
   std::int64_t written = 0;          ///< outputs written
   std::int64_t skipped = 0;          ///< outputs that --resume found complete and up to date
   Warnings warnings;                 ///< in the order in which they were found

@@ -157,7 +157,7 @@ TEST_F(MemoryLimit, FailsWithOneLineWhenTooLow) {
     EXPECT_TRUE(result.has_one_line_error()) << result.err;
     EXPECT_NE(result.err.find(part), std::string::npos) << result.err;
   };
-  expect_error({"--memory", "1M"}, 1, "allow more");
+  expect_error({"--memory", "1M"}, 1, "give at least");
   expect_error({"--memory", "32M", "--filter", "bspline"}, 1, "--filter cubic");
   for (const char* size : {"0", "-4G", "4X", "G", "4GB", "nan", "inf", ""}) {
     expect_error({std::string("--memory=") + size}, 2, "--memory");
@@ -199,23 +199,25 @@ TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
   write_waves(folder / "mesh.vtkhdf", scenes::unit_grid(2048, 2048, 2048));
   const Names words{"warp", "volume.vtkhdf", "mesh.vtkhdf", "--steps",  "0",
                     "-o",   "out",           "--dry-run",   "--report", "plan.json"};
-  const auto plan = [&](const Names& more) {
+  const auto plan = [&](const Names& more, bool needs_much) {
     Names all = words;
     all[6] = "out.vtkhdf";
     all.insert(all.end(), more.begin(), more.end());
     const CommandResult result = run_command(folder, all);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const bool may_be_refused = needs_much && result.err.find("are available") != std::string::npos;
+    EXPECT_EQ(result.exit_code, may_be_refused ? 1 : 0) << result.err;
     EXPECT_LT(result.peak_memory, 100 * mebibyte);
     EXPECT_NE(result.out.find("2048 x 2048 x 2048 voxels"), std::string::npos) << result.out;
     return Json::parse(text_of(folder / "plan.json"));
   };
   constexpr double voxels = 2048.0 * 2048 * 2048;
 
-  const Json at_once = plan({});
-  EXPECT_EQ(at_once["plans"][0]["memory"], 8 * voxels);
+  const Json at_once = plan({}, true);
+  EXPECT_GT(at_once["plans"][0]["memory"].get<double>(), 8 * voxels);
+  EXPECT_LT(at_once["plans"][0]["memory"].get<double>(), 1.02 * 8 * voxels);
   EXPECT_EQ(at_once["plans"][0]["blocks"], 0);
 
-  const Json streamed = plan({"--memory", "2G"});
+  const Json streamed = plan({"--memory", "2G"}, false);
   const Json& step = streamed["plans"][0];
   EXPECT_EQ(streamed["status"], "planned");
   EXPECT_LE(step["memory"].get<double>(), 2048 * mebibyte);

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/io/fuzz_bytes.hpp"
 #include "tests/io/fuzz_contact.hpp"
 #include "tests/io/fuzz_memory.hpp"
 #include "tests/io/fuzz_values.hpp"
@@ -92,29 +93,9 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Changes, cuts, repeats or removes a few bytes.
-void damage_bytes(const std::string& path, test::Random& random) {
+void damage_file(const std::string& path, test::Random& random) {
   std::string bytes = bytes_of(path);
-  for (std::uint64_t changes = 1 + random.below(8); changes > 0 && !bytes.empty(); --changes) {
-    const std::size_t at = random.below(bytes.size());
-    const std::size_t length = 1 + random.below(std::min<std::size_t>(64, bytes.size() - at));
-    switch (random.below(8)) {
-      case 0:
-        bytes.resize(at);
-        break;
-      case 1:
-        bytes.insert(at, bytes.substr(at, length));
-        break;
-      case 2:
-        bytes.erase(at, length);
-        break;
-      case 3:
-        bytes.replace(at, length, length, random.below(2) == 0 ? '\0' : '\xff');
-        break;
-      default:
-        bytes[at] = static_cast<char>(random.below(256));
-    }
-  }
+  test::damage_bytes(bytes, random);
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
 
@@ -165,7 +146,7 @@ void make_file(const test::ScratchFolder& folder, std::uint64_t seed, std::int64
   if (is_hdf5 && random.below(3) != 0) {
     test::damage_values(folder / "damaged", random);
   } else {
-    damage_bytes(folder / "damaged", random);
+    damage_file(folder / "damaged", random);
   }
 }
 

@@ -6,9 +6,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/mesh_import.hpp>
+#include <tetwarp/warp.hpp>
 
 #include "tests/scenes/io_files.hpp"
 
@@ -254,6 +256,19 @@ TEST_F(MeshImport, KeepsTagsAndGroupsOfGmshFilesAndNamesTheRest) {
   EXPECT_EQ(plain->left_out, std::vector<std::string>());
 }
 
+/// The readers run in a fork of this process, in which its other threads are missing.
+TEST_F(MeshImport, WorksBesideOtherThreads) {
+  Volume volume = counting_volume(PixelType::float32);
+  volume.grid.direction = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  warp(volume, two_tets(), two_tets().rest_positions, {.threads = 3});
+
+  for (const auto& [name, text] :
+       {std::pair{"a.vtk", legacy_file()}, {"b.vtu", xml_file()}, {"c.msh", msh4_file()}}) {
+    const auto mesh = imported(name, text, {.displacement = {}, .time_limit = 60});
+    if (mesh) expect_two_tets(*mesh);
+  }
+}
+
 TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
   std::string wedge = legacy_file();
   wedge.replace(wedge.find("4 1 2 3 4\n"), 10, "6 0 1 2 3 0 1\n");
@@ -267,12 +282,27 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
   short_cell.replace(short_cell.find("3 14"), 4, "3 13");
   std::string stray_node = legacy_file();
   stray_node.replace(stray_node.find("4 1 2 3 4\n"), 10, "4 1 2 3 5\n");
+  const std::string with_offsets =
+      std::string("# vtk DataFile Version 5.1\nmesh\nASCII\nDATASET UNSTRUCTURED_GRID\n") +
+      "POINTS 5 double\n" + points +
+      "\nCELLS 3 8\nOFFSETS vtktypeint64\n0 4 99999999\nCONNECTIVITY vtktypeint64\n"
+      "0 1 2 3 1 2 3 4\nCELL_TYPES 2\n10\n10\n";
+  std::string twin = msh2_file();
+  twin.replace(twin.find("50 1 1 1"), 2, "40");
+  std::string negative_node = msh4_file();
+  negative_node.replace(negative_node.find("8 20 30 40"), 10, "8 20 30 -40");
+  std::string no_number = legacy_file();
+  no_number.replace(no_number.find("4 8 12"), 6, "4 8 x");
   const struct {
     const char* name;
     std::string text;
     MeshImportOptions options;
     const char* expected;
   } cases[] = {
+      {"o.vtk", with_offsets, {}, "contradict each other: damaged"},
+      {"p.msh", twin, {}, "Gmsh cannot read it: Wrong node index 50"},
+      {"r.msh", negative_node, {}, "read"},  // Gmsh 4.8 crashes
+      {"q.vtk", no_number, {}, "no unstructured grid that VTK can read: damaged"},
       {"a.vtk", wedge, {}, "cell 2 is a vtkWedge"},
       {"b.vtk", surface, {}, "holds no tetrahedron"},
       {"s.vtk", short_cell, {}, "cell 0 does not have the nodes of a vtkTetra, each from 0 to 4"},

@@ -140,8 +140,9 @@ check_asan() {
 
 check_fuzz() {
   cmake --preset asan -S "$root"
-  cmake --build "$root/build/asan" --target fuzz_io
+  cmake --build "$root/build/asan" --target fuzz_io fuzz_mesh
   "$root/build/asan/fuzz_io" 60 "${RANDOM}"
+  "$root/build/asan/fuzz_mesh" 60 "${RANDOM}"
 }
 
 check_docs() { docs; }
