@@ -122,7 +122,7 @@ TEST(MeshChild, DoesNotTrustCounts) {
     std::memcpy(bytes.all.data(), &count, sizeof count);
     MessageReader message(bytes, 1e9);
     ImportedMesh mesh;
-    exchange(message, mesh);
+    exchange_members(message, mesh);
   };
 
   for (const std::uint64_t count : {3ULL, 1ULL << 25, 1ULL << 40, ~0ULL}) {
