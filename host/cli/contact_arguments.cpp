@@ -47,7 +47,7 @@ void declare_solver(CLI::App& app, ContactArguments& arguments) {
       ->check(above_zero())
       ->type_name("T");
   app.add_option("--max-newton", options.max_newton, "maximum number of Newton steps [no limit]")
-      ->check(at_least_zero())
+      ->check(at_least(0))
       ->type_name("N");
   app.add_option("--memory", options.max_memory,
                  "memory limit of a factorization, e.g. 4G [20 times the problem, at least 256M]")

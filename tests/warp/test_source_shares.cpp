@@ -14,10 +14,10 @@ namespace {
 using Voxel = std::tuple<int, int, int>;
 using Shares = std::map<Voxel, double>;
 
-/// Numbers in [-1, 1), one after the other.
-class Numbers {
+/// RandomNumbers in [-1, 1), one after the other.
+class RandomNumbers {
  public:
-  explicit Numbers(std::uint64_t seed) : seed_(seed) {}
+  explicit RandomNumbers(std::uint64_t seed) : seed_(seed) {}
   double next() { return 2 * scenes::uniform(seed_, at_++) - 1; }
 
  private:
@@ -85,7 +85,7 @@ double difference(const ConvexPart& part, const SourceMap<double>& map) {
   return largest;
 }
 
-SourceMap<double> random_map(Numbers& numbers, double scale) {
+SourceMap<double> random_map(RandomNumbers& numbers, double scale) {
   SourceMap<double> map = {};
   for (int row = 0; row < 3; ++row) {
     map.base[row] = numbers.next();
@@ -95,7 +95,7 @@ SourceMap<double> random_map(Numbers& numbers, double scale) {
 }
 
 TEST(SourceShares, AreTheVolumesOfBoxesAndCutBoxes) {
-  Numbers numbers(3);
+  RandomNumbers numbers(3);
   for (int round = 0; round < 600; ++round) {
     const SourceMap<double> map = random_map(numbers, 1 << round % 4);
     ConvexPart part, cut;
@@ -112,7 +112,7 @@ TEST(SourceShares, AreTheVolumesOfBoxesAndCutBoxes) {
 /// Faces in the planes between voxels, edges and corners on them.
 TEST(SourceShares, AreTheVolumesWhereFacesMeetPlanes) {
   const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  Numbers numbers(4);
+  RandomNumbers numbers(4);
   for (int round = 0; round < 600; ++round) {
     SourceMap<double> map = {};
     const auto eighth = [&] { return std::floor(4 * numbers.next()) / 4; };

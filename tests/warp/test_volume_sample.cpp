@@ -16,7 +16,7 @@ namespace tetwarp::test {
 namespace {
 /// A small volume that owns its samples.
 template <class T>
-struct Samples {
+struct GridSamples {
   std::array<int, 3> dims;
   int components;
   std::vector<T> data;
@@ -26,7 +26,7 @@ struct Samples {
 
 /// Component c of the sample at x, nothing where the background belongs.
 template <class T>
-std::optional<T> sample_at(const Samples<T>& samples,
+std::optional<T> sample_at(const GridSamples<T>& samples,
                            Filter filter,
                            const std::array<double, 3>& x,
                            int c = 0) {
@@ -48,8 +48,8 @@ double trilinear(double i, double j, double k) {
 }
 
 template <class T>
-Samples<T> trilinear_samples(int nx, int ny, int nz) {
-  Samples<T> samples{{nx, ny, nz}, 1, {}};
+GridSamples<T> trilinear_samples(int nx, int ny, int nz) {
+  GridSamples<T> samples{{nx, ny, nz}, 1, {}};
   for (int k = 0; k < nz; ++k) {
     for (int j = 0; j < ny; ++j) {
       for (int i = 0; i < nx; ++i) samples.data.push_back(static_cast<T>(trilinear(i, j, k)));
@@ -62,7 +62,7 @@ constexpr auto nearest = Filter::nearest;
 constexpr auto linear = Filter::linear;
 
 TEST(VolumeSample, NearestRoundsHalvesUp) {
-  const Samples<float> row{{4, 1, 1}, 1, {10, 11, 12, 13}};
+  const GridSamples<float> row{{4, 1, 1}, 1, {10, 11, 12, 13}};
 
   EXPECT_EQ(sample_at(row, nearest, {-0.5, 0, 0}), 10);
   EXPECT_EQ(sample_at(row, nearest, {0.49, 0, 0}), 10);
@@ -72,7 +72,7 @@ TEST(VolumeSample, NearestRoundsHalvesUp) {
 }
 
 TEST(VolumeSample, LinearBlendsItsEightNeighbors) {
-  const Samples<float> cube{{2, 2, 2}, 1, {0, 1, 2, 3, 4, 5, 6, 7}};
+  const GridSamples<float> cube{{2, 2, 2}, 1, {0, 1, 2, 3, 4, 5, 6, 7}};
 
   EXPECT_EQ(sample_at(cube, linear, {0.5, 0.5, 0.5}), 3.5f);
   EXPECT_EQ(sample_at(cube, linear, {0.25, 0, 1}), 4.25f);
@@ -122,7 +122,7 @@ TEST(VolumeSample, NotANumberIsOutside) {
 }
 
 TEST(VolumeSample, ASingleVoxelIsConstant) {
-  const Samples<float> voxel{{1, 1, 1}, 1, {7}};
+  const GridSamples<float> voxel{{1, 1, 1}, 1, {7}};
 
   EXPECT_EQ(sample_at(voxel, linear, {-0.5, 0.5, 0.25}), 7);
   EXPECT_EQ(sample_at(voxel, nearest, {0.5, -0.5, 0}), 7);
@@ -130,7 +130,7 @@ TEST(VolumeSample, ASingleVoxelIsConstant) {
 }
 
 TEST(VolumeSample, KeepsComponentsApart) {
-  const Samples<std::int16_t> pairs{{2, 1, 1}, 2, {10, -100, 20, -200}};
+  const GridSamples<std::int16_t> pairs{{2, 1, 1}, 2, {10, -100, 20, -200}};
 
   EXPECT_EQ(sample_at(pairs, linear, {0.5, 0, 0}, 0), 15);
   EXPECT_EQ(sample_at(pairs, linear, {0.5, 0, 0}, 1), -150);
@@ -140,7 +140,7 @@ TEST(VolumeSample, KeepsComponentsApart) {
 TEST(VolumeSample, NotANumberReachesOnlyWhatBlendsIt) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinite = std::numeric_limits<float>::infinity();
-  const Samples<float> row{{4, 1, 1}, 1, {1, nan, 3, infinite}};
+  const GridSamples<float> row{{4, 1, 1}, 1, {1, nan, 3, infinite}};
 
   EXPECT_EQ(sample_at(row, linear, {0, 0, 0}), 1);
   EXPECT_TRUE(std::isnan(sample_at(row, linear, {0.25, 0, 0}).value()));
