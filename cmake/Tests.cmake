@@ -15,6 +15,7 @@ add_library(tetwarp_scenes STATIC
   tests/scenes/contact_samples.cpp
   tests/scenes/contact_scenes.cpp
   tests/scenes/contact_scenes_slab.cpp
+  tests/scenes/contact_scenes_tray.cpp
   tests/scenes/contact_transforms.cpp
   tests/scenes/elastic_block.cpp
   tests/scenes/rigid_bodies.cpp
