@@ -155,6 +155,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_bad_options.cpp
     tests/contact/test_contact_coupled.cpp
     tests/contact/test_contact_limits.cpp
+    tests/contact/test_contact_moving.cpp
     tests/contact/test_contact_newton.cpp
     tests/contact/test_contact_reference.cpp
     tests/contact/test_contact_report.cpp
@@ -162,6 +163,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact.cpp
     tests/contact/test_contact_reference_limits.cpp
     tests/contact/test_contact_tracker.cpp
+    tests/contact/test_contact_tracker_misuse.cpp
     tests/contact/test_body_relax.cpp
     tests/contact/test_contact_adhesion.cpp
     tests/contact/test_lorentz_cone.cpp

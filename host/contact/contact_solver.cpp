@@ -17,6 +17,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/problem/imbalance.hpp"
+#include "host/contact/problem/spring_offset.hpp"
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {
@@ -164,6 +165,16 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
   return u;
 }
 
+/// Solves a problem whose normal springs may have another gap than dt w_n.
+EngineResult solve_with_springs(ContactEngine& engine, const ContactProblem& problem) {
+  if (problem.contact_count() == 0 && problem.dof_count() == 0) return {};
+  const std::vector<double> preloads = spring_preloads(problem);
+  if (preloads.empty()) return engine.solve(problem);
+  EngineResult result = engine.solve(with_preloads(problem, preloads));
+  add_preloads(preloads, -1, result.impulse);
+  return result;
+}
+
 /// Sets the counts and residuals of a report; not the balance, the status and the times.
 void fill_report(const EngineResult& result, ContactMeasure measure, ContactReport& report) {
   report.colors = result.colors;
@@ -225,7 +236,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   if (s.backend == Backend::reference) return solve_contacts_reference(problem, s.options);
   const auto start = Clock::now();
   check_problem(problem);
-  EngineResult result = s.engine.solve(problem);
+  EngineResult result = solve_with_springs(s.engine, problem);
   ContactSolution solution;
   ContactReport& report = solution.report;
   report.version = TETWARP_VERSION;

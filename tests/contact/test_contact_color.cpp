@@ -144,7 +144,8 @@ TEST(ContactColor, StepsGrowWithTheContactsOfATray) {
     const ContactColors colors = color_contacts(groups, edge * edge + 1);
 
     EXPECT_LE(colors.steps, 12 * groups.size()) << edge << " spheres along each edge";
-    if (edge == 16) EXPECT_EQ(colors.of_contact, searched_colors(groups, edge * edge + 1));
+    if (edge > 16) continue;
+    EXPECT_EQ(colors.of_contact, searched_colors(groups, edge * edge + 1));
   }
 }
 
