@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "io/h5.hpp"
+
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 
@@ -46,8 +48,15 @@ void check_hdf_name(const std::string& output) {
   }
 }
 
+void check_sound(const std::string& path, FileKind kind) {
+  if (kind != FileKind::hdf5) return;
+  const h5::Silence silence;
+  h5::open_file(path);
+}
+
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
   const FileKind kind = kind_of(path);
+  check_sound(path, kind);
   if (kind != expected) {
     throw IoError(
         path, "",
