@@ -62,6 +62,7 @@ if(TETWARP_IO)
     bench/measure/timing.cpp
     tests/scenes/contact_scenes.cpp
     tests/scenes/contact_scenes_slab.cpp
+    tests/scenes/contact_scenes_tray.cpp
     tests/scenes/scenes.cpp)
   target_include_directories(tetwarp_bench_contact PRIVATE
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)

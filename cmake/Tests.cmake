@@ -16,6 +16,7 @@ add_library(tetwarp_scenes STATIC
   tests/scenes/contact_samples.cpp
   tests/scenes/contact_scenes.cpp
   tests/scenes/contact_scenes_slab.cpp
+  tests/scenes/contact_scenes_tray.cpp
   tests/scenes/contact_transforms.cpp
   tests/scenes/elastic_block.cpp
   tests/scenes/rigid_bodies.cpp
@@ -165,6 +166,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_truth.cpp
     tests/contact/test_contact_coupled.cpp
     tests/contact/test_contact_limits.cpp
+    tests/contact/test_contact_moving.cpp
     tests/contact/test_contact_newton.cpp
     tests/contact/test_contact_reference.cpp
     tests/contact/test_contact_report.cpp
@@ -172,6 +174,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact.cpp
     tests/contact/test_contact_reference_limits.cpp
     tests/contact/test_contact_tracker.cpp
+    tests/contact/test_contact_tracker_misuse.cpp
     tests/contact/test_body_relax.cpp
     tests/contact/test_contact_adhesion.cpp
     tests/contact/test_lorentz_cone.cpp

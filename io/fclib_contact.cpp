@@ -29,6 +29,10 @@ h5::Object open_problem(const h5::Object& file) {
   file.fail("holds no contact problem, expected /fclib_local or /fclib_global");
 }
 
+std::int64_t element_count(const h5::Object& parent, const std::string& name) {
+  return fclib::element_count(h5::open_dataset(parent, name));
+}
+
 void check_dimension(const h5::Object& root) {
   const std::int64_t dimension = fclib::read_integer(root, "spacedim");
   if (dimension == 3) return;
@@ -49,12 +53,82 @@ Expected rows_of(std::int64_t contacts) {
   return {3 * contacts, "three per contact, and mu has one number per contact"};
 }
 
+/// Throws IoError where the other vectors and the matrix agree on another number of contacts than
+/// mu.
+/// @param vector  name of a vector of three numbers per contact
+/// @param edge    path of the number of rows or columns that it belongs to
+void check_friction_count(const h5::Object& root,
+                          std::int64_t contacts,
+                          const std::string& vector,
+                          const std::string& matrix,
+                          const std::string& edge) {
+  const h5::Object vectors = h5::open_group(root, "vectors");
+  if (!h5::has_child(vectors, vector) || !h5::has_child(root, matrix)) return;
+  const h5::Object group = h5::open_group(root, matrix);
+  if (!h5::has_child(group, edge) || element_count(group, edge) != 1) return;
+  const std::int64_t rows = element_count(vectors, vector);
+  if (rows == 3 * contacts || rows % 3 != 0 || fclib::read_integer(group, edge) != rows) return;
+  throw IoError(root.file, vectors.name + "/mu",
+                "holds " + std::to_string(contacts) + " numbers, expected " +
+                    std::to_string(rows / 3) + ": one per contact, and " + vector + " and " +
+                    matrix + " have three rows per contact");
+}
+
+/// A symmetric matrix of which one triangle is stored, with both triangles.
+SparseMatrix with_both_triangles(SparseMatrix matrix) {
+  std::int64_t below = 0, above = 0;
+  for (std::int32_t row = 0; row < matrix.rows; ++row) {
+    const auto first = static_cast<std::size_t>(matrix.row_start[static_cast<std::size_t>(row)]);
+    const auto last = static_cast<std::size_t>(matrix.row_start[static_cast<std::size_t>(row) + 1]);
+    for (std::size_t e = first; e < last; ++e) {
+      if (matrix.value[e] == 0) continue;
+      below += matrix.column[e] < row;
+      above += matrix.column[e] > row;
+    }
+  }
+  if ((below == 0) == (above == 0) || matrix.rows != matrix.columns) return matrix;
+
+  SparseMatrix full{matrix.rows, matrix.columns, matrix.row_start, {}, {}};
+  const auto for_each_mirrored = [&](const auto& visit) {
+    for (std::int32_t row = 0; row < matrix.rows; ++row) {
+      const auto last =
+          static_cast<std::size_t>(matrix.row_start[static_cast<std::size_t>(row) + 1]);
+      for (auto e = static_cast<std::size_t>(matrix.row_start[static_cast<std::size_t>(row)]);
+           e < last; ++e) {
+        if (matrix.column[e] != row) visit(static_cast<std::size_t>(matrix.column[e]), row, e);
+      }
+    }
+  };
+  std::vector<std::int64_t> added(static_cast<std::size_t>(matrix.rows) + 1, 0);
+  for_each_mirrored([&](std::size_t row, std::int32_t, std::size_t) { ++added[row + 1]; });
+  for (std::size_t row = 1; row < added.size(); ++row) {
+    added[row] += added[row - 1];
+    full.row_start[row] += added[row];
+  }
+  full.column.resize(static_cast<std::size_t>(full.row_start.back()));
+  full.value.resize(full.column.size());
+  std::vector<std::int64_t> next = full.row_start;
+  const auto put = [&](std::size_t row, std::int32_t column, std::size_t e) {
+    const auto place = static_cast<std::size_t>(next[row]++);
+    full.column[place] = column;
+    full.value[place] = matrix.value[e];
+  };
+  for (std::size_t row = 0; row + 1 < matrix.row_start.size(); ++row) {
+    for (std::int64_t e = matrix.row_start[row]; e < matrix.row_start[row + 1]; ++e) {
+      put(row, matrix.column[static_cast<std::size_t>(e)], static_cast<std::size_t>(e));
+    }
+  }
+  for_each_mirrored(put);
+  return full;
+}
+
 ContactProblem read_local(const h5::Object& root) {
   check_no_equalities(root, "V");
   check_no_equalities(root, "R");
   const h5::Object vectors = h5::open_group(root, "vectors");
   ContactProblem problem;
   problem.friction = fclib::read_reals(vectors, "mu");
+  check_friction_count(root, problem.contact_count(), "q", "W", "m");
   const Expected rows = rows_of(problem.contact_count());
   problem.free_velocity = fclib::read_reals(vectors, "q", rows);
   problem.delassus = fclib::read_matrix(root, "W", rows, rows, Orientation::plain);
@@ -67,10 +141,12 @@ ContactProblem read_global(const h5::Object& root) {
   ContactProblem problem;
   problem.friction = fclib::read_reals(vectors, "mu");
   problem.load = fclib::read_reals(vectors, "f");
+  check_friction_count(root, problem.contact_count(), "w", "H", "n");
   const Expected rows = rows_of(problem.contact_count());
   const Expected dofs{static_cast<std::int64_t>(problem.load.size()), "as many as vectors/f"};
   problem.velocity_offset = fclib::read_reals(vectors, "w", rows);
-  problem.system = fclib::read_matrix(root, "M", dofs, dofs, Orientation::plain);
+  problem.system =
+      with_both_triangles(fclib::read_matrix(root, "M", dofs, dofs, Orientation::plain));
   problem.jacobian = fclib::read_matrix(root, "H", dofs, rows, Orientation::transposed);
   return problem;
 }
@@ -80,6 +156,11 @@ AdhesionState read_adhesion(const h5::Object& file, std::int64_t contacts) {
   AdhesionState adhesion;
   adhesion.time_step = h5::read_real_attribute(group, "time_step", 1).front();
   adhesion.intensity.assign(static_cast<std::size_t>(contacts), 0);
+  if (contacts > 0 && h5::has_child(group, "stiffness") && !h5::has_child(group, "intensity")) {
+    throw IoError(file.file, "/adhesion/intensity",
+                  "is missing, but there is a stiffness; add one number per contact, from 0 "
+                  "(debonded) to 1 (bonded)");
+  }
   for (const fclib::AdhesionVector& vector : fclib::adhesion_vectors) {
     if (!h5::has_child(group, vector.name)) continue;
     const std::string reason =
@@ -151,7 +232,6 @@ ContactProblem read_contact_problem(const std::string& path, ContactStart start)
   const bool is_local = root.name == "/fclib_local";
   ContactProblem problem = is_local ? read_local(root) : read_global(root);
   const std::int64_t contacts = problem.contact_count();
-  if (is_local && contacts == 0) root.fail("holds no contact, there is nothing to solve");
   if (h5::has_child(file, "adhesion")) problem.adhesion = read_adhesion(file, contacts);
   if (!is_local && h5::has_child(file, "blocks")) problem.block_start = read_blocks(file);
   if (start == ContactStart::stored) problem.impulse_guess = read_start(file, contacts);

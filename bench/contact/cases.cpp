@@ -18,6 +18,11 @@ ContactInput packing(const std::string& name, const scenes::SpherePacking& choic
   return {name, [choice] { return scenes::sphere_packing(choice); }};
 }
 
+/// Contacts of one body with all others: as many colors as spheres.
+ContactInput tray(std::int64_t edge) {
+  return {fmt::format("tray_{}", edge), [edge] { return scenes::tray({.edge = edge}); }};
+}
+
 ContactInput large(ContactInput input) {
   input.is_large = true;
   return input;
@@ -244,6 +249,7 @@ std::vector<ContactCase> contact_cases(Extent extent,
   for (const std::int64_t edge : {3, 4, 6, 9, 13, 19, 28}) {
     rows.add_scale(packing(fmt::format("packing_edge_{}", edge), {.edge = edge}));
   }
+  for (const std::int64_t edge : {32, 64, 128}) rows.add_scale(tray(edge));
   return rows.take();
 }
 

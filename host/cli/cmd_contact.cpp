@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -36,6 +37,11 @@ void check_files(const ContactArguments& arguments) {
 
 ContactProblem read_problem(const ContactArguments& arguments) {
   ContactProblem problem = read_contact_problem(arguments.problem, arguments.start);
+  if (problem.is_local() && std::isfinite(arguments.options.recovery_speed)) {
+    throw IoError(arguments.problem, "/fclib_local",
+                  "has no offsets w, which --recovery-speed limits; write the problem in global "
+                  "form, or leave the option out");
+  }
   if (arguments.evolve && problem.adhesion.empty()) {
     throw IoError(arguments.problem, "/adhesion", "is missing, but --evolve needs it");
   }

@@ -177,6 +177,7 @@ int run_info(const InfoArguments& arguments) {
       json = contact_json(arguments);
       break;
     default:
+      check_sound(arguments.file, kind);
       throw IoError(arguments.file, "",
                     std::string("is a ") + name_of(kind) +
                         "; info reads VTKHDF volumes, VTKHDF meshes, NIfTI images and FCLIB "

@@ -9,6 +9,8 @@
 
 #include "io/finished_file.hpp"
 
+#include "io/h5.hpp"
+
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 
@@ -70,8 +72,15 @@ std::string conversion_of(const std::string& path, FileKind kind, FileKind expec
 }
 }  // namespace
 
+void check_sound(const std::string& path, FileKind kind) {
+  if (kind != FileKind::hdf5) return;
+  const h5::Silence silence;
+  h5::open_file(path);
+}
+
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
   const FileKind kind = kind_of(path);
+  check_sound(path, kind);
   if (kind == expected) return;
   const std::string conversion = conversion_of(path, kind, expected);
   throw IoError(path, "",

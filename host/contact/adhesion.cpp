@@ -4,9 +4,12 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/contact.hpp>
+#include <utility>
+#include <vector>
 
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/problem/checks.hpp"
+#include "host/contact/problem/spring_offset.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_adhesion.hpp"
 
@@ -69,6 +72,10 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
   step.intensity.resize(problem.friction.size());
   step.gap.resize(3 * problem.friction.size());
   step.debonded.resize(problem.friction.size());
+  // Springs are as long as gap_n + dt (u_n - w_n).
+  std::vector<double> velocity = solution.velocity;
+  const std::vector<double> offsets = normal_offsets(problem);
+  for (std::size_t c = 0; c < offsets.size(); ++c) velocity[3 * c] += offsets[c];
   const AdhesionViews views{.time_step = adhesion.time_step,
                             .area = view_of(adhesion.area),
                             .stiffness = view_of(adhesion.stiffness),
@@ -80,7 +87,7 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
                             .bonding_rate = view_of(adhesion.bonding_rate),
                             .saturation_pressure = view_of(adhesion.saturation_pressure),
                             .impulse = view_of(solution.impulse),
-                            .velocity = view_of(solution.velocity)};
+                            .velocity = view_of(std::as_const(velocity))};
   const ContactAdhesionBody body = {
       .in = views,
       .euler = options.integrator == AdhesionIntegrator::explicit_euler,

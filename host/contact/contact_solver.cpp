@@ -15,6 +15,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/problem/imbalance.hpp"
+#include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/status.hpp"
 #include "host/reference/contact/contact.hpp"
 
@@ -107,6 +108,18 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
   return u;
 }
 
+/// Solves a problem whose normal springs may have another gap than dt w_n.
+EngineResult solve_with_springs(ContactEngine& engine,
+                                const ContactProblem& problem,
+                                SolveBudget& budget) {
+  if (problem.contact_count() == 0 && problem.dof_count() == 0) return {};
+  const std::vector<double> preloads = spring_preloads(problem);
+  if (preloads.empty()) return engine.solve(problem, budget);
+  EngineResult result = engine.solve(with_preloads(problem, preloads), budget);
+  add_preloads(preloads, -1, result.impulse);
+  return result;
+}
+
 /// Sets the counts and residuals of a report; not the balance, the status and the times.
 void fill_report(const EngineResult& result,
                  const WholeResidual& whole,
@@ -171,7 +184,7 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   const auto start = Clock::now();
   SolveBudget budget(s.options, problem);
   check_problem(problem);
-  EngineResult result = s.engine.solve(problem, budget);
+  EngineResult result = solve_with_springs(s.engine, problem, budget);
   budget.rethrow();
   ContactSolution solution;
   ContactReport& report = solution.report;

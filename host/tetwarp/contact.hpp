@@ -5,8 +5,8 @@
 /// Per contact, r is the impulse [N s], u the relative velocity at the end of the step [m/s], mu
 /// the friction coefficient and beta the adhesion intensity. The adhesive springs, linear in the
 /// displacement of the step, are K = diag(kappa_n, kappa_t, kappa_t) [kg], kappa = dt^2 area C
-/// beta^2. With the stored tangential gap o = (0, gap_t / dt) and nu = r + K (u + o), the part of
-/// the impulse that contact and friction carry without the springs, each contact obeys
+/// beta^2. With o = (gap_n / dt - w_n, gap_t / dt), usually (0, gap_t / dt), nu = r + K (u + o) is
+/// the impulse that contact and friction carry without the springs. Each contact obeys
 ///
 ///     0 <= nu_n  perpendicular to  u_n >= 0
 ///     |nu_t| <= R,  nu_t . u_t = -R |u_t|,  R = max(mu nu_n - chi |kappa_t (u_t + o_t)|, 0)

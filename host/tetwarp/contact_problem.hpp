@@ -49,8 +49,9 @@ struct AdhesionState {
 ///
 /// Each contact has three rows: normal, tangent 1, tangent 2. u_n is the normal gap at the end of
 /// the step over dt, and w_n the one at its start over dt; the solver makes u_n >= 0. r_n > 0
-/// pushes the bodies apart. Friction acts on u_t, the adhesive springs on gap_t + dt u_t. The
-/// normal components of AdhesionState::gap, where given, must equal dt w_n.
+/// pushes the bodies apart. Friction acts on u_t, springs on gap_t + dt u_t and on gap_n + dt (u_n
+/// - w_n), in local form on dt u_n; gap_n not given: dt w_n. Restitution changes w_n, but not
+/// gap_n.
 struct ContactProblem {
   SparseMatrix system;                  ///< A, symmetric positive definite [kg, kg m^2]
   SparseMatrix jacobian;                ///< J, [3 contacts][dofs]; without contacts it may be empty
@@ -87,10 +88,10 @@ class TETWARP_EXPORT ContactProblemError : public std::invalid_argument {
 /// Checks sizes, indices, signs and finiteness of everything that a solver reads. Every solve calls
 /// it first.
 /// @throws ContactProblemError  both forms given or none, W or A not square, mu < 0, beta outside
-///                              [0, 1], negative area or stiffness, time_step <= 0 with adhesion, a
-///                              normal gap that differs from dt w_n by more than 1e-9 relative,
+///                              [0, 1], negative area or stiffness, time_step <= 0 with adhesion,
 ///                              diagonal blocks of A that are not positive definite, rows of W
-///                              without a positive normal diagonal, NaN or infinity anywhere
+///                              without a positive normal diagonal, entries of W that contradict
+///                              positive semidefiniteness, NaN or infinity anywhere
 ///
 /// Cost: a pass over all data and a Cholesky factorization of each diagonal block of A.
 TETWARP_EXPORT void check_problem(const ContactProblem& problem);

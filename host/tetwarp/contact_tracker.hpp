@@ -21,7 +21,7 @@ namespace tetwarp {
 /// Position and rotation of a body: its point x is at position + rotation(x) [world].
 struct BodyPose {
   Point3 position = {0, 0, 0};
-  std::array<double, 4> rotation = {1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+  std::array<double, 4> rotation = {1, 0, 0, 0};  ///< quaternion w, x, y, z of length 1 within 1e-6
 };
 
 /// Identifies a contact by the two bodies and the features (faces, vertices, ...) that touch.
@@ -46,6 +46,7 @@ struct ContactMaterial {
   double bonding_rate = 0;
   double saturation_pressure = 0;
   double initial_intensity = 0;  ///< beta of a contact that touches for the first time, 0 to 1
+  double restitution = 0;        ///< e, separating speed over approach speed of an impact, 0 to 1
 };
 
 /// One contact from collision detection; the contacts may come in any order, and the two bodies of
@@ -59,6 +60,15 @@ struct ReportedContact {
   std::int32_t material = 0;         ///< index into ContactTrackerOptions::materials
   Point3 tangent = {0, 0, 0};  ///< direction of tangent 1 [world], projected onto the tangential
                                ///< plane; zero: chosen by the tracker
+  double approach_speed = 0;   ///< at which the gap closes at the start of the step, of all motions
+                               ///< [m/s]; negative: opens; read only with restitution
+  /// Velocity of a relative to b at the contact [world, m/s] that is not in the velocities of the
+  /// problem's bodies. Of surfaces that slide over their bodies, as a conveyor belt does: poses do
+  /// not show it. Contacts that are not reported have none.
+  Point3 surface_velocity = {0, 0, 0};
+  /// The same, of obstacles whose motion is prescribed: their poses at the end of the step contain
+  /// it.
+  Point3 obstacle_velocity = {0, 0, 0};
 };
 
 /// State of a contact between steps, in body coordinates unless the name ends in _world.
@@ -83,6 +93,10 @@ struct TrackedContact {
   std::array<Point3, 3> axes = {};   ///< normal, tangent 1, tangent 2 [world]
   Point3 gap = {0, 0, 0};  ///< components along `axes` [m]; the tangential ones between the anchors
   bool is_reported = true;  ///< false: not reported in this step, kept because it adheres
+  Point3 surface_velocity = {0, 0, 0};   ///< of the report, along `axes` [m/s]
+  Point3 obstacle_velocity = {0, 0, 0};  ///< of the report, along `axes` [m/s]
+  double rebound_speed = 0;  ///< the least separating speed at the end of the step, by restitution
+                             ///< [m/s]; 0: no impact
 };
 
 struct ContactTrackerOptions {
@@ -90,6 +104,7 @@ struct ContactTrackerOptions {
   double match_distance = 0;  ///< a contact with a new key is matched with a record of the same two
                               ///< bodies whose anchor on body a is at most this far away [m]
   double touch_distance = 0;  ///< largest gap that counts as touching [m]
+  double restitution_speed = 0;  ///< contacts that approach no faster do not rebound [m/s]
   EvolutionOptions evolution = {};
 };
 
@@ -103,7 +118,11 @@ struct ContactTrackerOptions {
 /// reported points, so that bonds form without tension; its record is deleted when it is no longer
 /// reported.
 ///
-/// Contacts are sorted by key, independent of the order of the reports.
+/// A contact with restitution e that would close within the step, gap <= dt approach_speed, is an
+/// impact: it separates with e approach_speed or more. Otherwise it closes at most its gap.
+///
+/// Contacts are sorted by key, independent of the order of the reports. A call that throws changes
+/// nothing.
 class TETWARP_EXPORT ContactTracker {
  public:
   /// @param records  records() of an earlier tracker that this one continues; sorted by key
@@ -113,25 +132,30 @@ class TETWARP_EXPORT ContactTracker {
 
   /// Starts a step: matches the reported contacts with the records.
   /// @param poses      of all bodies at the start of the step
-  /// @param time_step  dt [s], > 0
-  /// @return the contacts of this step, valid until the next call of begin_step() or end_step()
+  /// @param time_step  dt [s], > 0, finite
+  /// @return the contacts of this step, valid until the next call of begin_step()
   /// @throws std::invalid_argument  a key occurs twice, a body has no pose or touches itself, a
   ///                                normal is not a unit vector, an area is negative, a material
-  ///                                does not exist, a position is not finite, or time_step is not >
-  ///                                0
+  ///                                does not exist, a position, velocity or pose is not finite, a
+  ///                                rotation is not of length 1, or time_step is not > 0 and finite
   const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
                                                 std::span<const BodyPose> poses,
                                                 double time_step);
 
   /// Sets velocity offset, friction, adhesion and impulse guess of a problem in global form, for
   /// the contacts of this step. The caller sets system, jacobian (rows along the axes of each
-  /// contact) and load.
+  /// contact) and load. Velocities of surfaces and obstacles, and restitution, are in the velocity
+  /// offset; the caller may change it further.
+  /// @throws std::logic_error  no step has begun
   void fill(ContactProblem& problem) const;
 
   /// Ends the step: updates intensities, anchors and impulses of the records.
   /// @param solution  of the problem that fill() completed
   /// @param poses     of all bodies at the end of the step
-  /// @throws std::invalid_argument  a body of a record has no pose, or as evolve_adhesion()
+  /// @throws std::logic_error       no step has begun, or it has ended already
+  /// @throws std::invalid_argument  a body of a record has no pose, a pose, an impulse or a
+  ///                                velocity is not finite, a rotation is not of length 1, or as
+  ///                                evolve_adhesion()
   AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPose> poses);
 
   /// The state of all contacts, sorted by key.
@@ -140,8 +164,9 @@ class TETWARP_EXPORT ContactTracker {
  private:
   ContactTrackerOptions options_;
   std::vector<ContactRecord> records_;
-  std::vector<TrackedContact> contacts_;  ///< of this step, in the order of records_
+  std::vector<TrackedContact> contacts_;  ///< of the last step; in it, in the order of records_
   double time_step_ = 0;
+  bool is_in_step_ = false;
 };
 
 }  // namespace tetwarp

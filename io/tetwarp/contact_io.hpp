@@ -43,7 +43,7 @@ TETWARP_IO_EXPORT std::span<const EnumName<ContactStart>> names_of();
 /// in any shape. Units are those of ContactProblem.
 ///
 /// Not supported: two dimensions, equality constraints (G, or V and R), rolling friction.
-/// In /adhesion a missing `intensity` is 0; other missing vectors stay empty.
+/// One triangle of M suffices. In /adhesion `stiffness` needs `intensity`; others may be missing.
 TETWARP_IO_EXPORT ContactProblem read_contact_problem(const std::string& path,
                                                       ContactStart start = ContactStart::zero);
 

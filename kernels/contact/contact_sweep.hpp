@@ -244,7 +244,7 @@ struct FromContact {
 /// @param exec         where to run
 /// @param color_start  first contact of each color, and the end, [colors + 1]; the caller reads it
 /// @param body         DelassusSweepBody or BodySweepBody
-/// @pre  contacts of one color do not influence each other; see contact_color()
+/// @pre  contacts of one color do not influence each other; see host/contact/structure/color.hpp
 ///
 /// Determinism: same bits for any number of threads. Cost: per contact its row of W, or J and the
 /// responses of its blocks once each.

@@ -2,6 +2,7 @@
 /// `tetwarp contact`: bad arguments and bad files give one line and no output.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -99,6 +100,29 @@ TEST_F(ContactCommand, NeverWritesOverItsInput) {
   EXPECT_EQ(run_command(folder, {"contact", "problem.hdf5", "-o", "a", "--report", "a"}).exit_code,
             1);
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
+}
+
+TEST_F(ContactCommand, RefusesARecoverySpeedThatALocalProblemCannotHave) {
+  store(sliding_point());
+
+  const CommandResult result = solve({"--recovery-speed", "0.5"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("has no offsets w, which --recovery-speed limits"), std::string::npos)
+      << result.err;
+  EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
+}
+
+TEST_F(ContactCommand, CallsACutFileTruncated) {
+  store(adhesive_problem());
+  std::filesystem::resize_file(folder / "problem.hdf5", 4000);
+
+  for (const CommandResult& result : {solve(), run_command(folder, {"info", "problem.hdf5"})}) {
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find("truncated or damaged HDF5 file"), std::string::npos) << result.err;
+  }
 }
 
 TEST_F(ContactCommand, RefusesToEvolveWithoutAdhesion) {

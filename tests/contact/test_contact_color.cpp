@@ -1,5 +1,5 @@
 /// @file test_contact_color.cpp
-/// Contacts of one color share no body, and the colors do not depend on the order of threads.
+/// Contacts of one color share no body, and colors are the lowest free ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/contact/structure/color.hpp"
 #include "host/contact/structure/islands.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
-#include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"
 #include "tests/scenes/contact_samples.hpp"
 #include "tests/scenes/contact_stages.hpp"
@@ -22,42 +22,26 @@ namespace tetwarp::test {
 namespace {
 using Colors = std::vector<std::int32_t>;
 
-/// Counts the passes of another executor.
-template <class Exec>
-struct Counting {
-  Exec exec;
-  int passes = 0;
-
-  template <class Body>
-  void for_each(const char* label, std::int64_t count, const Body& body) {
-    ++passes;
-    exec.for_each(label, count, body);
-  }
-  template <class Sum, class Body>
-  Sum sum(const char* label, std::int64_t first, std::int64_t last, const Body& body) {
-    return exec.template sum<Sum>(label, first, last, body);
-  }
-};
-
-/// @param rounds  out: passes over the contacts, without the one that prepares them
-template <class Exec>
-Colors colors_of(const Exec& exec, const Lists& groups, std::int64_t group_count, int& rounds) {
+/// By search: the lowest color that no earlier contact of the groups has.
+Colors searched_colors(const Lists& groups, std::int64_t group_count) {
   const Lists members = make_transposed(groups, group_count);
-  Colors colors(static_cast<std::size_t>(groups.size()));
-  Counting<Exec> counting{exec};
-  contact_color(counting,
-                ContactGroups{view_of(groups.start), view_of(groups.item), view_of(members.start),
-                              view_of(members.item)},
-                view_of(colors));
-  rounds = counting.passes - 1;
+  Colors colors;
+  for (std::int32_t c = 0; c < groups.size(); ++c) {
+    std::set<std::int32_t> taken;
+    for (const std::int32_t group : groups.of(c)) {
+      for (const std::int32_t neighbor : members.of(group)) {
+        if (neighbor < c) taken.insert(colors[static_cast<std::size_t>(neighbor)]);
+      }
+    }
+    std::int32_t color = 0;
+    while (taken.contains(color)) ++color;
+    colors.push_back(color);
+  }
   return colors;
 }
 
 Colors colors_of(const Lists& groups, std::int64_t group_count) {
-  int rounds = 0;
-  Colors colors = colors_of(CpuContactExec(1), groups, group_count, rounds);
-  EXPECT_EQ(rounds, 1);
-  return colors;
+  return color_contacts(groups, group_count).of_contact;
 }
 
 /// Contacts of two bodies, or of one body with the fixed world.
@@ -95,13 +79,13 @@ TEST(ContactColor, NoTwoContactsOfAColorShareAGroupAndColorsLeaveNoHole) {
   }
 }
 
-TEST(ContactColor, AnyOrderOfVisitsEndsAtTheSameColors) {
+/// Groups of up to 64 contacts and larger ones, whose colors are stored in other ways.
+TEST(ContactColor, AreTheLowestFreeOnesInTheOrderOfContacts) {
   for (const std::int64_t size : sizes) {
-    const Lists groups = random_groups(52, size, 40);
-    int rounds = 0;
-
-    EXPECT_EQ(colors_of(ReversedExec{}, groups, 40, rounds), colors_of(groups, 40));
-    EXPECT_TRUE(size <= 1 || rounds > 1);
+    for (const std::int32_t bodies : {2, 40, 500}) {
+      const Lists groups = random_groups(52, size, bodies);
+      EXPECT_EQ(colors_of(groups, bodies), searched_colors(groups, bodies)) << size << " contacts";
+    }
   }
 }
 
@@ -125,18 +109,43 @@ TEST(ContactColor, ContactsThatMoveNothingTogetherAreAllOfOneColor) {
   EXPECT_EQ(colors_of(groups, 33), Colors(33, 0));
 }
 
-/// More colors than bits in a word.
+/// More colors than bits in a word, in a number of steps proportional to the contacts.
 TEST(ContactColor, EveryContactOfOneBodyHasAColorOfItsOwn) {
-  Lists groups;
-  for (std::int32_t c = 0; c < 150; ++c) {
-    groups.item.push_back(0);
-    groups.close_list();
+  for (const std::int32_t size : {64, 65, 150, 64000}) {
+    Lists groups;
+    Colors expected;
+    for (std::int32_t c = 0; c < size; ++c) {
+      groups.item.push_back(0);
+      groups.close_list();
+      expected.push_back(c);
+    }
+
+    const ContactColors colors = color_contacts(groups, 1);
+
+    EXPECT_EQ(colors.of_contact, expected);
+    EXPECT_LE(colors.steps, std::max(size, 64 * 64)) << size << " contacts";
   }
+}
 
-  const Colors colors = colors_of(groups, 1);
+/// The spheres of a tray also touch each other.
+TEST(ContactColor, StepsGrowWithTheContactsOfATray) {
+  for (const std::int64_t edge : {16, 128}) {
+    Lists groups;
+    for (std::int32_t sphere = 1; sphere <= edge * edge; ++sphere) {
+      groups.item.insert(groups.item.end(), {0, sphere});
+      groups.close_list();
+      for (const std::int64_t step : {std::int64_t{1}, edge}) {
+        if (sphere <= step) continue;
+        groups.item.insert(groups.item.end(), {sphere - static_cast<std::int32_t>(step), sphere});
+        groups.close_list();
+      }
+    }
 
-  for (std::size_t c = 0; c < colors.size(); ++c) {
-    EXPECT_EQ(colors[c], static_cast<std::int32_t>(c));
+    const ContactColors colors = color_contacts(groups, edge * edge + 1);
+
+    EXPECT_LE(colors.steps, 12 * groups.size()) << edge << " spheres along each edge";
+    if (edge > 16) continue;
+    EXPECT_EQ(colors.of_contact, searched_colors(groups, edge * edge + 1));
   }
 }
 
@@ -146,7 +155,7 @@ TEST(ContactColor, ContactsAreSortedByIslandThenColorThenIndex) {
   HostStages stages;
   const std::vector<std::int32_t> islands = components_of(make_transposed(groups, 90), 60, stages);
 
-  const ContactOrder order = make_contact_order(groups, islands, stages);
+  const ContactOrder order = make_contact_order(groups, islands);
 
   std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t>> expected;
   for (std::int32_t c = 0; c < 60; ++c) {

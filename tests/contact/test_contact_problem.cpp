@@ -167,8 +167,13 @@ const BadProblem bad_problems[] = {
      "adhesion.time_step", ": nan; "},
     {"GapCount", global_problem, [](ContactProblem& p) { p.adhesion.gap.resize(3); },
      "adhesion.gap", ": 3 entries, expected 9: 3 per contact"},
-    {"GapDisagrees", global_problem, [](ContactProblem& p) { p.adhesion.gap[6] += 1e-6; },
-     "adhesion.gap", "[6]: "},
+    {"Indefinite", local_problem,
+     [](ContactProblem& p) {
+       Eigen::MatrixXd delassus = Eigen::MatrixXd::Identity(6, 6);
+       delassus(4, 1) = delassus(1, 4) = -1.5;
+       p.delassus = samples::sparse_of(delassus);
+     },
+     "delassus", "(1, 4): -1.5 is more than the diagonals 1 and 1 allow"},
     {"BlockStartsLate", global_problem, [](ContactProblem& p) { p.block_start[0] = 1; },
      "block_start", "[0]: 1, expected 0"},
     {"EmptyBlock", global_problem,

@@ -47,6 +47,57 @@ TEST_F(Fclib, KeepsAGlobalProblemWithAdhesionBlocksAndAStart) {
             contents(adhesive_problem()));
 }
 
+/// Files of finite-element programs hold one triangle of M.
+TEST_F(Fclib, CompletesASymmetricMatrixOfOneTriangle) {
+  ContactProblem whole = global_problem();
+  std::vector<std::vector<double>> rows = dense(whole.system);
+  rows[0][2] = rows[2][0] = 0.25;
+  rows[1][2] = rows[2][1] = -0.125;
+  whole.system = sparse(rows);
+  for (const bool is_upper : {true, false}) {
+    std::vector<std::vector<double>> triangle = rows;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      for (std::size_t column = 0; column < rows.size(); ++column) {
+        if (is_upper ? column < row : column > row) triangle[row][column] = 0;
+      }
+    }
+    const SparseMatrix half = sparse(triangle);
+    write_contact_problem(file, whole);
+    const std::string m = "fclib_global/M/";
+    const std::vector<std::int32_t> starts(half.row_start.begin(), half.row_start.end());
+    {
+      Hdf5Editor edit(file);
+      edit.dataset<std::int32_t>(m + "p", {starts.size()}, starts);
+      edit.dataset<std::int32_t>(m + "i", {half.column.size()}, half.column);
+      edit.dataset<double>(m + "x", {half.value.size()}, half.value);
+    }
+
+    EXPECT_EQ(dense(read_contact_problem(file).system), rows) << (is_upper ? "upper" : "lower");
+  }
+}
+
+TEST_F(Fclib, ReadsALocalProblemWithoutContacts) {
+  write_contact_problem(file, local_problem());
+  {
+    Hdf5Editor edit(file);
+    for (const char* name : {"vectors/mu", "vectors/q", "W/x"}) {
+      edit.dataset<double>(std::string("fclib_local/") + name, {0}, {});
+    }
+    for (const char* name : {"m", "n"}) {
+      edit.dataset<std::int32_t>(std::string("fclib_local/W/") + name, {1}, {0});
+    }
+    edit.dataset<std::int32_t>("fclib_local/W/p", {1}, {0});
+    edit.dataset<std::int32_t>("fclib_local/W/i", {0}, {});
+  }
+
+  const ContactProblem problem = read_contact_problem(file);
+
+  EXPECT_EQ(problem.contact_count(), 0);
+  const ContactSolution solution = solve_contacts(problem);
+  EXPECT_TRUE(solution.converged());
+  EXPECT_TRUE(solution.impulse.empty() && solution.velocity.empty());
+}
+
 TEST_F(Fclib, KeepsAProblemWithoutContacts) {
   ContactProblem problem = global_problem();
   problem.jacobian = {};
@@ -176,8 +227,8 @@ TEST_F(Fclib, ReadsNumbersOfAnyShape) {
 
 TEST_F(Fclib, TakesMissingAdhesionVectorsAsNone) {
   write_contact_problem(file, adhesive_problem());
-  for (const char* name : {"intensity", "tangential_stiffness", "gap", "energy", "viscosity",
-                           "bonding_rate", "saturation"}) {
+  for (const char* name : {"stiffness", "intensity", "tangential_stiffness", "gap", "energy",
+                           "viscosity", "bonding_rate", "saturation"}) {
     Hdf5Editor(file).remove(std::string("adhesion/") + name);
   }
 
@@ -186,7 +237,7 @@ TEST_F(Fclib, TakesMissingAdhesionVectorsAsNone) {
   EXPECT_EQ(adhesion.time_step, 0.0078125);
   EXPECT_EQ(adhesion.intensity, (std::vector<double>{0, 0}));
   EXPECT_EQ(adhesion.area, (std::vector<double>{0.5, 0.25}));
-  EXPECT_TRUE(adhesion.tangential_stiffness.empty());
+  EXPECT_TRUE(adhesion.stiffness.empty() && adhesion.tangential_stiffness.empty());
   EXPECT_TRUE(adhesion.gap.empty());
   EXPECT_TRUE(adhesion.energy.empty() && adhesion.saturation_pressure.empty());
 }

@@ -100,7 +100,7 @@ TEST_F(BadFclib, IsNamedWhenVectorsHaveTheWrongLength) {
                   },
                   "/fclib_local/vectors/q", "holds 2 numbers, expected 6"},
                  {[](Hdf5Editor& e) { e.dataset<double>("fclib_local/vectors/mu", {1}, {0.5}); },
-                  "/fclib_local/vectors/q", "holds 6 numbers, expected 3"},
+                  "/fclib_local/vectors/mu", "holds 1 numbers, expected 2: one per contact"},
                  {[](Hdf5Editor& e) { e.dataset<double>("fclib_local/vectors/mu", {0}, {}); },
                   "/fclib_local", ""},
                  {[](Hdf5Editor& e) {
@@ -112,6 +112,12 @@ TEST_F(BadFclib, IsNamedWhenVectorsHaveTheWrongLength) {
                     e.dataset<double>("fclib_global/vectors/f", {5}, {1, 2, 3, 4, 5});
                   },
                   "/fclib_global/M", "is 6 x 6, expected 5 x 5"},
+                 {[](Hdf5Editor& e) {
+                    e.dataset<double>("fclib_global/vectors/mu", {3}, {0.5, 0.5, 0.5});
+                  },
+                  "/fclib_global/vectors/mu", "holds 3 numbers, expected 2: one per contact"},
+                 {[](Hdf5Editor& e) { e.remove("adhesion/intensity"); }, "/adhesion/intensity",
+                  "is missing, but there is a stiffness"},
                  {[](Hdf5Editor& e) {
                     e.dataset<double>("adhesion/area", {3}, {1, 1, 1});
                   },

@@ -91,6 +91,15 @@ struct ElasticSlab {
 };
 ContactProblem elastic_slab(const ElasticSlab& choice);
 
+/// A square layer of touching spheres on a tray, which rests on the floor at its corners: one body
+/// in contact with all spheres.
+struct Tray {
+  std::int64_t edge = 16;  ///< spheres along each edge of the layer
+  double friction = 0.3;
+  double time_step = 0.01;
+};
+ContactProblem tray(const Tray& choice);
+
 /// Two scenes in one, without contacts between them.
 /// @param b  in global form like `a`, without contacts
 ContactProblem beside(ContactProblem a, const ContactProblem& b);

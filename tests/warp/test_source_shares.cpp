@@ -14,7 +14,7 @@ namespace {
 using Voxel = std::tuple<int, int, int>;
 using Shares = std::map<Voxel, double>;
 
-/// RandomNumbers in [-1, 1), one after the other.
+/// Numbers in [-1, 1), one after the other.
 class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint64_t seed) : seed_(seed) {}

@@ -15,7 +15,6 @@
 #include "host/contact/structure/indices.hpp"
 #include "host/contact/sweeps/run.hpp"
 #include "kernels/contact/contact_block.cuh"
-#include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_memory.hpp"
@@ -111,16 +110,6 @@ class CudaContactDevice final : public ContactDevice {
     input_in_memory_.restart();
     labels_.resize(item_count);
     contact_components(grid_, on_device(lists.start), on_device(lists.item), view_of(labels_));
-    return labels();
-  }
-
-  std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override {
-    exec_.use_stream(nullptr);
-    input_in_memory_.restart();
-    const ContactGroups views = {on_device(groups.start), on_device(groups.item),
-                                 on_device(members.start), on_device(members.item)};
-    labels_.resize(groups.size());
-    contact_color(grid_, views, view_of(labels_));
     return labels();
   }
 

@@ -30,7 +30,8 @@ void check_form(const ContactProblem& problem) {
         ": set together with system, jacobian, load or velocity_offset; clear the "
         "members of the local or of the global form");
   }
-  if (!local && !global) {
+  // A matrix of no rows that has its row start is the local form without contacts.
+  if (!local && !global && problem.delassus.row_start.empty()) {
     throw ContactProblemError("system",
                               ": empty, and so is delassus; fill system, jacobian, load and "
                               "velocity_offset, or delassus and free_velocity");
@@ -114,6 +115,40 @@ void check_diagonal(const ContactProblem& problem,
   }
 }
 
+/// The sum of the stored numbers of an entry.
+double entry_of(const SparseMatrix& matrix, std::size_t row, std::size_t column) {
+  double sum = 0;
+  for (std::int64_t e = matrix.row_start[row]; e < matrix.row_start[row + 1]; ++e) {
+    const auto entry = static_cast<std::size_t>(e);
+    if (static_cast<std::size_t>(matrix.column[entry]) == column) sum += matrix.value[entry];
+  }
+  return sum;
+}
+
+/// Refuses entries that no positive semidefinite matrix has: |W_ij + W_ji| / 2 beyond the geometric
+/// mean of W_ii and W_jj, by more than the 10 % that asymmetric recorded matrices may have.
+void check_semidefinite(const SparseMatrix& delassus, std::span<const double> diagonal) {
+  constexpr double slack = 1.1, rounding = 1e-9;
+  const double largest = diagonal.empty() ? 0 : *std::max_element(diagonal.begin(), diagonal.end());
+  for (std::size_t row = 0; row < diagonal.size(); ++row) {
+    for (std::int64_t e = delassus.row_start[row]; e < delassus.row_start[row + 1]; ++e) {
+      const auto entry = static_cast<std::size_t>(e);
+      const auto column = static_cast<std::size_t>(delassus.column[entry]);
+      const double bound =
+          slack * std::sqrt(diagonal[row]) * std::sqrt(diagonal[column]) + rounding * largest;
+      if (std::abs(delassus.value[entry]) <= bound) continue;
+      const double mean = (entry_of(delassus, row, column) + entry_of(delassus, column, row)) / 2;
+      if (std::abs(mean) <= bound) continue;
+      throw ContactProblemError(
+          "delassus", "(" + count(static_cast<std::int64_t>(row)) + ", " +
+                          count(static_cast<std::int64_t>(column)) + "): " + text_of(mean) +
+                          " is more than the diagonals " + text_of(diagonal[row]) + " and " +
+                          text_of(diagonal[column]) +
+                          " allow; J A^-1 J^T is positive semidefinite, correct its assembly");
+    }
+  }
+}
+
 void check_local(const ContactProblem& problem) {
   const std::int64_t rows = 3 * problem.contact_count();
   check_rows("delassus", problem.delassus);
@@ -140,6 +175,7 @@ void check_local(const ContactProblem& problem) {
   }
   // A diagonal of W is a square of rows over a mass; masses may differ by twelve digits.
   check_diagonal(problem, "delassus", diagonal, 1e-30);
+  check_semidefinite(problem.delassus, diagonal);
 }
 
 void check_global(const ContactProblem& problem) {
@@ -176,26 +212,6 @@ void check_global(const ContactProblem& problem) {
     }
   }
   check_diagonal(problem, "jacobian", sizes, 1e-14);
-}
-
-/// The normal gap of the adhesion must equal time_step * velocity_offset. Local form has no
-/// separate velocity offset, so that there is nothing to check.
-void check_gap(const ContactProblem& problem) {
-  const AdhesionState& adhesion = problem.adhesion;
-  if (adhesion.gap.empty() || adhesion.time_step == 0) return;
-  double scale = 0;
-  for (const double gap : adhesion.gap) scale = std::max(scale, std::abs(gap));
-  for (std::size_t c = 0; c < problem.friction.size(); ++c) {
-    scale = std::max(scale, std::abs(adhesion.time_step * problem.velocity_offset[3 * c]));
-  }
-  for (std::size_t c = 0; c < problem.friction.size(); ++c) {
-    const double expected = adhesion.time_step * problem.velocity_offset[3 * c];
-    if (std::abs(adhesion.gap[3 * c] - expected) <= 1e-9 * scale) continue;
-    throw ContactProblemError("adhesion.gap",
-                              at(3 * static_cast<std::int64_t>(c)) + text_of(adhesion.gap[3 * c]) +
-                                  " is not time_step * velocity_offset, " + text_of(expected) +
-                                  "; both are the normal gap at the start of the step");
-  }
 }
 
 void check_adhesion(const ContactProblem& problem) {
@@ -248,7 +264,6 @@ void check_problem(const ContactProblem& problem) {
     check_local(problem);
   } else {
     check_global(problem);
-    check_gap(problem);
   }
   if (!problem.impulse_guess.empty()) {
     check_size("impulse_guess", problem.impulse_guess.size(), 3 * problem.contact_count(),

@@ -12,6 +12,7 @@
 #include "host/contact/problem/delassus.hpp"
 #include "host/contact/problem/imbalance.hpp"
 #include "host/contact/problem/measure.hpp"
+#include "host/contact/problem/spring_offset.hpp"
 
 namespace tetwarp {
 
@@ -90,6 +91,12 @@ ContactResidual residual_of(const ContactProblem& problem,
                             std::span<const double> body_velocity,
                             const ContactOptions& options) {
   check_problem(problem);
+  const std::vector<double> preloads = spring_preloads(problem);
+  if (!preloads.empty() && impulse.size() == 3 * preloads.size()) {
+    std::vector<double> shifted(impulse.begin(), impulse.end());
+    add_preloads(preloads, 1, shifted);
+    return residual_of(with_preloads(problem, preloads), shifted, body_velocity, options);
+  }
   const Delassus delassus(problem, options.recovery_speed);
   std::vector<MeasuredContact> contacts = measured_contacts(problem);
   const std::vector<Eigen::Matrix3d> blocks = delassus.diagonal_blocks();

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "host/contact/problem/vectors.hpp"
+#include "host/contact/structure/color.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
-#include "kernels/contact/contact_color.hpp"
 #include "kernels/contact/contact_components.hpp"
 
 namespace tetwarp {
@@ -34,16 +34,6 @@ std::vector<std::int32_t> HostStages::lowest_connected(const Lists& lists,
   return lowest;
 }
 
-std::vector<std::int32_t> HostStages::colors_of(const Lists& groups, const Lists& members) {
-  std::vector<std::int32_t> colors(static_cast<std::size_t>(groups.size()));
-  CpuContactExec exec(1);
-  contact_color(exec,
-                ContactGroups{view_of(groups.start), view_of(groups.item), view_of(members.start),
-                              view_of(members.item)},
-                view_of(colors));
-  return colors;
-}
-
 std::vector<std::int32_t> components_of(const Lists& lists,
                                         std::int64_t item_count,
                                         StructureStages& stages) {
@@ -56,13 +46,10 @@ std::vector<std::int32_t> components_of(const Lists& lists,
   return component;
 }
 
-ContactOrder make_contact_order(const Lists& groups,
-                                std::span<const std::int32_t> island,
-                                StructureStages& stages) {
+ContactOrder make_contact_order(const Lists& groups, std::span<const std::int32_t> island) {
   const std::int64_t group_count =
       groups.item.empty() ? 0 : *std::max_element(groups.item.begin(), groups.item.end()) + 1;
-  const std::vector<std::int32_t> colors =
-      stages.colors_of(groups, make_transposed(groups, group_count));
+  const std::vector<std::int32_t> colors = color_contacts(groups, group_count).of_contact;
 
   ContactOrder order;
   order.contact_of_slot.resize(island.size());

@@ -25,7 +25,7 @@ struct Lists {
 /// increasing order.
 Lists make_transposed(const Lists& lists, std::int64_t item_count);
 
-/// The two stages by which a structure is made; the host and each device implement them.
+/// The stage by which a structure is made that the host and each device implement.
 class StructureStages {
  public:
   virtual ~StructureStages() = default;
@@ -33,19 +33,12 @@ class StructureStages {
   /// The lowest item of the connected component of each item; the items of a list are connected.
   virtual std::vector<std::int32_t> lowest_connected(const Lists& lists,
                                                      std::int64_t item_count) = 0;
-
-  /// The color of each contact, greedy in the order of the contacts: no two contacts of a group
-  /// have the same color.
-  /// @param groups   groups of each contact
-  /// @param members  contacts of each group, in increasing order: make_transposed(groups)
-  virtual std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) = 0;
 };
 
 /// On one thread of the host.
 class HostStages final : public StructureStages {
  public:
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override;
-  std::vector<std::int32_t> colors_of(const Lists& groups, const Lists& members) override;
 };
 
 /// Number of the connected component of each item; components are sorted by their lowest items.
@@ -64,8 +57,6 @@ struct ContactOrder {
 
 /// @param groups  groups of each contact; contacts that share one get different colors
 /// @param island  number of the island of each contact; 0 to islands - 1, all in use
-ContactOrder make_contact_order(const Lists& groups,
-                                std::span<const std::int32_t> island,
-                                StructureStages& stages);
+ContactOrder make_contact_order(const Lists& groups, std::span<const std::int32_t> island);
 
 }  // namespace tetwarp

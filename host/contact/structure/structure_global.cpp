@@ -42,7 +42,9 @@ std::vector<std::int64_t> merged_starts(const Blocks& blocks) {
   const Lists contacts = make_transposed(blocks.touched, blocks.count());
   const auto shares_contact = [&](std::int64_t a, std::int64_t b) {
     const auto x = contacts.of(a), y = contacts.of(b);
-    return std::find_first_of(x.begin(), x.end(), y.begin(), y.end()) != x.end();
+    auto i = x.begin(), j = y.begin();
+    while (i != x.end() && j != y.end() && *i != *j) *i < *j ? ++i : ++j;
+    return i != x.end() && j != y.end();
   };
   std::vector<std::int64_t> starts = {0};
   for (std::int64_t b = 1; b < blocks.count(); ++b) {
@@ -78,7 +80,7 @@ std::vector<std::int32_t> order_blocks(const Blocks& blocks,
     if (island < 0) island = skip.converged_islands || count == 0 ? count++ : 0;
     contact_island.push_back(island);
   }
-  take_order(s, make_contact_order(blocks.touched, contact_island, stages));
+  take_order(s, make_contact_order(blocks.touched, contact_island));
   for (const std::int32_t c : component) {
     if (island_of[index_of(c)] >= 0) continue;
     if (!skip.contactless_bodies && s.contact_islands > 0) {

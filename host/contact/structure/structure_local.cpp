@@ -36,7 +36,7 @@ void fill_local_structure(const ContactProblem& problem,
   const std::vector<std::int32_t> islands = skip.converged_islands
                                                 ? components_of(groups, contacts, stages)
                                                 : std::vector<std::int32_t>(index_of(contacts), 0);
-  take_order(s, make_contact_order(make_transposed(groups, contacts), islands, stages));
+  take_order(s, make_contact_order(make_transposed(groups, contacts), islands));
 
   const std::vector<std::int32_t> slot_of = places_of(s.contact_of_slot);
   s.delassus_row = {0};

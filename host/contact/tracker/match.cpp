@@ -33,7 +33,9 @@ ReportedContact in_key_order(const ReportedContact& report) {
   ReportedContact turned = report;
   turned.key = {key.body_b, key.feature_b, key.body_a, key.feature_a};
   std::swap(turned.point_a_world, turned.point_b_world);
-  for (double& component : turned.normal) component = -component;
+  for (Point3* vector : {&turned.normal, &turned.surface_velocity, &turned.obstacle_velocity}) {
+    for (double& component : *vector) component = -component;
+  }
   return turned;
 }
 

@@ -1,67 +1,16 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <tetwarp/contact_tracker.hpp>
 #include <utility>
 
 #include "host/contact/tracker/geometry.hpp"
+#include "host/contact/tracker/input_checks.hpp"
 #include "host/contact/tracker/match.hpp"
 
 namespace tetwarp {
 namespace {
 using Eigen::Vector3d;
-
-[[noreturn]] void refuse(const std::string& subject, const std::string& problem) {
-  throw std::invalid_argument("ContactTracker: " + subject + " " + problem);
-}
-
-std::string name_of(const ContactKey& key) {
-  return "contact (" + std::to_string(key.body_a) + ", " + std::to_string(key.feature_a) + ", " +
-         std::to_string(key.body_b) + ", " + std::to_string(key.feature_b) + ")";
-}
-
-void check_materials(const std::vector<ContactMaterial>& materials) {
-  for (std::size_t m = 0; m < materials.size(); ++m) {
-    const ContactMaterial& material = materials[m];
-    for (const double value :
-         {material.friction, material.stiffness, material.tangential_stiffness.value_or(0),
-          material.energy, material.viscosity, material.bonding_rate, material.saturation_pressure,
-          material.initial_intensity, 1 - material.initial_intensity}) {
-      if (std::isfinite(value) && value >= 0) continue;
-      refuse("material " + std::to_string(m),
-             "has a constant that is negative or not finite, or an intensity above 1");
-    }
-  }
-}
-
-void check_bodies(const ContactKey& key, std::size_t body_count) {
-  if (key.body_a == key.body_b) refuse(name_of(key), "has the same body on both sides");
-  if (key.body_a < 0 || static_cast<std::size_t>(key.body_b) >= body_count) {
-    refuse(name_of(key),
-           "has a body index out of range, there are " + std::to_string(body_count) + " poses");
-  }
-}
-
-void check_report(const ReportedContact& report,
-                  std::size_t body_count,
-                  std::size_t material_count) {
-  check_bodies(report.key, body_count);
-  if (!(std::abs(vector_of(report.normal).norm() - 1) <= 1e-6)) {
-    refuse(name_of(report.key), "has a normal that is not a unit vector");
-  }
-  if (!(report.area >= 0) || !std::isfinite(report.area)) {
-    refuse(name_of(report.key),
-           "has area " + std::to_string(report.area) + ", expected a finite number of 0 or more");
-  }
-  if (report.material < 0 || static_cast<std::size_t>(report.material) >= material_count) {
-    refuse(name_of(report.key), "has material " + std::to_string(report.material) + ", there are " +
-                                    std::to_string(material_count) + " materials");
-  }
-  const Vector3d sum =
-      vector_of(report.point_a_world) + vector_of(report.point_b_world) + vector_of(report.tangent);
-  if (!sum.allFinite()) refuse(name_of(report.key), "has a position that is not finite");
-}
 
 /// The reports in key order, sorted by key.
 /// @throws std::invalid_argument  two have the same key
@@ -130,6 +79,45 @@ TrackedContact contact_of(const ContactRecord& record,
   return contact;
 }
 
+/// Sets what the report prescribes; a contact that is not reported keeps zeros.
+/// @param report  or null
+void set_velocities(TrackedContact& contact,
+                    const ReportedContact* report,
+                    const ContactTrackerOptions& options,
+                    double time_step) {
+  if (report == nullptr) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d axis = vector_of(contact.axes[k]);
+    contact.surface_velocity[k] = axis.dot(vector_of(report->surface_velocity));
+    contact.obstacle_velocity[k] = axis.dot(vector_of(report->obstacle_velocity));
+  }
+  const double approach = report->approach_speed;
+  const bool is_impact =
+      approach > options.restitution_speed && contact.gap[0] <= time_step * approach;
+  if (!is_impact) return;
+  contact.rebound_speed =
+      options.materials[static_cast<std::size_t>(report->material)].restitution * approach;
+}
+
+/// The velocity of a relative to b that is not in the bodies' velocities, along the axes.
+Point3 prescribed_velocity(const TrackedContact& contact) {
+  return point_of(vector_of(contact.surface_velocity) + vector_of(contact.obstacle_velocity));
+}
+
+/// Moves anchor b with the surfaces, whose motion the poses do not show.
+void carry_anchor(ContactRecord& record,
+                  const TrackedContact& contact,
+                  double time_step,
+                  std::span<const BodyPose> poses) {
+  if (contact.surface_velocity == Point3{0, 0, 0}) return;
+  const BodyPose& pose_b = poses[static_cast<std::size_t>(record.key.body_b)];
+  Vector3d anchor_b = world_of(pose_b, record.anchor_b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    anchor_b -= time_step * contact.surface_velocity[k] * vector_of(contact.axes[k]);
+  }
+  record.anchor_b = body_of(pose_b, anchor_b);
+}
+
 /// Moves anchor b so that the tangential gap is multiplied by `keep`.
 void shrink_gap(ContactRecord& record, double keep, std::span<const BodyPose> poses) {
   const BodyPose& pose_a = poses[static_cast<std::size_t>(record.key.body_a)];
@@ -148,25 +136,16 @@ ContactTracker::ContactTracker(ContactTrackerOptions options, std::vector<Contac
   if (!(options_.match_distance >= 0) || !(options_.touch_distance >= 0)) {
     refuse("match_distance and touch_distance", "must not be negative");
   }
-  for (std::size_t k = 0; k < records_.size(); ++k) {
-    const ContactRecord& record = records_[k];
-    if (k > 0 && !(records_[k - 1].key < record.key)) {
-      refuse(name_of(record.key), "is out of order, sort the records by key");
-    }
-    if (!(record.key.body_a < record.key.body_b)) {
-      refuse(name_of(record.key), "must name the body with the smaller index first");
-    }
-    if (!(record.intensity >= 0 && record.intensity <= 1) || record.material < 0 ||
-        static_cast<std::size_t>(record.material) >= options_.materials.size()) {
-      refuse(name_of(record.key),
-             "has an intensity outside [0, 1] or a material index out of range");
-    }
-  }
+  if (!(options_.restitution_speed >= 0)) refuse("restitution_speed", "must not be negative");
+  check_records(records_, options_.materials.size());
 }
 
 const std::vector<TrackedContact>& ContactTracker::begin_step(
     std::span<const ReportedContact> unsorted, std::span<const BodyPose> poses, double time_step) {
-  if (!(time_step > 0)) refuse("time_step", "must be more than 0 s");
+  if (!(time_step > 0) || !std::isfinite(time_step)) {
+    refuse("time_step", "must be a finite time of more than 0 s");
+  }
+  check_poses(poses);
   const std::vector<ReportedContact> reports = sorted(unsorted);
   for (const ReportedContact& report : reports) {
     check_report(report, poses.size(), options_.materials.size());
@@ -196,17 +175,24 @@ const std::vector<TrackedContact>& ContactTracker::begin_step(
   std::sort(steps.begin(), steps.end(),
             [](const Step& a, const Step& b) { return a.record.key < b.record.key; });
 
-  time_step_ = time_step;
-  records_.clear();
-  contacts_.clear();
+  std::vector<ContactRecord> records;
+  std::vector<TrackedContact> contacts;
   for (const Step& step : steps) {
-    records_.push_back(step.record);
-    contacts_.push_back(contact_of(step.record, step.report, poses));
+    records.push_back(step.record);
+    contacts.push_back(contact_of(step.record, step.report, poses));
+    set_velocities(contacts.back(), step.report, options_, time_step);
   }
+  time_step_ = time_step;
+  is_in_step_ = true;
+  records_ = std::move(records);
+  contacts_ = std::move(contacts);
   return contacts_;
 }
 
 void ContactTracker::fill(ContactProblem& problem) const {
+  if (!is_in_step_) {
+    throw std::logic_error("ContactTracker: fill() outside of a step, call begin_step() first");
+  }
   problem.friction.clear();
   problem.velocity_offset.clear();
   problem.impulse_guess.clear();
@@ -218,8 +204,12 @@ void ContactTracker::fill(ContactProblem& problem) const {
     const TrackedContact& contact = contacts_[c];
     const ContactMaterial& material = options_.materials[static_cast<std::size_t>(record.material)];
     problem.friction.push_back(material.friction);
+    const Point3 moving = prescribed_velocity(contact);
+    const double closing = contact.gap[0] / time_step_;
+    const double normal =
+        contact.rebound_speed > 0 ? std::min(closing, -contact.rebound_speed) : closing;
     problem.velocity_offset.insert(problem.velocity_offset.end(),
-                                   {contact.gap[0] / time_step_, 0, 0});
+                                   {normal + moving[0], moving[1], moving[2]});
     adhesion.area.push_back(record.area);
     adhesion.stiffness.push_back(material.stiffness);
     adhesion.tangential_stiffness.push_back(
@@ -230,7 +220,8 @@ void ContactTracker::fill(ContactProblem& problem) const {
     adhesion.bonding_rate.push_back(material.bonding_rate);
     adhesion.saturation_pressure.push_back(material.saturation_pressure);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      adhesion.gap.push_back(contact.gap[axis]);
+      // Springs see the normal gap that the prescribed motion leaves; see AdhesionState::gap.
+      adhesion.gap.push_back(contact.gap[axis] + (axis == 0 ? time_step_ * moving[0] : 0));
       problem.impulse_guess.push_back(
           vector_of(contact.axes[axis]).dot(vector_of(record.impulse_world)));
     }
@@ -239,7 +230,13 @@ void ContactTracker::fill(ContactProblem& problem) const {
 
 AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
                                       std::span<const BodyPose> poses) {
+  if (!is_in_step_) {
+    throw std::logic_error(
+        "ContactTracker: end_step() without a step, call begin_step() before each end_step()");
+  }
+  check_poses(poses);
   for (const ContactRecord& record : records_) check_bodies(record.key, poses.size());
+  check_solution(solution, contacts_);
   ContactProblem problem;
   fill(problem);
   AdhesionStep step = evolve_adhesion(problem, solution, options_.evolution);
@@ -248,6 +245,7 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
     ContactRecord record = records_[c];
     const double before = record.intensity;
     record.intensity = step.intensity[c];
+    carry_anchor(record, contacts_[c], time_step_, poses);
     if (!record.has_touched && solution.impulse[3 * c] > 0) {
       record.has_touched = true;
       const auto material = static_cast<std::size_t>(record.material);
@@ -261,11 +259,14 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
     for (std::size_t axis = 0; axis < 3; ++axis) {
       impulse += solution.impulse[3 * c + axis] * vector_of(contacts_[c].axes[axis]);
     }
+    if (!impulse.allFinite() || !std::isfinite(step.intensity[c])) {
+      refuse(name_of(record.key), "has an impulse or a velocity beyond the range of numbers");
+    }
     record.impulse_world = point_of(impulse);
     if (contacts_[c].is_reported || record.intensity > 0) kept.push_back(record);
   }
   records_ = std::move(kept);
-  contacts_.clear();
+  is_in_step_ = false;
   return step;
 }
 

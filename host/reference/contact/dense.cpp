@@ -37,7 +37,8 @@ VectorXd per_contact(const std::vector<double>& values, Index contacts) {
   return values.empty() ? VectorXd::Zero(contacts) : dense_of(values);
 }
 
-void add_adhesion(const AdhesionState& adhesion, DenseContacts& contacts) {
+void add_adhesion(const ContactProblem& problem, DenseContacts& contacts) {
+  const AdhesionState& adhesion = problem.adhesion;
   const Index count = contacts.contact_count();
   contacts.stiffness = VectorXd::Zero(3 * count);
   contacts.offset = VectorXd::Zero(3 * count);
@@ -53,6 +54,14 @@ void add_adhesion(const AdhesionState& adhesion, DenseContacts& contacts) {
     const double common = dt * dt * area(c) * beta(c) * beta(c);
     contacts.stiffness.segment<3>(3 * c) << common * normal(c), common * tangent(c),
         common * tangent(c);
+    if (!problem.is_local() && !adhesion.gap.empty()) {
+      // The gap that springs see may differ from dt w_n.
+      const auto row = static_cast<std::size_t>(3 * c);
+      const double closing = adhesion.gap[row] / dt;
+      const double offset = problem.velocity_offset[row];
+      const bool is_same = std::abs(closing - offset) <= 1e-9 * std::abs(closing);
+      contacts.offset(3 * c) = is_same ? 0 : closing - offset;
+    }
     for (Index a = 1; a < 3 && !adhesion.gap.empty(); ++a) {
       contacts.offset(3 * c + a) = adhesion.gap[static_cast<std::size_t>(3 * c + a)] / dt;
     }
@@ -118,7 +127,7 @@ double residual_norm(const DenseContacts& contacts,
 DenseContacts make_dense(const ContactProblem& problem, double recovery_speed) {
   DenseContacts contacts;
   contacts.friction = dense_of(problem.friction);
-  add_adhesion(problem.adhesion, contacts);
+  add_adhesion(problem, contacts);
   if (problem.is_local()) {
     contacts.delassus = dense_of(problem.delassus);
     contacts.free_velocity = dense_of(problem.free_velocity);

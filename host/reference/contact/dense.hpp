@@ -15,7 +15,7 @@ struct DenseContacts {
   Eigen::MatrixXd delassus;            ///< B, [3 contacts][3 contacts], 1/kg
   Eigen::VectorXd free_velocity;       ///< q, m/s, offset included
   Eigen::VectorXd stiffness;           ///< diagonal of K, kg
-  Eigen::VectorXd offset;              ///< o: 0 and the stored tangential gaps over dt, m/s
+  Eigen::VectorXd offset;              ///< o: stored gaps over dt, the normal one less w_n, m/s
   Eigen::VectorXd friction;            ///< mu, [contacts]
   Eigen::MatrixXd body_change;         ///< V = A^-1 J^T, [dofs][3 contacts]; no rows in local form
   Eigen::VectorXd free_body_velocity;  ///< A^-1 b, [dofs]

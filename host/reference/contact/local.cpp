@@ -114,8 +114,10 @@ Vector3d update_pyramid(const LocalContact& contact,
   const double own = contact.delassus(0, 0);
   const double gap = velocity(0) - own * impulse(0);
   const double kappa = contact.stiffness(0);
-  change(0, gap <= 0 ? -gap / own : -kappa * gap / (1 + kappa * own));
-  const double coulomb = contact.friction * std::max(impulse(0), 0.0);
+  const double preload = kappa * contact.offset(0);  // nu_n - r_n where u_n = 0
+  const bool is_closed = gap - own * preload <= 0;
+  change(0, is_closed ? -gap / own : -kappa * (gap + contact.offset(0)) / (1 + kappa * own));
+  const double coulomb = contact.friction * (is_closed ? impulse(0) + preload : 0.0);
   for (Eigen::Index a = 1; a < 3; ++a) {
     change(a, tangent_impulse(contact, a, coulomb, impulse(a), velocity(a), options));
   }

@@ -1,0 +1,36 @@
+/// @file input_checks.hpp
+/// Checks of what the tracker is given. All throw std::invalid_argument with one line that names
+/// the contact, body or material.
+#pragma once
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tetwarp/contact_tracker.hpp>
+
+namespace tetwarp {
+
+/// Throws std::invalid_argument: "ContactTracker: SUBJECT PROBLEM".
+[[noreturn]] void refuse(const std::string& subject, const std::string& problem);
+
+std::string name_of(const ContactKey& key);
+
+void check_materials(const std::vector<ContactMaterial>& materials);
+
+/// @param body_count  number of poses
+void check_bodies(const ContactKey& key, std::size_t body_count);
+
+void check_report(const ReportedContact& report,
+                  std::size_t body_count,
+                  std::size_t material_count);
+
+void check_records(const std::vector<ContactRecord>& records, std::size_t material_count);
+
+/// Positions are finite, rotations of length 1 within 1e-6.
+void check_poses(std::span<const BodyPose> poses);
+
+/// Three finite impulses and velocities for each contact.
+void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts);
+
+}  // namespace tetwarp
