@@ -7,7 +7,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 
 namespace tetwarp {
 

@@ -7,7 +7,7 @@
 
 #include <tetwarp/contact_problem.hpp>
 
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/problem/system_factor.hpp"
 
 namespace tetwarp {

@@ -19,10 +19,10 @@ struct EngineResult {
   std::int64_t updates_skipped = 0;     ///< as in ContactReport, like the next two
   std::int64_t bodies_skipped = 0;
   std::int64_t condensations_kept = 0;
-  std::vector<std::int32_t> clamped;  ///< contacts whose normal offsets were raised to 0, because
-                                      ///< no velocity satisfies them together
-  double clamped_speed = 0;  ///< at which the clamped contacts approach each other, by a
-                             ///< certificate [m/s]; 0: found without one
+  std::vector<std::int32_t> clamped;    ///< contacts whose normal offsets were raised to 0, because
+                                        ///< no velocity satisfies them together
+  double clamped_speed = 0;             ///< at which the clamped contacts approach each other, by a
+                                        ///< certificate [m/s]; 0: found without one
   std::vector<std::int32_t> unbounded;  ///< contacts of an ImpulseDirection with friction
   double unbounded_speed = 0;           ///< of that direction [m/s]
   double setup_seconds = 0;

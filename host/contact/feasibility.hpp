@@ -8,8 +8,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
 #include "host/contact/engine_result.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 

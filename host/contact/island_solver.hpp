@@ -8,9 +8,9 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/engine_result.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/contact/sweeps/run.hpp"

@@ -6,8 +6,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
 #include "host/contact/engine_result.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/problem/measure.hpp"
 
 namespace tetwarp {

@@ -33,11 +33,11 @@ ALLOWED = {
     "host/contact/problem": CONTACT,
     "host/contact/structure": ["host/contact/problem", *CONTACT],
     "host/contact/newton": ["host/contact/problem", *CONTACT],
-    "host/contact/sweeps": ["host/contact/structure", *CONTACT],
+    "host/contact/sweeps": ["host/contact/problem", "host/contact/structure", *CONTACT],
     "host/contact/block_jacobi": [
         "host/contact/problem", "host/contact/structure", "host/contact/sweeps", *CONTACT],
     "host/contact/cuda": [
-        "host/contact/block_jacobi", "host/contact/structure", "host/contact/sweeps",
+        "host/contact/block_jacobi", "host/contact/problem", "host/contact/structure", "host/contact/sweeps",
         "kernels/exec", *CONTACT],
     "host/contact/tracker": CONTACT,
     "host/contact": [

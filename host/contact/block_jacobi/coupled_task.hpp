@@ -6,7 +6,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "kernels/contact/contact_numbers.hpp"
 
 namespace tetwarp {

@@ -8,7 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
 #include "kernels/contact/contact_adhesion.hpp"

@@ -7,9 +7,9 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
 #include "host/contact/newton/lorentz_cone.hpp"
 #include "host/contact/newton/newton_system.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/problem/delassus.hpp"
 #include "host/contact/problem/measure.hpp"
 

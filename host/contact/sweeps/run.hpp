@@ -7,7 +7,7 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_memory.hpp"

@@ -1,4 +1,4 @@
-#include "host/contact/budget.hpp"
+#include "host/contact/problem/budget.hpp"
 
 #include <algorithm>
 #include <cmath>
