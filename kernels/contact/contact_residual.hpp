@@ -48,7 +48,7 @@ TETWARP_HD double resolved_work(const ContactSums& sums) {
 /// Energy [J] of the rounding errors of the velocities, from which the residual is computed: a
 /// smaller residual is not resolved.
 TETWARP_HD double unresolved_energy(const ContactSums& sums) {
-  constexpr double rounding = 0x1p-51;
+  constexpr double rounding = 0x1p-53;
   return square_of(rounding) * sums.magnitude;
 }
 

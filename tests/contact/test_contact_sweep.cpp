@@ -19,7 +19,7 @@ namespace tetwarp::test {
 namespace {
 using Eigen::Index;
 
-constexpr ContactOptions variants[] = {
+const ContactOptions variants[] = {
     {},
     {.rule = AdhesionRule::restrictive},
     {.law = FrictionLaw::pyramid},

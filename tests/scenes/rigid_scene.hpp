@@ -12,8 +12,6 @@
 
 namespace tetwarp::scenes {
 
-using Vector = std::array<double, 3>;
-
 /// Rigid bodies and contacts between them, one after the other.
 class RigidScene {
  public:

@@ -87,7 +87,7 @@ class NewtonPolish {
     const double scale =
         std::sqrt(free_energy_) + std::sqrt(resolved_energy(impulse.dot(change), magnitude));
     // Rounding of the velocities: a smaller residual is not resolved.
-    const double error = std::hypot(residual_of(iterate), 0x1p-51 * std::sqrt(magnitude));
+    const double error = std::hypot(residual_of(iterate), 0x1p-53 * std::sqrt(magnitude));
     iterate.eta = relative_error(error, scale);
     double square = 0;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {

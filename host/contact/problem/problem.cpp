@@ -90,7 +90,7 @@ void check_diagonal(const ContactProblem& problem,
     const auto row = 3 * static_cast<std::int64_t>(c);
     const double push = std::max(diagonal[3 * c + 1], diagonal[3 * c + 2]);
     const bool is_rounding =
-        diagonal[3 * c] < smallest || (resists_sliding(problem, c) && push < smallest);
+        diagonal[3 * c] < smallest || (resists_sliding(problem, c) && push > 0 && push < smallest);
     if (diagonal[3 * c] > 0 && push >= 0 && is_rounding) {
       throw ContactProblemError(
           field, ": rows " + count(row) + " to " + count(row + 2) + " of contact " +
