@@ -39,7 +39,7 @@ ALLOWED = {
     "host/contact/cuda": [
         "host/contact/problem", "host/contact/block_jacobi", "host/contact/structure",
         "host/contact/sweeps", "kernels/exec", *CONTACT],
-    "host/contact/tracker": CONTACT,
+    "host/contact/tracker": ["host/contact/problem", *CONTACT],
     "host/contact": [
         "host/contact/problem", "host/contact/structure", "host/contact/newton",
         "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
