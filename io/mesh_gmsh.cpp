@@ -1,8 +1,10 @@
 /// @file mesh_gmsh.cpp
 /// Meshes and node data in Gmsh's MSH 2 and 4.1, read by Gmsh.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <tetwarp/error.hpp>
 #include <unordered_map>
 
@@ -37,13 +39,18 @@ Places add_nodes(const GmshLibrary& gmsh, ImportedMesh& into) {
   gmsh.call<decltype(gmshModelMeshGetNodes)>("gmshModelMeshGetNodes", &tags.data, &tags.size,
                                              &positions.data, &positions.size, &parameters.data,
                                              &parameters.size, -1, -1, 0, 0);
+  std::vector<std::size_t> order(tags.size);  // Gmsh returns nodes by entity
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t n) { return tags[n]; });
   Places places;
-  for (std::size_t n = 0; n < tags.size; ++n) {
-    places.emplace(tags[n], n);
+  std::vector<std::int64_t> numbers;
+  for (const std::size_t n : order) {
+    places.emplace(tags[n], into.mesh.rest_positions.size());
+    numbers.push_back(static_cast<std::int64_t>(tags[n]));
     into.mesh.rest_positions.push_back(
         {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2]});
   }
-  add_numbers("original_node", false, {tags.data, tags.data + tags.size}, into);
+  add_numbers("original_node", false, numbers, into);
   return places;
 }
 
