@@ -1,6 +1,7 @@
 /// @file test_mesh_arrays.cpp
 /// Arrays, groups and numbers of imported meshes. Without the library of a format its test skips.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <fstream>
 #include <optional>
@@ -83,6 +84,16 @@ TEST(MeshArrays, OfGmshFilesHoldTagsAndGroups) {
   EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{7, 8}));
   EXPECT_EQ(array_of(*mesh, "group", true), (std::vector<double>{3, 5}));
   EXPECT_EQ(mesh->left_out, std::vector<std::string>{"name 'bone' of group 3"});
+}
+
+/// HDF5 must not use what it has freed: freed memory is overwritten here.
+TEST(MeshArrays, AFileIsClosedWhileItsDriverExists) {
+  const ScratchFolder folder;
+  mallopt(M_PERTURB, 165);
+  write_mesh(folder / "m.vtkhdf", two_tets());
+  mallopt(M_PERTURB, 0);
+
+  EXPECT_EQ(MeshReader(folder / "m.vtkhdf").mesh().tets, two_tets().tets);
 }
 
 TEST(MeshArrays, AreWrittenBesideTheStepsAndCheckedBefore) {
