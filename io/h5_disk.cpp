@@ -146,6 +146,14 @@ H5FD_class_t disk_class() {
   std::copy(std::begin(free_lists), std::end(free_lists), driver.fl_map);
   return driver;
 }
+/// Stays registered: with the last file of a driver HDF5 1.10 frees the driver's class before it
+/// calls the class's function that closes the file.
+hid_t disk_driver() {
+  static const H5FD_class_t driver_class = disk_class();  // HDF5 keeps pointers to its strings
+  static hid_t driver = H5I_INVALID_HID;
+  if (driver < 0 || H5Iget_type(driver) != H5I_VFL) driver = H5FDregister(&driver_class);
+  return driver;
+}
 }  // namespace
 
 void Disk::check(const Object& object) const {
@@ -153,10 +161,9 @@ void Disk::check(const Object& object) const {
 }
 
 Handle disk_access(Disk* disk) {
-  static const H5FD_class_t driver_class = disk_class();  // HDF5 keeps pointers to its strings
-  const Handle driver(H5FDregister(&driver_class), H5FDunregister);
+  const hid_t driver = disk_driver();
   Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  if (!driver || H5Pset_driver(properties.id(), driver.id(), &disk) < 0) return {};
+  if (driver < 0 || H5Pset_driver(properties.id(), driver, &disk) < 0) return {};
   return properties;
 }
 

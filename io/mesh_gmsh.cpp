@@ -1,8 +1,10 @@
 /// @file mesh_gmsh.cpp
 /// Meshes and node data in Gmsh's MSH 2 and 4.1, read by Gmsh.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <tetwarp/error.hpp>
 #include <unordered_map>
 
@@ -43,13 +45,19 @@ Places add_nodes(const std::string& path, const GmshLibrary& gmsh, ImportedMesh&
                                              &positions.data, &positions.size, &parameters.data,
                                              &parameters.size, -1, -1, 0, 0);
   check(path, positions.size == 3 * tags.size, "does not have three coordinates for every node");
+  std::vector<std::size_t> order(tags.size);  // Gmsh returns nodes by entity
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t n) { return tags[n]; });
   Places places;
-  for (std::size_t n = 0; n < tags.size; ++n) {
-    check(path, places.emplace(tags[n], n).second, "has two nodes " + std::to_string(tags[n]));
+  std::vector<std::int64_t> numbers;
+  for (const std::size_t n : order) {
+    const bool is_new = places.emplace(tags[n], into.mesh.rest_positions.size()).second;
+    check(path, is_new, "has two nodes " + std::to_string(tags[n]));
+    numbers.push_back(static_cast<std::int64_t>(tags[n]));
     into.mesh.rest_positions.push_back(
         {positions[3 * n], positions[3 * n + 1], positions[3 * n + 2]});
   }
-  add_numbers("original_node", false, {tags.data, tags.data + tags.size}, into);
+  add_numbers("original_node", false, numbers, into);
   return places;
 }
 

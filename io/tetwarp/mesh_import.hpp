@@ -28,7 +28,7 @@ struct MeshImportOptions {
 
 /// The content of a file, in the form that write_mesh() takes.
 struct ImportedMesh {
-  Mesh mesh;  ///< every node of the file, in its order, at rest
+  Mesh mesh;  ///< every node of the file at rest, in its order (of Gmsh: by tag)
   std::vector<std::vector<Point3>> displacements;  ///< per step, per node [world]; empty: none
   std::vector<double> times;                       ///< one per step
   /// Number of cells of fewer than three dimensions, which are left out, by their kind.

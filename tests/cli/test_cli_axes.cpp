@@ -45,7 +45,8 @@ std::vector<float> warped(const TemporaryFolder& folder, const Names& import, co
   first.insert(first.end(), import.begin(), import.end());
   Names second{"warp", "in.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf"};
   second.insert(second.end(), warp.begin(), warp.end());
-  for (const Names& command : {first, second, Names{"export", "out.vtkhdf", "-o", "out.nii"}}) {
+  const Names third{"export", "out.vtkhdf", "--array", "values", "-o", "out.nii"};
+  for (const Names& command : {first, second, third}) {
     const CommandResult result = run_command(folder, command);
     EXPECT_EQ(result.exit_code, 0) << command.front() << ": " << result.err;
   }
