@@ -29,7 +29,10 @@ std::string progress_line(const ProgressState& state, std::size_t width) {
   const int percent = std::min(static_cast<int>(100 * share), 99);
   const std::string step = fmt::format(" {:2}%  step {:.0f} of {:.0f}", percent,
                                        std::min(state.step, state.step_count), state.step_count);
-  const std::string rate = fmt::format("  {:.0f} Mvoxel/s", 1e-6 * state.voxel_rate);
+  const double rate_millions = 1e-6 * state.voxel_rate;
+  const std::string rate = rate_millions > 0 ? fmt::format("  {:.{}f} Mvoxel/s", rate_millions,
+                                                           rate_millions < 10 ? 1 : 0)
+                                             : "";
   std::string end;
   if (!state.phase.empty()) {
     end = "  " + state.phase;

@@ -109,7 +109,7 @@ struct ContactOptions {
   ContactPrecision precision = ContactPrecision::float64;
   Backend backend = Backend::automatic;  ///< see choose_contact_backend()
   int device = 0;                        ///< CUDA device number
-  int threads = 0;  ///< of the cpu back end, 0: all cores; any number gives the same bits
+  int threads = 0;  ///< of the cpu back end, to 1024, 0: all cores; any number: same bits
   ContactSkipOptions skip = {};
 
   // Limits of a solve, which then returns the best iterate so far, with status `not_converged` and

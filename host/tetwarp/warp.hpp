@@ -93,7 +93,7 @@ struct WarpOptions {
   std::optional<SourceWindow> source_window = {};
   Backend backend = Backend::automatic;
   int device = 0;             ///< CUDA device number
-  int threads = 0;            ///< of the cpu back end; 0: all cores
+  int threads = 0;            ///< of the cpu back end, up to 1024; 0: all cores
   bool count_folded = false;  ///< fill Counts::folded, which takes a further pass over all voxels
   SkipOptions skip = {};
 };
