@@ -68,4 +68,10 @@ FileKind kind_of(const std::string& path) {
   return H5Fis_hdf5(path.c_str()) > 0 ? hdf5_kind(path) : header_kind(header_path(path));
 }
 
+void check_sound(const std::string& path, FileKind kind) {
+  if (kind != FileKind::hdf5) return;
+  const h5::Silence silence;
+  h5::open_file(path);
+}
+
 }  // namespace tetwarp

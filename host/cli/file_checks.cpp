@@ -9,7 +9,6 @@
 
 #include "io/finished_file.hpp"
 
-#include "io/h5.hpp"
 
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
@@ -71,12 +70,6 @@ std::string conversion_of(const std::string& path, FileKind kind, FileKind expec
   return is_imported ? "convert it first: tetwarp import " + path + " -o NAME.vtkhdf" : "";
 }
 }  // namespace
-
-void check_sound(const std::string& path, FileKind kind) {
-  if (kind != FileKind::hdf5) return;
-  const h5::Silence silence;
-  h5::open_file(path);
-}
 
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
   const FileKind kind = kind_of(path);

@@ -21,9 +21,6 @@ void check_new_folder(const std::string& folder, const std::string& output);
 /// Checks that a name ends in .vtkhdf, .hdf or .h5.
 void check_hdf_name(const std::string& output);
 
-/// Throws IoError if a file of the kind `hdf5` cannot be opened: it is truncated or damaged.
-void check_sound(const std::string& path, FileKind kind);
-
 /// Checks that a file can be opened and is of this kind.
 /// @param remedy  the message ends with it, unless a conversion gives a file of that kind
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy);

@@ -247,4 +247,7 @@ TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);
 
+/// Throws IoError if a file of the kind `hdf5` cannot be opened: it is truncated or damaged.
+TETWARP_IO_EXPORT void check_sound(const std::string& path, FileKind kind);
+
 }  // namespace tetwarp
