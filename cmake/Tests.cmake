@@ -169,12 +169,12 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_moving.cpp
     tests/contact/test_contact_newton.cpp
     tests/contact/test_contact_reference.cpp
-    tests/contact/test_contact_report.cpp
+    tests/contact/test_contact_tracker_misuse.cpp
     tests/contact/test_contact_threads.cpp
     tests/contact/test_contact.cpp
     tests/contact/test_contact_reference_limits.cpp
     tests/contact/test_contact_tracker.cpp
-    tests/contact/test_contact_tracker_misuse.cpp
+    tests/contact/test_contact_report.cpp
     tests/contact/test_body_relax.cpp
     tests/contact/test_contact_adhesion.cpp
     tests/contact/test_lorentz_cone.cpp
