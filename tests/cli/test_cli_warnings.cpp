@@ -66,10 +66,10 @@ TEST_F(CliWarnings, NameInvertedCells) {
   const std::vector<Point3> still(mirrored.size(), Point3{});
   write_mesh(scene / "mesh.vtkhdf", box_mesh(), {still, mirrored, mirrored}, {0, 1, 2});
 
-  const std::string warning =
-      "mesh.vtkhdf: 5 of 5 tetrahedra are inverted at step 1 and 1 more: their voxels show the "
-      "source mirrored";
-  expect_warning({"--steps", "1:", "--temporal"}, warning);
+  expect_warning({"--steps", "1:", "--temporal"},
+                 "mesh.vtkhdf: 5 of 5 tetrahedra are inverted at step 1");
+  EXPECT_NE(warnings_of("report.json").front().find("at step 1 and 1 more: their voxels show"),
+            std::string::npos);
   EXPECT_EQ(scene.warp({"-o", "still.vtkhdf", "--steps", "0"}).err, "");
 }
 
