@@ -4,10 +4,12 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/scenes/contact_command.hpp"
+#include "tests/scenes/contact_samples.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -109,7 +111,8 @@ TEST_F(ContactCommand, MarksAndRefusesWhatNoVelocitySatisfies) {
 }
 
 TEST_F(ContactCommand, StopsAtItsLimits) {
-  store(global_problem());
+  std::mt19937 random(5);
+  store(samples::random_global(random, 20, 6, 0.2, 0.4));
 
   for (const std::vector<std::string>& limit : {std::vector<std::string>{"--max-seconds", "1e-9"},
                                                 {"--max-newton", "0"},

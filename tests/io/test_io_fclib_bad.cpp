@@ -146,7 +146,7 @@ TEST_F(BadFclib, IsNamedWhenMatricesContradictThemselves) {
        {[](Hdf5Editor& e) {
           e.dataset<Int>("fclib_local/W/p", {7}, {0, 3, 1, 8, 11, 13, 16});
         },
-        "/fclib_local/W/p", "falls"},
+        "/fclib_local/W/p", "decreases"},
        {[](Hdf5Editor& e) {
           e.dataset<Int>("fclib_local/W/p", {7}, {0, 3, 6, 8, 11, 13, 17});
         },

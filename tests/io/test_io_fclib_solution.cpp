@@ -110,7 +110,7 @@ TEST_F(FclibSolution, RefusesTheSolutionOfAnotherProblem) {
       io_error([&] { write_contact_solution(folder / "solved.hdf5", file, solution); });
 
   EXPECT_NE(error.find("/fclib_global/vectors/f"), std::string::npos) << error;
-  EXPECT_NE(error.find("belongs to another problem"), std::string::npos) << error;
+  EXPECT_NE(error.find("the solution is of another problem"), std::string::npos) << error;
   EXPECT_EQ(folder.entry_count(), 1);
 }
 }  // namespace

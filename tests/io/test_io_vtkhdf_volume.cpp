@@ -59,7 +59,7 @@ TEST(VtkhdfVolume, RoundTripsEveryTypeAndComponentCountBitForBit) {
   }
 }
 
-TEST(VtkhdfVolume, KeepsSeveralArraysInNameOrder) {
+TEST(VtkhdfVolume, KeepsSeveralArraysInTheirOrder) {
   const ScratchFolder folder;
   const Volume second = counting_volume(PixelType::int16, 1, "second");
   const Volume first = counting_volume(PixelType::float32, 3, "first");
@@ -68,10 +68,10 @@ TEST(VtkhdfVolume, KeepsSeveralArraysInNameOrder) {
   const VolumeHeader header = read_volume_header(folder / "v.vtkhdf");
 
   ASSERT_EQ(header.arrays.size(), 2U);
-  EXPECT_EQ(header.arrays[0].name, "first");
-  EXPECT_EQ(header.arrays[0].components, 3);
-  EXPECT_EQ(header.arrays[1].name, "second");
-  EXPECT_EQ(header.arrays[1].type, PixelType::int16);
+  EXPECT_EQ(header.arrays[0].name, "second");
+  EXPECT_EQ(header.arrays[0].type, PixelType::int16);
+  EXPECT_EQ(header.arrays[1].name, "first");
+  EXPECT_EQ(header.arrays[1].components, 3);
   EXPECT_TRUE(header.times.empty());
   EXPECT_EQ(read_volume(folder / "v.vtkhdf", "second").data, second.data);
 }
