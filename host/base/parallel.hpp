@@ -39,12 +39,16 @@ void parallel_tasks(int threads, std::int64_t count, const Task& task) {
 
 /// body(i) once for every i in [0, count), as parallel_tasks(), in contiguous ranges: four per
 /// thread, so that threads which start late take fewer.
+/// @param body  copied, so that the compiler can keep its members in registers
 template <class Body>
 void parallel_for(int threads, std::int64_t count, const Body& body) {
-  const std::int64_t ranges = threads <= 1 ? 1 : std::min<std::int64_t>(count, 4 * threads);
+  const auto run = [](const Body own, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) own(i);
+  };
+  if (threads <= 1) return run(body, 0, count);
+  const std::int64_t ranges = std::min<std::int64_t>(count, 4 * threads);
   parallel_tasks(threads, ranges, [&](std::int64_t range) {
-    const std::int64_t end = count * (range + 1) / ranges;
-    for (std::int64_t i = count * range / ranges; i < end; ++i) body(i);
+    run(body, count * range / ranges, count * (range + 1) / ranges);
   });
 }
 

@@ -112,7 +112,7 @@ class ContactPipeline {
                                state_.body_velocity});
   }
 
-  /// Residual of the current r and v. ContactSums::magnitude stays 0 where its bound `reach` shows
+  /// Residual of the current r and v. ContactSums::magnitude stays 0 where its bound shows
   /// that rounding of the work does not matter, unless `is_final`.
   TETWARP_ANY_EXEC ContactSums measure(bool is_final = false) {
     constexpr double cancellation = 0x1p25;
@@ -121,8 +121,9 @@ class ContactPipeline {
         contact_residual(exec_, island_.slot_begin, island_.slot_end,
                          ContactResidualBody<T>{numbers_.constants, switches_, state_.impulse,
                                                 state_.velocity, numbers_.free_velocity});
+    const auto rows = 3 * static_cast<double>(island_.slot_end - island_.slot_begin);
     const bool is_needed =
-        is_final ? sums.reach > 0 : sums.reach * sums.reach > cancellation * sums.work;
+        is_final ? sums.row_work > 0 : rows * sums.row_work > cancellation * sums.work;
     if (is_needed) sums.magnitude = magnitude();
     return sums;
   }

@@ -16,7 +16,7 @@ struct ContactSums {
   double eta = 0;    ///< e_n^2 / rho_n + |e_t|^2 / rho_t: an energy [J]
   double fclib = 0;  ///< |r - P(r - u~)|^2, P: projection on the friction cone, u~ = u + mu |u_t| n
   double work = 0;   ///< r . (u - q) = r . B r
-  double reach = 0;  ///< sum of |r_i| sqrt(B_ii) over rows: |r| . |B| |r| is at most its square
+  double row_work = 0;   ///< sum of r_i^2 B_ii: |r| . |B| |r| is at most this by the number of rows
   double magnitude = 0;  ///< |r| . |B| |r|, what cancels in `work`; see ContactPipeline::measure()
   double largest = 0;    ///< largest term of `eta`
   double deepest = 0;    ///< largest -u_n [m/s]
@@ -26,7 +26,7 @@ struct ContactSums {
     eta += other.eta;
     fclib += other.fclib;
     work += other.work;
-    reach += other.reach;
+    row_work += other.row_work;
     magnitude += other.magnitude;
     deepest = max_of(deepest, other.deepest);
     if (other.largest > largest) {
@@ -88,7 +88,8 @@ TETWARP_HD double natural_square(const ContactConstants<T>& c,
     aim[1] *= scale;
   }
   const double e_t[2] = {nu[0] - aim[0], nu[1] - aim[1]};
-  return sum + e_t[0] * (e_t[0] / rho_t) + e_t[1] * (e_t[1] / rho_t);
+  const double weight = 1 / rho_t;
+  return sum + e_t[0] * (e_t[0] * weight) + e_t[1] * (e_t[1] * weight);
 }
 
 /// Weights of eta: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / lambda_max(B_tt) + kappa_t.
@@ -163,7 +164,7 @@ struct ContactResidualBody {
     double parts = 0;
     for (int a = 0; a < 3; ++a) {
       sums.work += r[a] * (double{u[a]} - free_velocity[3 * c + a]);
-      sums.reach += fabs(double{r[a]}) * sqrt(fabs(double{constants[c].block[4 * a]}));
+      sums.row_work += double{r[a]} * r[a] * fabs(double{constants[c].block[4 * a]});
       parts += fabs(double{r[a]}) + fabs(double{u[a]});
     }
     // Comparisons with a number that is not finite could hide it from the sums.
