@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tetwarp/error.hpp>
 
+#include "host/cli/ranks.hpp"
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {
@@ -15,7 +16,7 @@ constexpr suseconds_t grace = 700'000;  // microseconds between the first signal
 
 volatile std::sig_atomic_t flag = 0;
 volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
-volatile std::sig_atomic_t is_silent = 0;    // other processes print the line
+volatile std::sig_atomic_t is_silent = 0;    // one of several ranks
 volatile std::sig_atomic_t is_terminal = 0;  // standard error shows a progress bar
 
 // The functions of the handlers make async-signal-safe calls only; setitimer(), a plain system call
@@ -55,6 +56,8 @@ void install_handler(int signal, void (*handler)(int)) {
 
 void install_interrupt_handlers() {
   is_terminal = isatty(STDERR_FILENO);
+  // When a rank has printed an error and ended, mpirun ends the others by a signal.
+  is_silent = launched_count() > 1;
   install_handler(SIGINT, handle);
   install_handler(SIGTERM, handle);
   install_handler(SIGALRM, end_process);
@@ -63,7 +66,6 @@ void install_interrupt_handlers() {
 
 void exit_on_first_signal() {
   flag_scopes = -1'000'000;  // far below zero: scopes cannot make it positive
-  is_silent = 1;
 }
 
 InterruptFlag::InterruptFlag() {
