@@ -9,7 +9,6 @@
 
 #include "io/finished_file.hpp"
 
-
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 

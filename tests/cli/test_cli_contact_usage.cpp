@@ -36,26 +36,14 @@ TEST_F(ContactCommand, ExplainsItselfWithAnExample) {
 
 TEST_F(ContactCommand, ExitsWithTwoOnBadUsage) {
   store(sliding_point());
-  for (const Names& words : std::vector<Names>{{"--law", "box"},
-                                               {"--rule", "both"},
-                                               {"--solver", "lemke"},
-                                               {"--measure", "l2"},
-                                               {"--precision", "half"},
-                                               {"--tolerance", "0"},
-                                               {"--tolerance", "nan"},
-                                               {"--max-sweeps", "0"},
-                                               {"--max-sweeps", "1.5"},
-                                               {"--max-seconds", "0"},
-                                               {"--max-newton", "-1"},
-                                               {"--memory", "much"},
-                                               {"--coupling", "loose"},
-                                               {"--relaxation", "2"},
-                                               {"--inner", "0"},
-                                               {"--recovery-speed", "-1"},
-                                               {"--threads", "-1"},
-                                               {"--threads", "100000"},
-                                               {"--no-skip", "work"},
-                                               {"other.hdf5"}}) {
+  for (const Names& words : std::vector<Names>{
+           {"--law", "box"},           {"--rule", "both"},      {"--solver", "lemke"},
+           {"--measure", "l2"},        {"--precision", "half"}, {"--tolerance", "0"},
+           {"--tolerance", "nan"},     {"--max-sweeps", "0"},   {"--max-sweeps", "1.5"},
+           {"--max-seconds", "0"},     {"--max-newton", "-1"},  {"--memory", "much"},
+           {"--coupling", "loose"},    {"--relaxation", "2"},   {"--inner", "0"},
+           {"--recovery-speed", "-1"}, {"--threads", "-1"},     {"--threads", "100000"},
+           {"--no-skip", "work"},      {"other.hdf5"}}) {
     const CommandResult result = solve(words);
 
     EXPECT_EQ(result.exit_code, 2) << words.back();
