@@ -79,7 +79,10 @@ FinishedFile::FinishedFile(const std::string& path) : path_(path), final_(link_t
   int descriptor = -1;
   do {
     temporary_ = folder + temporary_start() + std::to_string(count++) + ".tmp." + name;
+    // Listed first: a signal may arrive as soon as the file exists.
+    slot_ = list_name(temporary_);
     descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0) unlist_name(slot_);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) {
     throw IoError(path, "",
@@ -87,7 +90,6 @@ FinishedFile::FinishedFile(const std::string& path) : path_(path), final_(link_t
                       "': " + reason() + "; choose a folder that exists and may be written to");
   }
   close(descriptor);
-  slot_ = list_name(temporary_);
 }
 
 FinishedFile::~FinishedFile() {
