@@ -214,7 +214,7 @@ TEST(DryRun, PlansBillionsOfVoxelsFromHeadersAlone) {
 
   const Json at_once = plan({}, true);
   EXPECT_GT(at_once["plans"][0]["memory"].get<double>(), 8 * voxels);
-  EXPECT_LT(at_once["plans"][0]["memory"].get<double>(), 1.02 * 8 * voxels);
+  EXPECT_LT(at_once["plans"][0]["memory"].get<double>(), 1.06 * 8 * voxels);  // with lists of cells
   EXPECT_EQ(at_once["plans"][0]["blocks"], 0);
 
   const Json streamed = plan({"--memory", "2G"}, false);

@@ -62,7 +62,7 @@ class PeakMemory : public testing::Test {
 
   /// The number that the error of a limit that is too low names [megabyte].
   static int least_of(const CommandResult& refused) {
-    const std::string marker = "give at least ";
+    const std::string marker = "at least ";
     const std::size_t at = refused.err.find(marker);
     EXPECT_TRUE(refused.has_one_line_error()) << refused.err;
     EXPECT_NE(at, std::string::npos) << refused.err;
