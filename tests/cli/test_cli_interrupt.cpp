@@ -34,6 +34,16 @@ Ending end_by(int signal, RunningCommand& command) {
   return ending;
 }
 
+/// Ends a running command by SIGINT: in time, with one line, and without files left behind.
+void expect_clean_end(RunningCommand& command, const Scene& scene, const std::string& line) {
+  const Ending ending = end_by(SIGINT, command);
+
+  EXPECT_EQ(ending.result.exit_code, 130);
+  EXPECT_LT(ending.seconds, max_seconds);
+  EXPECT_EQ(ending.result.err, line);
+  EXPECT_EQ(scene.names(), scene.inputs);
+}
+
 TEST(Interrupt, LeavesNoTemporalFileAndNoTemporary) {
   const Scene scene;
   write_long_mesh(scene);
@@ -105,12 +115,7 @@ TEST(Interrupt, StopsCompressionWithinASecond) {
                                  "--steps", "0", "--outside", "identity", "--compress", "9"});
   ASSERT_TRUE(watch.sees_new_file());
 
-  const Ending ending = end_by(SIGINT, command);
-
-  EXPECT_EQ(ending.result.exit_code, 130);
-  EXPECT_LT(ending.seconds, max_seconds);
-  EXPECT_EQ(ending.result.err, "tetwarp: interrupted, stopping\n");
-  EXPECT_EQ(scene.names(), scene.inputs);
+  expect_clean_end(command, scene, "tetwarp: interrupted, stopping\n");
 }
 
 TEST(Interrupt, EndsOtherCommandsAtOnce) {
@@ -120,12 +125,7 @@ TEST(Interrupt, EndsOtherCommandsAtOnce) {
                          {"deform", "mesh.vtkhdf", "-o", "moving.vtkhdf", "--steps", "1000000"});
   ASSERT_TRUE(watch.sees_new_file());
 
-  const Ending ending = end_by(SIGINT, command);
-
-  EXPECT_EQ(ending.result.exit_code, 130);
-  EXPECT_LT(ending.seconds, max_seconds);
-  EXPECT_EQ(ending.result.err, "tetwarp: interrupted\n");
-  EXPECT_EQ(scene.names(), scene.inputs);
+  expect_clean_end(command, scene, "tetwarp: interrupted\n");
 }
 
 TEST(Interrupt, LeavesTheReportOfABatch) {

@@ -25,7 +25,7 @@ std::vector<MeasuredContact> contacts_of(const ContactProblem& problem, const De
   return contacts;
 }
 
-/// A problem with all objects that its solver refers to.
+/// A problem, and the arrays that its solver holds references to.
 struct Setting {
   explicit Setting(const ContactProblem& problem, FrictionLaw chosen)
       : law(chosen),

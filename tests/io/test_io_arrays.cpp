@@ -33,7 +33,7 @@ TEST(VtkhdfArrays, KeepsTheOrderOfArraysAndReadsTheActiveOne) {
   EXPECT_EQ(write({"tetwarp_tet", "tetwarp_mask"}, ""), "tetwarp_tet");
 }
 
-/// Groups of other programs seldom track the order; then the names decide.
+/// Without tracked creation order, as in most files of other programs, arrays are ordered by name.
 TEST(VtkhdfArrays, ReadsTheActiveArrayOfForeignFiles) {
   const ScratchFolder folder;
   const std::string path = folder / "v.vtkhdf";

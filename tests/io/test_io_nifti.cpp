@@ -7,26 +7,16 @@
 #include <limits>
 
 #include "tests/scenes/io_files.hpp"
+#include "tests/scenes/nifti_files.hpp"
 
 namespace tetwarp::test {
 namespace {
 /// A header of a 2 x 3 x 2 int16 volume with unit voxels.
 nifti_1_header plain_header() {
-  nifti_1_header header{};
-  header.sizeof_hdr = 348;
-  const short dims[8] = {3, 2, 3, 2, 1, 1, 1, 1};
-  std::copy(dims, dims + 8, header.dim);
+  nifti_1_header header = float_header({2, 3, 2}, 1);
+  header.dim[0] = 3;
   header.datatype = DT_INT16;
   header.bitpix = 16;
-  std::fill(header.pixdim, header.pixdim + 8, 1.0F);
-  header.vox_offset = 352;
-  std::memcpy(header.magic, "n+1", 4);
-  return header;
-}
-
-nifti_1_header header_of(const std::string& path) {
-  nifti_1_header header{};
-  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
   return header;
 }
 
@@ -92,9 +82,9 @@ TEST(Nifti, WritesBothFormsOfARotationAndTheSformAloneOfAShear) {
   volume.grid.direction = {1, 0.5, 0, 0, 1, 0, 0, 0, 1};
   write_nifti(folder / "b.nii", volume);
 
-  EXPECT_GT(header_of(folder / "a.nii").qform_code, 0);
-  EXPECT_EQ(header_of(folder / "b.nii").qform_code, 0);
-  EXPECT_GT(header_of(folder / "b.nii").sform_code, 0);
+  EXPECT_GT(header_in(folder / "a.nii").qform_code, 0);
+  EXPECT_EQ(header_in(folder / "b.nii").qform_code, 0);
+  EXPECT_GT(header_in(folder / "b.nii").sform_code, 0);
   const Grid back = read_nifti(folder / "b.nii").grid;
   EXPECT_NEAR(back.direction[1] * back.spacing[1], 0.5 * volume.grid.spacing[1], 1e-6);
 }
@@ -189,7 +179,7 @@ TEST(Nifti, TurnsDisplacementsForItkAndRefusesOtherSamples) {
 
     write_nifti(folder / "v.nii", volume, Axes::lps);
 
-    const nifti_1_header header = header_of(folder / "v.nii");
+    const nifti_1_header header = header_in(folder / "v.nii");
     EXPECT_EQ(header.intent_code, NIFTI_INTENT_VECTOR);
     EXPECT_EQ(header.dim[0], 5);
     EXPECT_EQ(header.dim[5], 3);

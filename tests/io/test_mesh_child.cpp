@@ -1,5 +1,5 @@
 /// @file test_mesh_child.cpp
-/// Readers that crash, never end, ask for all memory or return a damaged mesh.
+/// Readers that crash, loop without end, allocate more than the limit or return a damaged mesh.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

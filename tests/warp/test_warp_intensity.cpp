@@ -8,32 +8,13 @@
 #include <vector>
 
 #include "tests/scenes/affine_scenes.hpp"
+#include "tests/scenes/intensity_run.hpp"
 #include "tests/scenes/skip_series.hpp"
 #include "tests/scenes/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {
 using Matrix = Eigen::Matrix3d;
-
-/// A step with its whole report.
-struct Step {
-  Volume volume;
-  StepReport report;
-};
-
-Step run(const Volume& source,
-         const scenes::Scene& scene,
-         Backend backend,
-         Intensity intensity,
-         WarpOptions options = {}) {
-  options.backend = backend;
-  options.intensity = intensity;
-  options.output_grid = scene.output_grid;
-  Warper warper(source, scene.mesh, options);
-  Step step = {warper.step(scene.deformed), {}};
-  step.report = warper.report().steps.front();
-  return step;
-}
 
 /// A column of voxels through a volume of several batches.
 TEST(WarpIntensity, ReportsItsProgressWhereTotalsAreKept) {

@@ -11,6 +11,7 @@
 
 #include "kernels/base/stochastic_rounding.hpp"
 #include "tests/scenes/affine_scenes.hpp"
+#include "tests/scenes/intensity_run.hpp"
 #include "tests/scenes/skip_series.hpp"
 
 namespace tetwarp::test {
@@ -38,22 +39,11 @@ Volume speckled(const Grid& grid, PixelType type, int components = 1) {
   return volume;
 }
 
-struct Result {
-  Volume volume;
-  StepReport report;
-};
-
-Result conserved(const Volume& source,
-                 const scenes::Scene& scene,
-                 Backend backend,
-                 WarpOptions options = {}) {
-  options.intensity = Intensity::conservative;
-  options.backend = backend;
-  options.output_grid = scene.output_grid;
-  Warper warper(source, scene.mesh, options);
-  Result result = {warper.step(scene.deformed), {}};
-  result.report = warper.report().steps.front();
-  return result;
+Step conserved(const Volume& source,
+               const scenes::Scene& scene,
+               Backend backend,
+               const WarpOptions& options = {}) {
+  return run(source, scene, backend, Intensity::conservative, options);
 }
 
 double sum_of(const std::vector<double>& numbers) {
@@ -99,7 +89,7 @@ TEST(WarpRounding, KeepsTheTotalOfIntegersWithinFiveDeviations) {
     for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint32}) {
       SCOPED_TRACE(std::string(name_of(type)) + " " + name_of(backend));
       const Volume source = speckled(scene.source_grid, type);
-      const Result result = conserved(source, scene, backend);
+      const Step result = conserved(source, scene, backend);
       const auto stored = numbers_of(result.volume);
       std::int64_t fractional = 0;
       for (std::size_t n = 0; n < exact.size(); ++n) {
@@ -139,7 +129,7 @@ TEST(WarpRounding, CountsWhatTheTypeCannotHold) {
   std::ranges::fill(source.samples<std::uint8_t>(), std::uint8_t{200});
   for (const Backend backend : usable_backends()) {
     SCOPED_TRACE(name_of(backend));
-    const Result result = conserved(source, scene, backend);
+    const Step result = conserved(source, scene, backend);
     const auto stored = numbers_of(result.volume);
     const Totals& totals = result.report.totals;
     EXPECT_GT(result.report.counts.values_clipped, 100);

@@ -16,12 +16,12 @@ namespace tetwarp {
 /// result.
 struct BudgetOver {};
 
-/// The limits of ContactOptions during one solve. Every phase asks whether it may go on; the clock
-/// is read only if there is a time limit or a progress callback, so that without them results do
-/// not depend on time. The first limit that stops the solve gives the reason.
+/// The limits of ContactOptions during one solve. Every phase calls is_over() and stops when it is
+/// true. The clock is read only if there is a time limit or a progress callback, so that without
+/// them results do not depend on time. The first limit that stops the solve gives the reason.
 ///
 /// Sweeps of several threads may call is_over() and count_sweep() at the same time; the callback is
-/// called by the thread that made this object only.
+/// called only on the thread that constructed this object.
 class SolveBudget {
  public:
   /// The limits of `options`, counted from now.

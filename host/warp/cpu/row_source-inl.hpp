@@ -31,7 +31,7 @@ enum class RowKind {
   copied  ///< moved by whole voxels
 };
 
-/// What the code for all pixel types needs to know of a SourceView. The bounds limit the positions
+/// The members of a SourceView that do not depend on the pixel type. The bounds limit the positions
 /// at which it may be read in vectors: one entry per axis; the fourth pads to four lanes, and every
 /// position passes it.
 struct SourceShape {
