@@ -88,7 +88,7 @@ TEST(Axes, TurnsScaledSamples) {
 
 TEST(Axes, LpsIsRefusedForComponentsOfNoDirection) {
   const ScratchFolder folder;
-  for (const short components : {1, 2, 6}) {
+  for (const short components : {short{1}, short{2}, short{6}}) {
     write_constant(folder / "a.nii", header_with(NIFTI_INTENT_VECTOR, components),
                    std::vector<float>(static_cast<std::size_t>(components), 1));
     const std::string error = io_error([&] { read_nifti(folder / "a.nii", Axes::lps); });
