@@ -17,7 +17,7 @@ int read_code(const h5::Object& dataset, const std::string& name, std::int64_t l
 
 std::string read_text(const h5::Object& dataset, const std::string& name, std::size_t largest) {
   if (!h5::has_attribute(dataset, prefix + name)) return {};
-  const std::string text = h5::read_text_attribute(dataset, prefix + name);
+  std::string text = h5::read_text_attribute(dataset, prefix + name);
   if (text.size() <= largest) return text;
   dataset.fail("attribute " + prefix + name + " has " + std::to_string(text.size()) +
                " bytes, expected at most " + std::to_string(largest));

@@ -71,6 +71,7 @@ ImageFile::ImageFile(const std::string& path,
     h5::write_text_attribute(output_.root(), "tetwarp_fingerprint", options.fingerprint);
   }
   std::vector<std::string> names;
+  names.reserve(arrays.size());
   for (const ArrayHeader& array : arrays) names.push_back(array.name);
   h5::write_text_attribute(point_data_, "Scalars", active_array(names, options.scalars));
   for (std::size_t a = 0; a < arrays.size(); ++a) {

@@ -106,6 +106,7 @@ std::vector<std::string> numeric_arrays(const VtkhdfInput& file,
 std::vector<std::string> not_read(const VtkhdfInput& file,
                                   const std::vector<std::string>& point_names) {
   std::vector<std::string> paths;
+  paths.reserve(point_names.size());
   for (const std::string& name : point_names) paths.push_back("PointData/" + name);
   for (const std::string group : {"CellData", "FieldData"}) {
     if (!h5::is_group(file.root, group)) continue;

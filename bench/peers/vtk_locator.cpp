@@ -75,9 +75,9 @@ class Locator {
   void sample_row(vtkIdType row, vtkStaticCellLocator* locator, vtkGenericCell* cell) {
     const auto dims = input_.output_dims();
     const Mesh& mesh = input_.scene.mesh;
+    const auto j = row % dims[1], k = row / dims[1];
     for (int i = 0; i < dims[0]; ++i) {
-      double at[3] = {static_cast<double>(i), static_cast<double>(row % dims[1]),
-                      static_cast<double>(row / dims[1])};
+      double at[3] = {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)};
       double parametric[3], weights[8];
       const vtkIdType found = locator->FindCell(at, 0.0, cell, parametric, weights);
       float& value = input_.output[row * dims[0] + i];

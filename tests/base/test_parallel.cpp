@@ -52,6 +52,7 @@ TEST(Parallel, TasksRunAtTheSameTime) {
 TEST(Parallel, LoopsWithinTasksAndFromManyThreadsEnd) {
   std::atomic<std::int64_t> sum = 0;
   std::vector<std::jthread> callers;
+  callers.reserve(4);
   for (int caller = 0; caller < 4; ++caller) {
     callers.emplace_back([&] {
       for (int repetition = 0; repetition < 200; ++repetition) {

@@ -98,7 +98,7 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   EXPECT_EQ(report["jobs_done"], 1);
   EXPECT_EQ(report["jobs_failed"], 5);
   EXPECT_EQ(report["jobs_skipped"], 0);
-  const auto jobs = report["jobs"];
+  const auto& jobs = report["jobs"];
   ASSERT_EQ(jobs.size(), 6u);
   EXPECT_EQ(jobs[1]["status"], "failed");
   EXPECT_EQ(jobs[1]["error"], "unknown key 'filtre'");

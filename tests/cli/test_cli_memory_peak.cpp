@@ -84,6 +84,24 @@ TEST_F(PeakMemory, KeepsToTheLimitWhateverTheLayoutOfTheSource) {
   }
 }
 
+TEST_F(PeakMemory, KeepsToTheLimitWithEveryFilterAndOutput) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"--filter", "nearest"},
+                                                {"--filter", "linear"},
+                                                {"--filter", "lanczos"},
+                                                {"--filter", "labels"},
+                                                {"--antialias"},
+                                                {"--intensity", "density"},
+                                                {"--outside", "identity"},
+                                                {"--outputs", "gradient,strain"}}) {
+    std::vector<std::string> limited = words;
+    limited.insert(limited.end(), {"--memory", "80M"});
+    const CommandResult result = warp("deflated.vtkhdf", limited);
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_LE(result.peak_memory, tolerance * 80 * megabyte) << words.back();
+  }
+}
+
 TEST_F(PeakMemory, TheLeastLimitIsNamedAndWorks) {
   for (const std::string volume : {"rows.vtkhdf", "deflated.vtkhdf"}) {
     const CommandResult refused = warp(volume, {"--memory", "16M"});

@@ -15,10 +15,12 @@ TEST(VtkhdfArrays, KeepsTheOrderOfArraysAndReadsTheActiveOne) {
   const std::string path = folder / "v.vtkhdf";
   const auto write = [&](const std::vector<std::string>& names, const std::string& scalars) {
     std::vector<Volume> volumes;
+    volumes.reserve(names.size());
     for (const std::string& name : names) {
       volumes.push_back(counting_volume(PixelType::uint8, 1, name));
     }
     std::vector<const Volume*> pointers;
+    pointers.reserve(names.size());
     for (const Volume& volume : volumes) pointers.push_back(&volume);
     write_volumes(path, pointers, {.scalars = scalars});
     const VolumeHeader header = read_volume_header(path);

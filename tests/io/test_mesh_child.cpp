@@ -81,6 +81,7 @@ TEST(MeshChild, MakesOneLineOfEveryEndOfAReader) {
 TEST(MeshChild, LimitsMemory) {
   const auto allocate = [] {
     std::vector<std::vector<char>> blocks;
+    blocks.reserve(64);
     for (int block = 0; block < 64; ++block) blocks.emplace_back(std::size_t{1} << 24, 'x');
   };
 

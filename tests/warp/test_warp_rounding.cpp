@@ -33,7 +33,8 @@ Volume speckled(const Grid& grid, PixelType type, int components = 1) {
   with_pixel_type(type, [&]<class T>(T) {
     const auto samples = volume.samples<T>();
     for (std::size_t n = 0; n < samples.size(); ++n) {
-      samples[n] = n % 2 == 0 ? T(3) : static_cast<T>(waves.samples<std::uint8_t>()[n] / 3);
+      const int third = waves.samples<std::uint8_t>()[n] / 3;
+      samples[n] = static_cast<T>(n % 2 == 0 ? 3 : third);
     }
   });
   return volume;
