@@ -49,7 +49,7 @@ class GmshLibrary {
     char* text = nullptr;
     int error = 0;
     function<decltype(gmshLoggerGetLastError)>("gmshLoggerGetLastError")(&text, &error);
-    const std::string copy = text != nullptr ? text : "no reason given";
+    std::string copy = text != nullptr ? text : "no reason given";
     free(text);
     return copy;
   }
