@@ -18,6 +18,7 @@
 #include "host/warp/cpu/row_components-inl.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
+#include "host/warp/cpu/row_transform-inl.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
 #include "host/warp/cpu/row_wide-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -61,16 +62,11 @@ class RowSampler {
  private:
   /// Writes the runs that have a transform; moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    int plain_count = 0;
-    for (int r = 0; r < count; ++r) {
-      const RowSource& source = sources[runs[r].source];
-      if (has_transform(job_, source.tet())) {
-        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_edge * runs[r].cell);
-      } else {
-        runs[plain_count++] = runs[r];
-      }
-    }
-    return plain_count;
+    TransformRows<T>::write(job_, shape_, sources, runs, count, j, k);
+    const auto is_transformed = [&](const RowRun& run) {
+      return has_transform(job_, sources[run.source].tet());
+    };
+    return static_cast<int>(std::remove_if(runs, runs + count, is_transformed) - runs);
   }
 
   /// Writes a cell's row of which some runs are copied or written voxel by voxel.
