@@ -12,10 +12,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 #include "host/warp/cpu/row_components-inl.hpp"
+#include "host/warp/cpu/row_label-inl.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
 #include "host/warp/cpu/row_transform-inl.hpp"
@@ -93,18 +93,22 @@ class RowSampler {
     if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
   }
 
-  void write_filtered(const RowSource* sources, const RowRun* runs, int count, int j, int k) {
-    for (const RowRun& run : std::span(runs, static_cast<std::size_t>(count))) {
-      const RowSource& source = sources[run.source];
-      const int cell_row = cell_edge * run.cell;
+  void write_filtered(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    int label_count = 0;  // runs to write by LabelRows; they are moved to the front
+    for (int r = 0; r < count; ++r) {
+      const RowSource& source = sources[runs[r].source];
+      const int cell_row = cell_edge * runs[r].cell;
       if (source.kind() == RowKind::copied) {
-        copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
+        copy_run(job_, source, runs[r].bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
+      } else if (job_.filter == Filter::labels) {
+        runs[label_count++] = runs[r];
       } else {
-        ScalarRows<T>::write(job_, source.map(), run.bits, j, k, cell_row);
+        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_row);
       }
     }
     copier_.flush();
+    if (label_count > 0) LabelRows<T>::write(job_, shape_, sources, runs, label_count, j, k);
   }
 
   static bool moves_alike(const RowSource& a, const RowSource& b) {
