@@ -87,31 +87,63 @@ HWY_INLINE void find_shares(const LabelBatch& batch, std::size_t at, Share* shar
   }
 }
 
-/// Sets `winner` to the heaviest labels, those of heaviest_label(): sums of integers are exact in
-/// any order.
+/// The heavier of two labels per lane.
+/// @param share  weights of the neighbours
+/// @param key    labels of the neighbours
+/// @param winner out; undefined if the call returns false
+/// @returns whether no lane has a third label
+HWY_INLINE bool heavier_of_two(const Share* share, const Share* key, Share& winner) {
+  const ShareTag d;
+  const auto first = key[0];
+  auto second = first, sum = share[0];
+  for (int n = 1; n < 8; ++n) {
+    const auto is_first = hn::Eq(key[n], first);
+    second = hn::IfThenElse(is_first, second, key[n]);
+    sum = hn::Add(sum, hn::IfThenElseZero(is_first, share[n]));
+  }
+  auto has_third = hn::Ne(first, first);
+  for (int n = 1; n < 8; ++n) {
+    has_third = hn::Or(has_third, hn::And(hn::Ne(key[n], first), hn::Ne(key[n], second)));
+  }
+  const auto half = hn::Set(d, std::int64_t{1} << 59);  // of the sum of all weights
+  const auto is_tie = hn::And(hn::Eq(sum, half), hn::Lt(first, second));
+  winner = hn::IfThenElse(hn::Or(hn::Gt(sum, half), is_tie), first, second);
+  return hn::AllFalse(d, has_third);
+}
+
+/// The heaviest of any labels per lane; of equal ones the lowest.
+HWY_INLINE Share heaviest_of_all(const Share* share, const Share* key) {
+  Share sum[8];
+  for (int n = 0; n < 8; ++n) sum[n] = share[n];
+  for (int n = 0; n < 8; ++n) {
+    for (int other = n + 1; other < 8; ++other) {
+      const auto is_same = hn::Eq(key[n], key[other]);
+      sum[n] = hn::Add(sum[n], hn::IfThenElseZero(is_same, share[other]));
+      sum[other] = hn::Add(sum[other], hn::IfThenElseZero(is_same, share[n]));
+    }
+  }
+  auto most = sum[0], winner = key[0];
+  for (int n = 1; n < 8; ++n) {
+    const auto is_tie = hn::And(hn::Eq(sum[n], most), hn::Lt(key[n], winner));
+    const auto wins = hn::Or(hn::Gt(sum[n], most), is_tie);
+    most = hn::IfThenElse(wins, sum[n], most);
+    winner = hn::IfThenElse(wins, key[n], winner);
+  }
+  return winner;
+}
+
+/// Sets `winner` to the labels of heaviest_label(): sums of integers are exact in any order.
 HWY_NOINLINE inline void find_winners(LabelBatch& batch) {
   const ShareTag d;
+  for (int n = batch.count; n % cell_edge != 0; ++n) {  // lanes of no voxel
+    for (auto& key : batch.key) key[n] = 0;
+    for (auto& fraction : batch.fraction) fraction[n] = 0;
+  }
   for (std::size_t at = 0; at < static_cast<std::size_t>(batch.count); at += hn::Lanes(d)) {
-    Share share[8], sum[8], key[8];
+    Share share[8], key[8], winner;
     find_shares(batch, at, share);
-    for (int n = 0; n < 8; ++n) {
-      key[n] = hn::Load(d, batch.key[n] + at);
-      sum[n] = share[n];
-    }
-    for (int n = 0; n < 8; ++n) {
-      for (int other = n + 1; other < 8; ++other) {
-        const auto is_same = hn::Eq(key[n], key[other]);
-        sum[n] = hn::Add(sum[n], hn::IfThenElseZero(is_same, share[other]));
-        sum[other] = hn::Add(sum[other], hn::IfThenElseZero(is_same, share[n]));
-      }
-    }
-    auto most = sum[0], winner = key[0];
-    for (int n = 1; n < 8; ++n) {
-      const auto is_tie = hn::And(hn::Eq(sum[n], most), hn::Lt(key[n], winner));
-      const auto wins = hn::Or(hn::Gt(sum[n], most), is_tie);
-      most = hn::IfThenElse(wins, sum[n], most);
-      winner = hn::IfThenElse(wins, key[n], winner);
-    }
+    for (int n = 0; n < 8; ++n) key[n] = hn::Load(d, batch.key[n] + at);
+    if (!heavier_of_two(share, key, winner)) winner = heaviest_of_all(share, key);
     hn::Store(winner, d, batch.winner + at);
   }
 }
