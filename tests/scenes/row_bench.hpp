@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -29,6 +30,12 @@ struct RowCase {
   std::array<std::int64_t, 3> dims = {};  ///< of the source; zeros: those of the scene
   std::optional<Region> region = {};
 };
+
+inline std::ostream& operator<<(std::ostream& out, const RowCase& what) {
+  return out << what.scene << ' ' << name_of(what.type) << " x " << what.components << ", filter "
+             << static_cast<int>(what.filter) << ", quantity "
+             << static_cast<int>(what.reorientation) << ", averages " << what.averages;
+}
 
 /// The stages up to the raster, and a raster job, of one case.
 template <class T>

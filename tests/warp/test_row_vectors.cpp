@@ -9,7 +9,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,12 +18,6 @@
 
 namespace tetwarp::test {
 namespace {
-std::ostream& operator<<(std::ostream& out, const RowCase& what) {
-  return out << what.scene << ' ' << name_of(what.type) << " x " << what.components << ", filter "
-             << static_cast<int>(what.filter) << ", quantity "
-             << static_cast<int>(what.reorientation) << ", averages " << what.averages;
-}
-
 /// The instruction sets of this processor for which the library is compiled.
 std::vector<std::int64_t> instruction_sets() {
   std::vector<std::int64_t> sets;
@@ -114,6 +107,12 @@ TEST(RowVectors, TurnedVectorsAndTensorsHaveTheBitsOfOneVoxel) {
                             .averages = true,
                             .clamps = true});
   expect_bits_of_one_voxel({.components = 6, .reorientation = Quantity::tensor, .averages = true});
+  expect_bits_of_one_voxel({.components = 6,
+                            .reorientation = Quantity::principal_tensor,
+                            .averages = true,
+                            .clamps = true});
+  expect_bits_of_one_voxel(
+      {.components = 6, .reorientation = Quantity::principal_tensor, .has_special = true});
 }
 
 TEST(RowVectors, TransformsHaveTheBitsOfOneVoxelInEveryScene) {

@@ -46,6 +46,21 @@ HWY_INLINE void turn_tensors(const Matrix3& m, WideVec* t) {
   t[5] = dot3(m.at[2], turned[0]);
 }
 
+/// Components of as many successive voxels as WideTag has lanes. @pre 3 or 6 components
+/// @param v  out, shape [8]
+HWY_INLINE void load_voxels(const WideValues& values, int components, int voxel, WideVec* v) {
+  for (int b = 0; b < (components == 3 ? 1 : 2); ++b, v += block_size) {
+    hn::LoadInterleaved4(WideTag(), values.sum[b] + block_size * voxel, v[0], v[1], v[2], v[3]);
+  }
+}
+
+/// Stores them. Those of voxels beyond the last one used have no meaning.
+HWY_INLINE void store_voxels(const WideVec* v, int components, int voxel, WideValues& values) {
+  for (int b = 0; b < (components == 3 ? 1 : 2); ++b, v += block_size) {
+    hn::StoreInterleaved4(v[0], v[1], v[2], v[3], WideTag(), values.sum[b] + block_size * voxel);
+  }
+}
+
 /// Reorients the values of voxels [begin, end).
 /// @param components  three: vectors, six: tensors
 /// @param to          out, in the order of `values`; up to seven voxels from `end` on change too
@@ -55,24 +70,15 @@ inline void reorient_voxels(const Matrix3& matrix,
                             int begin,
                             int end,
                             WideValues& to) {
-  const WideTag d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int voxel = begin; voxel < end; voxel += lanes) {
-    const int at = block_size * voxel;
+  for (int voxel = begin; voxel < end; voxel += static_cast<int>(hn::Lanes(WideTag()))) {
     WideVec v[2 * block_size];
-    for (int b = 0; b < (components == 3 ? 1 : 2); ++b) {
-      WideVec* const four = v + block_size * b;
-      hn::LoadInterleaved4(d, values.sum[b] + at, four[0], four[1], four[2], four[3]);
-    }
+    load_voxels(values, components, voxel, v);
     if (components == 3) {
       turn_vectors(matrix, v);
     } else {
       turn_tensors(matrix, v);
     }
-    for (int b = 0; b < (components == 3 ? 1 : 2); ++b) {
-      const WideVec* const four = v + block_size * b;
-      hn::StoreInterleaved4(four[0], four[1], four[2], four[3], d, to.sum[b] + at);
-    }
+    store_voxels(v, components, voxel, to);
   }
 }
 

@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "host/warp/cpu/row_principal-inl.hpp"
 #include "host/warp/cpu/row_reorient-inl.hpp"
 #include "host/warp/cpu/row_wide_taps-inl.hpp"
 #include "host/warp/cpu/row_wide_values-inl.hpp"
@@ -73,6 +74,8 @@ class TransformBatch {
   /// Writes all voxels that were added.
   void flush() {
     read();
+    for (int p = 0; p < part_count_; ++p) take_means(parts_[p]);
+    if (job_.reorientation == Quantity::principal_tensor) find_axes(values_, axes_);
     for (int p = 0; p < part_count_; ++p) finish(parts_[p]);
     part_count_ = 0;
     values_.count = 0;
@@ -154,6 +157,7 @@ class TransformBatch {
   /// Makes means of sums, and limits them to the range of the samples.
   void take_means(const Part& part) {
     const ArithmeticOf<T>* const range = job_.source.range;
+    if (!is_averaging(*part.transform) && range == nullptr) return;
     for (int voxel = part.begin; voxel < part.end; ++voxel) {
       for (int c = 0; c < job_.source.components; ++c) {
         double& value = values_.sum[c / block_size][index_of(voxel, c)];
@@ -165,29 +169,21 @@ class TransformBatch {
     }
   }
 
-  /// Turns tensors one by one, by rules that depend on their values.
-  void turn_each(const Part& part) {
-    for (int voxel = part.begin; voxel < part.end; ++voxel) {
-      double value[max_transform_components];
-      for (int c = 0; c < job_.source.components; ++c) {
-        value[c] = values_.sum[c / block_size][index_of(voxel, c)];
-      }
-      reorient(job_.reorientation, part.transform->matrix, value);
-      for (int c = 0; c < job_.source.components; ++c) {
-        turned_.sum[c / block_size][index_of(voxel, c)] = value[c];
-      }
-    }
-  }
-
+  /// Reorients, scales and stores values.
   void finish(const Part& part) {
-    const VoxelTransform& transform = *part.transform;
-    if (is_averaging(transform) || job_.source.range != nullptr) take_means(part);
-    if (job_.reorientation == Quantity::components) return store(part, values_);
-    if (job_.reorientation == Quantity::principal_tensor) {
-      turn_each(part);
-    } else {
-      reorient_voxels(transform.matrix, job_.source.components, values_, part.begin, part.end,
-                      turned_);
+    const Matrix3& matrix = part.transform->matrix;
+    switch (job_.reorientation) {
+      case Quantity::components:
+        return store(part, values_);
+      case Quantity::principal_tensor:
+        preserve_principals(matrix, axes_, values_, part.begin, part.end, turned_);
+        break;
+      case Quantity::vector:
+      case Quantity::covariant_vector:
+      case Quantity::contravariant_vector:
+      case Quantity::tensor:
+        reorient_voxels(matrix, job_.source.components, values_, part.begin, part.end, turned_);
+        break;
     }
     store(part, turned_);
   }
@@ -218,6 +214,7 @@ class TransformBatch {
   int run_count_ = 0;
   WideValues values_;
   WideValues turned_;
+  PrincipalAxes axes_;
   int place_[WideValues::voxels];
   Part parts_[WideValues::voxels];
   int part_count_ = 0;
