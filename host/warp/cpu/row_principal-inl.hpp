@@ -23,90 +23,127 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Eigenvalues of tensors in descending order, and the first and the third eigenvector.
 struct PrincipalAxes {
-  static constexpr int voxels = WideValues::voxels + cell_edge;
+  static constexpr int voxels = WideValues::voxels + WideValues::padding;
   alignas(64) double value[3][voxels];
   alignas(64) double first[3][voxels];
   alignas(64) double third[3][voxels];
 };
 
-/// One rotation of symmetric_eigen() in the plane of axes p and q.
-/// @param least  entries up to it count as zero
-/// @returns whether a lane has turned
-HWY_INLINE bool turn_plane(int p, int q, WideVec least, WideVec (*a)[3], WideVec (*vectors)[3]) {
+/// Tensors of one voxel per lane, to be diagonalized by find_eigenvectors().
+struct TensorLanes {
+  WideVec a[3][3];
+  WideVec vectors[3][3];
+  WideVec least;  ///< entries up to it count as zero
+};
+
+/// A rotation of symmetric_eigen().
+struct PlaneTurn {
+  hn::Mask<WideTag> turns;  ///< of lanes that need it
+  WideVec cosine, sine;
+};
+
+/// The rotation in the plane of axes p and q.
+HWY_INLINE PlaneTurn plane_turn(const TensorLanes& t, int p, int q) {
   const WideTag d;
-  const auto turns = hn::Not(hn::Le(hn::Abs(a[p][q]), least));
-  if (hn::AllFalse(d, turns)) return false;
   const auto one = hn::Set(d, 1.0);
-  const auto slope = hn::Div(hn::Sub(a[q][q], a[p][p]), hn::Mul(hn::Set(d, 2.0), a[p][q]));
+  const auto difference = hn::Sub(t.a[q][q], t.a[p][p]);
+  const auto slope = hn::Div(difference, hn::Mul(hn::Set(d, 2.0), t.a[p][q]));
   const auto root = hn::Sqrt(hn::Add(hn::Mul(slope, slope), one));
   const auto tangent = hn::CopySign(hn::Div(one, hn::Add(hn::Abs(slope), root)), slope);
   const auto cosine = hn::Div(one, hn::Sqrt(hn::Add(hn::Mul(tangent, tangent), one)));
-  const auto sine = hn::Mul(tangent, cosine);
-  const auto turn = [&](WideVec& at_p, WideVec& at_q) {
-    const auto new_p = hn::Sub(hn::Mul(cosine, at_p), hn::Mul(sine, at_q));
-    const auto new_q = hn::Add(hn::Mul(sine, at_p), hn::Mul(cosine, at_q));
-    at_p = hn::IfThenElse(turns, new_p, at_p);
-    at_q = hn::IfThenElse(turns, new_q, at_q);
-  };
-  for (int r = 0; r < 3; ++r) {
-    turn(a[r][p], a[r][q]);
-    turn(vectors[r][p], vectors[r][q]);
-  }
-  for (int r = 0; r < 3; ++r) turn(a[p][r], a[q][r]);
-  a[p][q] = hn::IfThenZeroElse(turns, a[p][q]);
-  a[q][p] = hn::IfThenZeroElse(turns, a[q][p]);
-  return true;
+  return {hn::Not(hn::Le(hn::Abs(t.a[p][q]), t.least)), cosine, hn::Mul(tangent, cosine)};
 }
 
-/// symmetric_eigen() of three rows. A lane whose entries off the diagonal count as zero does not
-/// change in further sweeps, so that lanes may need different numbers of them.
-HWY_INLINE void find_eigenvectors(WideVec (*a)[3], WideVec (*vectors)[3]) {
+HWY_INLINE void apply(const PlaneTurn& by, int p, int q, TensorLanes& t) {
+  const auto turn = [&](WideVec& at_p, WideVec& at_q) {
+    const auto new_p = hn::Sub(hn::Mul(by.cosine, at_p), hn::Mul(by.sine, at_q));
+    const auto new_q = hn::Add(hn::Mul(by.sine, at_p), hn::Mul(by.cosine, at_q));
+    at_p = hn::IfThenElse(by.turns, new_p, at_p);
+    at_q = hn::IfThenElse(by.turns, new_q, at_q);
+  };
+  for (int r = 0; r < 3; ++r) {
+    turn(t.a[r][p], t.a[r][q]);
+    turn(t.vectors[r][p], t.vectors[r][q]);
+  }
+  for (int r = 0; r < 3; ++r) turn(t.a[p][r], t.a[q][r]);
+  t.a[p][q] = hn::IfThenZeroElse(by.turns, t.a[p][q]);
+  t.a[q][p] = hn::IfThenZeroElse(by.turns, t.a[q][p]);
+}
+
+/// Sets `vectors` and `least` for a tensor.
+HWY_INLINE void begin_turns(TensorLanes& t) {
   const WideTag d;
   auto largest = hn::Zero(d);
   for (int p = 0; p < 3; ++p) {
     for (int q = 0; q < 3; ++q) {
-      vectors[p][q] = hn::Set(d, p == q ? 1.0 : 0.0);
-      const auto size = hn::Abs(a[p][q]);
+      t.vectors[p][q] = hn::Set(d, p == q ? 1.0 : 0.0);
+      const auto size = hn::Abs(t.a[p][q]);
       largest = hn::IfThenElse(hn::Lt(largest, size), size, largest);
     }
   }
-  const auto least = hn::Mul(hn::Set(d, 0x1p-64), largest);
+  t.least = hn::Mul(hn::Set(d, 0x1p-64), largest);
+}
+
+/// symmetric_eigen() of three rows. A lane whose entries off the diagonal count as zero does not
+/// change in further sweeps, so that lanes may need different numbers of them. Divisions and roots
+/// of two vectors overlap in time.
+HWY_INLINE void find_eigenvectors(TensorLanes* two) {
+  const WideTag d;
+  constexpr int planes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  begin_turns(two[0]);
+  begin_turns(two[1]);
   bool has_turned = true;
   for (int sweep = 0; sweep < 10 && has_turned; ++sweep) {
-    has_turned = turn_plane(0, 1, least, a, vectors);
-    has_turned = turn_plane(0, 2, least, a, vectors) || has_turned;
-    has_turned = turn_plane(1, 2, least, a, vectors) || has_turned;
+    has_turned = false;
+    for (const auto& [p, q] : planes) {
+      const PlaneTurn first = plane_turn(two[0], p, q), second = plane_turn(two[1], p, q);
+      if (hn::AllFalse(d, hn::Or(first.turns, second.turns))) continue;
+      has_turned = true;
+      apply(first, p, q, two[0]);
+      apply(second, p, q, two[1]);
+    }
+  }
+}
+
+/// Sorts eigenvalues and eigenvectors and stores them from `voxel` on.
+HWY_INLINE void store_axes(const TensorLanes& t, int voxel, PrincipalAxes& axes) {
+  const WideTag d;
+  WideVec value[3] = {t.a[0][0], t.a[1][1], t.a[2][2]}, vectors[3][3];
+  for (int row = 0; row < 3; ++row) std::copy_n(t.vectors[row], 3, vectors[row]);
+  for (int pass = 0; pass < 3; ++pass) {
+    const int n = pass % 2, next = n + 1;
+    const auto stays = hn::Ge(value[n], value[next]);
+    const auto order = [&](WideVec& x, WideVec& y) {
+      const auto before = x;
+      x = hn::IfThenElse(stays, x, y);
+      y = hn::IfThenElse(stays, y, before);
+    };
+    order(value[n], value[next]);
+    for (auto& row : vectors) order(row[n], row[next]);
+  }
+  for (int row = 0; row < 3; ++row) {
+    hn::StoreU(value[row], d, axes.value[row] + voxel);
+    hn::StoreU(vectors[row][0], d, axes.first[row] + voxel);
+    hn::StoreU(vectors[row][2], d, axes.third[row] + voxel);
   }
 }
 
 /// Finds the axes of the tensors of all voxels. Sets the values behind the last voxel to zero.
 HWY_NOINLINE inline void find_axes(WideValues& values, PrincipalAxes& axes) {
-  const WideTag d;
+  const int lanes = static_cast<int>(hn::Lanes(WideTag()));
   for (auto& sum : values.sum) {
-    std::fill_n(sum + block_size * values.count, block_size * cell_edge, 0.0);
+    std::fill_n(sum + block_size * values.count, block_size * WideValues::padding, 0.0);
   }
-  for (int voxel = 0; voxel < values.count; voxel += static_cast<int>(hn::Lanes(d))) {
-    WideVec t[2 * block_size], vectors[3][3];
-    load_voxels(values, 6, voxel, t);
-    WideVec a[3][3] = {{t[0], t[3], t[5]}, {t[3], t[1], t[4]}, {t[5], t[4], t[2]}};
-    find_eigenvectors(a, vectors);
-    WideVec value[3] = {a[0][0], a[1][1], a[2][2]};
-    for (int pass = 0; pass < 3; ++pass) {
-      const int n = pass % 2, next = n + 1;
-      const auto stays = hn::Ge(value[n], value[next]);
-      const auto order = [&](WideVec& x, WideVec& y) {
-        const auto before = x;
-        x = hn::IfThenElse(stays, x, y);
-        y = hn::IfThenElse(stays, y, before);
-      };
-      order(value[n], value[next]);
-      for (auto& row : vectors) order(row[n], row[next]);
+  for (int voxel = 0; voxel < values.count; voxel += 2 * lanes) {
+    TensorLanes two[2];
+    for (int n = 0; n < 2; ++n) {
+      WideVec t[2 * block_size];
+      load_voxels(values, 6, voxel + lanes * n, t);
+      const WideVec a[3][3] = {{t[0], t[3], t[5]}, {t[3], t[1], t[4]}, {t[5], t[4], t[2]}};
+      for (int row = 0; row < 3; ++row) std::copy_n(a[row], 3, two[n].a[row]);
     }
-    for (int row = 0; row < 3; ++row) {
-      hn::StoreU(value[row], d, axes.value[row] + voxel);
-      hn::StoreU(vectors[row][0], d, axes.first[row] + voxel);
-      hn::StoreU(vectors[row][2], d, axes.third[row] + voxel);
-    }
+    find_eigenvectors(two);
+    for (int n = 0; n < 2; ++n) store_axes(two[n], voxel + lanes * n, axes);
   }
 }
 

@@ -29,12 +29,13 @@ constexpr int block_size = 4;  ///< components are stored in blocks of four
 /// Values of voxels.
 struct WideValues {
   static constexpr int voxels = 64;
-  static constexpr int blocks = 3;  ///< of up to nine components
+  static constexpr int padding = 2 * cell_edge;  ///< entries that vectors may cover beyond the last
+  static constexpr int blocks = 3;               ///< of up to nine components
 
   int count = 0;
   int samples[voxels];  ///< number of samples added
   /// Sums of samples, [component / 4][voxel][component % 4]; of one component [voxel].
-  alignas(64) double sum[blocks][(voxels + cell_edge) * block_size];
+  alignas(64) double sum[blocks][(voxels + padding) * block_size];
 };
 
 /// Successive samples of one voxel.
