@@ -29,6 +29,7 @@ struct RowCase {
   bool has_special = false;               ///< NaN, infinities and the least numbers in the source
   std::array<std::int64_t, 3> dims = {};  ///< of the source; zeros: those of the scene
   std::optional<Region> region = {};
+  std::int64_t row = -1;  ///< voxels per row of the output, in place of `scene`; -1: the scene's
 };
 
 inline std::ostream& operator<<(std::ostream& out, const RowCase& what) {
@@ -101,10 +102,23 @@ class RowBench {
 
  private:
   static scenes::Scene scene_of(const RowCase& what) {
+    if (what.row >= 0) return scene_of_rows(what.row);
     scenes::Scene scene = scenes::adversarial_scene(what.scene, 20);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (what.dims[axis] > 0) scene.source_grid.dims[axis] = what.dims[axis];
     }
+    return scene;
+  }
+
+  /// Output rows of `row` voxels, through which a waved bar runs. Of none: beside a single voxel.
+  static scenes::Scene scene_of_rows(std::int64_t row) {
+    const std::int64_t length = std::max<std::int64_t>(row, 1);
+    scenes::Scene scene;
+    scene.output_grid = scene.source_grid = scenes::unit_grid(length, 5, 6);
+    scene.mesh = scenes::lattice({static_cast<int>(length / 7) + 1, 1, 1}, {-1, -1, -1},
+                                 {static_cast<double>(length), 5, 6});
+    scene.deformed = scenes::waved(scene.mesh.rest_positions, 0.7, 19);
+    if (row == 0) scene.deformed = scenes::shifted(scene.deformed, {50, 0, 0});
     return scene;
   }
 
