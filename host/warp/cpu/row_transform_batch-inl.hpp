@@ -63,7 +63,7 @@ class TransformBatch {
     for (unsigned bits = run.bits; bits != 0; bits &= bits - 1) {
       add_voxel(cell_edge * run.cell + std::countr_zero(bits));
     }
-    parts_[part_count_++] = {&transform, first, values_.count};
+    groups_[group_count_++] = {&transform, first, values_.count};
     if (is_averaging(transform)) {
       add_means(source, transform, map, run.bits, first);
     } else {
@@ -74,16 +74,16 @@ class TransformBatch {
   /// Writes all voxels that were added.
   void flush() {
     read();
-    for (int p = 0; p < part_count_; ++p) take_means(parts_[p]);
+    for (int g = 0; g < group_count_; ++g) take_means(groups_[g]);
     if (job_.reorientation == Quantity::principal_tensor) find_axes(values_, axes_);
-    for (int p = 0; p < part_count_; ++p) finish(parts_[p]);
-    part_count_ = 0;
+    for (int g = 0; g < group_count_; ++g) finish(groups_[g]);
+    group_count_ = 0;
     values_.count = 0;
   }
 
  private:
   /// Voxels [begin, end) of `values_`, of one tetrahedron.
-  struct Part {
+  struct Group {
     const VoxelTransform* transform;
     int begin, end;
   };
@@ -155,10 +155,10 @@ class TransformBatch {
   }
 
   /// Makes means of sums, and limits them to the range of the samples.
-  void take_means(const Part& part) {
+  void take_means(const Group& group) {
     const ArithmeticOf<T>* const range = job_.source.range;
-    if (!is_averaging(*part.transform) && range == nullptr) return;
-    for (int voxel = part.begin; voxel < part.end; ++voxel) {
+    if (!is_averaging(*group.transform) && range == nullptr) return;
+    for (int voxel = group.begin; voxel < group.end; ++voxel) {
       for (int c = 0; c < job_.source.components; ++c) {
         double& value = values_.sum[c / block_size][index_of(voxel, c)];
         value /= max_of(values_.samples[voxel], 1);
@@ -170,28 +170,28 @@ class TransformBatch {
   }
 
   /// Reorients, scales and stores values.
-  void finish(const Part& part) {
-    const Matrix3& matrix = part.transform->matrix;
+  void finish(const Group& group) {
+    const Matrix3& matrix = group.transform->matrix;
     switch (job_.reorientation) {
       case Quantity::components:
-        return store(part, values_);
+        return store(group, values_);
       case Quantity::principal_tensor:
-        preserve_principals(matrix, axes_, values_, part.begin, part.end, turned_);
+        preserve_principals(matrix, axes_, values_, group.begin, group.end, turned_);
         break;
       case Quantity::vector:
       case Quantity::covariant_vector:
       case Quantity::contravariant_vector:
       case Quantity::tensor:
-        reorient_voxels(matrix, job_.source.components, values_, part.begin, part.end, turned_);
+        reorient_voxels(matrix, job_.source.components, values_, group.begin, group.end, turned_);
         break;
     }
-    store(part, turned_);
+    store(group, turned_);
   }
 
-  void store(const Part& part, const WideValues& values) const {
+  void store(const Group& group, const WideValues& values) const {
     const int components = job_.source.components;
-    const double scale = part.transform->scale;
-    for (int voxel = part.begin; voxel < part.end; ++voxel) {
+    const double scale = group.transform->scale;
+    for (int voxel = group.begin; voxel < group.end; ++voxel) {
       T* out = job_.volume + std::int64_t{place_[voxel]} * components;
       if (values_.samples[voxel] == 0) {
         std::fill_n(out, components, job_.background);
@@ -216,8 +216,8 @@ class TransformBatch {
   WideValues turned_;
   PrincipalAxes axes_;
   int place_[WideValues::voxels];
-  Part parts_[WideValues::voxels];
-  int part_count_ = 0;
+  Group groups_[WideValues::voxels];
+  int group_count_ = 0;
 };
 
 }  // namespace HWY_NAMESPACE
