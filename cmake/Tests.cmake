@@ -127,6 +127,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
+    tests/warp/test_row_vectors.cpp
     tests/warp/test_skip_constant.cpp
     tests/warp/test_skip_far_memory.cpp
     tests/warp/test_skip_unchanged.cpp
@@ -138,6 +139,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_arguments.cpp
     tests/warp/test_warp_filters.cpp
     tests/warp/test_warp_invariance.cpp)
+  target_link_libraries(tetwarp_tests PRIVATE tetwarp_hwy)
   if(TETWARP_HAS_CUDA)
     target_link_libraries(tetwarp_tests PRIVATE CUDA::cudart_static)
   endif()

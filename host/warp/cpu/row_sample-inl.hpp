@@ -12,12 +12,13 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 #include "host/warp/cpu/row_components-inl.hpp"
+#include "host/warp/cpu/row_label-inl.hpp"
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_store-inl.hpp"
+#include "host/warp/cpu/row_transform-inl.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
 #include "host/warp/cpu/row_wide-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
@@ -61,16 +62,11 @@ class RowSampler {
  private:
   /// Writes the runs that have a transform; moves the others to the front. @returns their number
   int write_transformed(const RowSource* sources, RowRun* runs, int count, int j, int k) {
-    int plain_count = 0;
-    for (int r = 0; r < count; ++r) {
-      const RowSource& source = sources[runs[r].source];
-      if (has_transform(job_, source.tet())) {
-        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_edge * runs[r].cell);
-      } else {
-        runs[plain_count++] = runs[r];
-      }
-    }
-    return plain_count;
+    TransformRows<T>::write(job_, shape_, sources, runs, count, j, k);
+    const auto is_transformed = [&](const RowRun& run) {
+      return has_transform(job_, sources[run.source].tet());
+    };
+    return static_cast<int>(std::remove_if(runs, runs + count, is_transformed) - runs);
   }
 
   /// Writes a cell's row of which some runs are copied or written voxel by voxel.
@@ -97,18 +93,22 @@ class RowSampler {
     if (vectored_count > 0) add(kind, sources, runs, vectored_count, j, k);
   }
 
-  void write_filtered(const RowSource* sources, const RowRun* runs, int count, int j, int k) {
-    for (const RowRun& run : std::span(runs, static_cast<std::size_t>(count))) {
-      const RowSource& source = sources[run.source];
-      const int cell_row = cell_edge * run.cell;
+  void write_filtered(const RowSource* sources, RowRun* runs, int count, int j, int k) {
+    int label_count = 0;  // runs to write by LabelRows; they are moved to the front
+    for (int r = 0; r < count; ++r) {
+      const RowSource& source = sources[runs[r].source];
+      const int cell_row = cell_edge * runs[r].cell;
       if (source.kind() == RowKind::copied) {
-        copy_run(job_, source, run.bits, j, k, job_.volume + cell_row * job_.source.components,
+        copy_run(job_, source, runs[r].bits, j, k, job_.volume + cell_row * job_.source.components,
                  copier_);
+      } else if (job_.filter == Filter::labels) {
+        runs[label_count++] = runs[r];
       } else {
-        ScalarRows<T>::write(job_, source.map(), run.bits, j, k, cell_row);
+        ScalarRows<T>::write(job_, source.map(), runs[r].bits, j, k, cell_row);
       }
     }
     copier_.flush();
+    if (label_count > 0) LabelRows<T>::write(job_, shape_, sources, runs, label_count, j, k);
   }
 
   static bool moves_alike(const RowSource& a, const RowSource& b) {

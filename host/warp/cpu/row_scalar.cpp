@@ -131,23 +131,12 @@ float blended_lanes(const Sample* samples,
   return near + sum;
 }
 
-/// The sample of one voxel whose neighbours all exist; one component.
+/// The sample of one voxel whose neighbours all exist; one component, not labels.
 template <class T>
 T sample_lanes(const SourceView<T>& source, Filter filter, const RowWalk& at) {
   const std::ptrdiff_t up = source.dims[0], far = up * source.dims[1];
   const std::ptrdiff_t offset = at.voxel[0] + at.voxel[1] * up + at.voxel[2] * far;
   const T* const samples = source.data + offset;
-  if constexpr (!std::is_floating_point_v<T>) {
-    if (filter == Filter::labels) {
-      T label[8];
-      bool is_same = true;
-      for (int corner = 0; corner < 8; ++corner) {
-        label[corner] = samples[(corner & 1) + (corner >> 1 & 1) * up + (corner >> 2) * far];
-        is_same = is_same && label[corner] == label[0];
-      }
-      return is_same ? label[0] : heaviest_label(label, at.fractions);
-    }
-  }
   float value = 0;
   if (filter == Filter::lanczos) {
     value = blended_lanes<Filter::lanczos>(samples, up, far, at);
@@ -192,7 +181,7 @@ void write_filtered(
     if (row_map.setup.kind == MapKind::affine) {
       RowWalk walk(job.source, row_map, reach_of(job.filter), j, k);
       for_voxels(bits, [&](int i) {
-        if (job.source.components == 1 && walk.move_to(i)) {
+        if (job.source.components == 1 && job.filter != Filter::labels && walk.move_to(i)) {
           job.volume[row + i] = sample_lanes(job.source, job.filter, walk);
         } else {
           set_start();

@@ -20,6 +20,7 @@
 #include "host/warp/cpu/row_scalar.hpp"
 #include "host/warp/cpu/row_source-inl.hpp"
 #include "host/warp/cpu/row_vector-inl.hpp"
+#include "host/warp/cpu/row_wide_map-inl.hpp"
 #include "kernels/warp/cell_raster.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,52 +28,24 @@ namespace tetwarp {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Positions and neighbours of the voxels of row (j, k) of a cell, bit-equal to SourceMap<double>,
-/// local_position() and tap_of(). The fourth lane is padding whose bounds accept every position.
+/// Positions and neighbours of the voxels of row (j, k) of a cell, bit-equal to tap_of().
 class WideRow {
  public:
   WideRow(const SourceShape& shape, const RowSource& source, bool nearest, int j, int k)
-      : nearest_(nearest) {
-    const TetSetup& tet = source.setup();
-    const int* corner = source.corner();
-    for (int axis = 0; axis < 3; ++axis) last_[axis] = shape.dims[axis] - 1;
-    for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
-      auto start = hn::Zero(d);
-      for (int a = 0; a < 3; ++a) {
-        const auto from = hn::Set(d, static_cast<double>(corner[a] - tet.anchor[a]));
-        const auto part = hn::Mul(hn::LoadU(d, tet.map[a] + lane), from);
-        start = a == 0 ? part : hn::Add(start, part);
-      }
-      start = hn::Add(start, hn::LoadU(d, tet.map[3] + lane));
-      const auto limit = hn::Set(d, max_whole), slack = hn::Set(d, double{rim_slack});
-      const auto whole = hn::Floor(hn::Min(hn::Max(start, hn::Neg(limit)), limit));
-      const auto of_row = hn::Mul(hn::LoadU(d, tet.map[1] + lane), hn::Set(d, double(j)));
-      const auto of_slice = hn::Mul(hn::LoadU(d, tet.map[2] + lane), hn::Set(d, double(k)));
-      const auto line = hn::Add(hn::Add(hn::Sub(start, whole), of_row), of_slice);
-      const auto half = hn::Set(d, 0.5);
-      const auto local = hn::Sub(whole, hn::LoadU(d, shape.origin + lane));
-      const auto low = hn::Sub(hn::Sub(hn::Neg(half), local), slack);
-      const auto high = hn::Add(hn::Add(hn::Sub(hn::Load(d, last_ + lane), local), half), slack);
-      hn::Store(line, d, line_ + lane);
-      hn::Store(hn::LoadU(d, tet.map[0] + lane), d, step_ + lane);
-      hn::Store(local, d, whole_ + lane);
-      hn::Store(low, d, low_ + lane);
-      hn::Store(high, d, high_ + lane);
-    }
-  }
+      : map_(shape, source, j, k), nearest_(nearest) {}
 
   /// Finds the neighbours of voxel i. @returns whether it lies inside the source
   bool move_to(int i) {
     bool inside = true;
     for (std::size_t lane = 0; lane < 4; lane += hn::Lanes(d)) {
-      const auto along = hn::Mul(hn::Load(d, step_ + lane), hn::Set(d, double(i)));
-      const auto x = hn::Add(hn::Load(d, line_ + lane), along);
-      const auto is_in =
-          hn::And(hn::Ge(x, hn::Load(d, low_ + lane)), hn::Le(x, hn::Load(d, high_ + lane)));
+      const auto along = hn::Mul(hn::Load(d, map_.step + lane), hn::Set(d, double(i)));
+      const auto x = hn::Add(hn::Load(d, map_.line + lane), along);
+      const auto is_in = hn::And(hn::Ge(x, hn::Load(d, map_.low + lane)),
+                                 hn::Le(x, hn::Load(d, map_.high + lane)));
       inside = inside && hn::AllTrue(d, is_in);
       const auto near = nearest_ ? hn::Add(x, hn::Set(d, 0.5)) : x;
-      const auto lower = hn::Floor(near), zero = hn::Zero(d), last = hn::Load(d, last_ + lane);
-      const auto at = hn::Add(hn::Load(d, whole_ + lane), lower);
+      const auto lower = hn::Floor(near), zero = hn::Zero(d), last = hn::Load(d, map_.last + lane);
+      const auto at = hn::Add(hn::Load(d, map_.whole + lane), lower);
       const auto blends = hn::And(hn::Ge(at, zero), hn::Lt(at, last));
       hn::Store(hn::IfThenElseZero(blends, hn::Sub(near, lower)), d, fraction + lane);
       hn::Store(hn::DemoteTo(di, hn::Min(hn::Max(at, zero), last)), di, voxel + lane);
@@ -86,17 +59,11 @@ class WideRow {
   alignas(16) std::int32_t upper[4];  ///< distance to the upper neighbour: 1, at the boundary 0
 
  private:
-  using Tag = hn::CappedTag<double, 4>;
-  static constexpr Tag d{};
-  static constexpr hn::Rebind<std::int32_t, Tag> di{};
+  static constexpr WideMap::Tag d{};
+  static constexpr hn::Rebind<std::int32_t, WideMap::Tag> di{};
 
+  WideMap map_;
   bool nearest_;
-  alignas(32) double line_[4];
-  alignas(32) double step_[4];
-  alignas(32) double whole_[4];
-  alignas(32) double low_[4];
-  alignas(32) double high_[4];
-  alignas(32) double last_[4] = {0, 0, 0, 0};
 };
 
 /// Writes the voxels `bits` of row (j, k) in float64.

@@ -1,0 +1,91 @@
+/// @file row_label_cpu.cpp
+/// Implementation by Highway, compiled once per vector instruction set, like cell_raster_cpu.cpp.
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/warp/cpu/row_label_cpu.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "host/warp/cpu/row_label-inl.hpp"
+#include "host/warp/cpu/row_label_writer-inl.hpp"
+#include "host/warp/cpu/row_scalar.hpp"
+#include "host/warp/cpu/row_taps-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+
+/// Whether runs are written here by float32 positions, or by float64 ones for wide pixel types.
+template <class T>
+bool is_vectored(const SourceShape& shape, const RowSource& source) {
+  if (source.setup().kind != MapKind::affine) return false;
+  const double voxels = static_cast<double>(shape.dims[0]) * shape.dims[1] * shape.dims[2];
+  return voxels <= std::numeric_limits<std::int32_t>::max() &&
+         (sizeof(ArithmeticOf<T>) == 8 || source.kind() != RowKind::alone);
+}
+
+template <class T>
+void LabelRows<T>::write(const RasterJob<T>& job,
+                         const SourceShape& shape,
+                         const RowSource* sources,
+                         RowRun* runs,
+                         int count,
+                         int j,
+                         int k) {
+  if constexpr (!std::is_floating_point_v<T>) {
+    LabelWriter<T> writer(job, shape);
+    RowTaps<false> inner;
+    RowTaps<true> rim;
+    for (RowRun *run = runs, *past = run; run < runs + count; run = past) {
+      RowKind kind = RowKind::inner;
+      RowRun* unit = run;  // runs of the cell in vectors; they are moved to the front
+      for (; past < runs + count && past->cell == run->cell; ++past) {
+        const RowSource& source = sources[past->source];
+        if (!is_vectored<T>(shape, source)) {
+          ScalarRows<T>::write(job, source.map(), past->bits, j, k, cell_edge * past->cell);
+        } else if constexpr (sizeof(ArithmeticOf<T>) == 8) {
+          writer.add_wide(source, *past, j, k);
+        } else {
+          kind = std::max(kind, source.kind());
+          std::swap(*unit++, *past);
+        }
+      }
+      const int unit_count = static_cast<int>(unit - run);
+      if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+        if (unit_count == 0) continue;
+        if (kind == RowKind::inner) {
+          writer.add_units(sources, run, unit_count, j, k, inner);
+        } else {
+          writer.add_units(sources, run, unit_count, j, k, rim);
+        }
+      }
+    }
+    if constexpr (sizeof(ArithmeticOf<T>) == 4) {
+      writer.flush(inner);
+      writer.flush(rim);
+    } else {
+      writer.flush_wide();
+    }
+    writer.finish();
+  }
+}
+
+template struct LabelRows<std::uint8_t>;
+template struct LabelRows<std::int8_t>;
+template struct LabelRows<std::uint16_t>;
+template struct LabelRows<std::int16_t>;
+template struct LabelRows<std::uint32_t>;
+template struct LabelRows<std::int32_t>;
+template struct LabelRows<std::uint64_t>;
+template struct LabelRows<std::int64_t>;
+template struct LabelRows<float>;
+template struct LabelRows<double>;
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();

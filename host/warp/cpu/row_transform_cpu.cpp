@@ -1,0 +1,58 @@
+/// @file row_transform_cpu.cpp
+/// Implementation by Highway, compiled once per vector instruction set, like cell_raster_cpu.cpp.
+#include <cstdint>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "host/warp/cpu/row_transform_cpu.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "host/warp/cpu/row_scalar.hpp"
+#include "host/warp/cpu/row_transform-inl.hpp"
+#include "host/warp/cpu/row_transform_batch-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tetwarp {
+namespace HWY_NAMESPACE {
+
+template <class T>
+void TransformRows<T>::write(const RasterJob<T>& job,
+                             const SourceShape& shape,
+                             const RowSource* sources,
+                             const RowRun* runs,
+                             int count,
+                             int j,
+                             int k) {
+  if constexpr (can_blend<T>) {
+    const double voxels = static_cast<double>(shape.dims[0]) * shape.dims[1] * shape.dims[2];
+    const bool is_vectored =
+        !is_wide(job.filter) && voxels <= std::numeric_limits<std::int32_t>::max();
+    TransformBatch<T> batch(job, shape);
+    for (const RowRun* run = runs; run < runs + count; ++run) {
+      const RowSource& source = sources[run->source];
+      if (!has_transform(job, source.tet())) continue;
+      if (is_vectored && source.setup().kind != MapKind::trilinear) {
+        batch.add(source, *run, j, k);
+      } else {
+        ScalarRows<T>::write(job, source.map(), run->bits, j, k, cell_edge * run->cell);
+      }
+    }
+    batch.flush();
+  }
+}
+
+template struct TransformRows<std::uint8_t>;
+template struct TransformRows<std::int8_t>;
+template struct TransformRows<std::uint16_t>;
+template struct TransformRows<std::int16_t>;
+template struct TransformRows<std::uint32_t>;
+template struct TransformRows<std::int32_t>;
+template struct TransformRows<std::uint64_t>;
+template struct TransformRows<std::int64_t>;
+template struct TransformRows<float>;
+template struct TransformRows<double>;
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tetwarp
+HWY_AFTER_NAMESPACE();

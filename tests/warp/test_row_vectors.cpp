@@ -1,0 +1,186 @@
+/// @file test_row_vectors.cpp
+/// The rows that the cpu back end computes in vectors hold, for every vector instruction set of the
+/// processor, the bits of the functions of one voxel in kernels/warp.
+#include <gtest/gtest.h>
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "tests/scenes/row_bench.hpp"
+
+namespace tetwarp::test {
+namespace {
+/// The instruction sets of this processor for which the library is compiled.
+std::vector<std::int64_t> instruction_sets() {
+  std::vector<std::int64_t> sets;
+  const std::int64_t compiled = HWY_TARGETS & ~HWY_SSE4;
+  for (std::int64_t left = hwy::SupportedTargets() & compiled; left != 0; left &= left - 1) {
+    sets.push_back(left & -left);
+  }
+  return sets;
+}
+
+/// Lets the dispatch of the library use one instruction set only, until the end of the scope.
+class OnlySet {
+ public:
+  explicit OnlySet(std::int64_t set) {
+    hwy::SetSupportedTargetsForTest(set);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  ~OnlySet() {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+  OnlySet(const OnlySet&) = delete;
+  OnlySet& operator=(const OnlySet&) = delete;
+};
+
+/// Equal bits; any NaN equals any other.
+template <class T>
+bool has_equal_bits(const T& a, const T& b) {
+  if constexpr (std::is_floating_point_v<T>) {
+    if (a != a && b != b) return true;
+  }
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+void expect_bits_of_one_voxel(const RowCase& what) {
+  with_pixel_type(what.type, [&]<class T>(T) {
+    RowBench<T> bench(what);
+    for (const std::int64_t set : instruction_sets()) {
+      const OnlySet only(set);
+      const std::vector<T> rows = bench.by_rows();
+      const std::vector<T> voxels = bench.by_voxels();
+      const bool is_same = std::equal(rows.begin(), rows.end(), voxels.begin(), has_equal_bits<T>);
+      EXPECT_TRUE(is_same) << what << ", " << hwy::TargetName(set);
+    }
+    EXPECT_EQ(bench.covered() > 0, what.row != 0) << what;
+  });
+}
+
+constexpr std::array transformed_types = {PixelType::uint8,   PixelType::int8,   PixelType::uint16,
+                                          PixelType::int16,   PixelType::uint32, PixelType::int32,
+                                          PixelType::float32, PixelType::float64};
+constexpr std::array label_types = {PixelType::uint8,  PixelType::int8,   PixelType::uint16,
+                                    PixelType::int16,  PixelType::uint32, PixelType::int32,
+                                    PixelType::uint64, PixelType::int64};
+
+TEST(RowVectors, DensitiesHaveTheBitsOfOneVoxel) {
+  for (const PixelType type : transformed_types) {
+    for (const int components : {1, 2, 5, 9}) {
+      expect_bits_of_one_voxel({.type = type, .components = components});
+    }
+  }
+}
+
+TEST(RowVectors, MeansHaveTheBitsOfOneVoxel) {
+  for (const PixelType type : transformed_types) {
+    expect_bits_of_one_voxel({.type = type, .averages = true});
+    expect_bits_of_one_voxel({.type = type, .components = 4, .averages = true, .clamps = true});
+  }
+  expect_bits_of_one_voxel({.filter = Filter::nearest, .averages = true});
+}
+
+TEST(RowVectors, TurnedVectorsAndTensorsHaveTheBitsOfOneVoxel) {
+  for (const PixelType type : transformed_types) {
+    expect_bits_of_one_voxel({.type = type, .components = 3, .reorientation = Quantity::vector});
+    expect_bits_of_one_voxel({.type = type, .components = 6, .reorientation = Quantity::tensor});
+    expect_bits_of_one_voxel(
+        {.type = type, .components = 6, .reorientation = Quantity::principal_tensor});
+  }
+  for (const Filter filter : {Filter::nearest, Filter::cubic}) {
+    expect_bits_of_one_voxel(
+        {.components = 3, .filter = filter, .reorientation = Quantity::covariant_vector});
+    expect_bits_of_one_voxel(
+        {.components = 6, .filter = filter, .reorientation = Quantity::tensor});
+  }
+  expect_bits_of_one_voxel({.components = 3,
+                            .reorientation = Quantity::contravariant_vector,
+                            .averages = true,
+                            .clamps = true});
+  expect_bits_of_one_voxel({.components = 6, .reorientation = Quantity::tensor, .averages = true});
+  expect_bits_of_one_voxel({.components = 6,
+                            .reorientation = Quantity::principal_tensor,
+                            .averages = true,
+                            .clamps = true});
+  expect_bits_of_one_voxel(
+      {.components = 6, .reorientation = Quantity::principal_tensor, .has_special = true});
+}
+
+TEST(RowVectors, TransformsHaveTheBitsOfOneVoxelInEveryScene) {
+  for (const std::string_view scene : scenes::adversarial_names) {
+    expect_bits_of_one_voxel({.scene = std::string(scene), .averages = true});
+    expect_bits_of_one_voxel({.scene = std::string(scene),
+                              .components = 3,
+                              .reorientation = Quantity::vector,
+                              .has_special = true});
+  }
+}
+
+TEST(RowVectors, LabelsHaveTheBitsOfOneVoxel) {
+  for (const PixelType type : label_types) {
+    for (const std::string_view scene : scenes::adversarial_names) {
+      expect_bits_of_one_voxel(
+          {.scene = std::string(scene), .type = type, .filter = Filter::labels});
+    }
+  }
+}
+
+/// Sources thinner than a vector, of which all samples are at an end, and lengths around widths.
+TEST(RowVectors, SmallSourcesHaveTheBitsOfOneVoxel) {
+  for (const std::array<std::int64_t, 3> dims : {std::array<std::int64_t, 3>{1, 1, 1},
+                                                 {2, 1, 1},
+                                                 {1, 2, 9},
+                                                 {31, 1, 2},
+                                                 {32, 3, 1},
+                                                 {33, 20, 2},
+                                                 {1025, 2, 2}}) {
+    for (const char* scene : {"rotated", "waved"}) {
+      for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint32}) {
+        expect_bits_of_one_voxel(
+            {.scene = scene, .type = type, .filter = Filter::labels, .dims = dims});
+        expect_bits_of_one_voxel({.scene = scene, .type = type, .averages = true, .dims = dims});
+      }
+      for (const PixelType type : {PixelType::float32, PixelType::float64, PixelType::uint8}) {
+        expect_bits_of_one_voxel({.scene = scene,
+                                  .type = type,
+                                  .components = 3,
+                                  .reorientation = Quantity::vector,
+                                  .dims = dims});
+      }
+    }
+  }
+}
+
+TEST(RowVectors, RowsOfAnyLengthHaveTheBitsOfOneVoxel) {
+  for (const std::int64_t row : tricky_sizes) {
+    for (const PixelType type : {PixelType::uint8, PixelType::int32}) {
+      expect_bits_of_one_voxel({.type = type, .filter = Filter::labels, .row = row});
+      expect_bits_of_one_voxel({.type = type, .averages = true, .row = row});
+    }
+    expect_bits_of_one_voxel({.row = row});
+    expect_bits_of_one_voxel({.components = 3, .reorientation = Quantity::vector, .row = row});
+    expect_bits_of_one_voxel(
+        {.components = 6, .reorientation = Quantity::principal_tensor, .row = row});
+  }
+}
+
+TEST(RowVectors, RegionsHaveTheBitsOfOneVoxel) {
+  for (const Region& region : {Region{{3, 5, 1}, {20, 16, 19}}, Region{{9, 0, 7}, {10, 17, 8}}}) {
+    expect_bits_of_one_voxel({.averages = true, .region = region});
+    expect_bits_of_one_voxel(
+        {.components = 6, .reorientation = Quantity::tensor, .averages = true, .region = region});
+    expect_bits_of_one_voxel(
+        {.type = PixelType::uint8, .filter = Filter::labels, .region = region});
+  }
+}
+}  // namespace
+}  // namespace tetwarp::test
