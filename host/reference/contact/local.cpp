@@ -163,6 +163,7 @@ Vector3d update_rolling(
   }
   // Rolling: m = -a omega with a = mix scale / (1 - mix), as in solve_cone().
   const double scale = 1 / block.norm();
+  impulse.tail<2>().setZero();
   double low = 0, high = 1;
   for (int halving = 0; halving < 60; ++halving) {
     const double mix = 0.5 * (low + high);
