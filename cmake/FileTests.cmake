@@ -18,6 +18,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_checkpoint.cpp
     tests/io/test_io_fclib.cpp
     tests/io/test_io_fclib_bad.cpp
+    tests/io/test_io_fclib_rows.cpp
     tests/io/test_io_fclib_solution.cpp
     tests/io/test_skip_chunks.cpp
     tests/io/test_mesh_child.cpp)

@@ -46,7 +46,8 @@ void check_no_equalities(const h5::Object& root, const std::string& name) {
   if (!h5::has_child(root, name)) return;
   const h5::Object group = h5::open_group(root, name);
   if (fclib::read_integer(group, "n") == 0) return;
-  group.fail("equality constraints are not supported, eliminate them first");
+  group.fail(
+      "equality constraints are not supported in local form, write the problem in global form");
 }
 
 Expected rows_of(std::int64_t contacts) {
@@ -136,7 +137,6 @@ ContactProblem read_local(const h5::Object& root) {
 }
 
 ContactProblem read_global(const h5::Object& root) {
-  check_no_equalities(root, "G");
   const h5::Object vectors = h5::open_group(root, "vectors");
   ContactProblem problem;
   problem.friction = fclib::read_reals(vectors, "mu");
@@ -148,6 +148,9 @@ ContactProblem read_global(const h5::Object& root) {
   problem.system =
       with_both_triangles(fclib::read_matrix(root, "M", dofs, dofs, Orientation::plain));
   problem.jacobian = fclib::read_matrix(root, "H", dofs, rows, Orientation::transposed);
+  if (h5::has_child(root, "G") && fclib::read_integer(h5::open_group(root, "G"), "n") != 0) {
+    problem.bilateral = fclib::read_bilateral(root, dofs);
+  }
   return problem;
 }
 
@@ -185,26 +188,28 @@ std::vector<std::int32_t> read_blocks(const h5::Object& file) {
   return block_start;
 }
 
-std::vector<double> read_start(const h5::Object& file, std::int64_t contacts) {
-  std::vector<double> impulse;
+/// Sets the impulses of a problem to start from.
+void read_start(const h5::Object& file, ContactProblem& problem) {
+  const std::int64_t contacts = problem.contact_count();
+  std::vector<double>& impulse = problem.impulse_guess;
   for (const std::string path : {"solution", "guesses/1"}) {
     if (!h5::has_child(file, path.substr(0, path.find('/'))) || !h5::is_group(file, path)) continue;
     const h5::Object group = h5::open_group(file, path);
     if (!h5::has_child(group, "r")) continue;
     impulse = fclib::read_reals(group, "r", rows_of(contacts));
+    fclib::read_row_guesses(group, problem);
     // Files recorded by programs often hold a /solution of zeros; guesses are then better.
     if (std::any_of(impulse.begin(), impulse.end(), [](double r) { return r != 0; })) break;
   }
   if (impulse.empty() && contacts > 0) {
     file.fail("holds no impulses to start from, neither /solution/r nor /guesses/1/r");
   }
-  return impulse;
 }
 }  // namespace
 
 std::string fclib::path_of(const std::string& field, bool is_local) {
   const std::string root = is_local ? "/fclib_local/" : "/fclib_global/";
-  const std::array<std::pair<const char*, std::string>, 10> paths = {{
+  const std::array<std::pair<const char*, std::string>, 18> paths = {{
       {"system", root + "M"},
       {"jacobian", root + "H"},
       {"load", root + "vectors/f"},
@@ -215,12 +220,22 @@ std::string fclib::path_of(const std::string& field, bool is_local) {
       {"block_start", "/blocks/block_ptr"},
       {"impulse_guess", "/guesses/1/r"},
       {"adhesion.saturation_pressure", "/adhesion/saturation"},
+      {"second_friction", "/friction/second"},
+      {"bilateral.jacobian", root + "G"},
+      {"bilateral.target", root + "vectors/b"},
+      {"bilateral.compliance", "/bilateral/compliance"},
+      {"bilateral.group_start", "/bilateral/group_ptr"},
+      {"bilateral.impulse_guess", "/guesses/1/l"},
+      {"rolling.jacobian", "/rolling/H"},
+      {"rolling.impulse_guess", "/guesses/1/m"},
   }};
   for (const auto& [member, path] : paths) {
     if (field.starts_with(member)) return path;
   }
   const std::string adhesion = "adhesion.";
   if (field.starts_with(adhesion)) return "/adhesion/" + field.substr(adhesion.size());
+  const std::string rolling = "rolling.";
+  if (field.starts_with(rolling)) return "/rolling/" + field.substr(rolling.size());
   return root.substr(0, root.size() - 1);
 }
 
@@ -234,7 +249,8 @@ ContactProblem read_contact_problem(const std::string& path, ContactStart start)
   const std::int64_t contacts = problem.contact_count();
   if (h5::has_child(file, "adhesion")) problem.adhesion = read_adhesion(file, contacts);
   if (!is_local && h5::has_child(file, "blocks")) problem.block_start = read_blocks(file);
-  if (start == ContactStart::stored) problem.impulse_guess = read_start(file, contacts);
+  fclib::read_extensions(file, problem);
+  if (start == ContactStart::stored) read_start(file, problem);
   try {
     check_problem(problem);
   } catch (const ContactProblemError& error) {

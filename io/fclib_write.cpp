@@ -81,6 +81,7 @@ void write_problem(const h5::Object& root, const ContactProblem& problem) {
                         Orientation::transposed);
     write_reals(vectors, "f", problem.load);
     write_reals(vectors, "w", problem.velocity_offset);
+    fclib::write_bilateral(root, vectors, problem.bilateral);
   }
 }
 
@@ -105,8 +106,15 @@ void write_guess(const h5::Object& file, const ContactProblem& problem) {
   const h5::Object guesses = h5::create_group(file, "guesses");
   write_integers(guesses, "number_of_guesses", {1});
   const h5::Object guess = h5::create_group(guesses, "1");
-  write_reals(guess, "r", problem.impulse_guess);
-  write_reals(guess, "u", std::vector<double>(problem.impulse_guess.size()));
+  std::vector<double> impulse = problem.impulse_guess;
+  impulse.resize(3 * problem.friction.size(), 0.0);
+  write_reals(guess, "r", impulse);
+  write_reals(guess, "u", std::vector<double>(impulse.size()));
+  const auto write_row_guess = [&](const char* name, const std::vector<double>& values) {
+    if (!values.empty()) write_reals(guess, name, values);
+  };
+  write_row_guess("l", problem.bilateral.impulse_guess);
+  write_row_guess("m", problem.rolling.impulse_guess);
   if (!problem.is_local()) write_reals(guess, "v", std::vector<double>(problem.load.size()));
 }
 
@@ -132,20 +140,36 @@ void check_lengths(const std::string& problem, const ContactSolution& solution) 
   if (!is_local) {
     check_length(file, "fclib_global/vectors/f", "body_velocity", solution.body_velocity);
   }
+  if (!solution.bilateral_impulse.empty()) {
+    check_length(file, "fclib_global/vectors/b", "bilateral_impulse", solution.bilateral_impulse);
+  }
 }
 
-void write_solution(const h5::Object& file, const ContactSolution& solution) {
+/// Mode, as its number in ContactMode, and residual of each contact.
+void write_modes(const h5::Object& group, const ContactModes& modes) {
+  std::vector<std::int64_t> numbers;
+  for (const ContactMode mode : modes.mode) numbers.push_back(static_cast<std::int64_t>(mode));
+  write_integers(group, "contact_mode", numbers);
+  write_reals(group, "contact_residual", modes.residual);
+}
+
+void write_solution(const h5::Object& file,
+                    const ContactSolution& solution,
+                    const ContactModes* modes) {
   const ContactReport& report = solution.report;
   const h5::Object group = h5::create_group(file, "solution");
   write_reals(group, "r", solution.impulse);
   write_reals(group, "u", solution.velocity);
   if (!solution.body_velocity.empty()) write_reals(group, "v", solution.body_velocity);
+  if (!solution.bilateral_impulse.empty()) write_reals(group, "l", solution.bilateral_impulse);
+  if (!solution.rolling_impulse.empty()) write_reals(group, "m", solution.rolling_impulse);
   write_reals(group, "residual_history", report.residual_history);
   h5::write_scalar_attribute(group, "converged", std::int64_t{solution.converged()});
   h5::write_text_attribute(group, "status", name_of(report.status));
   h5::write_scalar_attribute(group, "residual", report.residual.eta);
   h5::write_scalar_attribute(group, "fclib_error", report.residual.fclib);
   if (!report.method.empty()) h5::write_text_attribute(group, "method", report.method);
+  if (modes != nullptr) write_modes(group, *modes);
 }
 }  // namespace
 
@@ -170,7 +194,11 @@ std::int64_t write_contact_problem(const std::string& path,
       write_integers(h5::create_group(output.file(), "blocks"), "block_ptr",
                      {problem.block_start.begin(), problem.block_start.end()});
     }
-    if (!problem.impulse_guess.empty()) write_guess(output.file(), problem);
+    fclib::write_extensions(output.file(), problem);
+    const bool has_guess = !problem.impulse_guess.empty() ||
+                           !problem.bilateral.impulse_guess.empty() ||
+                           !problem.rolling.impulse_guess.empty();
+    if (has_guess) write_guess(output.file(), problem);
   }
   return output.finish();
 }
@@ -178,13 +206,14 @@ std::int64_t write_contact_problem(const std::string& path,
 std::int64_t write_contact_solution(const std::string& path,
                                     const std::string& problem_path,
                                     const ContactSolution& solution,
-                                    const AdhesionStep* adhesion_next) {
+                                    const AdhesionStep* adhesion_next,
+                                    const ContactModes* modes) {
   const h5::Silence silence;
   check_lengths(problem_path, solution);
   FclibOutput output(path, problem_path);
   output.remove("solution");
   output.remove("adhesion_next");
-  write_solution(output.file(), solution);
+  write_solution(output.file(), solution, modes);
   if (adhesion_next != nullptr) {
     const h5::Object group = h5::create_group(output.file(), "adhesion_next");
     write_reals(group, "intensity", adhesion_next->intensity);

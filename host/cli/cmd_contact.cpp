@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tetwarp/contact.hpp>
+#include <tetwarp/contact_analysis.hpp>
 #include <tetwarp/io.hpp>
 
 #include "host/cli/commands.hpp"
@@ -42,6 +43,11 @@ ContactProblem read_problem(const ContactArguments& arguments) {
                   "has no offsets w, which --recovery-speed limits; write the problem in global "
                   "form, or leave the option out");
   }
+  if (problem.is_local() && arguments.energy) {
+    throw IoError(arguments.problem, "/fclib_local",
+                  "has no masses, which --energy needs; write the problem in global form, or leave "
+                  "the option out");
+  }
   if (arguments.evolve && problem.adhesion.empty()) {
     throw IoError(arguments.problem, "/adhesion", "is missing, but --evolve needs it");
   }
@@ -59,10 +65,27 @@ ContactSolution solve(ContactSolver& solver,
   }
 }
 
+nlohmann::ordered_json json_of(const EnergyBalance& energy) {
+  return {{"free", energy.free},
+          {"after", energy.after},
+          {"offset_work", energy.offset_work},
+          {"bilateral_work", energy.bilateral_work},
+          {"friction_loss", energy.friction_loss},
+          {"rolling_loss", energy.rolling_loss},
+          {"impact_loss", energy.impact_loss},
+          {"bilateral_loss", energy.bilateral_loss},
+          {"adhesion_before", energy.adhesion_before},
+          {"adhesion_after", energy.adhesion_after},
+          {"adhesion_loss", energy.adhesion_loss},
+          {"error", energy.error}};
+}
+
 void write_report(const std::string& path,
                   const ContactReport& report,
+                  const std::optional<EnergyBalance>& energy,
                   const FileSeconds& seconds) {
   auto json = nlohmann::ordered_json::parse(to_json(report));
+  if (energy) json["energy"] = json_of(*energy);
   json["timings"]["read"] = seconds.read;
   json["timings"]["write"] = seconds.write;
   json["timings"]["total"] = seconds.read + report.total_seconds + seconds.write;
@@ -110,9 +133,14 @@ int run_contact(const ContactArguments& arguments) {
   const Stopwatch writing;
   std::optional<AdhesionStep> next;
   if (arguments.evolve) next = solver.evolve(problem, solution);
-  write_contact_solution(arguments.output, arguments.problem, solution, next ? &*next : nullptr);
+  std::optional<ContactModes> modes;
+  if (arguments.modes) modes = contact_modes(problem, solution, arguments.options);
+  std::optional<EnergyBalance> energy;
+  if (arguments.energy) energy = energy_balance(problem, solution);
+  write_contact_solution(arguments.output, arguments.problem, solution, next ? &*next : nullptr,
+                         modes ? &*modes : nullptr);
   seconds.write = writing.seconds();
-  if (!arguments.report.empty()) write_report(arguments.report, solution.report, seconds);
+  if (!arguments.report.empty()) write_report(arguments.report, solution.report, energy, seconds);
   if (!arguments.quiet) print_summary(arguments, solution.report);
   return report_failure(arguments, solution.report);
 }
@@ -131,6 +159,9 @@ void add_contact_command(CLI::App& app, Run& run) {
       "4 infeasible or unbounded, likewise; 2 bad usage; 1 any other failure\n");
   declare_contact_options(*command, *arguments);
   command->callback([arguments, &run] {
+    if (arguments->energy && arguments->report.empty()) {
+      throw CLI::ValidationError("--energy", "needs --report, which it adds to");
+    }
     if (arguments->options.relaxation >= 2) {
       throw CLI::ValidationError("--relaxation", "expected a number below 2");
     }

@@ -13,7 +13,7 @@ void declare_model(CLI::App& app, ContactArguments& arguments) {
   ContactOptions& options = arguments.options;
   app.add_option("PROBLEM", arguments.problem,
                  "FCLIB file, local or global, with or without "
-                 "an adhesion group")
+                 "adhesion, bilateral rows and rolling friction")
       ->required()
       ->type_name("");
   app.add_option("-o,--output", arguments.output,
@@ -104,6 +104,9 @@ void declare_running(CLI::App& app, ContactArguments& arguments) {
   declare_skips(app, options.skip);
   app.add_option("--report", arguments.report, "write residuals, counts and timings as JSON")
       ->type_name("FILE");
+  app.add_flag("--modes", arguments.modes,
+               "also write mode and residual of each contact, /solution/contact_mode");
+  app.add_flag("--energy", arguments.energy, "add the balance of energy to the report");
   add_quiet(app, arguments.quiet);
 }
 }  // namespace

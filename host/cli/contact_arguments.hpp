@@ -16,6 +16,8 @@ struct ContactArguments {
   ContactOptions options;
   ContactStart start = ContactStart::zero;
   bool evolve = false;
+  bool modes = false;   ///< also write mode and residual of each contact
+  bool energy = false;  ///< also report the balance of energy
   std::string report;
   bool quiet = false;
 };

@@ -15,6 +15,7 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/engine.hpp"
 #include "host/contact/problem/imbalance.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 #include "host/contact/status.hpp"
 #include "host/reference/contact/contact.hpp"
@@ -108,15 +109,39 @@ std::vector<double> contact_velocity(const ContactProblem& problem,
   return u;
 }
 
+/// Solves a problem that may have other rows than those of contacts; moves impulses, velocities and
+/// balance to the solution.
+EngineResult solve_with_rows(ContactEngine& engine,
+                             const ContactProblem& problem,
+                             const ContactOptions& options,
+                             SolveBudget& budget,
+                             ContactSolution& solution) {
+  if (!needs_blocks(problem)) {
+    EngineResult result = engine.solve(problem, budget);
+    solution.impulse = std::move(result.impulse);
+    solution.body_velocity = std::move(result.body_velocity);
+    return result;
+  }
+  const BlockProblem blocks(problem, options);
+  EngineResult result = engine.solve(blocks.problem(), budget);
+  blocks.set_solution(result.impulse, result.body_velocity, solution);
+  solution.report.residual.balance =
+      imbalance(blocks.problem(), result.impulse, result.body_velocity);
+  return result;
+}
+
 /// Solves a problem whose normal springs may have another gap than dt w_n.
 EngineResult solve_with_springs(ContactEngine& engine,
                                 const ContactProblem& problem,
-                                SolveBudget& budget) {
+                                const ContactOptions& options,
+                                SolveBudget& budget,
+                                ContactSolution& solution) {
   if (problem.contact_count() == 0 && problem.dof_count() == 0) return {};
   const std::vector<double> preloads = spring_preloads(problem);
-  if (preloads.empty()) return engine.solve(problem, budget);
-  EngineResult result = engine.solve(with_preloads(problem, preloads), budget);
-  add_preloads(preloads, -1, result.impulse);
+  if (preloads.empty()) return solve_with_rows(engine, problem, options, budget, solution);
+  EngineResult result =
+      solve_with_rows(engine, with_preloads(problem, preloads), options, budget, solution);
+  add_preloads(preloads, -1, solution.impulse);
   return result;
 }
 
@@ -184,21 +209,23 @@ ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   const auto start = Clock::now();
   SolveBudget budget(s.options, problem);
   check_problem(problem);
-  EngineResult result = solve_with_springs(s.engine, problem, budget);
-  budget.rethrow();
   ContactSolution solution;
+  EngineResult result = solve_with_springs(s.engine, problem, s.options, budget, solution);
+  budget.rethrow();
   ContactReport& report = solution.report;
   report.version = TETWARP_VERSION;
   report.backend = s.backend;
   report.device = s.device != nullptr ? s.device->name() : processor_name();
   report.threads = s.threads;
   report.contacts = problem.contact_count();
+  report.bilateral_rows = problem.bilateral.row_count();
+  report.rolling_contacts = problem.rolling.count();
   const WholeResidual whole = whole_residual(result.outcomes);
   fill_report(result, whole, s.options.measure, report);
-  solution.impulse = std::move(result.impulse);
-  solution.body_velocity = std::move(result.body_velocity);
   solution.velocity = contact_velocity(problem, solution);
-  report.residual.balance = imbalance(problem, solution.impulse, solution.body_velocity);
+  if (!needs_blocks(problem)) {
+    report.residual.balance = imbalance(problem, solution.impulse, solution.body_velocity);
+  }
   set_status(result, whole, s.options, budget, solution);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);

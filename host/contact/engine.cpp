@@ -6,16 +6,17 @@
 
 #include "host/contact/condense.hpp"
 #include "host/contact/feasibility.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/structure/extract.hpp"
 
 namespace tetwarp {
 namespace {
 using Clock = std::chrono::steady_clock;
 
-/// Whether any normal offset is below -speed.
+/// Whether the normal offset of any contact is below -speed.
 bool exceeds(const ContactProblem& problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
-    if (problem.velocity_offset[row] < -speed) return true;
+    if (problem.velocity_offset[row] < -speed && is_contact_block(problem, row / 3)) return true;
   }
   return false;
 }
@@ -23,6 +24,7 @@ bool exceeds(const ContactProblem& problem, double speed) {
 /// The problem with normal offsets of at least -speed.
 ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
   for (std::size_t row = 0; row < problem.velocity_offset.size(); row += 3) {
+    if (!is_contact_block(problem, row / 3)) continue;
     problem.velocity_offset[row] = std::max(problem.velocity_offset[row], -speed);
   }
   return problem;

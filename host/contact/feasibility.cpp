@@ -42,6 +42,9 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
   // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
+  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
+    if (!is_contact(system.constants[index_of(s)].kind)) return {};
+  }
   const ContactSystem<double> bare = make_bare(system);
   const ContactNumbers<double> numbers = bare.numbers(structure.indices());
   CpuContactExec exec(1);

@@ -15,7 +15,8 @@
 
 namespace tetwarp {
 
-/// Slots of an island whose normal offsets contradict each other; empty when none do.
+/// Slots of an island whose normal offsets contradict each other; empty when none do, and for
+/// islands with other blocks of rows than contacts.
 ///
 /// For any y >= 0, every velocity that satisfies all contacts differs from the free one by at least
 /// -y.q / sqrt(y.B y) in the energy norm. Where the offsets contradict each other, the impulses of

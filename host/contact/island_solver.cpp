@@ -8,6 +8,7 @@
 #include "host/contact/certificate.hpp"
 #include "host/contact/feasibility.hpp"
 #include "host/contact/newton/newton.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/structure/extract.hpp"
 #include "host/contact/sweeps/method_names.hpp"
 
@@ -30,6 +31,17 @@ std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
     contacts.push_back(structure.contact_of_slot[index_of(island.slot_begin + c)]);
   }
   return contacts;
+}
+/// Whether an island has blocks of rows that are no contacts.
+bool has_other_blocks(const ContactProblem& problem,
+                      const ContactStructure& structure,
+                      const ContactIsland& island) {
+  if (problem.row_blocks.empty()) return false;
+  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
+    const std::int32_t c = structure.contact_of_slot[index_of(s)];
+    if (!is_contact_block(problem, index_of(c))) return true;
+  }
+  return false;
 }
 }  // namespace
 
@@ -152,6 +164,10 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
     result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
   }
   if (!result.clamped.empty()) return;
+  if (has_other_blocks(*problem_, structure_, structure_.islands[index_of(island)])) {
+    continue_with_rows(island, run, result);
+    return;
+  }
   if (options_.method == ContactMethod::automatic || options_.method == ContactMethod::newton) {
     polish(island, run, outcome);
   }
@@ -166,6 +182,25 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
     outcome.sums = run.measure(island);
   }
   if (!run.is_done(island, outcome.sums)) find_unbounded(island, result);
+}
+
+/// fall_back() for an island with bilateral or rolling blocks: no certificates, and no Newton's
+/// method where there is rolling friction, which it does not have.
+void IslandSolver::continue_with_rows(std::int64_t island,
+                                      ContactRun<double>& run,
+                                      EngineResult& result) {
+  IslandOutcome& outcome = result.outcomes[index_of(island)];
+  const bool is_automatic = options_.method == ContactMethod::automatic;
+  const bool has_newton =
+      (is_automatic || options_.method == ContactMethod::newton) && !has_rolling(*problem_);
+  for (const bool is_first : {true, false}) {
+    if (has_newton) polish(island, run, outcome);
+    outcome.sums = run.measure(island);
+    if (!is_first || !is_automatic || run.is_done(island, outcome.sums)) return;
+    run.run_to_budget(island);
+    outcome.sums = run.measure(island);
+    if (run.is_done(island, outcome.sums)) return;
+  }
 }
 
 /// Searches for a certificate that normal offsets contradict each other. Sweeps, which come first,

@@ -62,6 +62,7 @@ class IslandSolver {
   void solve_on_device(EngineResult& result);
   void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
+  void continue_with_rows(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   bool find_contradiction(std::int64_t island, EngineResult& result);
   void find_unbounded(std::int64_t island, EngineResult& result);
   void polish(std::int64_t island, ContactRun<double>& run, IslandOutcome& outcome);

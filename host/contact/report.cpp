@@ -14,6 +14,8 @@ std::string to_json(const ContactReport& report) {
                                        {"status", name_of(report.status)},
                                        {"status_reason", report.status_reason},
                                        {"contacts", report.contacts},
+                                       {"bilateral_rows", report.bilateral_rows},
+                                       {"rolling_contacts", report.rolling_contacts},
                                        {"colors", report.colors},
                                        {"islands", report.islands},
                                        {"outer_iterations", report.outer_iterations},

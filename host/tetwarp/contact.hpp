@@ -144,7 +144,9 @@ struct ContactResidual {
   double eta = 0;      ///< ContactMeasure::eta, relative
   double fclib = 0;    ///< ContactMeasure::fclib, relative
   double largest = 0;  ///< largest contribution of one contact: eta^2 is the sum of their squares
-  std::int64_t largest_contact = -1;  ///< index of that contact; -1: all contributions are 0
+  std::int64_t largest_contact = -1;  ///< index of that contact; -1: all contributions are 0. From
+                                      ///< the contact count on: groups of bilateral rows, then
+                                      ///< entries of rolling friction
   double penetration = 0;             ///< max(-u_n), m/s
   double balance = 0;                 ///< |A v - J^T r - b| / max(|b|, |J^T r|); 0 in local form
 };
@@ -159,6 +161,8 @@ struct ContactReport {
   ContactStatus status = ContactStatus::not_converged;
   std::string status_reason;  ///< one sentence when not converged
   std::int64_t contacts = 0;
+  std::int64_t bilateral_rows = 0;
+  std::int64_t rolling_contacts = 0;  ///< with rolling friction
   std::int64_t colors = 0;   ///< most colors of an island; contacts of a color share no body
   std::int64_t islands = 0;  ///< connected components of bodies that have contacts
   std::int64_t outer_iterations = 0;  ///< of the coupled island that took the most
@@ -182,9 +186,11 @@ struct ContactReport {
 TETWARP_EXPORT std::string to_json(const ContactReport& report);
 
 struct ContactSolution {
-  std::vector<double> impulse;        ///< r, [3 contacts], N s
-  std::vector<double> velocity;       ///< u, [3 contacts], m/s
-  std::vector<double> body_velocity;  ///< v, [dofs]; empty in local form
+  std::vector<double> impulse;            ///< r, [3 contacts], N s
+  std::vector<double> velocity;           ///< u, [3 contacts], m/s
+  std::vector<double> body_velocity;      ///< v, [dofs]; empty in local form
+  std::vector<double> bilateral_impulse;  ///< lambda of ContactProblem::bilateral, [rows]
+  std::vector<double> rolling_impulse;    ///< m of ContactProblem::rolling, [3 entries], N m s
   ContactReport report;
 
   bool converged() const { return report.status == ContactStatus::converged; }
@@ -260,11 +266,18 @@ TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
 /// @param body_velocity  v, [dofs], m/s, or empty: v is computed from r. Local form: not used, u =
 ///                       W r + q
 /// @param options        law, rule and recovery_speed are read
-/// @throws std::invalid_argument  an array has the wrong size
+/// @throws std::invalid_argument  an array has the wrong size, or the problem has bilateral rows or
+///                                rolling friction: use the function below
 /// @throws ContactProblemError    as ContactSolver::solve()
 TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
                                            std::span<const double> impulse,
                                            std::span<const double> body_velocity,
+                                           const ContactOptions& options = {});
+
+/// The same for a whole solution, also of a problem with rows beyond those of contacts.
+/// @param solution  impulses, velocities and body velocities are read
+TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
+                                           const ContactSolution& solution,
                                            const ContactOptions& options = {});
 
 /// Adhesion intensities and anchor gaps after a solve, which keeps beta constant; runs on the host.

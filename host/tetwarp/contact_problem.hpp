@@ -43,6 +43,53 @@ struct AdhesionState {
   bool empty() const { return intensity.empty(); }
 };
 
+/// Rows beyond those of contacts that hold with either sign, in the global form only: joints, and
+/// couplings of bodies. With J_b = `jacobian` and the impulse lambda of each row,
+///
+///     A v = J^T r + J_b^T lambda + b,  J_b v + compliance lambda = target
+///
+/// A spring of stiffness k over a step dt is a row of compliance 1 / (k dt^2) and target -g / dt, g
+/// its stretch at the start of the step.
+struct BilateralRows {
+  SparseMatrix jacobian;           ///< J_b, [rows][dofs]; every row has a nonzero entry
+  std::vector<double> target;      ///< [rows], m/s or rad/s; empty: zeros
+  std::vector<double> compliance;  ///< [rows], >= 0, 1/kg or 1/(kg m^2); empty: zeros, hard rows
+  std::vector<std::int32_t> group_start;  ///< first row of each group, then the row count: groups
+                                          ///< of one to three rows are solved together; a joint of
+                                          ///< more rows has several groups. Empty: single rows
+  std::vector<double> impulse_guess;      ///< lambda to start from, [rows], or empty: zeros
+
+  bool empty() const { return jacobian.empty(); }
+  std::int64_t row_count() const { return jacobian.rows; }
+};
+
+/// Resistance of contacts to rolling and to spinning about the normal, in the global form only. Per
+/// entry three rows: the angular velocity omega of body a relative to body b about the normal,
+/// tangent 1 and tangent 2 of the contact [rad/s]. The angular impulses m [N m s] obey
+///
+///     |m_n| <= torsion nu_n,  m_n omega_n = -torsion nu_n |omega_n|
+///     |m_t| <= rolling nu_n,  m_t . omega_t = -rolling nu_n |omega_t|,  |.| of the vector of two
+struct RollingFriction {
+  std::vector<std::int32_t> contact;  ///< the contact of each entry, each at most once
+  SparseMatrix jacobian;              ///< [3 entries][dofs]
+  std::vector<double> rolling;        ///< [entries], m, >= 0
+  std::vector<double> torsion;        ///< [entries], m, >= 0
+  std::vector<double> impulse_guess;  ///< m to start from, [3 entries], or empty: zeros
+
+  bool empty() const { return contact.empty(); }
+  std::int64_t count() const { return static_cast<std::int64_t>(contact.size()); }
+};
+
+/// How the solver itself stores BilateralRows and RollingFriction: as blocks of three rows among
+/// the contacts. Empty in problems of a caller.
+struct RowBlocks {
+  std::vector<std::uint8_t> kind;     ///< [contacts]
+  std::vector<std::int32_t> contact;  ///< [contacts]
+  std::vector<double> torsion;        ///< [contacts], m
+
+  bool empty() const { return kind.empty(); }
+};
+
 /// Contacts of one step in one of two forms; the members of the other form stay empty:
 ///
 ///     global:  A v = J^T r + b,  u = J v + w        local:  u = W r + q
@@ -66,6 +113,13 @@ struct ContactProblem {
                                           ///< empty: ranges of dofs that A does not couple, those
                                           ///< of more than 12 dofs cut into nodes of 3
   std::vector<double> impulse_guess;      ///< r to start from, [3 contacts], or empty: zeros
+
+  std::vector<double> second_friction;  ///< mu along tangent 2, [contacts], >= 0, where that along
+                                        ///< tangent 1, `friction`, differs: the bound of friction
+                                        ///< is an ellipse. Empty: the same
+  BilateralRows bilateral;
+  RollingFriction rolling;
+  RowBlocks row_blocks;  ///< of the solver; leave empty
 
   bool is_local() const { return !delassus.empty(); }
   std::int64_t contact_count() const { return static_cast<std::int64_t>(friction.size()); }
@@ -91,7 +145,9 @@ class TETWARP_EXPORT ContactProblemError : public std::invalid_argument {
 ///                              [0, 1], negative area or stiffness, time_step <= 0 with adhesion,
 ///                              diagonal blocks of A that are not positive definite, rows of W
 ///                              without a positive normal diagonal, entries of W that contradict
-///                              positive semidefiniteness, NaN or infinity anywhere
+///                              positive semidefiniteness, NaN or infinity anywhere; rows beyond
+///                              contacts in local form, groups of more than three rows, negative
+///                              compliance, rolling or torsion
 ///
 /// Cost: a pass over all data and a Cholesky factorization of each diagonal block of A.
 TETWARP_EXPORT void check_problem(const ContactProblem& problem);

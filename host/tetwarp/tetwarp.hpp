@@ -5,6 +5,7 @@
 #include <tetwarp/blocks.hpp>
 #include <tetwarp/choices.hpp>
 #include <tetwarp/contact.hpp>
+#include <tetwarp/contact_analysis.hpp>
 #include <tetwarp/contact_problem.hpp>
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>

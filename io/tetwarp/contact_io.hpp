@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tetwarp/contact.hpp>
+#include <tetwarp/contact_analysis.hpp>
 #include <tetwarp/contact_tracker.hpp>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io_export.hpp>
@@ -59,12 +60,15 @@ TETWARP_IO_EXPORT std::int64_t write_contact_problem(const std::string& path,
 ///
 /// /solution/{r, u, v, residual_history} (no v in local form) has the attributes `converged` (1 or
 /// 0), `status`, `residual` (eta), `fclib_error` and `method`; /adhesion_next holds `intensity` and
-/// `gap`. A solution of another size than the problem is an error.
+/// `gap`; with bilateral rows /solution/l is lambda, with rolling friction /solution/m its
+/// impulses. With `modes`, /solution/contact_mode and contact_residual have one number per
+/// contact. A solution of another size than the problem is an error.
 /// @returns bytes of the file
 TETWARP_IO_EXPORT std::int64_t write_contact_solution(const std::string& path,
                                                       const std::string& problem_path,
                                                       const ContactSolution& solution,
-                                                      const AdhesionStep* adhesion_next = nullptr);
+                                                      const AdhesionStep* adhesion_next = nullptr,
+                                                      const ContactModes* modes = nullptr);
 
 /// The state of a simulation with tracked contacts: restored from it, further steps have the same
 /// bits as without a stop.

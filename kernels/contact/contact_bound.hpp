@@ -31,6 +31,12 @@ struct FreeResidualBoundBody {
       return natural_square(c, natural.switches, rho_n, rho_t, r, u);
     };
     if (!(sums.eta < INFINITY)) return sums;
+    if (!is_contact(c.kind)) {
+      // rho |u|^2 of bilateral rows falls with rho, which has no lower bound; rolling has no term.
+      const double size = square_of(u[0]) + square_of(u[1]) + square_of(u[2]);
+      sums.eta = sums.largest = c.kind == ContactKind::bilateral ? tiny * size : 0;
+      return sums;
+    }
     sums.eta = margin * min_of(min_of(energy(low_n, low_t), energy(low_n, high_t)),
                                min_of(energy(high_n, low_t), energy(high_n, high_t)));
     sums.largest = sums.eta;
@@ -59,6 +65,14 @@ struct ResidualBoundBody {
     const double* consistent = consistent_velocity.data + 3 * i;
     const double d_n = u[0] - consistent[0];
     const double d_t = sqrt(square_of(u[1] - consistent[1]) + square_of(u[2] - consistent[2]));
+    // Bilateral rows: the natural map is rho u, and B' gives an upper bound of rho.
+    if (c.kind == ContactKind::bilateral) return sums;
+    if (c.kind == ContactKind::rolling) {
+      const double moved = row_weight(c, 0) * d_n * d_n + rolling_weight(c) * d_t * d_t;
+      const double rest = row_eta_square(c, natural.impulse.data + 3 * i, consistent);
+      if (sums.eta < INFINITY) sums.eta = sums.largest = square_of(sqrt(rest) + sqrt(moved));
+      return sums;
+    }
     double square = normal_weight(c) * d_n * d_n;
     if (c.kind != ContactKind::frictionless) {
       const double rho_t = tangent_weight(c);

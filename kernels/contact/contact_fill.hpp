@@ -22,6 +22,15 @@ struct ContactInput {
   bool has_adhesion = false;
   double time_step = 0;
   View<const double> area, stiffness, tangential_stiffness, intensity, gap;  ///< or empty
+
+  /// Of problems with other blocks of rows than contacts, which follow the contacts; else empty.
+  View<const std::uint8_t> row_kind;     ///< ContactKind of these blocks, [contacts]
+  View<const std::int32_t> row_contact;  ///< of rolling blocks: the contact that they belong to
+  View<const double> torsion;            ///< of rolling blocks [m]
+
+  TETWARP_HD ContactKind kind_of(std::int64_t c) const {
+    return row_kind.size == 0 ? ContactKind::coulomb : static_cast<ContactKind>(row_kind[c]);
+  }
 };
 
 /// Options of the stage.
@@ -66,6 +75,12 @@ struct ContactConstantsBody {
     PlainSums<2> left_out;
     ContactConstants<double> result = {};
     result.friction = in.friction[c];
+    if (!is_contact(in.kind_of(c))) {
+      result.kind = in.kind_of(c);
+      result.tangent_offset[1] = in.torsion[c];
+      constants[slot] = result;
+      return left_out;
+    }
     result.kind = ContactKind::coulomb;
     if (in.has_adhesion) {
       const double beta = in.intensity[c];
@@ -97,6 +112,30 @@ struct ContactConstantsBody {
  private:
   TETWARP_HD static double entry_of(View<const double> values, std::int64_t i) {
     return values.size == 0 ? 0.0 : values[i];
+  }
+};
+
+/// One index = one slot: notes it as the place of its contact.
+struct SlotOfContactBody {
+  View<const std::int32_t> contact_of_slot;
+  View<std::int32_t> slot_of_contact;
+
+  TETWARP_HD void operator()(std::int64_t slot) const {
+    slot_of_contact[contact_of_slot[slot]] = static_cast<std::int32_t>(slot);
+  }
+};
+
+/// One index = one slot: how far the contact of a rolling block is from it; see row_law.hpp.
+struct RollingLinkBody {
+  ContactInput in;
+  View<const std::int32_t> contact_of_slot;
+  View<const std::int32_t> slot_of_contact;
+  View<ContactConstants<double>> constants;
+
+  TETWARP_HD void operator()(std::int64_t slot) const {
+    if (constants[slot].kind != ContactKind::rolling) return;
+    const std::int32_t contact = in.row_contact[contact_of_slot[slot]];
+    constants[slot].tangent_offset[0] = static_cast<double>(slot_of_contact[contact] - slot);
   }
 };
 
@@ -197,6 +236,14 @@ ContactSavings fill_numbers(Exec& exec,
   const std::int64_t slots = indices.slots();
   const ContactConstantsBody constants = {in, indices.contact_of_slot, choices, out.constants};
   const auto left_out = exec.template sum<PlainSums<2>>(label, 0, slots, constants);
+  if (in.row_kind.size > 0) {
+    typename Exec::template Vector<std::int32_t> places;
+    exec.resize(places, slots);
+    exec.for_each(label, slots, SlotOfContactBody{indices.contact_of_slot, view_of(places)});
+    exec.for_each(label, slots,
+                  RollingLinkBody{in, indices.contact_of_slot,
+                                  View<const std::int32_t>(view_of(places)), out.constants});
+  }
   exec.for_each(label, slots,
                 GatherBody<3>{indices.contact_of_slot, in.given_velocity,
                               indices.is_local ? out.free_velocity : out.offset});

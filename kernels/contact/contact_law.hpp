@@ -22,10 +22,18 @@ struct ContactSwitches {
 enum class ContactKind : std::uint8_t {
   frictionless,  ///< neither friction nor tangential spring: normal row only
   coulomb,       ///< friction, no springs
-  adhesive       ///< springs, with or without friction
+  adhesive,      ///< springs, with or without friction
+  bilateral,     ///< no contact: rows whose velocity is zero; see row_law.hpp
+  rolling        ///< no contact: torsional and rolling friction of one; see row_law.hpp
 };
 
-/// The constants of one contact during a solve.
+/// Whether a block of three rows is a contact.
+TETWARP_HD bool is_contact(ContactKind kind) {
+  return kind < ContactKind::bilateral;
+}
+
+/// The constants of one contact during a solve, or of another block of three rows; see row_law.hpp
+/// for what the members of a `rolling` one mean. Those of a `bilateral` one are 0 but for `block`.
 template <class T>
 struct ContactConstants {
   T block[9];           ///< B, row by row

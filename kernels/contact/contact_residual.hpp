@@ -8,6 +8,7 @@
 #include "kernels/contact/body_relax.hpp"
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/contact_sweep.hpp"
+#include "kernels/contact/row_law.hpp"
 
 namespace tetwarp {
 
@@ -108,6 +109,7 @@ TETWARP_HD double eta_square(const ContactConstants<T>& c,
                              ContactSwitches switches,
                              const T* impulse,
                              const T* velocity) {
+  if (!is_contact(c.kind)) return row_eta_square(c, impulse, velocity);
   return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
 }
 
@@ -119,6 +121,7 @@ TETWARP_HD double fclib_square(const ContactConstants<T>& c,
                                ContactSwitches switches,
                                const T* impulse,
                                const T* velocity) {
+  if (!is_contact(c.kind)) return row_plain_square(c, impulse, velocity);
   if (switches.pyramid || (switches.restrictive && c.tangent_spring > 0)) {
     return natural_square(c, switches, 1, 1, impulse, velocity);
   }
@@ -160,7 +163,7 @@ struct ContactResidualBody {
     sums.eta = eta_square(constants[c], switches, r, u);
     sums.largest_contact = c;
     sums.fclib = fclib_square(constants[c], switches, r, u);
-    sums.deepest = max_of(-double{u[0]}, 0.0);
+    sums.deepest = is_contact(constants[c].kind) ? max_of(-double{u[0]}, 0.0) : 0.0;
     double parts = 0;
     for (int a = 0; a < 3; ++a) {
       sums.work += r[a] * (double{u[a]} - free_velocity[3 * c + a]);

@@ -69,6 +69,11 @@ struct DistanceBody {
   TETWARP_HD PlainSums<1> operator()(std::int64_t c) const {
     const double* x = a + 3 * c;
     const double* y = b + 3 * c;
+    if (!is_contact(constants[c].kind)) {
+      double sum = 0;
+      for (int e = 0; e < 3; ++e) sum += row_weight(constants[c], e) * square_of(x[e] - y[e]);
+      return {{sum}};
+    }
     return {{normal_weight(constants[c]) * square_of(x[0] - y[0]) +
              tangent_weight(constants[c]) * (square_of(x[1] - y[1]) + square_of(x[2] - y[2]))}};
   }

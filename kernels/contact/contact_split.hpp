@@ -8,6 +8,7 @@
 #include "kernels/contact/body_relax.hpp"
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/contact_sweep.hpp"
+#include "kernels/contact/row_law.hpp"
 
 namespace tetwarp {
 
@@ -57,7 +58,9 @@ struct DelassusSplitMetricBody {
   }
 };
 
-/// One index = one contact: solves its law for the given velocity, in the metric P.
+/// One index = one contact or bilateral block: solves its law for the given velocity, in the metric
+/// P. Rolling friction reads the impulse of its contact, which another thread may be writing, so a
+/// problem with it must not be solved by this stage.
 template <class T>
 struct ContactSplitBody {
   View<const ContactConstants<T>> constants;
@@ -67,7 +70,7 @@ struct ContactSplitBody {
 
   TETWARP_HD void operator()(std::int64_t c) const {
     T u[3] = {velocity[3 * c], velocity[3 * c + 1], velocity[3 * c + 2]};
-    solve_contact(constants[c], switches, u, impulse.data + 3 * c);
+    solve_block(constants[c], switches, u, impulse.data + 3 * c);
   }
 };
 

@@ -7,6 +7,7 @@
 #include "kernels/base/view.hpp"
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/contact_setup.hpp"
+#include "kernels/contact/row_law.hpp"
 
 namespace tetwarp {
 
@@ -170,7 +171,7 @@ TETWARP_HD bool update_contact(const ContactConstants<T>& contact,
   for (int a = 0; a < 3; ++a) change[a] = -r[a];
   T velocity[3];
   velocities.velocity_at(c, cause, velocity);
-  solve_contact(contact, switches, velocity, r);
+  solve_block(contact, switches, velocity, r);
   for (int a = 0; a < 3; ++a) change[a] += r[a];
   return true;
 }

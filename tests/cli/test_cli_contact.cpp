@@ -127,6 +127,27 @@ TEST_F(ContactCommand, StopsAtItsLimits) {
   }
 }
 
+TEST_F(ContactCommand, SolvesJointsRollingFrictionAndEllipses) {
+  store(jointed_problem());
+
+  const CommandResult result =
+      solve({"--modes", "--energy", "--report", "report.json", "--tolerance", "1e-9"});
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ContactProblem problem = read_contact_problem(folder / "problem.hdf5");
+  const ContactSolution expected = solve_contacts(problem, {.tolerance = 1e-9});
+  expect_near(solved("solution/v"), expected.body_velocity);
+  expect_near(solved("solution/l"), expected.bilateral_impulse);
+  expect_near(solved("solution/m"), expected.rolling_impulse);
+  EXPECT_EQ(solved("solution/contact_mode").size(), 2U);
+  EXPECT_EQ(solved("solution/contact_residual").size(), 2U);
+  const Json json = report();
+  EXPECT_EQ(json["bilateral_rows"], 3);
+  EXPECT_EQ(json["rolling_contacts"], 1);
+  EXPECT_LE(std::abs(json["energy"]["error"].get<double>()), 1e-12);
+  EXPECT_GE(json["energy"]["friction_loss"].get<double>(), -1e-9);
+}
+
 TEST_F(ContactCommand, ReportsInJson) {
   store(global_problem());
 

@@ -43,7 +43,7 @@ TEST_F(ContactCommand, ExitsWithTwoOnBadUsage) {
            {"--max-seconds", "0"},     {"--max-newton", "-1"},  {"--memory", "much"},
            {"--coupling", "loose"},    {"--relaxation", "2"},   {"--inner", "0"},
            {"--recovery-speed", "-1"}, {"--threads", "-1"},     {"--threads", "100000"},
-           {"--no-skip", "work"},      {"other.hdf5"}}) {
+           {"--no-skip", "work"},      {"other.hdf5"},          {"--energy"}}) {
     const CommandResult result = solve(words);
 
     EXPECT_EQ(result.exit_code, 2) << words.back();
@@ -51,6 +51,18 @@ TEST_F(ContactCommand, ExitsWithTwoOnBadUsage) {
     EXPECT_NE(result.err.find("tetwarp contact --help"), std::string::npos) << result.err;
   }
   EXPECT_EQ(run_command(folder, {"contact", "problem.hdf5"}).exit_code, 2);
+  EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
+}
+
+TEST_F(ContactCommand, RefusesTheEnergyOfALocalForm) {
+  store(sliding_point());
+
+  const CommandResult result = solve({"--energy", "--report", "report.json"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("has no masses, which --energy needs"), std::string::npos)
+      << result.err;
   EXPECT_EQ(folder.names(), (Names{"problem.hdf5"}));
 }
 

@@ -14,6 +14,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "tests/scenes/contact_methods.hpp"
+#include "tests/scenes/contact_rows.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 #include "tests/scenes/contact_stages.hpp"
 #include "tests/scenes/elastic_block.hpp"
@@ -33,8 +34,7 @@ ContactSolution expect_solved(const ContactProblem& problem,
                               const std::string& what) {
   ContactSolution solution = solve_contacts(problem, on_device(options));
   EXPECT_TRUE(solution.converged()) << what << ": " << solution.report.status_reason;
-  const ContactResidual residual =
-      residual_of(problem, solution.impulse, solution.body_velocity, options);
+  const ContactResidual residual = residual_of(problem, solution, options);
   EXPECT_LE(options.measure == ContactMeasure::eta ? residual.eta : residual.fclib,
             1.001 * options.tolerance)
       << what;
@@ -156,6 +156,29 @@ TEST_F(ContactCuda, CoupledAndUncoupledIslandsCanBeMixed) {
        {ContactCoupling::automatic, ContactCoupling::condensed, ContactCoupling::iterated}) {
     expect_solved(mixed, {.tolerance = 1e-8, .coupling = coupling}, "mixed");
   }
+}
+
+/// Friction ellipses, joints and rolling friction, by methods that have all of them.
+TEST_F(ContactCuda, RowsBeyondContactsHaveTheVelocitiesOfTheHost) {
+  for (const double coupling : {0.0, 0.3}) {
+    for (const ContactMethod method :
+         {ContactMethod::automatic, ContactMethod::gauss_seidel, ContactMethod::nonlinear_cg}) {
+      ContactProblem problem = global_problem(313, 6, coupling);
+      add_ellipses(problem);
+      add_bilateral_rows(problem, 314);
+      add_rolling_friction(problem, 315);
+      const ContactOptions options = {.method = method, .tolerance = 1e-9};
+      const ContactSolution there = expect_solved(problem, options, "rows");
+      const ContactSolution here = solve_contacts(problem, options);
+
+      EXPECT_LE(relative_distance(there.body_velocity, here.body_velocity), 1e-6);
+      EXPECT_EQ(there.report.colors, here.report.colors);
+    }
+  }
+  ContactProblem jointed = global_problem(316, 6, 0);
+  add_bilateral_rows(jointed, 317);
+  expect_solved(jointed, {.method = ContactMethod::mass_splitting, .tolerance = 1e-7}, "splitting");
+  expect_solved(jointed, {.precision = ContactPrecision::float32}, "float32");
 }
 
 TEST_F(ContactCuda, FrozenContactsAreLeftOut) {

@@ -90,7 +90,7 @@ TEST_F(BadFclib, IsNamedWhenItHoldsWhatIsNotSupported) {
   expect_errors(
       global_problem(),
       {{[](Hdf5Editor& e) { e.group("fclib_global/G").dataset<Int>("fclib_global/G/n", {1}, {1}); },
-        "/fclib_global/G", "equality constraints are not supported"}});
+        "/fclib_global/G", "missing"}});
 }
 
 TEST_F(BadFclib, IsNamedWhenVectorsHaveTheWrongLength) {

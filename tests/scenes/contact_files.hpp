@@ -106,6 +106,25 @@ inline ContactProblem adhesive_problem() {
   return problem;
 }
 
+/// Two points with everything beyond contacts: different friction along the tangents, a joint, a
+/// spring, resistance to rolling (of points: against any motion) and impulses to start from.
+inline ContactProblem jointed_problem() {
+  ContactProblem problem = adhesive_problem();
+  problem.second_friction = {0.125, 0.25};
+  problem.bilateral.jacobian =
+      sparse({{0, 1, 0, 0, -1, 0}, {0, 0, 1, 0, 0, 0}, {0, 0, 0, 0, 0, 1}});
+  problem.bilateral.target = {0, 0.5, -0.25};
+  problem.bilateral.compliance = {0, 0.5, 0};
+  problem.bilateral.group_start = {0, 1, 3};
+  problem.bilateral.impulse_guess = {1, 2, 3};
+  problem.rolling.contact = {1};
+  problem.rolling.jacobian = sparse({{0, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}});
+  problem.rolling.rolling = {0.0625};
+  problem.rolling.torsion = {0.03125};
+  problem.rolling.impulse_guess = {4, 5, 6};
+  return problem;
+}
+
 /// A body between two walls that have moved closer together than it is thick.
 inline ContactProblem squeezed_point() {
   ContactProblem problem;
@@ -150,6 +169,20 @@ inline std::vector<std::vector<double>> contents(const ContactProblem& problem) 
     all.emplace_back(matrix->row_start.begin(), matrix->row_start.end());
     all.emplace_back(matrix->column.begin(), matrix->column.end());
     all.push_back(matrix->value);
+  }
+  const BilateralRows& rows = problem.bilateral;
+  const RollingFriction& rolling = problem.rolling;
+  for (const SparseMatrix* matrix : {&rows.jacobian, &rolling.jacobian}) {
+    all.emplace_back(matrix->row_start.begin(), matrix->row_start.end());
+    all.emplace_back(matrix->column.begin(), matrix->column.end());
+    all.push_back(matrix->value);
+  }
+  all.emplace_back(rows.group_start.begin(), rows.group_start.end());
+  all.emplace_back(rolling.contact.begin(), rolling.contact.end());
+  for (const auto& vector :
+       {problem.second_friction, rows.target, rows.compliance, rows.impulse_guess, rolling.rolling,
+        rolling.torsion, rolling.impulse_guess}) {
+    all.push_back(vector);
   }
   const AdhesionState& adhesion = problem.adhesion;
   all.push_back({adhesion.time_step});

@@ -51,11 +51,16 @@ inline ContactInput input_on_device(const GridContactExec& exec,
                                     const ContactInput& host,
                                     DeviceArrays& arrays) {
   using In = ContactInput;
-  return numbers_on_device(
+  ContactInput result = numbers_on_device(
       exec, host,
       {&In::matrix, &In::jacobian, &In::load, &In::given_velocity, &In::friction, &In::area,
        &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap},
       arrays);
+  if (host.row_kind.size == 0) return result;
+  result.row_kind = arrays.put(exec, host.row_kind);
+  result.row_contact = arrays.put(exec, host.row_contact);
+  result.torsion = arrays.put(exec, host.torsion);
+  return result;
 }
 
 inline AdhesionViews adhesion_on_device(const GridContactExec& exec,

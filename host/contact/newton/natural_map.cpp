@@ -68,6 +68,8 @@ Vector3d NaturalMap::contact_value(std::size_t c,
   const double rho_t = steepness / compliance_(3 * static_cast<Index>(c) + 1);
   derivative.by_impulse.setZero();
   derivative.by_velocity.setZero();
+  if (contact.kind == ContactKind::bilateral)
+    return stop_rows(c, impulse, velocity, steepness, derivative);
   Vector3d value;
   if (terms.nu(0) > rho_n * velocity(0)) {
     value(0) = rho_n * velocity(0);
@@ -81,6 +83,21 @@ Vector3d NaturalMap::contact_value(std::size_t c,
   } else {
     slide_on_axis(contact, terms, rho_t, 1, value, derivative);
     slide_on_axis(contact, terms, rho_t, 2, value, derivative);
+  }
+  return value;
+}
+
+Vector3d NaturalMap::stop_rows(std::size_t c,
+                               const Vector3d& impulse,
+                               const Vector3d& velocity,
+                               double steepness,
+                               MapDerivative& derivative) const {
+  Vector3d value;
+  for (int a = 0; a < 3; ++a) {
+    const double rho = steepness / compliance_(3 * static_cast<Index>(c) + a);
+    const bool is_empty = contacts_[c].diagonal_block(a, a) == 0;
+    value(a) = is_empty ? impulse(a) : rho * velocity(a);
+    (is_empty ? derivative.by_impulse : derivative.by_velocity)(a, a) = is_empty ? 1 : rho;
   }
   return value;
 }

@@ -25,7 +25,8 @@ struct MapDerivative {
 /// Source: Alart, Curnier 1991; adhesion and the radius R as in contact.hpp.
 class NaturalMap {
  public:
-  /// @param contacts  with their diagonal blocks
+  /// @param contacts  with their diagonal blocks; bilateral blocks among them: F = s rho u /
+  ///                  sqrt(s rho). No rolling blocks
   NaturalMap(std::vector<MeasuredContact> contacts, FrictionLaw law, AdhesionRule rule);
 
   /// F, [3 contacts].
@@ -50,6 +51,12 @@ class NaturalMap {
                                 const Eigen::Vector3d& velocity,
                                 double steepness,
                                 MapDerivative& derivative) const;
+  /// contact_value() of a bilateral block: rho u, or r of rows that no impulse moves.
+  Eigen::Vector3d stop_rows(std::size_t c,
+                            const Eigen::Vector3d& impulse,
+                            const Eigen::Vector3d& velocity,
+                            double steepness,
+                            MapDerivative& derivative) const;
   /// Tangential rows of contact_value(), law cone: both together.
   void slide_on_disc(const MeasuredContact& contact,
                      const NaturalTerms& terms,

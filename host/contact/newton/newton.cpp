@@ -68,7 +68,8 @@ class NewtonPolish {
         budget_(budget),
         contacts_(make_contacts(problem, delassus)),
         map_(contacts_, options.law, options.rule),
-        system_(problem, delassus) {
+        system_(problem, delassus),
+        has_only_contacts_(problem.row_blocks.empty()) {
     const VectorXd none = VectorXd::Zero(delassus.free_velocity().size());
     free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
   }
@@ -144,6 +145,7 @@ class NewtonPolish {
   const NaturalMap map_;
   NewtonSystem system_;
   std::vector<MapDerivative> derivatives_;
+  bool has_only_contacts_;  ///< without bilateral blocks, which associated problems do not have
   double free_energy_ = 0;
   Iterate best_;
   std::int64_t iterations_ = 0;
@@ -155,7 +157,7 @@ void NewtonPolish::run(const VectorXd& start) {
   Approach approach{.center = best_};
   advance(approach, limit / 4);
   if (is_settled()) return;
-  solve_associated(limit / 2);
+  if (has_only_contacts_) solve_associated(limit / 2);
   if (is_settled()) return;
   advance(approach, limit - limit / 4);
   if (is_settled()) return;

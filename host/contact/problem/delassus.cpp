@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "host/contact/problem/matrix.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 
 namespace tetwarp {
 
@@ -88,6 +89,7 @@ Delassus::Delassus(const ContactProblem& problem, double recovery_speed)
   load_ = make_vector(problem.load);
   offset_ = make_vector(problem.velocity_offset);
   for (Index row = 0; row < offset_.size(); row += 3) {
+    if (!is_contact_block(problem, static_cast<std::size_t>(row / 3))) continue;
     offset_(row) = std::max(offset_(row), -recovery_speed);
   }
   factor_.factorize(matrix_);

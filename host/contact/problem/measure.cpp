@@ -30,6 +30,21 @@ Vector3d natural_error(const NaturalTerms& terms, FrictionLaw law, const Vector3
   return error;
 }
 
+/// e of a block that is no contact, for given rho.
+Vector3d row_error(const MeasuredContact& block,
+                   const Vector3d& impulse,
+                   const Vector3d& velocity,
+                   const Vector3d& rho) {
+  const Vector3d stopped = rho.cwiseProduct(velocity);
+  if (block.kind == ContactKind::bilateral) return stopped;
+  Vector3d target = impulse - stopped;
+  const double limit = block.torsion * block.push, radius = block.friction * block.push;
+  target(0) = std::clamp(target(0), -limit, limit);
+  const double length = target.tail<2>().norm();
+  if (length > radius) target.tail<2>() *= radius / length;
+  return impulse - target;
+}
+
 /// The point of { |x_t| <= mu x_n } nearest to x.
 Vector3d project_on_cone(const Vector3d& x, double friction) {
   const double tangent = x.tail<2>().norm();
@@ -57,11 +72,24 @@ std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem) {
     contact.stiffness.setZero();
     contact.offset.setZero();
     contact.friction = constant.friction;
+    if (!is_contact(constant.kind)) {
+      contact.kind = constant.kind;
+      contact.contact = problem.row_blocks.contact[c];
+      contact.torsion = problem.row_blocks.torsion[c];
+    }
     if (constant.kind != ContactKind::adhesive) continue;
     contact.stiffness << constant.normal_spring, constant.tangent_spring, constant.tangent_spring;
     contact.offset << 0, constant.tangent_offset[0], constant.tangent_offset[1];
   }
   return contacts;
+}
+
+void set_pushes(std::vector<MeasuredContact>& contacts, const Eigen::VectorXd& impulse) {
+  for (MeasuredContact& contact : contacts) {
+    if (contact.kind == ContactKind::rolling) {
+      contact.push = std::max(impulse(3 * contact.contact), 0.0);
+    }
+  }
 }
 
 NaturalTerms natural_terms(const MeasuredContact& contact,
@@ -81,12 +109,17 @@ NaturalTerms natural_terms(const MeasuredContact& contact,
 }
 
 Vector3d natural_scale(const MeasuredContact& contact) {
+  if (contact.kind == ContactKind::bilateral) {
+    return contact.diagonal_block.diagonal().unaryExpr([](double b) { return b > 0 ? 1 / b : 1; });
+  }
   const Matrix2d block = contact.diagonal_block.bottomRightCorner<2, 2>();
   const double middle = 0.5 * block.trace();
   const double slip =
       middle + std::hypot(0.5 * (block(0, 0) - block(1, 1)), 0.5 * (block(0, 1) + block(1, 0)));
   const double rho_t = slip > 0 ? 1 / slip + contact.stiffness(1) : 1;
-  return {1 / contact.diagonal_block(0, 0) + contact.stiffness(0), rho_t, rho_t};
+  const double own = contact.diagonal_block(0, 0);
+  const bool is_moved = own > 0 || contact.kind != ContactKind::rolling;
+  return {is_moved ? 1 / own + contact.stiffness(0) : 1, rho_t, rho_t};
 }
 
 double natural_energy(const MeasuredContact& contact,
@@ -96,7 +129,9 @@ double natural_energy(const MeasuredContact& contact,
                       AdhesionRule rule) {
   const Vector3d rho = natural_scale(contact);
   const Vector3d error =
-      natural_error(natural_terms(contact, impulse, velocity, law, rule), law, rho);
+      is_contact(contact.kind)
+          ? natural_error(natural_terms(contact, impulse, velocity, law, rule), law, rho)
+          : row_error(contact, impulse, velocity, rho);
   // e (e / rho) instead of e^2 / rho: the squares of very small impulses would be 0.
   return error.dot(error.cwiseQuotient(rho));
 }
@@ -106,6 +141,9 @@ double fclib_square(const MeasuredContact& contact,
                     const Vector3d& velocity,
                     FrictionLaw law,
                     AdhesionRule rule) {
+  if (!is_contact(contact.kind)) {
+    return row_error(contact, impulse, velocity, Vector3d::Ones()).squaredNorm();
+  }
   const NaturalTerms terms = natural_terms(contact, impulse, velocity, law, rule);
   const bool has_cone = law == FrictionLaw::cone &&
                         (rule == AdhesionRule::parallel || contact.stiffness.tail<2>().isZero(0));

@@ -10,6 +10,8 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "kernels/contact/contact_law.hpp"
+
 namespace tetwarp {
 
 /// The constants in the laws of one contact.
@@ -18,10 +20,19 @@ struct MeasuredContact {
   Eigen::Vector3d stiffness;       ///< diagonal of K: kappa_n, kappa_t, kappa_t [kg]
   Eigen::Vector3d offset;          ///< o: 0 and the stored tangential gap over dt [m/s]
   double friction = 0;
+
+  // Of blocks of rows that are no contacts; see kernels/contact/row_law.hpp.
+  ContactKind kind = ContactKind::coulomb;  ///< `coulomb` of every contact
+  std::int64_t contact = -1;                ///< of a rolling block: its contact
+  double torsion = 0;                       ///< [m]
+  double push = 0;  ///< normal impulse of `contact`, at least 0: the caller sets it
 };
 
 /// The contacts of a problem, with diagonal blocks of zeros: the caller sets them.
 std::vector<MeasuredContact> measured_contacts(const ContactProblem& problem);
+
+/// Sets MeasuredContact::push from the impulses of all contacts.
+void set_pushes(std::vector<MeasuredContact>& contacts, const Eigen::VectorXd& impulse);
 
 /// Quantities of one contact in its laws, at given r and u.
 struct NaturalTerms {
@@ -39,7 +50,8 @@ NaturalTerms natural_terms(const MeasuredContact& contact,
 
 /// rho_n, rho_t, rho_t of the natural map [kg]: rho_n = 1 / B_nn + kappa_n, rho_t = 1 / (largest
 /// eigenvalue of the symmetric part of B_tt) + kappa_t; 1 for tangents that no impulse moves, which
-/// check_problem() allows only where nothing resists sliding.
+/// check_problem() allows only where nothing resists sliding. Bilateral blocks: 1 / B_aa of each
+/// row, rolling ones as contacts without springs; 1 for rows that no impulse moves.
 Eigen::Vector3d natural_scale(const MeasuredContact& contact);
 
 /// Energy [J] of the natural residual of one contact: 0 exactly where the laws hold.
@@ -49,6 +61,9 @@ Eigen::Vector3d natural_scale(const MeasuredContact& contact);
 ///
 ///     e_n = min(nu_n, rho_n u_n),   e_t = nu_t - P(nu_t - rho_t u_t)
 ///     energy = e_n^2 / rho_n + |e_t|^2 / rho_t
+///
+/// Bilateral blocks: e = rho u. Rolling blocks: e = r - P(r - rho u), P the projections on the
+/// interval of torsion and the disc of rolling.
 double natural_energy(const MeasuredContact& contact,
                       const Eigen::Vector3d& impulse,
                       const Eigen::Vector3d& velocity,
@@ -72,7 +87,8 @@ inline double relative_error(double error, double scale) {
 
 /// Squared natural-map error of one contact as FCLIB defines it, without scaling by rho:
 /// |nu - P(nu - u - mu |u_t| n)|^2, P the projection on Coulomb's cone. The pyramid and the
-/// restrictive rule have no such cone; for them it is |e|^2 of natural_energy() with rho = 1.
+/// restrictive rule have no such cone; for them, and for blocks that are no contacts, it is |e|^2
+/// of natural_energy() with rho = 1.
 double fclib_square(const MeasuredContact& contact,
                     const Eigen::Vector3d& impulse,
                     const Eigen::Vector3d& velocity,

@@ -11,6 +11,7 @@
 
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 
 namespace tetwarp {
 namespace {
@@ -68,7 +69,8 @@ bool resists_sliding(const ContactProblem& problem, std::size_t c) {
   const AdhesionState& adhesion = problem.adhesion;
   const std::vector<double>& stiffness =
       adhesion.tangential_stiffness.empty() ? adhesion.stiffness : adhesion.tangential_stiffness;
-  return problem.friction[c] > 0 ||
+  const bool has_second = c < problem.second_friction.size() && problem.second_friction[c] > 0;
+  return problem.friction[c] > 0 || has_second ||
          (!adhesion.empty() && adhesion.intensity[c] > 0 && !stiffness.empty() && stiffness[c] > 0);
 }
 
@@ -270,6 +272,7 @@ void check_problem(const ContactProblem& problem) {
                "3 per contact, or none");
     check_finite("impulse_guess", problem.impulse_guess);
   }
+  check_row_blocks(problem);
 }
 
 }  // namespace tetwarp

@@ -7,11 +7,14 @@
 #include <stdexcept>
 #include <string>
 #include <tetwarp/contact.hpp>
+#include <utility>
 #include <vector>
 
 #include "host/contact/problem/delassus.hpp"
 #include "host/contact/problem/imbalance.hpp"
 #include "host/contact/problem/measure.hpp"
+#include "host/contact/problem/residual.hpp"
+#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
 
 namespace tetwarp {
@@ -25,13 +28,14 @@ struct Eta {
   double total = 0;
   double largest = 0;
   std::int64_t largest_contact = -1;
+  std::vector<double> shares;  ///< of each contact
 };
 
 /// eta = sqrt(energy(r, u)) / (sqrt(energy(0, u - B r)) + sqrt(r . B r)): relative to the residual
 /// without impulses. r . B r counts as far as it is resolved; see resolved_energy().
 /// @param velocity_change  B r
 /// @param magnitude        |r| . |B| |r|
-Eta eta_of(const std::vector<MeasuredContact>& contacts,
+Eta eta_of(std::vector<MeasuredContact> contacts,
            const VectorXd& impulse,
            const VectorXd& velocity,
            const VectorXd& velocity_change,
@@ -47,6 +51,8 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
     const double share =
         natural_energy(contacts[c], impulse.segment<3>(row), u, options.law, options.rule);
     energy += share;
+    eta.shares.push_back(share);
+    contacts[c].push = 0;  // of zero impulses
     free_energy += natural_energy(contacts[c], Vector3d::Zero(),
                                   u - velocity_change.segment<3>(row), options.law, options.rule);
     if (share <= largest) continue;  // a share that is not a number counts as the largest
@@ -58,6 +64,7 @@ Eta eta_of(const std::vector<MeasuredContact>& contacts,
   const bool is_finite = impulse.allFinite() && velocity.allFinite();
   eta.total = relative_error(is_finite ? std::sqrt(energy) : NAN, scale);
   eta.largest = relative_error(std::sqrt(largest), scale);
+  for (double& share : eta.shares) share = relative_error(std::sqrt(share), scale);
   return eta;
 }
 
@@ -86,16 +93,15 @@ VectorXd make_vector(std::span<const double> values, Index expected, const char*
 }
 }  // namespace
 
-ContactResidual residual_of(const ContactProblem& problem,
-                            std::span<const double> impulse,
-                            std::span<const double> body_velocity,
-                            const ContactOptions& options) {
-  check_problem(problem);
+BlockResiduals residuals_of_blocks(const ContactProblem& problem,
+                                   std::span<const double> impulse,
+                                   std::span<const double> body_velocity,
+                                   const ContactOptions& options) {
   const std::vector<double> preloads = spring_preloads(problem);
   if (!preloads.empty() && impulse.size() == 3 * preloads.size()) {
     std::vector<double> shifted(impulse.begin(), impulse.end());
     add_preloads(preloads, 1, shifted);
-    return residual_of(with_preloads(problem, preloads), shifted, body_velocity, options);
+    return residuals_of_blocks(with_preloads(problem, preloads), shifted, body_velocity, options);
   }
   const Delassus delassus(problem, options.recovery_speed);
   std::vector<MeasuredContact> contacts = measured_contacts(problem);
@@ -104,10 +110,12 @@ ContactResidual residual_of(const ContactProblem& problem,
 
   const VectorXd r =
       make_vector(impulse, 3 * static_cast<Index>(problem.contact_count()), "impulse");
+  set_pushes(contacts, r);
   const VectorXd change = delassus.velocity_change(r);
   const VectorXd implied = change + delassus.free_velocity();
   VectorXd u = implied;
-  ContactResidual residual;
+  BlockResiduals result;
+  ContactResidual& residual = result.residual;
   if (!problem.is_local()) {
     const VectorXd v =
         body_velocity.empty()
@@ -128,9 +136,57 @@ ContactResidual residual_of(const ContactProblem& problem,
   residual.largest_contact = eta.largest_contact;
   residual.fclib = fclib_of(contacts, r, u, delassus.free_velocity().norm(), options);
   for (Index row = 0; row < u.size(); row += 3) {
+    if (!is_contact_block(problem, static_cast<std::size_t>(row / 3))) continue;
     if (!(-u(row) <= residual.penetration)) residual.penetration = -u(row);
   }
-  return residual;
+  result.share = std::move(eta.shares);
+  result.contacts = std::move(contacts);
+  result.impulse = r;
+  result.velocity = u;
+  return result;
+}
+
+ContactResidual residual_of(const ContactProblem& problem,
+                            std::span<const double> impulse,
+                            std::span<const double> body_velocity,
+                            const ContactOptions& options) {
+  check_problem(problem);
+  if (!problem.bilateral.empty() || !problem.rolling.empty()) {
+    throw std::invalid_argument(
+        "impulse: the problem has bilateral rows or rolling friction; give the whole solution");
+  }
+  if (!needs_blocks(problem))
+    return residuals_of_blocks(problem, impulse, body_velocity, options).residual;
+  ContactSolution solution;
+  solution.impulse.assign(impulse.begin(), impulse.end());
+  solution.body_velocity.assign(body_velocity.begin(), body_velocity.end());
+  return residual_of(problem, solution, options);
+}
+
+ContactResidual residual_of(const ContactProblem& problem,
+                            const ContactSolution& solution,
+                            const ContactOptions& options) {
+  return residuals_of(problem, solution, options).residual;
+}
+
+BlockResiduals residuals_of(const ContactProblem& problem,
+                            const ContactSolution& solution,
+                            const ContactOptions& options) {
+  check_problem(problem);
+  if (!needs_blocks(problem)) {
+    return residuals_of_blocks(problem, solution.impulse, solution.body_velocity, options);
+  }
+  const std::vector<double> preloads = spring_preloads(problem);
+  if (!preloads.empty() && solution.impulse.size() == 3 * preloads.size()) {
+    ContactSolution shifted = solution;
+    add_preloads(preloads, 1, shifted.impulse);
+    return residuals_of(with_preloads(problem, preloads), shifted, options);
+  }
+  const BlockProblem blocks(problem, options);
+  const std::vector<double> impulse = blocks.impulse_of(solution);
+  std::vector<double> body_velocity;
+  if (!solution.body_velocity.empty()) body_velocity = blocks.body_velocity_of(solution, impulse);
+  return residuals_of_blocks(blocks.problem(), impulse, body_velocity, options);
 }
 
 }  // namespace tetwarp

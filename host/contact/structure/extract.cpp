@@ -33,6 +33,20 @@ SparseMatrix make_part(const SparseMatrix& matrix,
   }
   return part;
 }
+/// The row blocks of some contacts, with renumbered contacts.
+RowBlocks make_part(const RowBlocks& blocks, const std::int32_t* contacts, std::int64_t count) {
+  RowBlocks part;
+  if (blocks.empty()) return part;
+  const std::vector<std::int32_t> place =
+      places_in(static_cast<std::int64_t>(blocks.kind.size()), {contacts, contacts + count});
+  for (std::int64_t i = 0; i < count; ++i) {
+    const std::size_t c = index_of(contacts[i]);
+    part.kind.push_back(blocks.kind[c]);
+    part.contact.push_back(blocks.contact[c] < 0 ? -1 : place[index_of(blocks.contact[c])]);
+    part.torsion.push_back(blocks.torsion[c]);
+  }
+  return part;
+}
 }  // namespace
 
 std::vector<double> gathered(const std::vector<double>& values,
@@ -63,6 +77,7 @@ ContactProblem make_island_problem(const ContactProblem& problem,
   ContactProblem part;
   part.friction = pick(problem.friction, 1);
   part.impulse_guess = pick(problem.impulse_guess, 3);
+  part.row_blocks = make_part(problem.row_blocks, contacts, count);
   const AdhesionState& adhesion = problem.adhesion;
   part.adhesion = {adhesion.time_step,
                    pick(adhesion.area, 1),

@@ -22,6 +22,20 @@ std::vector<double> copied(const VectorXd& values) {
   return {values.data(), values.data() + values.size()};
 }
 
+/// Throws for rule restrictive where both friction coefficients of a sticky contact differ.
+void check_rules(const ContactProblem& problem, const ContactOptions& options) {
+  if (options.rule != AdhesionRule::restrictive || problem.adhesion.empty()) return;
+  for (std::size_t c = 0; c < problem.second_friction.size(); ++c) {
+    if (problem.second_friction[c] == problem.friction[c] || problem.adhesion.intensity[c] == 0) {
+      continue;
+    }
+    throw ContactProblemError("second_friction",
+                              "[" + std::to_string(c) +
+                                  "]: differs from friction at a contact with adhesion, which rule "
+                                  "restrictive does not define; choose rule parallel");
+  }
+}
+
 VectorXd solve(const DenseContacts& contacts,
                const ContactProblem& problem,
                const ContactOptions& options,
@@ -39,7 +53,8 @@ VectorXd solve(const DenseContacts& contacts,
   report.method += report.method.empty() ? "gauss-seidel" : ", gauss-seidel";
   VectorXd start = VectorXd::Zero(contacts.free_velocity.size());
   if (!problem.impulse_guess.empty()) {
-    start = VectorXd::Map(problem.impulse_guess.data(), start.size());
+    start.head(3 * contacts.contact_count()) =
+        VectorXd::Map(problem.impulse_guess.data(), 3 * contacts.contact_count());
   }
   SweptImpulses swept = gauss_seidel(contacts, options, std::move(start));
   report.sweeps = swept.sweeps;
@@ -55,11 +70,14 @@ ContactSolution solve_contacts_reference(const ContactProblem& problem,
   using Seconds = std::chrono::duration<double>;
   const Clock::time_point start = Clock::now();
   check_problem(problem);
+  check_rules(problem, options);
   ContactSolution solution;
   ContactReport& report = solution.report;
   report.version = TETWARP_VERSION;
   report.backend = Backend::reference;
   report.contacts = problem.contact_count();
+  report.bilateral_rows = problem.bilateral.row_count();
+  report.rolling_contacts = problem.rolling.count();
   DenseContacts contacts = make_dense(problem, options.recovery_speed);
   const Clock::time_point ready = Clock::now();
 
@@ -74,14 +92,20 @@ ContactSolution solve_contacts_reference(const ContactProblem& problem,
       impulse = solve(contacts, problem, options, report);
     }
   }
-  solution.impulse = copied(impulse);
-  solution.velocity = copied(contacts.velocity(impulse));
+  const Index contact_rows = 3 * contacts.contact_count();
+  solution.impulse = copied(impulse.head(contact_rows));
+  solution.rolling_impulse = copied(impulse.tail(impulse.size() - contact_rows));
+  solution.velocity = copied(contacts.velocity(impulse).head(contact_rows));
+  if (!problem.bilateral.empty()) {
+    solution.bilateral_impulse =
+        copied(contacts.free_bilateral + contacts.bilateral_change * impulse);
+  }
   if (!problem.is_local()) {
     solution.body_velocity = copied(contacts.free_body_velocity + contacts.body_change * impulse);
   }
   const Clock::time_point solved = Clock::now();
 
-  report.residual = residual_of(problem, solution.impulse, solution.body_velocity, options);
+  report.residual = residual_of(problem, solution, options);
   const double measured =
       options.measure == ContactMeasure::eta ? report.residual.eta : report.residual.fclib;
   if (measured <= options.tolerance) {

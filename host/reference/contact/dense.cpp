@@ -83,33 +83,73 @@ Vector2d friction_bounds(double friction,
   return (Vector2d::Constant(coulomb) - pull).cwiseMax(0.0);
 }
 
+/// mu_a / mu along both tangents, mu the larger of both; 1 without friction.
+Vector2d ellipse_axes(const DenseContacts& contacts, Index c) {
+  const Vector2d mu(contacts.friction(c), contacts.second_friction(c));
+  return mu.maxCoeff() > 0 ? Vector2d(mu / mu.maxCoeff()) : Vector2d::Ones();
+}
+
+/// The point of a disc, or of a square, nearest to `target`.
+Vector2d bounded(const Vector2d& target, const Vector2d& bounds, FrictionLaw law) {
+  if (law == FrictionLaw::pyramid) return target.cwiseMax(-bounds).cwiseMin(bounds);
+  return target.norm() > bounds(0) ? Vector2d(bounds(0) * target.normalized()) : target;
+}
+
+double softest_of(const Eigen::Matrix2d& block) {
+  const Eigen::Matrix2d symmetric = 0.5 * (block + block.transpose());
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(symmetric).eigenvalues().maxCoeff();
+}
+
 /// |e_n|^2 / rho_n + |e_t|^2 / rho_t of one contact.
 double residual_energy(const DenseContacts& contacts,
                        Index c,
                        const VectorXd& impulse,
                        const VectorXd& velocity,
                        const ContactOptions& options) {
-  const Eigen::Matrix2d slip = contacts.delassus.block<2, 2>(3 * c + 1, 3 * c + 1);
-  const Eigen::Matrix2d symmetric = 0.5 * (slip + slip.transpose());
-  const double softest =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(symmetric).eigenvalues().maxCoeff();
-  const double rho_n = 1 / contacts.delassus(3 * c, 3 * c) + contacts.stiffness(3 * c);
-  const double rho_t = (softest > 0 ? 1 / softest : 1) + contacts.stiffness(3 * c + 1);
+  const Vector2d axes = ellipse_axes(contacts, c);
+  const bool is_ellipse = axes(0) != axes(1);
+  const double softest = softest_of(
+      axes.asDiagonal() * contacts.delassus.block<2, 2>(3 * c + 1, 3 * c + 1) * axes.asDiagonal());
+  const double own = contacts.delassus(3 * c, 3 * c);
+  const double rho_n = (own > 0 ? 1 / own : 1) + contacts.stiffness(3 * c);
+  // Springs of a contact with an ellipse are measured as bilateral rows, which hold exactly.
+  const double rho_t =
+      (softest > 0 ? 1 / softest : 1) + (is_ellipse ? 0 : contacts.stiffness(3 * c + 1));
 
   const Vector3d u = velocity.segment<3>(3 * c);
   const Vector3d spring =
       contacts.stiffness.segment<3>(3 * c).cwiseProduct(u + contacts.offset.segment<3>(3 * c));
   const Vector3d nu = impulse.segment<3>(3 * c) + spring;
-  const Vector2d bounds = friction_bounds(contacts.friction(c), nu, spring, options);
-  const Vector2d target = nu.tail<2>() - rho_t * u.tail<2>();
-  Vector2d allowed = target.cwiseMax(-bounds).cwiseMin(bounds);
-  if (options.law == FrictionLaw::cone) {
-    allowed = target.norm() > bounds(0) ? Vector2d(bounds(0) * target.normalized()) : target;
-  }
+  const double mu = std::max(contacts.friction(c), contacts.second_friction(c));
+  const Vector2d bounds = friction_bounds(mu, nu, spring, options);
+  const Vector2d slip = axes.cwiseProduct(u.tail<2>());
+  Vector2d rub = nu.tail<2>();
+  for (Index a = 0; a < 2; ++a) rub(a) = axes(a) > 0 ? rub(a) / axes(a) : 0;
   const double normal_error = std::min(nu(0), rho_n * u(0));
-  const Vector2d tangent_error = nu.tail<2>() - allowed;
+  const Vector2d tangent_error = rub - bounded(rub - rho_t * slip, bounds, options.law);
   // Divided before squaring, which would underflow for impulses below 1e-154 N s.
   return normal_error * (normal_error / rho_n) + tangent_error.dot(tangent_error / rho_t);
+}
+
+/// The same of one entry of rolling friction.
+double rolling_energy(const DenseContacts& contacts,
+                      Index entry,
+                      const VectorXd& impulse,
+                      const VectorXd& velocity) {
+  const DenseContacts::Rolling& rolling = contacts.rolling[static_cast<std::size_t>(entry)];
+  const Index row = contacts.rolling_row(entry);
+  const double push = std::max(impulse(3 * rolling.contact), 0.0);
+  const double own = contacts.delassus(row, row);
+  const double softest = softest_of(contacts.delassus.block<2, 2>(row + 1, row + 1));
+  const double rho_n = own > 0 ? 1 / own : 1, rho_t = softest > 0 ? 1 / softest : 1;
+  const double aim = impulse(row) - rho_n * velocity(row);
+  const double limit = rolling.torsion * push;
+  const double spin_error = impulse(row) - std::clamp(aim, -limit, limit);
+  const Vector2d m = impulse.segment<2>(row + 1);
+  const Vector2d roll_error =
+      m - bounded(m - rho_t * velocity.segment<2>(row + 1),
+                  Vector2d::Constant(rolling.rolling * push), FrictionLaw::cone);
+  return spin_error * spin_error / rho_n + roll_error.squaredNorm() / rho_t;
 }
 
 double residual_norm(const DenseContacts& contacts,
@@ -120,6 +160,9 @@ double residual_norm(const DenseContacts& contacts,
   for (Index c = 0; c < contacts.contact_count(); ++c) {
     energy += residual_energy(contacts, c, impulse, velocity, options);
   }
+  for (Index entry = 0; entry < std::ssize(contacts.rolling); ++entry) {
+    energy += rolling_energy(contacts, entry, impulse, velocity);
+  }
   return std::sqrt(energy);
 }
 }  // namespace
@@ -127,6 +170,8 @@ double residual_norm(const DenseContacts& contacts,
 DenseContacts make_dense(const ContactProblem& problem, double recovery_speed) {
   DenseContacts contacts;
   contacts.friction = dense_of(problem.friction);
+  contacts.second_friction =
+      problem.second_friction.empty() ? contacts.friction : dense_of(problem.second_friction);
   add_adhesion(problem, contacts);
   if (problem.is_local()) {
     contacts.delassus = dense_of(problem.delassus);
@@ -138,19 +183,30 @@ DenseContacts make_dense(const ContactProblem& problem, double recovery_speed) {
     throw ContactProblemError("system",
                               ": not positive definite; give every body mass and inertia");
   }
-  contacts.free_body_velocity = system.solve(dense_of(problem.load));
-  if (contacts.contact_count() == 0) {
-    contacts.body_change.resize(system.rows(), 0);
-    return contacts;
+  const RollingFriction& rolling = problem.rolling;
+  const Index rows = 3 * (contacts.contact_count() + std::ssize(rolling.contact));
+  MatrixXd jacobian(rows, system.rows());
+  VectorXd offset = VectorXd::Zero(rows);
+  if (contacts.contact_count() > 0) {
+    const Index contact_rows = 3 * contacts.contact_count();
+    jacobian.topRows(contact_rows) = dense_of(problem.jacobian);
+    offset.head(contact_rows) = dense_of(problem.velocity_offset);
   }
-  const MatrixXd jacobian = dense_of(problem.jacobian);
-  contacts.body_change = system.solve(jacobian.transpose());
-  contacts.delassus = jacobian * contacts.body_change;
-  VectorXd offset = dense_of(problem.velocity_offset);
   for (Index c = 0; c < contacts.contact_count(); ++c) {
     offset(3 * c) = std::max(offset(3 * c), -recovery_speed);
   }
+  if (!rolling.empty()) jacobian.bottomRows(3 * rolling.count()) = dense_of(rolling.jacobian);
+  for (std::size_t k = 0; k < rolling.contact.size(); ++k) {
+    contacts.rolling.push_back({Index{rolling.contact[k]}, rolling.rolling[k], rolling.torsion[k]});
+  }
+  contacts.free_body_velocity = system.solve(dense_of(problem.load));
+  contacts.body_change =
+      rows > 0 ? MatrixXd(system.solve(jacobian.transpose())) : MatrixXd(system.rows(), 0);
+  contacts.delassus = jacobian * contacts.body_change;
   contacts.free_velocity = jacobian * contacts.free_body_velocity + offset;
+  if (!problem.bilateral.empty()) {
+    eliminate_bilateral(problem, system, jacobian, offset, contacts);
+  }
   return contacts;
 }
 

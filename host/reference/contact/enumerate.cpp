@@ -35,7 +35,7 @@ constexpr std::array restrictive_tangent{TangentMode{true, 0, 0},   TangentMode{
 std::span<const TangentMode> tangent_modes(const DenseContacts& contacts,
                                            Index c,
                                            const ContactOptions& options) {
-  if (contacts.friction(c) == 0) return free_tangent;
+  if (contacts.friction(c) == 0 && contacts.second_friction(c) == 0) return free_tangent;
   const bool shares =
       options.rule == AdhesionRule::restrictive && contacts.stiffness(3 * c + 1) > 0;
   if (shares) return restrictive_tangent;
@@ -101,7 +101,8 @@ class ModeSystem {
   void set_tangent(Index c, Index row, const TangentMode& mode) {
     if (mode.sticks) return set_velocity(row);
     set_impulse(row, 0);
-    matrix_(row, 3 * c) += mode.slide * contacts_.friction(c);
+    const Eigen::VectorXd& mu = row == 3 * c + 1 ? contacts_.friction : contacts_.second_friction;
+    matrix_(row, 3 * c) += mode.slide * mu(c);
     const double kappa = mode.slide * mode.spring * contacts_.stiffness(row);
     matrix_.row(row) -= kappa * compliance_.row(row);
     right_(row) += kappa * (free_(row) + contacts_.offset(row));
@@ -117,7 +118,9 @@ class ModeSystem {
 }  // namespace
 
 double mode_count(const DenseContacts& contacts, const ContactOptions& options) {
-  if (options.law == FrictionLaw::cone && (contacts.friction.array() > 0).any()) {
+  const bool has_friction =
+      (contacts.friction.array() > 0).any() || (contacts.second_friction.array() > 0).any();
+  if ((options.law == FrictionLaw::cone && has_friction) || !contacts.rolling.empty()) {
     return std::numeric_limits<double>::infinity();
   }
   double count = 1;

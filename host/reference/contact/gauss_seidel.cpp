@@ -1,6 +1,7 @@
 #include "host/reference/contact/gauss_seidel.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "host/reference/contact/local.hpp"
@@ -25,9 +26,9 @@ bool sweep(const DenseContacts& contacts,
            VectorXd& velocity) {
   bool has_changed = false;
   for (Index c = 0; c < contacts.contact_count(); ++c) {
-    const LocalContact local{contacts.delassus.block<3, 3>(3 * c, 3 * c),
-                             contacts.stiffness.segment<3>(3 * c),
-                             contacts.offset.segment<3>(3 * c), contacts.friction(c)};
+    const LocalContact local{
+        contacts.delassus.block<3, 3>(3 * c, 3 * c), contacts.stiffness.segment<3>(3 * c),
+        contacts.offset.segment<3>(3 * c), contacts.friction(c), contacts.second_friction(c)};
     const Vector3d before = impulse.segment<3>(3 * c);
     const Vector3d u = velocity.segment<3>(3 * c);
     const Vector3d after = options.law == FrictionLaw::cone
@@ -36,6 +37,19 @@ bool sweep(const DenseContacts& contacts,
     if (after == before) continue;
     velocity += contacts.delassus.middleCols<3>(3 * c) * (after - before);
     impulse.segment<3>(3 * c) = after;
+    has_changed = true;
+  }
+  for (Index entry = 0; entry < std::ssize(contacts.rolling); ++entry) {
+    const DenseContacts::Rolling& rolling = contacts.rolling[static_cast<std::size_t>(entry)];
+    const Index row = contacts.rolling_row(entry);
+    const double push = std::max(impulse(3 * rolling.contact), 0.0);
+    const Vector3d before = impulse.segment<3>(row);
+    const Vector3d after =
+        update_rolling(contacts.delassus.block<3, 3>(row, row), before, velocity.segment<3>(row),
+                       rolling.torsion * push, rolling.rolling * push);
+    if (after == before) continue;
+    velocity += contacts.delassus.middleCols<3>(row) * (after - before);
+    impulse.segment<3>(row) = after;
     has_changed = true;
   }
   return has_changed;
