@@ -83,7 +83,7 @@ double fixed_memory(const VolumePlan& plan,
                  120 * static_cast<double>(mesh.node_count);
   for (const ArrayHeader& array : plan.arrays) {
     // A chunk as it is stored, while it grows during inflation, and as it was before it grew.
-    const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0));
+    const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0), plan.read);
     bytes += cache + buffer + 1.5 * reader.chunk_bytes();
   }
   const auto outputs = static_cast<double>(arrays_written(plan, arguments).size());

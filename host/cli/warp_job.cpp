@@ -30,7 +30,9 @@ std::vector<double> progress_work(const WarpArguments& arguments,
     work.insert(work.end(), plan.steps.size(), voxels * arrays);
   }
   const auto count = static_cast<std::size_t>(ranks.count());
-  if (count > 1 && plan.outputs().size() > 1) work.assign((work.size() + count - 1) / count, 1);
+  std::size_t outputs = 0;
+  for (const VolumePlan& volume : plan.volumes) outputs += volume.outputs.size();
+  if (count > 1 && outputs > 1) work.assign((work.size() + count - 1) / count, 1);
   return work;
 }
 
