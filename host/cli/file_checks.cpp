@@ -72,7 +72,7 @@ namespace {
 std::string noun_of(const std::string& path, FileKind kind) {
   if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
   if (kind == FileKind::unknown && (has_nifti_name(path) || path.ends_with(".hdr"))) {
-    return "file without a NIfTI header, truncated or of another format";
+    return "file without a NIfTI header (damaged, truncated or of another format)";
   }
   return name_of(kind);
 }

@@ -128,14 +128,16 @@ TEST(BadImages, FilesThatEndEarlyOrAreSomethingElse) {
   const std::string pair = changed(plain, 344, "ni1");
   for (const Case& bad : std::vector<Case>{
            {"a.nii", plain.substr(0, plain.size() - 1), "a.nii: the header declares 3.8 KiB of"},
-           {"b.nii", plain.substr(0, 200), "b.nii: is a file without a NIfTI header, truncated or"},
+           {"b.nii", plain.substr(0, 200),
+            "b.nii: is a file without a NIfTI header (damaged, trunc"},
            {"c.nii.gz", gzip.substr(0, gzip.size() / 2), "c.nii.gz: ends before its last sample"},
-           {"d.nii.gz", changed(gzip, gzip.size() - 6, "????"), "d.nii.gz: ends before its last"},
-           {"e.nii", "a letter to a friend", "e.nii: is a file without a NIfTI header, truncated"},
-           {"f.nii.gz", "", "f.nii.gz: is a file without a NIfTI header, truncated or of another"},
+           {"d.nii.gz", changed(gzip, gzip.size() - 6, "????"),
+            "d.nii.gz: is a file without a NIfTI header (damaged"},
+           {"e.nii", "a letter to a friend", "e.nii: is a file without a NIfTI header (damaged"},
+           {"f.nii.gz", "", "f.nii.gz: is a file without a NIfTI header (damaged"},
            {"g.hdr", changed(plain, 344, std::string(4, '\0')), "Analyze images have no orient"},
            {"h.hdr", pair, "h.hdr: has no file of samples beside it; copy 'h.img', too"},
-           {"i.nii", second.substr(0, 400), "i.nii: is a file without a NIfTI header, truncated"},
+           {"i.nii", second.substr(0, 400), "i.nii: is a file without a NIfTI header (damaged"},
            {"j.nii", changed(second, 30, "\x7f"), "expected"},
            {"k.nii", plain + "", "k.nii: is also an input; name another output"}}) {
     write_text(scene / bad.name, bad.bytes);
@@ -161,6 +163,8 @@ TEST(BadImages, MeshesThatCannotBe) {
     return changed(
         good.substr(0, good.find(from)) + to + good.substr(good.find(from) + from.size()), 0, "#");
   };
+  Mesh bad_node = box_mesh();
+  bad_node.rest_positions[3][1] = std::numeric_limits<double>::quiet_NaN();
   const std::string points = good.substr(0, good.find("CELLS"));
   struct Case {
     std::string name;
@@ -172,9 +176,11 @@ TEST(BadImages, MeshesThatCannotBe) {
            {"b.vtk", points + "CELLS 1 6\n5 0 1 2 3 4\nCELL_TYPES 1\n14\n", "split the cells"},
            {"c.vtk", points + "CELLS 1 7\n6 0 1 2 3 4 5\nCELL_TYPES 1\n13\n", "split the cells"},
            {"d.vtk", points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n", "or a surface mesh"},
-           {"e.vtk", with("4.000000", "nan"), "damaged, write it again"},
+           {"e.vtk", with("4.000000", "nan"),
+            "e.vtk: holds no unstructured grid that VTK can read"},
            {"f.vtk", with("4 0 3 5 6", "4 0 3 5 60"), "f.vtk: "},
-           {"g.vtk", with("6.000000", "nan"), "displacement that is no finite number"},
+           {"g.msh", msh(bad_node),
+            "g.msh: mesh: rest position of node 3 is not finite: damaged, write it again"},
            {"h.vtu", "a letter to a friend", "h.vtu: "},
            {"i.msh", "", "i.msh: "},
            {"j.msh", "Exit;", "j.msh: "},

@@ -53,8 +53,8 @@ class Straight : public testing::Test {
     nifti_1_header a{}, b{};
     std::memcpy(&a, found.data(), sizeof a);
     std::memcpy(&b, expected.data(), sizeof b);
-    EXPECT_EQ(found.substr(static_cast<std::size_t>(a.vox_offset)),
-              expected.substr(static_cast<std::size_t>(b.vox_offset)));
+    EXPECT_TRUE(found.substr(static_cast<std::size_t>(a.vox_offset)) ==
+                expected.substr(static_cast<std::size_t>(b.vox_offset)));
     a.vox_offset = b.vox_offset;
     EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0);
   }
@@ -71,9 +71,9 @@ TEST_F(Straight, IsImportWarpAndExportBitForBit) {
     run({"warp", input, "mesh.vtkhdf", "-o", "out.vtkhdf", "--steps", "3"});
 
     expect_same_image(text_of(scene / "out.nii"), expected);
-    EXPECT_EQ(read_nifti(scene / "out.nii.gz").data, read_nifti(scene / "long.nii").data);
+    EXPECT_TRUE(read_nifti(scene / "out.nii.gz").data == read_nifti(scene / "long.nii").data);
     EXPECT_EQ(read_nifti_facts(scene / "out.nii.gz"), read_nifti_facts(scene / "head.nii"));
-    EXPECT_EQ(text_of(scene / "out.vtkhdf"), text_of(scene / "long.vtkhdf"));
+    EXPECT_TRUE(text_of(scene / "out.vtkhdf") == text_of(scene / "long.vtkhdf"));
   }
 }
 
@@ -100,7 +100,7 @@ TEST_F(Straight, IsTheSameInBlocks) {
         << planned.out << planned.err;
     run(words);
     const Volume found = read_nifti(scene / ("out" + end));
-    EXPECT_EQ(found.data, read_nifti(scene / "whole.nii").data);
+    EXPECT_TRUE(found.data == read_nifti(scene / "whole.nii").data);
     fs::remove(scene / ("out" + end));
   }
   EXPECT_EQ(scene.names(), before);
@@ -151,7 +151,7 @@ TEST_F(Straight, TakesMeshesOfVtkAndGmsh) {
     Names words{"warp", "head.nii", mesh.front(), "-o", "out.nii", "--steps", "-1"};
     words.insert(words.end(), mesh.begin() + 1, mesh.end());
     run(words);
-    EXPECT_EQ(read_nifti(scene / "out.nii").data, expected) << mesh.front();
+    EXPECT_TRUE(read_nifti(scene / "out.nii").data == expected) << mesh.front();
   }
   run({"deform", "m.msh", "-o", "bent.vtkhdf", "--steps", "1", "--quiet"});
   EXPECT_EQ(MeshReader(scene / "bent.vtkhdf").header().tet_count, 5);
@@ -172,16 +172,19 @@ TEST_F(Straight, AxesTurnMeshesAndVectors) {
   long_way("head.nii");
 
   run({"warp", "head.nii", "lps.vtk", "--axes", "lps", "-o", "out.nii"});
-  EXPECT_EQ(read_nifti(scene / "out.nii").data, read_nifti(scene / "long.nii").data);
+  EXPECT_TRUE(read_nifti(scene / "out.nii").data == read_nifti(scene / "long.nii").data);
 
   nifti_1_header header = float_header({12, 10, 8}, 3);
   header.intent_code = NIFTI_INTENT_VECTOR;
+  header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
+  header.srow_x[0] = header.srow_y[1] = header.srow_z[2] = 2;
+  header.srow_x[3] = 5;
+  header.srow_y[3] = -3;
+  header.srow_z[3] = 100;
   write_constant(scene / "vectors.nii", header, {1, 2, 3});
-  run({"warp", "vectors.nii", "mesh.vtkhdf", "--axes", "lps", "-o", "out.nii", "--steps", "0",
-       "--outside", "identity"});
+  run({"warp", "vectors.nii", "mesh.vtkhdf", "--axes", "lps", "-o", "out.nii", "--steps", "0"});
   EXPECT_EQ(components_in(scene / "out.nii", 0), (std::vector<float>{1, 2, 3}));
-  run({"warp", "vectors.nii", "mesh.vtkhdf", "--axes", "lps", "-o", "out.vtkhdf", "--steps", "0",
-       "--outside", "identity"});
+  run({"warp", "vectors.nii", "mesh.vtkhdf", "--axes", "lps", "-o", "out.vtkhdf", "--steps", "0"});
   const Volume turned = read_volume(scene / "out.vtkhdf");
   EXPECT_EQ(turned.samples<float>()[0], -1);
   EXPECT_EQ(turned.samples<float>()[2], 3);
@@ -193,8 +196,8 @@ class StraightSeries : public Straight {
   StraightSeries() {
     NiftiFacts facts;
     facts.xyzt_units = 2 | 16;  // mm, milliseconds
-    Volume volume = ramp_volume<float>("values");
     for (const char* name : {"series.nii", "series.nii.gz"}) {
+      Volume volume = ramp_volume<float>("values");
       BlockVolumeWriter writer(scene / name, volume.grid,
                                {{"values", PixelType::float32, 1, facts}}, {}, true);
       for (int step = 0; step < 3; ++step) {
@@ -217,10 +220,10 @@ TEST_F(StraightSeries, KeepsStepsAndTimes) {
   run({"import", "series.nii.gz", "-o", "series.vtkhdf", "--quiet"});
   EXPECT_EQ(read_volume_header(scene / "series.vtkhdf").times, header.times);
   run({"export", "series.vtkhdf", "--temporal", "-o", "back.nii", "--quiet"});
-  EXPECT_EQ(text_of(scene / "back.nii"), text_of(scene / "series.nii"));
+  EXPECT_TRUE(text_of(scene / "back.nii") == text_of(scene / "series.nii"));
   run({"export", "series.vtkhdf", "--step", "1", "-o", "one.nii", "--quiet"});
-  EXPECT_EQ(read_nifti(scene / "one.nii").data,
-            read_nifti(scene / "series.nii", Axes::ras, 1).data);
+  EXPECT_TRUE(read_nifti(scene / "one.nii").data ==
+              read_nifti(scene / "series.nii", Axes::ras, 1).data);
 }
 
 TEST_F(StraightSeries, PairsItsStepsWithThoseOfTheMesh) {
@@ -234,14 +237,14 @@ TEST_F(StraightSeries, PairsItsStepsWithThoseOfTheMesh) {
     const VolumeHeader header = read_volume_header(scene / ("out" + end));
     EXPECT_EQ(header.times, (std::vector<double>{0, 0.5, 1}));
     for (int step = 0; step < 3; ++step) {
-      EXPECT_EQ(read_volume(scene / ("out" + end), "", step).data,
-                read_volume(scene / "expected.vtkhdf", "", step).data)
+      EXPECT_TRUE(read_volume(scene / ("out" + end), "", step).data ==
+                  read_volume(scene / "expected.vtkhdf", "", step).data)
           << step;
     }
   }
   run({"warp", "series.nii.gz", "mesh.vtkhdf", "-o", "files.nii.gz", "--pair", "--steps", "0:3"});
-  EXPECT_EQ(read_nifti(scene / "files_0001.nii.gz").data,
-            read_volume(scene / "expected.vtkhdf", "", 1).data);
+  EXPECT_TRUE(read_nifti(scene / "files_0001.nii.gz").data ==
+              read_volume(scene / "expected.vtkhdf", "", 1).data);
   run({"warp", "series.nii.gz", "mesh.vtkhdf", "-o", "uneven.nii", "--pair", "--steps", "0,1,2",
        "--temporal", "--resume"});
   const CommandResult uneven =
@@ -266,7 +269,7 @@ TEST_F(Straight, WarpsASingleSlice) {
     run({"render", "slice.nii.gz", "-o", "slice.png", "--quiet"});
     run({"mesh", "slice.nii.gz", "-o", "slice.vtkhdf", "--quiet"});
 
-    EXPECT_EQ(read_nifti(scene / "still.nii.gz").data, slice.data) << axis;
+    EXPECT_TRUE(read_nifti(scene / "still.nii.gz").data == slice.data) << axis;
     const Volume moved = read_nifti(scene / "moved.nii.gz");
     if (axis == 0) continue;
     for (std::int64_t i = 3; i < 12; ++i) {  // the mesh moves by three voxels along i
