@@ -190,6 +190,10 @@ double NiftiSamples::buffer_bytes() const {
   return static_cast<double>(nifti_part_bytes + (header_.is_gzip ? 1 << 17 : 0));
 }
 
+double NiftiSamples::unpacked_bytes() const {
+  return header_.is_gzip ? static_cast<double>(plane_bytes() * header_.components) : 0;
+}
+
 void NiftiSamples::fail() const {
   throw IoError(path_, "", "ends before its last sample: truncated or damaged, copy it again");
 }

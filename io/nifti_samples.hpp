@@ -29,6 +29,9 @@ class NiftiSamples {
   /// Memory that reading takes beside the samples [byte].
   double buffer_bytes() const;
 
+  /// Space on the disk that an unpacked step takes [byte]; 0: it is not unpacked.
+  double unpacked_bytes() const;
+
   /// Reads a region of the step. @param out  [k][j][i][component], of header().value_type()
   void read(const Region& region, void* out);
 

@@ -26,6 +26,7 @@ class NiftiSource : public VolumeSource {
   const ArrayHeader& array() const override { return array_; }
   std::vector<std::string> array_names() const override { return {array_.name}; }
   double chunk_bytes() const override { return samples_.buffer_bytes(); }
+  double unpacked_bytes() const override { return samples_.unpacked_bytes(); }
   void read(const Region& region, void* samples) override { samples_.read(region, samples); }
 
  private:

@@ -51,6 +51,10 @@ double VolumeReader::chunk_bytes() const {
   return state_->source->chunk_bytes();
 }
 
+double VolumeReader::unpacked_bytes() const {
+  return state_->source->unpacked_bytes();
+}
+
 void VolumeReader::read(const Region& region, void* samples) const {
   const h5::Silence silence;
   state_->source->read(region, samples);

@@ -21,6 +21,7 @@ class VolumeSource {
   virtual const ArrayHeader& array() const = 0;
   virtual std::vector<std::string> array_names() const = 0;
   virtual double chunk_bytes() const = 0;
+  virtual double unpacked_bytes() const { return 0; }
   virtual void read(const Region& region, void* samples) = 0;
 };
 

@@ -90,6 +90,19 @@ double fixed_memory(const VolumePlan& plan,
   return bytes + outputs * cache + (arguments.compress > 0 ? buffer : 0);
 }
 
+double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
+  double bytes = 0;
+  for (const ArrayHeader& array : plan.arrays) {
+    if (blocks == 0) break;
+    const std::int64_t step = arguments.source_step.value_or(0);
+    bytes += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
+  }
+  if (!has_nifti_name(plan.outputs.front()) || (blocks <= 1 && !arguments.temporal)) return bytes;
+  const auto steps = arguments.temporal ? static_cast<double>(plan.steps.size()) : 1;
+  return bytes + steps * static_cast<double>(plan.written_grid.voxel_count()) *
+                     voxel_bytes(arrays_written(plan, arguments));
+}
+
 std::string limit_text(double bytes) {
   // One more, because the memory of the process differs a little between runs.
   return fmt::format("{:.0f}M", std::ceil(bytes / (1 << 20)) + 1);

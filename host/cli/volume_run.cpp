@@ -59,11 +59,13 @@ void VolumeRun::plan_only() {
     StepPlan step{volume_.path, number, volume_.written_grid.dims};
     if (is_whole_) {
       step.memory = volume_.memory;
+      step.disk = temporary_disk(volume_, arguments_, 0);
       result_.plans.push_back(step);
       continue;
     }
     const BlockPlan plan = plan_step(plan_.mesh.read_step(number));
     step.blocks = std::ssize(plan.blocks);
+    step.disk = temporary_disk(volume_, arguments_, step.blocks);
     for (const WarpBlock& block : plan.blocks) {
       const std::int64_t window = block.source.voxel_count();
       step.memory = std::max(step.memory, fixed_bytes_ + block.host_bytes);

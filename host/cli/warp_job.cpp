@@ -40,6 +40,7 @@ std::string plan_text(const StepPlan& plan) {
   std::string text =
       fmt::format("{} step {}: {} x {} x {} voxels, {} of memory", plan.volume, plan.step,
                   plan.dims[0], plan.dims[1], plan.dims[2], bytes_text(plan.memory));
+  if (plan.disk > 0) text += fmt::format(", {} of disk for a while", bytes_text(plan.disk));
   if (plan.blocks == 0) return text + "\n";
   return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
                             plan.blocks, plan.largest_block, plan.largest_window,
@@ -112,7 +113,8 @@ std::string report_json(const JobResult& result) {
                              {"blocks", plan.blocks},
                              {"largest_block", plan.largest_block},
                              {"largest_window", plan.largest_window},
-                             {"bytes_read", plan.bytes_read}});
+                             {"bytes_read", plan.bytes_read},
+                             {"disk", plan.disk}});
   }
   return json.dump(2);
 }

@@ -96,6 +96,9 @@ class TETWARP_IO_EXPORT VolumeReader {
   /// Memory for reading beside the samples [byte]: of HDF5 a chunk before and after decompression.
   double chunk_bytes() const;
 
+  /// Space on the disk that reading parts of the grid takes [byte]; 0 but for gzip files.
+  double unpacked_bytes() const;
+
   /// Reads a region of the grid.
   /// @param samples  out, [k][j][i][component] of the region, in the type of array()
   void read(const Region& region, void* samples) const;
