@@ -23,6 +23,7 @@ from small_images import write_images
 
 MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
+LIBRARIES = ("gmsh", "vtk")  # that a build may be without
 SECONDS = 60  # that a block may take
 SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "tests")
 
@@ -114,7 +115,13 @@ class Runner:
         self.counts = {}
 
     def has(self, name):
-        return bool(self.arguments.mpirun) if name == "mpirun" else name in self.arguments.has
+        """Whether this build or, for other names, the python3 of the blocks has it."""
+        if name == "mpirun":
+            return bool(self.arguments.mpirun)
+        if name in LIBRARIES:
+            return name in self.arguments.has
+        words = ["python3", "-c", f"import {name}"]
+        return subprocess.run(words, env=self.environment, capture_output=True).returncode == 0
 
     def folder_of(self, page):
         return self.scratch / page.name.replace("/", "_")
@@ -132,7 +139,7 @@ class Runner:
                 self.not_run.append(f"{where}: {block.not_run}")
                 continue
             if block.needs and not self.has(block.needs):
-                print(f"left out: {where}: this build has no {block.needs}")
+                print(f"left out: {where}: there is no {block.needs}")
                 continue
             problem = self.run_one(page, block, folder)
             if problem:
@@ -272,7 +279,7 @@ def main():
     parser.add_argument("--command", type=Path)
     parser.add_argument("--blocks", type=Path)
     parser.add_argument("--mpirun", default="")
-    parser.add_argument("--has", action="append", default=[], choices=("", "gmsh", "vtk"))
+    parser.add_argument("--has", action="append", default=[], choices=("", *LIBRARIES))
     arguments = parser.parse_args()
     if arguments.action == "extract":
         return extract(arguments.root.resolve(), arguments.output)

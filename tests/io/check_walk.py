@@ -5,7 +5,8 @@ Usage: check_walk.py COMMAND
 
 tetwarp warps a NIfTI image and its labels by three steps to NIfTI. SimpleITK reads the displacement
 field of the last step and resamples the head by it; the result is compared with the warp where the
-mesh covers a voxel and ITK has a sample. nibabel reads the 4D image. Exits 77 when SimpleITK or
+mesh covers a voxel and ITK has a sample. nibabel reads the 4D image, writes the head in the other
+forms of NIfTI, and reads an image of NIfTI-2. Exits 77 when SimpleITK or
 nibabel is missing, 1 when something differs.
 """
 import os
@@ -86,6 +87,37 @@ def check_series(folder):
         sys.exit("labels other than 0, 1 and 2")
 
 
+def check_forms(command, folder):
+    """NIfTI-2, a pair of files and the other byte order give the warp of the single NIfTI-1 file."""
+    expected = np.asarray(nibabel.load(os.path.join(folder, "bent.nii.gz")).dataobj)
+    head = nibabel.load(os.path.join(folder, "head.nii.gz"))
+    samples = np.asarray(head.dataobj)
+    second = nibabel.Nifti2Image(samples, head.affine)
+    big_header = nibabel.Nifti2Header(endianness=">")
+    big_header.set_data_dtype(">f4")
+    forms = {
+        "second.nii.gz": second,
+        "pair.hdr": nibabel.Nifti1Pair(samples, head.affine),
+        "big.nii": nibabel.Nifti2Image(samples.astype(">f4"), head.affine, big_header),
+    }
+    for name, image in forms.items():
+        nibabel.save(image, os.path.join(folder, name))
+        run(command, folder, "warp", name, "bending.vtkhdf", "-o", "form.nii", "--steps", "-1")
+        found = np.asarray(nibabel.load(os.path.join(folder, "form.nii")).dataobj)
+        if not np.array_equal(found, expected):
+            sys.exit(f"{name}: the warp differs from that of head.nii.gz")
+    run(
+        command, folder, "warp", "head.nii.gz", "bending.vtkhdf", "-o", "long.nii.gz", "--steps",
+        "0", "--dims", "40000,4,3", "--spacing", "0.002,10,10",
+    )
+    long = nibabel.load(os.path.join(folder, "long.nii.gz"))
+    if not isinstance(long, nibabel.Nifti2Image) or long.shape != (40000, 4, 3):
+        sys.exit(f"an axis of 40000 voxels: {type(long)} of shape {long.shape}")
+    if not np.allclose(np.linalg.norm(long.affine[:3, :3], axis=0), (0.002, 10, 10)):
+        sys.exit(f"an axis of 40000 voxels: the affine map is {long.affine}")
+    print(f"other forms of NIfTI: {', '.join(forms)}, and one written")
+
+
 def main(command):
     command = os.path.abspath(command)
     with tempfile.TemporaryDirectory() as folder:
@@ -100,6 +132,7 @@ def main(command):
             run(command, folder, *words.split())
         check_series(folder)
         check_itk(folder)
+        check_forms(command, folder)
 
 
 if __name__ == "__main__":
