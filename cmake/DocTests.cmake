@@ -5,7 +5,7 @@ if(NOT TETWARP_PYTHON)
   return()
 endif()
 
-set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/contact
+set(tetwarp_pages CHANGELOG CONTRIBUTING README docs/architecture docs/benchmarks docs/contact docs/coordinates
   docs/cuda docs/formats docs/glossary docs/guide)
 list(TRANSFORM tetwarp_pages REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/\\1.md")
 set(tetwarp_docs_test ${TETWARP_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/docs/run_docs.py)
@@ -21,5 +21,6 @@ target_compile_options(docs_blocks PRIVATE $<$<CONFIG:Release>:-O0>)
 
 add_test(NAME docs COMMAND ${tetwarp_docs_test} run ${PROJECT_SOURCE_DIR}
   --command $<TARGET_FILE:tetwarp_command> --blocks $<TARGET_FILE:docs_blocks>
-  "--mpirun=$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>")
+  "--mpirun=$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>"
+  "--has=$<$<BOOL:${TETWARP_HAS_GMSH}>:gmsh>" "--has=$<$<BOOL:${TETWARP_HAS_VTK}>:vtk>")
 set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300)

@@ -9,6 +9,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_vtkhdf_volume.cpp
     tests/io/test_io_vtkhdf_mesh.cpp
     tests/io/test_io_nifti.cpp
+    tests/io/test_io_nifti_files.cpp
     tests/io/test_io_png.cpp
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
@@ -54,7 +55,9 @@ if(TETWARP_PYTHON)
     ${PROJECT_SOURCE_DIR}/tests/io/check_vtk_reader.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME axes COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  add_test(NAME walk COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_walk.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(vtk_reader axes walk PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
@@ -77,6 +80,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
   tests/cli/test_cli_arrays.cpp
   tests/cli/test_cli_axes.cpp
+  tests/cli/test_cli_bad_images.cpp
   tests/cli/test_cli_bad_input.cpp
   tests/cli/test_cli_batch.cpp
   tests/cli/test_cli_contact.cpp
@@ -89,6 +93,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
   tests/cli/test_cli_skip.cpp
+  tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp
   tests/cli/test_cli_warnings.cpp)
 tetwarp_discover(tetwarp_cli_tests cli)

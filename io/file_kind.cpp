@@ -1,9 +1,4 @@
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <filesystem>
-#include <string_view>
+#include <string>
 #include <tetwarp/io.hpp>
 
 #include "io/h5.hpp"
@@ -29,43 +24,19 @@ FileKind hdf5_kind(const std::string& path) {
   }
 }
 
-/// A header of NIfTI-2, NIfTI or Analyze that read_nifti() does not take, plain or gzip.
-FileKind header_kind(const std::string& path) {
-  NiftiStream stream(path, "rb", true);
-  std::array<char, 348> header{};
-  if (!stream || !stream.read(header.data(), header.size())) return FileKind::unknown;
-  const auto begins_with = [&](std::int32_t size) {  // in either byte order
-    std::array<char, 4> bytes{};
-    std::memcpy(bytes.data(), &size, bytes.size());
-    return std::equal(bytes.begin(), bytes.end(), header.begin()) ||
-           std::equal(bytes.rbegin(), bytes.rend(), header.begin());
-  };
-  if (begins_with(540)) {
-    const std::string_view magic(header.data() + 4, 3);
-    return magic == "n+2" || magic == "ni2" ? FileKind::nifti2 : FileKind::unknown;
-  }
-  const bool is_half = std::string_view(header.data() + 344, 3) == "ni1" ||
-                       path.ends_with(".hdr") || path.ends_with(".hdr.gz");
-  return begins_with(348) && is_half ? FileKind::image_pair : FileKind::unknown;
-}
-
-/// The header that belongs to a file of samples, NAME.hdr to NAME.img; else the file itself.
-std::string header_path(const std::string& path) {
-  for (const std::string end : {".img", ".img.gz"}) {
-    if (!path.ends_with(end)) continue;
-    const std::string header = path.substr(0, path.size() - end.size()) + ".hdr";
-    for (const std::string& name : {header, header + ".gz"}) {
-      if (std::filesystem::is_regular_file(name)) return name;
-    }
-  }
-  return path;
+/// Analyze has no magic number: its header is recognized by its size and its name.
+bool is_analyze(const std::string& header_path, const NiftiStart& start) {
+  return start.is_analyze && (header_path.ends_with(".hdr") || header_path.ends_with(".hdr.gz"));
 }
 }  // namespace
 
 FileKind kind_of(const std::string& path) {
   const h5::Silence silence;
-  if (has_nifti_header(path)) return FileKind::nifti;
-  return H5Fis_hdf5(path.c_str()) > 0 ? hdf5_kind(path) : header_kind(header_path(path));
+  const std::string header_path = nifti_header_path(path);
+  const NiftiStart start = read_nifti_start(header_path);
+  if (start.fields) return FileKind::nifti;
+  if (H5Fis_hdf5(path.c_str()) > 0) return hdf5_kind(path);
+  return is_analyze(header_path, start) ? FileKind::analyze : FileKind::unknown;
 }
 
 void check_sound(const std::string& path, FileKind kind) {

@@ -14,8 +14,7 @@ constexpr EnumName<FileKind> file_kind_names[] = {
     {FileKind::contact_problem, "contact problem"},
     {FileKind::hdf5, "general HDF5 file"},
     {FileKind::nifti, "NIfTI image"},
-    {FileKind::nifti2, "NIfTI-2 image"},
-    {FileKind::image_pair, "part of a pair .hdr and .img"},
+    {FileKind::analyze, "Analyze 7.5 image"},
     {FileKind::unknown, "file of unknown kind"}};
 }  // namespace
 

@@ -1,37 +1,28 @@
 #include "io/nifti_header.hpp"
 
+#include <nifti1_io.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <tetwarp/error.hpp>
+
+#include "io/memory.hpp"
+#include "io/nifti_extension.hpp"
+#include "io/nifti_grid.hpp"
 
 namespace tetwarp {
 namespace {
-static_assert(sizeof(nifti_1_header) == 348);
-
 constexpr std::pair<int, PixelType> datatypes[] = {
     {NIFTI_TYPE_UINT8, PixelType::uint8},     {NIFTI_TYPE_INT8, PixelType::int8},
     {NIFTI_TYPE_UINT16, PixelType::uint16},   {NIFTI_TYPE_INT16, PixelType::int16},
     {NIFTI_TYPE_UINT32, PixelType::uint32},   {NIFTI_TYPE_INT32, PixelType::int32},
     {NIFTI_TYPE_UINT64, PixelType::uint64},   {NIFTI_TYPE_INT64, PixelType::int64},
     {NIFTI_TYPE_FLOAT32, PixelType::float32}, {NIFTI_TYPE_FLOAT64, PixelType::float64}};
-
-struct RawHeader {
-  nifti_1_header values{};
-  bool is_complete = false;
-  bool is_swapped = false;
-  bool is_gzip = false;
-
-  bool is_nifti() const {
-    return is_complete && values.sizeof_hdr == 348 && std::memcmp(values.magic, "n+1", 4) == 0;
-  }
-};
 
 struct stat status_of(const std::string& path) {
   struct stat status {};
@@ -42,242 +33,199 @@ struct stat status_of(const std::string& path) {
   return status;
 }
 
-/// The header in this machine's byte order.
-RawHeader read_raw(const std::string& path) {
-  status_of(path);
-  NiftiStream stream(path, "rb", true);  // plain files pass through unchanged
-  if (!stream) throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  RawHeader raw;
-  std::ifstream plain(path, std::ios::binary);
-  raw.is_gzip = plain.get() == 0x1f && plain.get() == 0x8b;
-  raw.is_complete = stream.read(&raw.values, sizeof raw.values);
-  if (raw.is_complete && raw.values.sizeof_hdr != 348) {
-    nifti_1_header swapped = raw.values;
-    swap_nifti_header(&swapped, 1);
-    if (swapped.sizeof_hdr == 348) {
-      raw.values = swapped;
-      raw.is_swapped = true;
+bool is_gzip(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return file.get() == 0x1f && file.get() == 0x8b;
+}
+
+/// NAME.img or NAME.img.gz for NAME.hdr or NAME.hdr.gz.
+std::string sample_path(const std::string& header) {
+  for (const std::string end : {".hdr", ".hdr.gz"}) {
+    if (!header.ends_with(end)) continue;
+    const std::string samples = header.substr(0, header.size() - end.size()) + ".img";
+    for (const std::string& name : {samples, samples + ".gz"}) {
+      if (std::filesystem::is_regular_file(name)) return name;
+    }
+    throw IoError(header, "", "has no file of samples beside it; copy '" + samples + "', too");
+  }
+  throw IoError(header, "", "is half of a pair, whose name ends in .hdr; rename it");
+}
+
+/// Checks the axes and makes those that the header does not have 1.
+void check_dims(const std::string& path, NiftiFields& fields) {
+  auto& dim = fields.dim;
+  if (dim[0] < 1 || dim[0] > 7) {
+    throw IoError(path, "dim[0]", "is " + std::to_string(dim[0]) + " axes, expected 1 to 7");
+  }
+  for (std::size_t axis = 1; axis < 8; ++axis) {
+    if (static_cast<std::int64_t>(axis) > dim[0]) dim[axis] = 1;
+    const auto refuse = [&](const std::string& problem) {
+      throw IoError(path, "dim[" + std::to_string(axis) + "]",
+                    "is " + std::to_string(dim[axis]) + problem);
+    };
+    if (dim[axis] < 1) refuse(", expected 1 or more; correct the header");
+    if (axis == 4 && dim[axis] > 0x7fffffff) refuse(" steps, expected at most 2147483647");
+    if (axis == 5 && dim[axis] > 9) refuse(" components, expected 1 to 9");
+    if (axis > 5 && dim[axis] != 1) {
+      refuse(", expected 1: only volumes and their series are read");
     }
   }
-  return raw;
 }
 
-void check_dims(const std::string& path, const nifti_1_header& raw) {
-  if (raw.dim[0] < 1 || raw.dim[0] > 7) {
-    throw IoError(path, "dim", "has " + std::to_string(raw.dim[0]) + " axes, expected 1 to 7");
+PixelType checked_type(const std::string& path, const NiftiFields& fields) {
+  const auto found =
+      std::ranges::find(datatypes, fields.datatype, [](const auto& entry) { return entry.first; });
+  if (found == std::end(datatypes)) {
+    const char* const name = nifti_datatype_string(static_cast<int>(fields.datatype));
+    throw IoError(path, "datatype",
+                  "is " + std::to_string(fields.datatype) + " (" + name +
+                      "), expected integers or floats of 1 to 8 bytes; convert the samples");
   }
-  for (int axis = 1; axis <= raw.dim[0]; ++axis) {
-    const std::string name = "dim[" + std::to_string(axis) + "]";
-    const std::string value = std::to_string(raw.dim[axis]);
-    if (raw.dim[axis] < 1) throw IoError(path, name, "is " + value + ", expected 1 or more");
-    if (axis == 4 && raw.dim[axis] != 1) {
-      throw IoError(path, name, "is " + value + " times, expected 1; split the series into files");
-    }
-    if (axis == 5 && raw.dim[axis] > 9) {
-      throw IoError(path, name, "is " + value + " components, expected 1 to 9");
-    }
-    if (axis > 5 && raw.dim[axis] != 1) {
-      throw IoError(path, name, "is " + value + ", expected 1: only 3-D volumes are read");
-    }
+  const auto bits = static_cast<std::int64_t>(8 * size_of(found->second));
+  if (fields.bitpix != bits) {
+    throw IoError(path, "bitpix",
+                  "is " + std::to_string(fields.bitpix) + ", but samples of datatype " +
+                      std::to_string(fields.datatype) + " (" + name_of(found->second) + ") have " +
+                      std::to_string(bits) + "; correct the header");
   }
+  return found->second;
 }
 
-Grid grid_of(const std::string& path, const nifti_image& image) {
-  const bool has_sform = image.sform_code > 0;
-  const mat44& world = has_sform ? image.sto_xyz : image.qto_xyz;
-  Grid grid;
-  grid.dims = {image.nx, image.ny, image.nz};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double x = world.m[0][axis], y = world.m[1][axis], z = world.m[2][axis];
-    grid.spacing[axis] = std::sqrt(x * x + y * y + z * z);
-    grid.origin[axis] = world.m[axis][3];
-    for (std::size_t row = 0; row < 3; ++row) {
-      grid.direction[3 * row + axis] = world.m[row][axis] / grid.spacing[axis];
-    }
+/// Vectors and tensors have their components along axis 5; a series has none of these intents.
+void check_intent(const std::string& path, const NiftiFields& fields) {
+  const bool has_components = fields.intent_code == NIFTI_INTENT_SYMMATRIX ||
+                              fields.intent_code == NIFTI_INTENT_DISPVECT ||
+                              fields.intent_code == NIFTI_INTENT_VECTOR;
+  if (!has_components || fields.dim[4] == 1 || fields.dim[5] > 1) return;
+  throw IoError(path, "intent_code",
+                "is " + std::to_string(fields.intent_code) +
+                    ", vectors or tensors, whose components lie along dim[5], but dim[5] is 1 and "
+                    "dim[4] is " +
+                    std::to_string(fields.dim[4]) + "; move the components to dim[5]");
+}
+
+std::vector<double> times_of(const std::string& path, const NiftiFields& fields) {
+  if (fields.dim[4] == 1) return {};
+  const double step = fields.pixdim[4] == 0 ? 1 : fields.pixdim[4];
+  if (!std::isfinite(step) || step < 0 || !std::isfinite(fields.toffset)) {
+    throw IoError(
+        path, std::isfinite(step) && step >= 0 ? "toffset" : "pixdim[4]",
+        "gives no times to the " + std::to_string(fields.dim[4]) + " steps; correct the header");
   }
-  try {
-    check_grid(grid, "grid");
-  } catch (const std::invalid_argument& error) {
-    throw IoError(path, has_sform ? "sform" : "qform", error.what());
+  const double unit = nifti_time_unit(fields.xyzt_units);
+  std::vector<double> times;
+  for (std::int64_t s = 0; s < fields.dim[4]; ++s) {
+    times.push_back(unit * (fields.toffset + static_cast<double>(s) * step));
   }
-  return grid;
+  return times;
 }
 
-PixelType type_of(const std::string& path, int datatype) {
-  for (const auto& [code, type] : datatypes) {
-    if (code == datatype) return type;
-  }
-  throw IoError(path, "datatype",
-                "is " + std::to_string(datatype) + " (" + nifti_datatype_string(datatype) +
-                    "), expected integers or floats of 1 to 8 bytes; convert the samples");
-}
-
-/// True when both forms place the corners of the image within 0.01 voxel of each other.
-bool forms_agree(const nifti_image& image, const Grid& grid) {
-  const double tolerance = 0.01 * *std::ranges::min_element(grid.spacing);
-  for (int corner = 0; corner < 8; ++corner) {
-    const double index[4] = {corner & 1 ? image.nx - 1.0 : 0, corner & 2 ? image.ny - 1.0 : 0,
-                             corner & 4 ? image.nz - 1.0 : 0, 1};
-    for (int row = 0; row < 3; ++row) {
-      double difference = 0;
-      for (int axis = 0; axis < 4; ++axis) {
-        difference +=
-            (double{image.sto_xyz.m[row][axis]} - image.qto_xyz.m[row][axis]) * index[axis];
-      }
-      if (!(std::abs(difference) <= tolerance)) return false;
-    }
-  }
-  return true;
-}
-
-/// A text of a header, which ends at its first zero byte or with the field.
-template <std::size_t size>
-std::string text_of(const char (&field)[size]) {
-  return {field, std::find(field, field + size, '\0')};
-}
-
-/// Copies as much of a text as the field can hold with its zero byte.
-template <std::size_t size>
-void set_text(char (&field)[size], const std::string& text) {
-  std::memcpy(field, text.data(), std::min(text.size(), size - 1));
-}
-
-NiftiFacts facts_of(const nifti_1_header& raw, const nifti_image& image, const Grid& grid) {
+NiftiFacts facts_of(const NiftiFields& fields, const Grid& grid) {
+  const auto code = [](std::int64_t value) {
+    return static_cast<int>(std::clamp<std::int64_t>(value, 0, 32767));
+  };
   NiftiFacts facts;
-  facts.sform_code = std::max<int>(0, raw.sform_code);
-  facts.qform_code = std::max<int>(0, raw.qform_code);
-  if (facts.sform_code > 0 && facts.qform_code > 0 && !forms_agree(image, grid)) {
+  facts.sform_code = code(fields.sform_code);
+  facts.qform_code = code(fields.qform_code);
+  if (facts.sform_code > 0 && facts.qform_code > 0 && !forms_agree(fields, grid)) {
     facts.qform_code = 0;
   }
-  facts.xyzt_units = static_cast<unsigned char>(raw.xyzt_units);
-  facts.intent_code = std::max<int>(0, raw.intent_code);
-  facts.intent_p = {raw.intent_p1, raw.intent_p2, raw.intent_p3};
-  facts.intent_name = text_of(raw.intent_name);
-  facts.description = text_of(raw.descrip);
+  facts.xyzt_units = static_cast<int>(fields.xyzt_units & 255);
+  facts.intent_code = code(fields.intent_code);
+  facts.intent_p = fields.intent_p;
+  facts.intent_name = fields.intent_name;
+  facts.description = fields.descrip;
   return facts;
 }
 
-/// True when voxel sizes alone give the grid: no form is needed.
-bool is_plain(const Grid& grid) {
-  return grid.origin == Point3{0, 0, 0} && grid.direction == Grid{}.direction;
-}
-
-bool is_orthonormal(const Grid& grid) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      double dot = 0;
-      for (std::size_t row = 0; row < 3; ++row) {
-        dot += grid.direction[3 * row + a] * grid.direction[3 * row + b];
-      }
-      if (std::abs(dot - (a == b ? 1.0 : 0.0)) > 1e-5) return false;
-    }
-  }
-  return true;
+/// Checks that the file of samples can hold them. @param least  offset of its first sample
+void check_size(const std::string& path, const NiftiHeader& header, double offset, double least) {
+  const double bytes = static_cast<double>(header.grid.voxel_count()) * header.components *
+                       static_cast<double>(header.steps) *
+                       static_cast<double>(size_of(header.type));
+  const auto file_bytes = static_cast<double>(status_of(header.samples).st_size);
+  // Deflate cannot shrink data to less than 1/1032.
+  const double most = header.is_gzip ? 1032 * file_bytes : file_bytes;
+  if (offset >= least && offset + bytes <= most) return;
+  throw IoError(path, "",
+                "the header declares " + bytes_text(bytes) + " of samples from byte " +
+                    std::to_string(offset) + " on, but " +
+                    (header.samples == path ? "the file" : "'" + header.samples + "'") +
+                    " is too small: truncated or damaged, copy it again");
 }
 }  // namespace
 
-bool has_nifti_header(const std::string& path) {
-  return read_raw(path).is_nifti();
+NiftiStart read_nifti_start(const std::string& path) {
+  status_of(path);
+  NiftiStream stream(path, "rb", true);  // plain files pass through unchanged
+  if (!stream) throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  std::vector<char> bytes(540);
+  bytes.resize(stream.read_some(bytes.data(), bytes.size()));
+  return decode_nifti(bytes);
+}
+
+std::string nifti_header_path(const std::string& path) {
+  for (const std::string end : {".img", ".img.gz"}) {
+    if (!path.ends_with(end)) continue;
+    const std::string header = path.substr(0, path.size() - end.size()) + ".hdr";
+    for (const std::string& name : {header, header + ".gz"}) {
+      if (std::filesystem::is_regular_file(name)) return name;
+    }
+  }
+  return path;
 }
 
 NiftiHeader read_nifti_header(const std::string& path) {
-  const RawHeader raw = read_raw(path);
-  if (!raw.is_nifti()) {
-    throw IoError(path, "", "is not a single-file NIfTI-1 (.nii, .nii.gz), convert it to one");
-  }
-  check_dims(path, raw.values);
-  NiftiHeader header;
-  header.type = type_of(path, raw.values.datatype);
-  header.components = raw.values.dim[0] >= 5 ? raw.values.dim[5] : 1;
-  header.is_swapped = raw.is_swapped;
-
-  nifti_set_debug_level(0);  // else the library prints errors
-  // The library requires a name with a NIfTI extension; it opens no file here.
-  const std::unique_ptr<nifti_image, void (*)(nifti_image*)> image(
-      nifti_convert_nhdr2nim(raw.values, "volume.nii"), nifti_image_free);
-  if (!image) throw IoError(path, "", "damaged NIfTI header");
-  header.grid = grid_of(path, *image);
-  header.facts = facts_of(raw.values, *image, header.grid);
-  if (image->scl_slope != 0) {
-    header.slope = image->scl_slope;
-    header.intercept = image->scl_inter;
-  }
-
-  const double samples = static_cast<double>(header.grid.voxel_count()) * header.components;
-  const double bytes = samples * static_cast<double>(size_of(header.type));
-  const auto file_bytes = static_cast<double>(status_of(path).st_size);
-  const double offset = raw.values.vox_offset;
-  // Deflate cannot shrink data to less than 1/1032.
-  const double most = raw.is_gzip ? 1032 * file_bytes : file_bytes;
-  if (!(offset >= 352) || offset + bytes > most) {
+  const std::string header_path = nifti_header_path(path);
+  NiftiStart start = read_nifti_start(header_path);
+  if (!start.fields) {
     throw IoError(path, "",
-                  "the header declares " + std::to_string(static_cast<std::int64_t>(bytes)) +
-                      " bytes of samples from byte " + std::to_string(offset) +
-                      " on, but the file is too small: truncated or damaged, copy it again");
+                  start.is_analyze ? "is an Analyze 7.5 image, which has no orientation; convert "
+                                     "it to NIfTI"
+                                   : "has no NIfTI header: damaged, or another format");
   }
-  header.data_offset = static_cast<std::int64_t>(offset);
+  NiftiFields& fields = *start.fields;
+  check_dims(path, fields);
+  NiftiHeader header;
+  header.type = checked_type(path, fields);
+  check_intent(path, fields);
+  header.components = static_cast<int>(fields.dim[5]);
+  header.steps = fields.dim[4];
+  header.grid = grid_of(path, fields);
+  header.is_swapped = start.is_swapped;
+  header.facts = facts_of(fields, header.grid);
+  if (std::isfinite(fields.scl_slope) && fields.scl_slope != 0) {
+    header.slope = fields.scl_slope;
+    header.intercept = std::isfinite(fields.scl_inter) ? fields.scl_inter : 0;
+  }
+  header.samples = fields.is_pair ? sample_path(header_path) : path;
+  header.is_gzip = is_gzip(header.samples);
+  const auto header_bytes = static_cast<double>(fields.header_bytes());
+  check_size(path, header, fields.vox_offset, fields.is_pair ? 0 : header_bytes + 4);
+  header.times = times_of(path, fields);
+  header.data_offset = static_cast<std::int64_t>(fields.vox_offset);
+  if (!fields.is_pair) {
+    header.fingerprint = read_fingerprint_extension(path, start.is_swapped, fields.header_bytes(),
+                                                    header.data_offset);
+  }
   return header;
 }
 
-nifti_1_header make_nifti_header(const std::string& path,
-                                 const Volume& volume,
-                                 const NiftiFacts& facts) {
-  const Grid& grid = volume.grid;
-  int dims[8] = {volume.components > 1 ? 5 : 3, 1, 1, 1, 1, volume.components, 1, 1};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (grid.dims[axis] > 32767) {
-      throw IoError(path, "",
-                    std::to_string(grid.dims[axis]) +
-                        " voxels on an axis, NIfTI-1 allows 32767; write a smaller region");
-    }
-    dims[axis + 1] = static_cast<int>(grid.dims[axis]);
-  }
-  int datatype = 0;
-  for (const auto& [code, type] : datatypes) {
-    if (type == volume.type) datatype = code;
-  }
-  nifti_set_debug_level(0);
-  const std::unique_ptr<nifti_1_header, void (*)(void*)> made(nifti_make_new_header(dims, datatype),
-                                                              std::free);
-  if (!made)
-    throw IoError(path, "", "the NIfTI library has made no header for this size and sample type");
-  nifti_1_header header = *made;
-  std::memcpy(header.magic, "n+1", 4);
-  header.vox_offset = 352;
-  header.xyzt_units = static_cast<char>(facts.xyzt_units);
-  header.intent_code = static_cast<short>(facts.intent_code);
-  header.intent_p1 = static_cast<float>(facts.intent_p[0]);
-  header.intent_p2 = static_cast<float>(facts.intent_p[1]);
-  header.intent_p3 = static_cast<float>(facts.intent_p[2]);
-  set_text(header.intent_name, facts.intent_name);
-  set_text(header.descrip, facts.description);
+int nifti_datatype_of(PixelType type) {
+  const auto found =
+      std::ranges::find(datatypes, type, [](const auto& entry) { return entry.second; });
+  return found->first;
+}
 
-  mat44 world{};
-  world.m[3][3] = 1;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      world.m[row][axis] = static_cast<float>(grid.direction[3 * row + axis] * grid.spacing[axis]);
-    }
-    world.m[row][3] = static_cast<float>(grid.origin[row]);
-    header.pixdim[row + 1] = static_cast<float>(grid.spacing[row]);
+double nifti_time_unit(std::int64_t xyzt_units) {
+  switch (XYZT_TO_TIME(xyzt_units)) {
+    case NIFTI_UNITS_MSEC:
+      return 1e-3;
+    case NIFTI_UNITS_USEC:
+      return 1e-6;
+    default:
+      return 1;
   }
-  const bool has_qform = facts.qform_code > 0 && is_orthonormal(grid);
-  int sform_code = facts.sform_code;
-  if (sform_code == 0 && !has_qform && !is_plain(grid)) {
-    sform_code = std::max<int>(facts.qform_code, NIFTI_XFORM_SCANNER_ANAT);
-  }
-  if (sform_code > 0) {
-    header.sform_code = static_cast<short>(sform_code);
-    std::memcpy(header.srow_x, world.m[0], sizeof header.srow_x);
-    std::memcpy(header.srow_y, world.m[1], sizeof header.srow_y);
-    std::memcpy(header.srow_z, world.m[2], sizeof header.srow_z);
-  }
-  if (!has_qform) return header;
-  header.qform_code = static_cast<short>(facts.qform_code);
-  nifti_mat44_to_quatern(world, &header.quatern_b, &header.quatern_c, &header.quatern_d,
-                         &header.qoffset_x, &header.qoffset_y, &header.qoffset_z, &header.pixdim[1],
-                         &header.pixdim[2], &header.pixdim[3], &header.pixdim[0]);
-  return header;
 }
 
 }  // namespace tetwarp

@@ -8,6 +8,7 @@
 
 #include <tetwarp/io.hpp>
 
+#include "io/volume_sink.hpp"
 #include "io/vtkhdf_array.hpp"
 #include "io/vtkhdf_output.hpp"
 
@@ -17,7 +18,7 @@ namespace tetwarp {
 void check_compression(const std::string& path, const VolumeWriteOptions& options);
 
 /// Writes the samples of its arrays region by region.
-class ImageFile {
+class ImageFile : public VolumeSink {
  public:
   /// Creates the file under a temporary name, its arrays empty.
   /// @param chunks  edges of each array's chunks in voxels, x first
@@ -34,17 +35,17 @@ class ImageFile {
   const std::vector<ArrayHeader>& arrays() const { return headers_; }
 
   /// Begins a step of a temporal file.
-  void begin_step(double time);
+  void begin_step(double time) override;
   /// A step equal to the last one: its offset is repeated.
-  void repeat_step(double time);
+  void repeat_step(double time) override;
 
   /// Writes a region of an array, in temporal files of the step begun last.
   /// @param region   begins and ends at multiples of the array's chunk, or at the grid's end
   /// @param samples  [k][j][i][component] of the region
-  void write(std::size_t array, const Region& region, const void* samples);
+  void write(std::size_t array, const Region& region, const void* samples) override;
 
   /// Writes the group of steps, flushes and moves the file to its name.
-  WrittenFile finish();
+  WrittenFile finish() override;
 
  private:
   void write_steps();

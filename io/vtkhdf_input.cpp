@@ -39,9 +39,7 @@ void VtkhdfInput::check_step(std::int64_t step) const {
 }
 
 VtkhdfInput open_vtkhdf(const std::string& path, const std::string& type) {
-  if (kind_of(path) == FileKind::nifti) {
-    throw IoError(path, "", "is a NIfTI file, expected VTKHDF; convert it with 'tetwarp import'");
-  }
+  if (kind_of(path) == FileKind::nifti) throw IoError(path, "", "is an image, not a mesh");
   VtkhdfInput file;
   file.file = h5::open_file(path);
   file.root = h5::open_group(file.file, "VTKHDF");

@@ -7,6 +7,7 @@
 
 #include "io/h5.hpp"
 #include "io/nifti_facts.hpp"
+#include "io/volume_source.hpp"
 #include "io/vtkhdf_input.hpp"
 
 namespace tetwarp {
@@ -141,10 +142,50 @@ std::int64_t time_row(const VtkhdfInput& file, const PointArray& array, std::int
   }
   return row;
 }
+class VtkhdfSource : public VolumeSource {
+ public:
+  VtkhdfSource(const std::string& path, const std::string& array, std::int64_t step)
+      : file_(open_vtkhdf(path, "ImageData")), grid_(read_grid(file_.root)) {
+    file_.check_step(step);
+    source_ =
+        open_array(file_, grid_, array.empty() ? active_of(file_, numeric_arrays(file_)) : array);
+    if (file_.is_temporal()) row_ = time_row(file_, source_, step);
+  }
+
+  const Grid& grid() const override { return grid_; }
+  const ArrayHeader& array() const override { return source_.header; }
+  std::vector<std::string> array_names() const override { return numeric_arrays(file_); }
+  double chunk_bytes() const override { return 2 * h5::chunk_bytes(source_.dataset); }
+
+  void read(const Region& region, void* samples) override {
+    const h5::Dataset& dataset = source_.dataset;
+    std::vector<std::int64_t> start, count;
+    if (file_.is_temporal()) {
+      start.push_back(row_);
+      count.push_back(1);
+    }
+    const bool has_components = source_.has_component_axis;
+    const std::size_t axes = dataset.dims.size() - start.size() - (has_components ? 1 : 0);
+    for (std::size_t axis = axes; axis-- > 0;) {  // without z in flat images
+      start.push_back(region.begin[axis]);
+      count.push_back(region.end[axis] - region.begin[axis]);
+    }
+    if (has_components) {
+      start.push_back(0);
+      count.push_back(source_.header.components);
+    }
+    h5::read_block(dataset, h5::memory_type_of(array().type), start, count, samples);
+  }
+
+ private:
+  VtkhdfInput file_;
+  Grid grid_;
+  PointArray source_;
+  std::int64_t row_ = 0;  ///< of the time axis
+};
 }  // namespace
 
-VolumeHeader read_volume_header(const std::string& path) {
-  const h5::Silence silence;
+VolumeHeader read_vtkhdf_header(const std::string& path) {
   const VtkhdfInput file = open_vtkhdf(path, "ImageData");
   VolumeHeader header;
   header.grid = read_grid(file.root);
@@ -162,84 +203,10 @@ VolumeHeader read_volume_header(const std::string& path) {
   return header;
 }
 
-struct VolumeReader::State {
-  VtkhdfInput file;
-  Grid grid;
-  PointArray source;
-  std::int64_t row;  // of the time axis
-};
-
-VolumeReader::VolumeReader(const std::string& path, const std::string& array, std::int64_t step) {
-  const h5::Silence silence;
-  VtkhdfInput file = open_vtkhdf(path, "ImageData");
-  const Grid grid = read_grid(file.root);
-  file.check_step(step);
-  PointArray source =
-      open_array(file, grid, array.empty() ? active_of(file, numeric_arrays(file)) : array);
-  const std::int64_t row = file.is_temporal() ? time_row(file, source, step) : 0;
-  state_.reset(new State{std::move(file), grid, std::move(source), row});
-}
-
-VolumeReader::VolumeReader(VolumeReader&&) noexcept = default;
-VolumeReader::~VolumeReader() = default;
-
-const Grid& VolumeReader::grid() const {
-  return state_->grid;
-}
-
-const ArrayHeader& VolumeReader::array() const {
-  return state_->source.header;
-}
-
-std::vector<std::string> VolumeReader::array_names() const {
-  const h5::Silence silence;
-  return numeric_arrays(state_->file);
-}
-
-double VolumeReader::chunk_bytes() const {
-  return 2 * h5::chunk_bytes(state_->source.dataset);
-}
-
-void VolumeReader::read(const Region& region, void* samples) const {
-  const h5::Silence silence;
-  const h5::Dataset& dataset = state_->source.dataset;
-  std::vector<std::int64_t> start, count;
-  if (state_->file.is_temporal()) {
-    start.push_back(state_->row);
-    count.push_back(1);
-  }
-  const bool has_components = state_->source.has_component_axis;
-  const std::size_t axes = dataset.dims.size() - start.size() - (has_components ? 1 : 0);
-  for (std::size_t axis = axes; axis-- > 0;) {  // without z in flat images
-    start.push_back(region.begin[axis]);
-    count.push_back(region.end[axis] - region.begin[axis]);
-  }
-  if (has_components) {
-    start.push_back(0);
-    count.push_back(state_->source.header.components);
-  }
-  h5::read_block(dataset, h5::memory_type_of(array().type), start, count, samples);
-}
-
-Volume read_volume(const std::string& path, const std::string& array, std::int64_t step) {
-  const VolumeReader reader(path, array, step);
-  const ArrayHeader& header = reader.array();
-  h5::check_memory(path, "/VTKHDF/PointData/" + header.name,
-                   static_cast<double>(reader.grid().voxel_count()) * header.components *
-                       static_cast<double>(size_of(header.type)));
-  Volume volume = make_volume(reader.grid(), header.type, header.components, header.name);
-  reader.read({{0, 0, 0}, reader.grid().dims}, volume.data.data());
-  return volume;
-}
-
-std::optional<std::string> read_fingerprint(const std::string& path) {
-  const h5::Silence silence;
-  try {
-    const h5::Object file = h5::open_file(path);
-    return h5::read_text_attribute(h5::open_group(file, "VTKHDF"), "tetwarp_fingerprint");
-  } catch (const IoError&) {
-    return std::nullopt;
-  }
+std::unique_ptr<VolumeSource> open_vtkhdf_source(const std::string& path,
+                                                 const std::string& array,
+                                                 std::int64_t step) {
+  return std::make_unique<VtkhdfSource>(path, array, step);
 }
 
 }  // namespace tetwarp

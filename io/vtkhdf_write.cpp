@@ -124,7 +124,7 @@ WrittenFile TemporalVolumeWriter::finish() {
 }
 
 struct BlockVolumeWriter::State {
-  ImageFile file;
+  std::unique_ptr<VolumeSink> file;
 };
 
 BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
@@ -134,10 +134,16 @@ BlockVolumeWriter::BlockVolumeWriter(const std::string& path,
                                      bool is_temporal,
                                      ChunkShape chunks) {
   const h5::Silence silence;
+  if (has_nifti_name(path)) {
+    check_compression(path, options);
+    state_.reset(new State{make_nifti_sink(path, grid, arrays, options, is_temporal)});
+    return;
+  }
   const std::vector<Edges> edges =
       chunks == ChunkShape::rows ? row_chunks(grid, arrays)
                                  : std::vector<Edges>(arrays.size(), block_step(grid, arrays));
-  state_.reset(new State{ImageFile(path, grid, arrays, edges, options, is_temporal)});
+  state_.reset(
+      new State{std::make_unique<ImageFile>(path, grid, arrays, edges, options, is_temporal)});
 }
 
 BlockVolumeWriter::BlockVolumeWriter(BlockVolumeWriter&&) noexcept = default;
@@ -149,22 +155,22 @@ BlockVolumeWriter::~BlockVolumeWriter() {
 
 void BlockVolumeWriter::begin_step(double time) {
   const h5::Silence silence;
-  state_->file.begin_step(time);
+  state_->file->begin_step(time);
 }
 
 void BlockVolumeWriter::repeat_step(double time) {
   const h5::Silence silence;
-  state_->file.repeat_step(time);
+  state_->file->repeat_step(time);
 }
 
 void BlockVolumeWriter::write(std::size_t array, const Region& region, const void* samples) {
   const h5::Silence silence;
-  state_->file.write(array, region, samples);
+  state_->file->write(array, region, samples);
 }
 
 WrittenFile BlockVolumeWriter::finish() {
   const h5::Silence silence;
-  return state_->file.finish();
+  return state_->file->finish();
 }
 
 std::array<std::int64_t, 3> block_step(const Grid& grid, const std::vector<ArrayHeader>& arrays) {

@@ -1,10 +1,10 @@
 /// @file axes_option.hpp
-/// The option --axes of `tetwarp import` and `tetwarp export`.
+/// The option --axes: world axes of files that are read or written.
 #pragma once
 #include <optional>
 #include <string>
 
-#include <tetwarp/axes.hpp>
+#include <tetwarp/io.hpp>
 
 #include "host/cli/declare.hpp"
 
@@ -19,6 +19,17 @@ inline void add_axes(CLI::App& app, std::optional<Axes>& target, const std::stri
          },
          description)
       ->type_name("ras|lps");
+}
+
+/// Axes for reading a mesh: those of the option. Throws IoError where it is given for a VTKHDF
+/// mesh, which has no other axes than its own.
+inline Axes axes_of_mesh(const std::string& path, const std::optional<Axes>& option) {
+  if (option == Axes::lps && kind_of(path) == FileKind::mesh) {
+    throw IoError(path, "",
+                  "is a VTKHDF mesh, which is not turned; leave out --axes, which is for .msh, "
+                  ".vtu and .vtk");
+  }
+  return option.value_or(Axes::ras);
 }
 
 }  // namespace tetwarp::cli

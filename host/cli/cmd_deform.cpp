@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/make.hpp>
 #include <vector>
 
+#include "host/cli/axes_option.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/displacement.hpp"
@@ -24,14 +26,17 @@ struct DeformArguments {
   std::string output;
   int steps = 8;
   DeformOptions deform;
+  std::optional<Axes> axes;
   bool quiet = false;
 };
 
 int run_deform(const DeformArguments& arguments) {
-  check_kind(arguments.input, FileKind::mesh, "usage: tetwarp deform MESH -o MESH");
+  check_mesh(arguments.input, "usage: tetwarp deform MESH -o MESH");
   check_hdf_name(arguments.output);
   check_output_file(arguments.output, {arguments.input});
-  const MeshReader reader(arguments.input);
+  MeshReadOptions options;
+  options.import.axes = axes_of_mesh(arguments.input, arguments.axes);
+  const MeshReader reader(arguments.input, options);
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
   if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
@@ -47,8 +52,11 @@ void add_deform_command(CLI::App& app, Run& run) {
   CLI::App* command = add_subcommand(
       app, "deform", "Give a mesh a procedural displacement, from rest to the full amount",
       "MESH -o MESH [options]",
-      "  tetwarp deform mesh.vtkhdf -o moving.vtkhdf --kind twist --steps 8\n");
-  command->add_option("MESH", arguments->input, "mesh to deform")->required()->type_name("");
+      "  tetwarp deform mesh.vtkhdf -o moving.vtkhdf --kind twist --steps 8\n"
+      "  tetwarp deform skull.msh -o moving.vtkhdf --kind bend --steps 1\n");
+  command->add_option("MESH", arguments->input, "mesh: VTKHDF, .msh, .vtu or .vtk")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", arguments->output, "mesh to write, with array displacement")
       ->required()
       ->type_name("MESH");
@@ -70,6 +78,8 @@ void add_deform_command(CLI::App& app, Run& run) {
   command->add_option("--offset", deform.offset, "offset of translate, in world units [0,0,0]")
       ->delimiter(',')
       ->type_name("X,Y,Z");
+  add_axes(*command, arguments->axes,
+           "axes of a mesh in .msh, .vtu or .vtk; lps is turned to ras [as they are]");
   add_quiet(*command, arguments->quiet);
   command->callback([arguments, &run] {
     if (!std::isfinite(arguments->deform.amount)) {

@@ -4,12 +4,15 @@
 #include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
+#include <vector>
 
 #include "host/cli/axes_option.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
+#include "host/cli/output_writer.hpp"
 #include "host/cli/read_array.hpp"
+#include "host/cli/warnings.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -18,45 +21,48 @@ struct ExportArguments {
   std::string output;
   std::string array;
   std::int64_t step = 0;
+  bool temporal = false;
   std::optional<Axes> axes;
   bool quiet = false;
 };
 
-bool is_displacement(const Volume& volume) {
-  return volume.name == "tetwarp_displacement" || volume.name == "tetwarp_forward";
-}
-
-/// --axes, or without it LPS for displacement fields of the warp, which ITK and ANTs read; for
-/// other arrays the axes of the file that was imported.
-Axes axes_of(const ExportArguments& arguments, const Volume& volume, const NiftiFacts& facts) {
-  if (arguments.axes) return *arguments.axes;
-  return is_displacement(volume) ? Axes::lps : facts.component_axes;
-}
-
 /// " with 3 components along LPS axes"; nothing for scalars.
-std::string axes_text(const Volume& volume, Axes axes) {
-  if (volume.components == 1) return {};
-  return fmt::format(" with {} components along {} axes", volume.components,
-                     axes == Axes::lps ? "LPS" : "RAS");
+std::string axes_text(const ArrayHeader& array) {
+  if (array.components == 1) return {};
+  return fmt::format(" with {} components along {} axes", array.components,
+                     array.nifti->component_axes == Axes::lps ? "LPS" : "RAS");
 }
 
 int run_export(const ExportArguments& arguments) {
-  check_kind(arguments.input, FileKind::volume, "usage: tetwarp export VOLUME -o FILE.nii.gz");
-  if (!arguments.output.ends_with(".nii") && !arguments.output.ends_with(".nii.gz")) {
+  check_volume(arguments.input, "usage: tetwarp export VOLUME -o FILE.nii.gz");
+  if (!has_nifti_name(arguments.output)) {
     throw IoError(arguments.output, "", "the name of a NIfTI image ends in .nii or .nii.gz");
   }
   check_output_file(arguments.output, {arguments.input});
-  const Volume volume = read_array(arguments.input, arguments.array, arguments.step);
-  NiftiFacts facts = VolumeReader(arguments.input, volume.name, arguments.step)
-                         .array()
-                         .nifti.value_or(default_nifti_facts(volume.components));
-  const Axes axes = axes_of(arguments, volume, facts);
-  // ITK turns displacements of this intent from RAS to LPS when it reads them.
-  if (is_displacement(volume) && axes == Axes::ras) facts.intent_code = nifti_displacement_intent;
-  write_nifti(arguments.output, volume, axes, facts);
+  const std::vector<double> times = read_volume_header(arguments.input).times;
+  const std::int64_t first = arguments.temporal ? 0 : arguments.step;
+  const Volume volume = read_array(arguments.input, arguments.array, first);
+  const ArrayHeader array =
+      nifti_array(VolumeReader(arguments.input, volume.name, first).array(), arguments.axes);
+  const bool is_series = arguments.temporal && times.size() > 1;
+  BlockVolumeWriter writer(arguments.output, volume.grid, {array}, {}, is_series, ChunkShape::rows);
+  const Region whole{{0, 0, 0}, volume.grid.dims};
+  if (is_series) {
+    if (const std::string warning = uneven_times(arguments.output, times); !warning.empty()) {
+      print_warnings({warning}, "");
+    }
+    writer.begin_step(times.front());
+  }
+  writer.write(0, whole, volume.data.data());
+  for (std::size_t step = 1; is_series && step < times.size(); ++step) {
+    writer.begin_step(times[step]);
+    const Volume next = read_volume(arguments.input, volume.name, static_cast<std::int64_t>(step));
+    writer.write(0, whole, next.data.data());
+  }
+  writer.finish();
   if (arguments.quiet) return 0;
-  fmt::print("{} of {}{}: {}\n", volume.name, name_of(volume.type), axes_text(volume, axes),
-             arguments.output);
+  fmt::print("{} of {}{}{}: {}\n", volume.name, name_of(volume.type), axes_text(array),
+             is_series ? fmt::format(", {} steps", times.size()) : "", arguments.output);
   return 0;
 }
 }  // namespace
@@ -66,9 +72,12 @@ void add_export_command(CLI::App& app, Run& run) {
   CLI::App* command = add_subcommand(app, "export", "Turn one array of a volume into a NIfTI image",
                                      "VOLUME -o FILE [options]",
                                      "  tetwarp export warped.vtkhdf -o warped.nii.gz\n"
+                                     "  tetwarp export series.vtkhdf --temporal -o series.nii.gz\n"
                                      "  tetwarp export warped.vtkhdf --array tetwarp_displacement "
                                      "-o field.nii.gz\n");
-  command->add_option("VOLUME", arguments->input, "VTKHDF image")->required()->type_name("");
+  command->add_option("VOLUME", arguments->input, "volume, VTKHDF or NIfTI")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", arguments->output, "image to write, .nii or .nii.gz")
       ->required()
       ->type_name("FILE");
@@ -77,6 +86,8 @@ void add_export_command(CLI::App& app, Run& run) {
   command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
       ->check(at_least(0))
       ->type_name("N");
+  command->add_flag("--temporal", arguments->temporal, "write all steps as one series (4D)")
+      ->excludes("--step");
   add_axes(*command, arguments->axes,
            "axes of vectors and tensors in the image; its header is RAS in any case [lps for "
            "tetwarp_displacement and tetwarp_forward, which ITK and ANTs read; else as imported; "

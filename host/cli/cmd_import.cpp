@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,10 +24,10 @@ struct ImportArguments {
 };
 
 /// ", 3 components along RAS axes"; nothing for scalars.
-std::string components_text(const Volume& volume, const ImportArguments& arguments) {
-  if (volume.components == 1) return {};
-  const bool is_assumed = !arguments.axes && volume.components == 3;
-  return fmt::format(", {} components along {} axes{}", volume.components,
+std::string components_text(const ArrayHeader& array, const ImportArguments& arguments) {
+  if (array.components == 1) return {};
+  const bool is_assumed = !arguments.axes && array.components == 3;
+  return fmt::format(", {} components along {} axes{}", array.components,
                      arguments.axes == Axes::lps ? "LPS" : "RAS",
                      is_assumed ? " (--axes lps for vectors that ITK or ANTs wrote)" : "");
 }
@@ -38,18 +39,24 @@ void run_volume_import(const ImportArguments& arguments) {
   if (arguments.mesh.displacement) {
     throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
   }
-  const Axes axes = arguments.axes.value_or(Axes::ras);
-  const Volume volume = read_nifti(arguments.input, axes);
-  const ArrayHeader header{volume.name, volume.type, volume.components,
-                           read_nifti_facts(arguments.input, axes)};
-  BlockVolumeWriter writer(arguments.output, volume.grid, {header}, arguments.write, false,
+  const VolumeReadOptions read{arguments.axes.value_or(Axes::ras), arguments.output};
+  const VolumeHeader header = read_volume_header(arguments.input, read);
+  const ArrayHeader& array = header.arrays.front();
+  const Grid& grid = header.grid;
+  const std::size_t steps = std::max<std::size_t>(1, header.times.size());
+  BlockVolumeWriter writer(arguments.output, grid, {array}, arguments.write, steps > 1,
                            ChunkShape::rows);
-  writer.write(0, {{0, 0, 0}, volume.grid.dims}, volume.data.data());
+  for (std::size_t step = 0; step < steps; ++step) {
+    const Volume volume =
+        read_volume(arguments.input, array.name, static_cast<std::int64_t>(step), read);
+    if (steps > 1) writer.begin_step(header.times[step]);
+    writer.write(0, {{0, 0, 0}, grid.dims}, volume.data.data());
+  }
   writer.finish();
   if (arguments.quiet) return;
-  fmt::print("{} x {} x {} voxels of {}{}: {}\n", volume.grid.dims[0], volume.grid.dims[1],
-             volume.grid.dims[2], name_of(volume.type), components_text(volume, arguments),
-             arguments.output);
+  fmt::print("{} x {} x {} voxels of {}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
+             name_of(array.type), components_text(array, arguments),
+             steps > 1 ? fmt::format(", {} steps", steps) : "", arguments.output);
 }
 
 void run_mesh_import(const ImportArguments& arguments) {
@@ -91,10 +98,10 @@ void add_import_command(CLI::App& app, Run& run) {
       "  tetwarp import brain.nii.gz -o brain.vtkhdf\n"
       "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
   command
-      ->add_option(
-          "FILE", arguments->input,
-          "NIfTI image, .nii or .nii.gz; or mesh of tetrahedra and hexahedra: Gmsh's .msh 2 and 4, "
-          "VTK's .vtu and .vtk")
+      ->add_option("FILE", arguments->input,
+                   "NIfTI image, .nii, .nii.gz or .hdr; or mesh of tetrahedra and hexahedra: "
+                   "Gmsh's .msh 2 and 4, "
+                   "VTK's .vtu and .vtk")
       ->required()
       ->type_name("");
   command->add_option("-o,--output", arguments->output, "volume or mesh to write")

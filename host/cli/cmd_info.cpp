@@ -58,13 +58,20 @@ void add_range(Json& json, const Volume& volume) {
 
 Json volume_json(const InfoArguments& arguments) {
   const VolumeHeader header = read_volume_header(arguments.file);
-  Json json{{"kind", "volume"},
+  const bool is_nifti = kind_of(arguments.file) == FileKind::nifti;
+  Json json{{"kind", is_nifti ? "nifti" : "volume"},
             {"dims", header.grid.dims},
             {"origin", header.grid.origin},
             {"spacing", header.grid.spacing},
             {"direction", header.grid.direction}};
   json.update(times_json(header.times));
-  for (const ArrayHeader& array : header.arrays) {
+  if (is_nifti) {
+    const ArrayHeader& array = header.arrays.front();
+    json["type"] = name_of(array.type);
+    json["components"] = array.components;
+    if (arguments.stats) add_range(json, read_volume(arguments.file));
+  }
+  for (const ArrayHeader& array : is_nifti ? std::vector<ArrayHeader>() : header.arrays) {
     Json entry{{"type", name_of(array.type)}, {"components", array.components}};
     if (arguments.stats) add_range(entry, read_volume(arguments.file, array.name));
     json["arrays"][array.name] = entry;
@@ -94,19 +101,6 @@ Json mesh_json(const InfoArguments& arguments) {
     }
   }
   json["rest_box"] = {low, high};
-  return json;
-}
-
-Json nifti_json(const InfoArguments& arguments) {
-  const Volume volume = read_nifti(arguments.file);
-  Json json{{"kind", "nifti"},
-            {"dims", volume.grid.dims},
-            {"origin", volume.grid.origin},
-            {"spacing", volume.grid.spacing},
-            {"direction", volume.grid.direction},
-            {"type", name_of(volume.type)},
-            {"components", volume.components}};
-  if (arguments.stats) add_range(json, volume);
   return json;
 }
 
@@ -165,23 +159,26 @@ int run_info(const InfoArguments& arguments) {
   Json json;
   switch (kind) {
     case FileKind::volume:
+    case FileKind::nifti:
       json = volume_json(arguments);
       break;
     case FileKind::mesh:
       json = mesh_json(arguments);
       break;
-    case FileKind::nifti:
-      json = nifti_json(arguments);
-      break;
     case FileKind::contact_problem:
       json = contact_json(arguments);
       break;
     default:
+      if (kind == FileKind::unknown && has_mesh_extension(arguments.file)) {
+        json = mesh_json(arguments);
+        break;
+      }
       check_sound(arguments.file, kind);
-      throw IoError(arguments.file, "",
-                    std::string("is a ") + name_of(kind) +
-                        "; info reads VTKHDF volumes, VTKHDF meshes, NIfTI images and FCLIB "
-                        "contact problems");
+      throw IoError(
+          arguments.file, "",
+          std::string("is a ") + name_of(kind) +
+              "; info reads volumes (VTKHDF, NIfTI), meshes (VTKHDF, .msh, .vtu, .vtk) and "
+              "FCLIB contact problems");
   }
   if (arguments.quiet) return 0;
   if (arguments.json) {
@@ -196,8 +193,8 @@ int run_info(const InfoArguments& arguments) {
 void add_info_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App* command = add_subcommand(app, "info", "Show what a file holds", "FILE [options]",
-                                     "  tetwarp info warped.vtkhdf --stats\n");
-  command->add_option("FILE", arguments->file, "volume, mesh, NIfTI image or contact problem")
+                                     "  tetwarp info warped.nii.gz --stats\n");
+  command->add_option("FILE", arguments->file, "volume, mesh or contact problem")
       ->required()
       ->type_name("");
   command->add_flag("--stats", arguments->stats, "read the samples and show their range");

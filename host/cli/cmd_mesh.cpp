@@ -23,7 +23,7 @@ struct MeshArguments {
 };
 
 int run_mesh(const MeshArguments& arguments) {
-  check_kind(arguments.volume, FileKind::volume, "usage: tetwarp mesh VOLUME -o MESH");
+  check_volume(arguments.volume, "usage: tetwarp mesh VOLUME -o MESH");
   check_hdf_name(arguments.output);
   check_output_file(arguments.output, {arguments.volume});
   const Volume volume = read_array(arguments.volume, arguments.array, arguments.step);
@@ -46,8 +46,10 @@ void add_mesh_command(CLI::App& app, Run& run) {
   CLI::App* command =
       add_subcommand(app, "mesh", "Make a lattice of tetrahedra or cubes that embeds a volume",
                      "VOLUME -o MESH [options]",
-                     "  tetwarp mesh ct.vtkhdf -o mesh.vtkhdf --cells 8 --threshold -500\n");
-  command->add_option("VOLUME", arguments->volume, "VTKHDF image")->required()->type_name("");
+                     "  tetwarp mesh ct.nii.gz -o mesh.vtkhdf --cells 8 --threshold -500\n");
+  command->add_option("VOLUME", arguments->volume, "volume, VTKHDF or NIfTI")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", arguments->output, "mesh to write")
       ->required()
       ->type_name("MESH");

@@ -27,7 +27,7 @@ int run_render(const RenderArguments& arguments) {
   std::vector<std::string> inputs{arguments.volume};
   if (!arguments.beside.empty()) inputs.push_back(arguments.beside);
   for (const std::string& input : inputs) {
-    check_kind(input, FileKind::volume, "usage: tetwarp render VOLUME -o FILE.png");
+    check_volume(input, "usage: tetwarp render VOLUME -o FILE.png");
   }
   if (!arguments.output.ends_with(".png")) {
     throw IoError(arguments.output, "", "the name of a picture ends in .png");
@@ -54,8 +54,10 @@ void add_render_command(CLI::App& app, Run& run) {
   CLI::App* command =
       add_subcommand(app, "render", "Draw middle slices and a maximum-intensity projection",
                      "VOLUME -o FILE.png [options]",
-                     "  tetwarp render ct.vtkhdf --beside warped.vtkhdf -o compare.png\n");
-  command->add_option("VOLUME", arguments->volume, "VTKHDF image")->required()->type_name("");
+                     "  tetwarp render ct.nii.gz --beside warped.nii.gz -o compare.png\n");
+  command->add_option("VOLUME", arguments->volume, "volume, VTKHDF or NIfTI")
+      ->required()
+      ->type_name("");
   command->add_option("-o,--output", arguments->output, "picture to write")
       ->required()
       ->type_name("FILE.png");

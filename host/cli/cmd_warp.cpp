@@ -39,10 +39,10 @@ void add_warp_command(CLI::App& app, Run& run) {
   auto arguments = std::make_shared<WarpArguments>();
   CLI::App* command = add_subcommand(
       app, "warp", "Warp volumes by a deforming mesh", "VOLUME... MESH -o OUT [options]",
-      "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf\n"
+      "  tetwarp warp ct.nii.gz mesh.vtu -o warped.nii.gz\n"
       "  tetwarp warp ct.vtkhdf mesh.vtkhdf -o warped.vtkhdf "
       "--steps 0:10:2 --outputs mask --resume\n"
-      "  tetwarp warp atlas.vtkhdf mesh.vtkhdf -o atlas_warped.vtkhdf "
+      "  tetwarp warp atlas.nii.gz mesh.vtkhdf -o atlas_warped.nii.gz "
       "--filter labels\n"
       "  tetwarp warp --batch jobs.json --compress 1\n"
       "  tetwarp warp large.vtkhdf mesh.vtkhdf -o warped.vtkhdf --memory 4G\n"

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <tetwarp/mesh_import.hpp>
@@ -48,36 +47,70 @@ void check_output_file(const std::string& output, const std::vector<std::string>
   check_output_folder(folder.empty() ? "." : folder, output);
 }
 
+namespace {
+bool is_hdf_extension(const std::string& extension) {
+  return extension == ".vtkhdf" || extension == ".hdf" || extension == ".h5";
+}
+}  // namespace
+
 void check_hdf_name(const std::string& output) {
-  const std::string extension = fs::path(output).extension().string();
-  const std::vector<std::string> known{".vtkhdf", ".hdf", ".h5"};
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
+  if (!is_hdf_extension(fs::path(output).extension().string())) {
     throw IoError(output, "", "the name of a VTKHDF file ends in .vtkhdf, .hdf or .h5");
   }
 }
 
-namespace {
-/// How a file becomes one of the expected kind; empty: not by a conversion.
-std::string conversion_of(const std::string& path, FileKind kind, FileKind expected) {
-  const bool is_image = expected == FileKind::volume || expected == FileKind::nifti;
-  if (is_image && (kind == FileKind::nifti2 || kind == FileKind::image_pair)) {
-    return "write it as a single NIfTI-1 file, .nii or .nii.gz, and convert that with tetwarp "
-           "import";
+void check_volume_name(const std::string& output) {
+  if (has_nifti_name(output)) return;
+  const std::string extension = fs::path(output).extension().string();
+  if (!is_hdf_extension(extension)) {
+    throw IoError(output, "", "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii or .nii.gz");
   }
-  const bool is_imported = (kind == FileKind::nifti && expected == FileKind::volume) ||
-                           (expected == FileKind::mesh && has_mesh_extension(path));
-  return is_imported ? "convert it first: tetwarp import " + path + " -o NAME.vtkhdf" : "";
+}
+
+namespace {
+/// What a file is, in words for a message.
+std::string noun_of(const std::string& path, FileKind kind) {
+  if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
+  if (kind == FileKind::unknown && (has_nifti_name(path) || path.ends_with(".hdr"))) {
+    return "file without a NIfTI header (damaged, truncated or of another format)";
+  }
+  return name_of(kind);
+}
+
+[[noreturn]] void refuse_kind(const std::string& path,
+                              FileKind kind,
+                              const std::string& expected,
+                              const std::string& remedy) {
+  const bool is_analyze = kind == FileKind::analyze;
+  throw IoError(
+      path, "",
+      "is a " + noun_of(path, kind) + ", expected a " + expected + "; " +
+          (is_analyze ? "convert it to NIfTI: Analyze images have no orientation" : remedy));
+}
+
+FileKind sound_kind_of(const std::string& path) {
+  const FileKind kind = kind_of(path);
+  check_sound(path, kind);
+  return kind;
 }
 }  // namespace
 
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
-  const FileKind kind = kind_of(path);
-  check_sound(path, kind);
-  if (kind == expected) return;
-  const std::string conversion = conversion_of(path, kind, expected);
-  throw IoError(path, "",
-                std::string("is a ") + name_of(kind) + ", expected a " + name_of(expected) + "; " +
-                    (conversion.empty() ? remedy : conversion));
+  const FileKind kind = sound_kind_of(path);
+  if (kind != expected) refuse_kind(path, kind, name_of(expected), remedy);
+}
+
+void check_volume(const std::string& path, const std::string& remedy) {
+  const FileKind kind = sound_kind_of(path);
+  if (kind != FileKind::volume && kind != FileKind::nifti) {
+    refuse_kind(path, kind, "volume", remedy);
+  }
+}
+
+void check_mesh(const std::string& path, const std::string& remedy) {
+  const FileKind kind = sound_kind_of(path);
+  const bool is_imported = kind == FileKind::unknown && has_mesh_extension(path);
+  if (kind != FileKind::mesh && !is_imported) refuse_kind(path, kind, "mesh", remedy);
 }
 
 std::string canonical_path(const std::string& path) {

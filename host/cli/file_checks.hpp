@@ -21,9 +21,17 @@ void check_new_folder(const std::string& folder, const std::string& output);
 /// Checks that a name ends in .vtkhdf, .hdf or .h5.
 void check_hdf_name(const std::string& output);
 
-/// Checks that a file can be opened and is of this kind.
-/// @param remedy  the message ends with it, unless a conversion gives a file of that kind
+/// Checks that a name is that of a volume: one of check_hdf_name(), .nii or .nii.gz.
+void check_volume_name(const std::string& output);
+
+/// Checks that a file can be opened and is of this kind. @param remedy  the message ends with it
 void check_kind(const std::string& path, FileKind expected, const std::string& remedy);
+
+/// Checks that a file can be opened and is a volume, VTKHDF or NIfTI.
+void check_volume(const std::string& path, const std::string& remedy);
+
+/// Checks that a file can be opened and is a mesh: VTKHDF, or by its name Gmsh's or VTK's.
+void check_mesh(const std::string& path, const std::string& remedy);
 
 /// The absolute path with links and dots resolved, also of a file that does not exist.
 std::string canonical_path(const std::string& path);

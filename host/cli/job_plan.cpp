@@ -14,10 +14,13 @@
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
 #include "host/cli/memory_plan.hpp"
+#include "host/cli/output_writer.hpp"
 
 namespace tetwarp::cli {
 namespace {
 namespace fs = std::filesystem;
+
+constexpr int symmetric_intent = 1005;  // NIfTI's SYMMATRIX
 
 const std::string order = "the order is: tetwarp warp VOLUME... MESH -o OUT";
 
@@ -32,9 +35,44 @@ std::vector<std::string> inputs_of(const WarpArguments& arguments) {
 
 void check_kinds(const WarpArguments& arguments) {
   for (const std::string& volume : arguments.volumes()) {
-    check_kind(volume, FileKind::volume, order);
+    check_volume(volume, order);
   }
-  check_kind(arguments.mesh_file(), FileKind::mesh, order);
+  check_mesh(arguments.mesh_file(), order);
+}
+
+/// True when --axes lps turns the components of an array, as it does those of meshes.
+bool is_turned(const ArrayHeader& array) {
+  const bool is_tensor = array.components == 6 && array.nifti->intent_code == symmetric_intent;
+  return !is_integer(array.type) && (array.components == 3 || array.components == 9 || is_tensor);
+}
+
+/// How a volume is read: along the axes of the option if it is a NIfTI image of vectors or tensors.
+VolumeReadOptions read_options(const std::string& path,
+                               const WarpArguments& arguments,
+                               const fs::path& output) {
+  VolumeReadOptions options;
+  options.scratch = output.string();
+  if (arguments.axes == Axes::lps && kind_of(path) == FileKind::nifti &&
+      is_turned(read_volume_header(path).arrays.front())) {
+    options.axes = Axes::lps;
+  }
+  return options;
+}
+
+/// Throws IoError when --axes lps turns nothing.
+void check_axes_turn(const JobPlan& plan, const WarpArguments& arguments) {
+  if (arguments.axes != Axes::lps) return;
+  const auto is_vtkhdf = [](const std::string& path) { return kind_of(path) == FileKind::mesh; };
+  const auto turns = [](const VolumePlan& volume) { return volume.read.axes == Axes::lps; };
+  const std::optional<std::string>& rest = arguments.mesh.rest_file;
+  if (!is_vtkhdf(arguments.mesh_file()) || (rest && !is_vtkhdf(*rest)) ||
+      std::ranges::any_of(plan.volumes, turns)) {
+    return;
+  }
+  throw std::invalid_argument(
+      "--axes lps turns nothing: it is for meshes in .msh, .vtu and .vtk and for vectors and "
+      "tensors "
+      "in NIfTI images; leave it out");
 }
 
 /// The arrays to warp: those of --array, else all except extra outputs of an earlier warp.
@@ -86,13 +124,16 @@ bool leaves_time(Backend backend, const WarpArguments& arguments) {
   return backend != Backend::cpu || threads < processors || arguments.compress > 0;
 }
 
-void check_axes(const VolumePlan& plan) {
+/// Throws std::invalid_argument when VTKHDF cannot hold the output.
+void check_flat(const VolumePlan& plan, const fs::path& output) {
+  if (has_nifti_name(output.string())) return;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (plan.written_grid.dims[axis] == 1) {
-      throw std::invalid_argument(fmt::format(
-          "{}: the output has a single voxel along {}, which VTK cannot read; widen --roi, --dims "
-          "or the source to two",
-          plan.path, "ijk"[axis]));
+      throw std::invalid_argument(
+          fmt::format("{}: the output has a single voxel along {}, which VTK cannot read; write "
+                      "NIfTI (.nii.gz) "
+                      "or widen --roi, --dims or the source to two",
+                      plan.path, "ijk"[axis]));
     }
   }
 }
@@ -104,10 +145,8 @@ std::vector<std::string> output_names(const fs::path& output,
   if (temporal || steps.size() == 1) return {output.string()};
   std::vector<std::string> names;
   for (const std::int64_t step : steps) {
-    fs::path name = output;
-    name.replace_filename(
-        fmt::format("{}_{:04}{}", output.stem().string(), step, output.extension().string()));
-    names.push_back(name.string());
+    const SplitName name = split_name(output.string());
+    names.push_back(fmt::format("{}_{:04}{}", name.stem, step, name.extension));
   }
   return names;
 }
@@ -118,10 +157,11 @@ VolumePlan plan_volume(const std::string& path,
                        const MeshReader& mesh,
                        Backend backend,
                        const std::vector<std::int64_t>& steps) {
-  const VolumeHeader header = read_volume_header(path);
-  check_source_steps(path, header, arguments, steps);
   VolumePlan plan;
   plan.path = path;
+  plan.read = read_options(path, arguments, output);
+  const VolumeHeader header = read_volume_header(path, plan.read);
+  check_source_steps(path, header, arguments, steps);
   plan.arrays = choose_arrays(header, arguments, path);
   plan.active = header.active;
   plan.source_grid = header.grid;
@@ -136,7 +176,7 @@ VolumePlan plan_volume(const std::string& path,
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "", fmt::format("--roi: {}", error.what()));
   }
-  check_axes(plan);
+  check_flat(plan, output);
   if (arguments.extra.contains(forward_output) && plan.output_grid != plan.source_grid) {
     throw std::invalid_argument(path +
                                 ": --outputs forward is on the volume's own grid; leave out "
@@ -148,7 +188,29 @@ VolumePlan plan_volume(const std::string& path,
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
   plan.steps = steps;
   plan.outputs = output_names(output, steps, arguments.temporal);
+  for (const std::string& name : plan.outputs) {
+    const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
+    plan.files.insert(plan.files.end(), files.begin(), files.end());
+  }
+  if (arguments.temporal && has_nifti_name(output.string())) {
+    std::vector<double> times;
+    for (const std::int64_t step : steps) {
+      times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
+    }
+    const std::string warning = uneven_times(output.string(), times);
+    if (!warning.empty()) plan.warnings.push_back(warning);
+  }
   return plan;
+}
+
+/// The name of an output in a folder: that of its volume; of a pair .hdr and .img one NIfTI file.
+std::string output_name_of(const std::string& volume) {
+  const std::string name = fs::path(volume).filename().string();
+  for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz"}) {
+    if (name.ends_with(end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
+  }
+  check_volume_name(name);
+  return name;
 }
 
 /// Checks that the folder of the outputs can be written to, or made.
@@ -187,7 +249,7 @@ void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
 std::vector<std::string> JobPlan::outputs() const {
   std::vector<std::string> all;
   for (const VolumePlan& volume : volumes) {
-    all.insert(all.end(), volume.outputs.begin(), volume.outputs.end());
+    all.insert(all.end(), volume.files.begin(), volume.files.end());
   }
   return all;
 }
@@ -195,7 +257,9 @@ std::vector<std::string> JobPlan::outputs() const {
 JobPlan plan_job(const WarpArguments& arguments) {
   check_kinds(arguments);
   const auto [backend, reason] = choose_backend(arguments.warp.backend, arguments.warp.device);
-  JobPlan plan{.mesh = MeshReader(arguments.mesh_file(), arguments.mesh),
+  MeshReadOptions mesh_options = arguments.mesh;
+  mesh_options.import.axes = arguments.axes.value_or(Axes::ras);
+  JobPlan plan{.mesh = MeshReader(arguments.mesh_file(), mesh_options),
                .steps = {},
                .backend = backend,
                .backend_reason = reason,
@@ -213,7 +277,7 @@ JobPlan plan_job(const WarpArguments& arguments) {
   const bool several = volumes.size() > 1;
   if (several) plan.output_folder = arguments.output;
   if (!several) {
-    check_hdf_name(arguments.output);
+    check_volume_name(arguments.output);
     const fs::path folder = fs::path(arguments.output).parent_path();
     std::error_code error;
     if (arguments.makes_folder && !folder.empty() && !fs::exists(folder, error)) {
@@ -221,12 +285,13 @@ JobPlan plan_job(const WarpArguments& arguments) {
     }
   }
   for (const std::string& volume : volumes) {
-    const fs::path output = several ? fs::path(arguments.output) / fs::path(volume).filename()
-                                    : fs::path(arguments.output);
+    const fs::path output =
+        several ? fs::path(arguments.output) / output_name_of(volume) : fs::path(arguments.output);
     plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, backend, plan.steps));
     const Warnings& more = plan.volumes.back().warnings;
     plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
   }
+  check_axes_turn(plan, arguments);
   check_outputs(plan, arguments);
   return plan;
 }

@@ -17,6 +17,7 @@ namespace tetwarp::cli {
 /// One volume file.
 struct VolumePlan {
   std::string path;
+  VolumeReadOptions read;
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
   std::string active;               ///< VolumeHeader::active
   Grid source_grid;
@@ -24,6 +25,7 @@ struct VolumePlan {
   Grid written_grid;
   std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
+  std::vector<std::string> files;    ///< all that are written: of NIfTI one per output and array
   double memory_limit = 0;           ///< limit for computing in blocks [byte]; 0: as a whole
   double memory = 0;                 ///< of the process that computes the whole [byte]
   std::string refusal;               ///< with --dry-run: why it cannot run here

@@ -16,10 +16,14 @@ namespace {
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
   const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
   const std::vector<std::string> outputs = std::exchange(volume.outputs, {});
+  const std::vector<std::string> files = std::exchange(volume.files, {});
   for (std::size_t o = 0; o < outputs.size(); ++o) {
     const auto owner = static_cast<int>((task + o) % static_cast<std::size_t>(ranks.count()));
     if (owner != ranks.rank()) continue;
     volume.outputs.push_back(outputs[o]);
+    const std::size_t count = files.size() / outputs.size();
+    const auto first = files.begin() + static_cast<std::ptrdiff_t>(o * count);
+    volume.files.insert(volume.files.end(), first, first + static_cast<std::ptrdiff_t>(count));
     if (outputs.size() == steps.size()) volume.steps.push_back(steps[o]);
   }
   return volume;

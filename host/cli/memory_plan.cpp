@@ -83,11 +83,24 @@ double fixed_memory(const VolumePlan& plan,
                  120 * static_cast<double>(mesh.node_count);
   for (const ArrayHeader& array : plan.arrays) {
     // A chunk as it is stored, while it grows during inflation, and as it was before it grew.
-    const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0));
+    const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0), plan.read);
     bytes += cache + buffer + 1.5 * reader.chunk_bytes();
   }
   const auto outputs = static_cast<double>(arrays_written(plan, arguments).size());
   return bytes + outputs * cache + (arguments.compress > 0 ? buffer : 0);
+}
+
+double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks) {
+  double bytes = 0;
+  for (const ArrayHeader& array : plan.arrays) {
+    if (blocks == 0) break;
+    const std::int64_t step = arguments.source_step.value_or(0);
+    bytes += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
+  }
+  if (!has_nifti_name(plan.outputs.front()) || (blocks <= 1 && !arguments.temporal)) return bytes;
+  const auto steps = arguments.temporal ? static_cast<double>(plan.steps.size()) : 1;
+  return bytes + steps * static_cast<double>(plan.written_grid.voxel_count()) *
+                     voxel_bytes(arrays_written(plan, arguments));
 }
 
 std::string limit_text(double bytes) {

@@ -1,5 +1,6 @@
 #include "host/cli/output_files.hpp"
 
+#include <algorithm>
 #include <tetwarp/version.hpp>
 
 namespace tetwarp::cli {
@@ -35,9 +36,12 @@ Fingerprint fingerprint_of_options(const WarpArguments& arguments,
 }
 
 bool is_up_to_date(const WarpArguments& arguments,
-                   const std::string& output,
+                   const std::vector<std::string>& files,
                    const Fingerprint& fingerprint) {
-  return arguments.resume && read_fingerprint(output) == fingerprint.text();
+  const std::string expected = fingerprint.text();
+  return arguments.resume && std::ranges::all_of(files, [&](const std::string& file) {
+           return read_fingerprint(file) == expected;
+         });
 }
 
 VolumeWriteOptions write_options(const WarpArguments& arguments,

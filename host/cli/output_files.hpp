@@ -22,9 +22,9 @@ Fingerprint fingerprint_of_options(const WarpArguments& arguments,
                                    const JobPlan& plan,
                                    const VolumePlan& volume);
 
-/// Whether --resume keeps a file: it is complete and has this fingerprint.
+/// Whether --resume keeps files: they are complete and have this fingerprint.
 bool is_up_to_date(const WarpArguments& arguments,
-                   const std::string& output,
+                   const std::vector<std::string>& files,
                    const Fingerprint& fingerprint);
 
 VolumeWriteOptions write_options(const WarpArguments& arguments,

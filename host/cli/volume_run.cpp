@@ -59,11 +59,13 @@ void VolumeRun::plan_only() {
     StepPlan step{volume_.path, number, volume_.written_grid.dims};
     if (is_whole_) {
       step.memory = volume_.memory;
+      step.disk = temporary_disk(volume_, arguments_, 0);
       result_.plans.push_back(step);
       continue;
     }
     const BlockPlan plan = plan_step(plan_.mesh.read_step(number));
     step.blocks = std::ssize(plan.blocks);
+    step.disk = temporary_disk(volume_, arguments_, step.blocks);
     for (const WarpBlock& block : plan.blocks) {
       const std::int64_t window = block.source.voxel_count();
       step.memory = std::max(step.memory, fixed_bytes_ + block.host_bytes);
@@ -78,7 +80,7 @@ void VolumeRun::plan_only() {
 void VolumeRun::open_readers(std::int64_t source_step) {
   readers_.clear();
   for (const ArrayHeader& array : volume_.arrays) {
-    readers_.emplace_back(volume_.path, array.name, source_step);
+    readers_.emplace_back(volume_.path, array.name, source_step, volume_.read);
   }
 }
 
@@ -110,7 +112,7 @@ Fingerprint VolumeRun::read_sources(std::int64_t source_step) {
   sources_.clear();
   for (const ArrayHeader& array : volume_.arrays) {
     stop_if_interrupted();
-    Volume source = read_volume(volume_.path, array.name, source_step);
+    Volume source = read_volume(volume_.path, array.name, source_step, volume_.read);
     result_.report.counts.bytes_read += static_cast<std::int64_t>(source.data.size());
     fingerprint.add(source);
     sources_.push_back(std::move(source));
@@ -188,7 +190,7 @@ void VolumeRun::run_temporal() {
   if (!writer_) return;
   result_.report.counts += counts_of(writer_->finish());
   result_.report.timings.write += watch.seconds();
-  ++result_.written;
+  result_.written += files_per_output();
 }
 
 /// Reads the positions of a step. @pre the thread for files is idle
@@ -210,9 +212,14 @@ std::shared_ptr<VolumeRun::Step> VolumeRun::read_step(std::int64_t number) {
 /// Whether --resume keeps a file, as determined by the root.
 bool VolumeRun::may_keep(const std::string& output, const Fingerprint& fingerprint) {
   const bool may =
-      ranks_.shared(ranks_.is_root() && is_up_to_date(arguments_, output, fingerprint));
-  if (may && ranks_.is_root()) ++result_.skipped;
+      ranks_.shared(ranks_.is_root() &&
+                    is_up_to_date(arguments_, files_of_output(output, outputs_), fingerprint));
+  if (may && ranks_.is_root()) result_.skipped += files_per_output();
   return may;
+}
+
+std::int64_t VolumeRun::files_per_output() const {
+  return std::ssize(volume_.files) / std::ssize(volume_.outputs);
 }
 
 void VolumeRun::begin_file(const std::string& output,

@@ -18,6 +18,7 @@
 #include "host/cli/fingerprint.hpp"
 #include "host/cli/io_thread.hpp"
 #include "host/cli/job_plan.hpp"
+#include "host/cli/output_writer.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/ranks.hpp"
 #include "host/cli/warp_job.hpp"
@@ -98,6 +99,7 @@ class VolumeRun {
   void run_temporal();
   std::shared_ptr<Step> read_step(std::int64_t number);
   bool may_keep(const std::string& output, const Fingerprint& fingerprint);
+  std::int64_t files_per_output() const;
   void begin_file(const std::string& output, const Fingerprint& fingerprint, bool is_temporal);
   void finish_step(const StepReport& report);
   BlockLimits limits() const;
@@ -146,7 +148,7 @@ class VolumeRun {
   std::vector<VolumeReader> readers_;  ///< of the sources of blocks
   std::vector<std::vector<double>> ranges_;  ///< of these, for --overshoot clamp
   std::optional<BlockPlanner> planner_;
-  std::optional<BlockVolumeWriter> writer_;  ///< of the root; used by the thread for files
+  std::optional<OutputWriter> writer_;  ///< of the root; used by the thread for files
 
   std::shared_ptr<Samples> kept_[2];    ///< outputs of a whole volume, used alternately
   std::size_t now_ = 0;                 ///< those of the last step that was begun

@@ -66,7 +66,7 @@ void VolumeRun::finish_writing() {
   StepReport& report = part.step->report;
   report.counts += part.step->written;
   report.timings.write += part.step->write_seconds;
-  if (!part.step->output.empty()) ++result_.written;
+  if (!part.step->output.empty()) result_.written += files_per_output();
   finish_step(report);
   bar_.finish_step();
   bar_.update(0, static_cast<double>(result_.report.counts.voxels));

@@ -129,6 +129,21 @@ Warnings step_warnings(const std::string& mesh, std::span<const StepReport> step
   return warnings;
 }
 
+std::string uneven_times(const std::string& output, const std::vector<double>& times) {
+  const auto last = static_cast<double>(times.size()) - 1;
+  if (last < 2) return {};
+  const double mean = (times.back() - times.front()) / last;
+  for (std::size_t step = 1; step < times.size(); ++step) {
+    const double expected = times.front() + mean * static_cast<double>(step);
+    if (std::abs(times[step] - expected) <= 1e-3 * std::abs(mean)) continue;
+    return fmt::format(
+        "{}: the times of the steps are not equally spaced, NIfTI keeps the mean interval {:g}; "
+        "write VTKHDF to keep the times",
+        output, mean);
+  }
+  return {};
+}
+
 void refuse_warnings(const Warnings& warnings) {
   if (!warnings.empty()) {
     throw std::runtime_error(warnings.front() + " (an error because of --strict)");

@@ -34,6 +34,9 @@ Warnings array_warnings(const std::string& volume,
 /// give none.
 Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps);
 
+/// Times of the steps of a NIfTI series that are not equally spaced; empty when they are.
+std::string uneven_times(const std::string& output, const std::vector<double>& times);
+
 /// For --strict: throws std::runtime_error with the first warning, if there is one.
 void refuse_warnings(const Warnings& warnings);
 

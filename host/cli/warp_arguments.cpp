@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "host/base/parallel.hpp"
+#include "host/cli/axes_option.hpp"
 #include "host/cli/declare.hpp"
 
 namespace tetwarp::cli {
@@ -99,10 +100,13 @@ void add_quantities(CLI::App& app,
 }
 
 void declare_files(CLI::App& app, WarpArguments& arguments) {
-  app.add_option("FILES", arguments.files,
-                 "one or more VTKHDF images, then the mesh that warps them")
+  app.add_option(
+         "FILES", arguments.files,
+         "one or more volumes (VTKHDF, NIfTI), then the mesh that warps them (VTKHDF, .msh, "
+         ".vtu, .vtk)")
       ->type_name("");
-  app.add_option("-o,--output", arguments.output, "file to write; for several volumes a folder")
+  app.add_option("-o,--output", arguments.output,
+                 "file to write, .vtkhdf or .nii.gz; for several volumes a folder")
       ->type_name("OUT");
   app.add_option("--array", arguments.arrays, "array to warp, repeatable [every array]")
       ->allow_extra_args(false)
@@ -115,6 +119,14 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
   add_parsed(
       app, "--steps", arguments.steps, [](const std::string& text) { return StepSelection(text); },
       "LIST", "steps of the mesh: numbers and half-open slices, e.g. 0:10:2 or -1 [all]");
+  app.add_option("--displacement", arguments.mesh.import.displacement,
+                 "of a mesh in .msh, .vtu or .vtk: point array (Gmsh: node data) that deforms it "
+                 "[displacement]")
+      ->type_name("NAME");
+  add_axes(
+      app, arguments.axes,
+      "axes of meshes in .msh, .vtu and .vtk and of vectors and tensors in NIfTI images; lps is "
+      "turned to ras [ras]");
   app.add_option("--rest", arguments.mesh.rest_file, "mesh file that holds the rest positions")
       ->type_name("FILE");
   app.add_option("--rest-step", arguments.mesh.rest_step,
@@ -161,7 +173,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
       "position; det F; F = d deformed / d rest by rows; Green-Lagrange strain XX YY ZZ XY YZ XZ; "
       "deformed minus rest position of the source's voxels; 0 (tet: -1) in uncovered voxels");
   app.add_flag("--temporal", arguments.temporal, "write all steps to one file");
-  app.add_option("--compress", arguments.compress, "deflate level, 0 for none [0]")
+  app.add_option("--compress", arguments.compress, "deflate level, 0 for none [0; of .nii.gz 6]")
       ->check(between(0, 9))
       ->type_name("L");
   app.add_flag("--resume", arguments.resume, "keep outputs that are complete and up to date");

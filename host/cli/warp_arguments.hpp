@@ -25,7 +25,8 @@ struct WarpArguments {
   std::optional<std::int64_t> source_step;  ///< of volume files with several steps; none: 0
   bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
-  MeshReadOptions mesh;
+  MeshReadOptions mesh;      ///< without the axes of `import`
+  std::optional<Axes> axes;  ///< of files that are not VTKHDF
   GridChoice grid;
   std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
   WarpOptions warp;  ///< without output_grid and quantities, which need the files

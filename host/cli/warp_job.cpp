@@ -30,7 +30,9 @@ std::vector<double> progress_work(const WarpArguments& arguments,
     work.insert(work.end(), plan.steps.size(), voxels * arrays);
   }
   const auto count = static_cast<std::size_t>(ranks.count());
-  if (count > 1 && plan.outputs().size() > 1) work.assign((work.size() + count - 1) / count, 1);
+  std::size_t outputs = 0;
+  for (const VolumePlan& volume : plan.volumes) outputs += volume.outputs.size();
+  if (count > 1 && outputs > 1) work.assign((work.size() + count - 1) / count, 1);
   return work;
 }
 
@@ -38,6 +40,7 @@ std::string plan_text(const StepPlan& plan) {
   std::string text =
       fmt::format("{} step {}: {} x {} x {} voxels, {} of memory", plan.volume, plan.step,
                   plan.dims[0], plan.dims[1], plan.dims[2], bytes_text(plan.memory));
+  if (plan.disk > 0) text += fmt::format(", {} of disk for a while", bytes_text(plan.disk));
   if (plan.blocks == 0) return text + "\n";
   return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
                             plan.blocks, plan.largest_block, plan.largest_window,
@@ -110,7 +113,8 @@ std::string report_json(const JobResult& result) {
                              {"blocks", plan.blocks},
                              {"largest_block", plan.largest_block},
                              {"largest_window", plan.largest_window},
-                             {"bytes_read", plan.bytes_read}});
+                             {"bytes_read", plan.bytes_read},
+                             {"disk", plan.disk}});
   }
   return json.dump(2);
 }

@@ -31,6 +31,7 @@ struct StepPlan {
   std::int64_t largest_block = 0;      ///< [voxel]
   std::int64_t largest_window = 0;     ///< of the source [voxel]
   double bytes_read = 0;               ///< of the source [byte]
+  double disk = 0;                     ///< of temporary files [byte]
 };
 
 struct JobResult {

@@ -115,6 +115,14 @@ constexpr std::array<PanelView, 4> panel_views{{{0, 1, false, false},  // axial
                                                 {1, 2, true, false},   // sagittal
                                                 {0, 2, true, true}}};  // projection along j
 
+/// Whether a panel shows more than a line of voxels and something that no other panel shows. Of
+/// images of a single slice one panel is left, of a single row all.
+bool is_shown(const Grid& grid, const PanelView& view) {
+  const auto flat_axes = std::ranges::count(grid.dims, 1);
+  const std::size_t depth_axis = 3 - view.right - view.vertical;
+  return flat_axes != 1 || (grid.dims[depth_axis] == 1 && !view.is_projection);
+}
+
 Plane draw(const Volume& volume, const PanelView& view, const Window& window) {
   const Grid& grid = volume.grid;
   const std::size_t depth_axis = 3 - view.right - view.vertical;
@@ -212,13 +220,14 @@ Image render(std::span<const Volume* const> volumes, const RenderOptions& option
   const Window window = window_of(*volumes.front(), options);
   const int gap = std::max(1, options.height / 180);
   Image image;
-  std::vector<std::array<Plane, 4>> rows;
+  std::vector<std::vector<Plane>> rows;
   for (const Volume* volume : volumes) {
     auto& row = rows.emplace_back();
     int width = -gap;
-    for (std::size_t p = 0; p < row.size(); ++p) {
-      row[p] = draw(*volume, panel_views[p], window);
-      width += gap + panel_width(row[p], options.height);
+    for (const PanelView& view : panel_views) {
+      if (!is_shown(volume->grid, view)) continue;
+      row.push_back(draw(*volume, view, window));
+      width += gap + panel_width(row.back(), options.height);
     }
     image.width = std::max(image.width, width);
   }

@@ -79,8 +79,8 @@ struct RenderOptions {
 };
 
 /// Draws three orthogonal middle slices and a maximum-intensity projection of each volume side by
-/// side, one row per volume. Panels have the proportions of the volume in the world; all rows share
-/// the gray window of the first volume.
+/// side, one row per volume; of a volume of a single slice that slice alone. Panels have the
+/// proportions of the volume in the world; all rows share the gray window of the first volume.
 /// @param volumes  on any grids; for several components their Euclidean norm is drawn
 /// @throws std::invalid_argument when there is no volume, or an option is out of range
 TETWARP_EXPORT Image render(std::span<const Volume* const> volumes,

@@ -1,5 +1,5 @@
 /// @file io.hpp
-/// Files: VTKHDF volumes and meshes, NIfTI volumes, PNG pictures, FCLIB contact problems.
+/// Files: VTKHDF and NIfTI volumes, meshes of VTKHDF, Gmsh and VTK, PNG pictures, FCLIB problems.
 ///
 /// Every function throws IoError on failure; its text is one line that names file, dataset and
 /// remedy. Sizes are checked against the file and the available memory before anything is
@@ -22,6 +22,7 @@
 #include <tetwarp/make.hpp>
 #include <tetwarp/mesh.hpp>
 #include <tetwarp/mesh_array.hpp>
+#include <tetwarp/mesh_import.hpp>
 #include <tetwarp/names.hpp>
 #include <tetwarp/nifti.hpp>
 #include <tetwarp/volume.hpp>
@@ -53,23 +54,36 @@ struct VolumeHeader {
   std::vector<double> times;  ///< one per step; empty: a static file
 };
 
-/// Reads the header of a VTKHDF ImageData file.
-TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path);
+/// Choices for NIfTI files; others ignore them.
+struct VolumeReadOptions {
+  Axes axes = Axes::ras;  ///< of the components in the file, as of read_nifti()
+  /// A file, which need not exist. In its folder a step of a gzip file is unpacked before regions
+  /// of it are read; no name stays there. Empty: in the system's folder for temporary files.
+  std::string scratch = {};
+};
 
-/// Reads an array of a VTKHDF ImageData file.
+/// Reads the header of a volume file: VTKHDF ImageData or NIfTI, by its content. The array of a
+/// NIfTI file is called `values`; the steps of a series have times in seconds, where the header
+/// names a unit of time.
+TETWARP_IO_EXPORT VolumeHeader read_volume_header(const std::string& path,
+                                                  const VolumeReadOptions& options = {});
+
+/// Reads an array of a volume file: VTKHDF ImageData or NIfTI.
 /// @param array  its name; empty: VolumeHeader::active
 /// @param step   from 0, of a temporal file; a static file has step 0 only
 TETWARP_IO_EXPORT Volume read_volume(const std::string& path,
                                      const std::string& array = {},
-                                     std::int64_t step = 0);
+                                     std::int64_t step = 0,
+                                     const VolumeReadOptions& options = {});
 
-/// One array of a VTKHDF ImageData file, read region by region, for volumes larger than memory.
+/// One array of a volume file, read region by region, for volumes larger than memory.
 class TETWARP_IO_EXPORT VolumeReader {
  public:
   /// Arguments as of read_volume().
   explicit VolumeReader(const std::string& path,
                         const std::string& array = {},
-                        std::int64_t step = 0);
+                        std::int64_t step = 0,
+                        const VolumeReadOptions& options = {});
   VolumeReader(VolumeReader&&) noexcept;
   ~VolumeReader();
 
@@ -79,8 +93,11 @@ class TETWARP_IO_EXPORT VolumeReader {
   /// Names of the numeric arrays of the file, in the order of VolumeHeader::arrays.
   std::vector<std::string> array_names() const;
 
-  /// Memory of HDF5 while it reads: a chunk before and after decompression [byte].
+  /// Memory for reading beside the samples [byte]: of HDF5 a chunk before and after decompression.
   double chunk_bytes() const;
+
+  /// Space on the disk that reading parts of the grid takes [byte]; 0 but for gzip files.
+  double unpacked_bytes() const;
 
   /// Reads a region of the grid.
   /// @param samples  out, [k][j][i][component] of the region, in the type of array()
@@ -105,12 +122,16 @@ struct MeshReadOptions {
   std::int64_t rest_step = 0;  ///< where points move: the step whose points are the rest positions
   /// Another mesh file with as many nodes, whose points are the rest positions.
   std::optional<std::string> rest_file = {};
+  MeshImportOptions import = {};  ///< for files of Gmsh and VTK; its axes also for `rest_file`
 };
 
-/// A VTKHDF UnstructuredGrid of tetrahedra and hexahedra with its deformation. Deformed positions
-/// are the points plus the point array `displacement`, or, without that array, the points of the
-/// step. Rest positions are the points of `rest_step` or those of `rest_file`. Partitions are
-/// concatenated.
+/// A mesh of tetrahedra and hexahedra with its deformation: a VTKHDF UnstructuredGrid, or what
+/// import_mesh() reads. Deformed positions are the points plus the point array `displacement`, or,
+/// without that array, the points of the step. Rest positions are the points of `rest_step` or
+/// those of `rest_file`. Partitions are concatenated.
+///
+/// Of a VTKHDF file steps are read when they are asked for; files of Gmsh and VTK are kept in
+/// memory with all steps.
 class TETWARP_IO_EXPORT MeshReader {
  public:
   explicit MeshReader(const std::string& path, const MeshReadOptions& options = {});
@@ -130,7 +151,8 @@ class TETWARP_IO_EXPORT MeshReader {
 
 /// How a volume file is stored.
 struct VolumeWriteOptions {
-  int compress = 0;                    ///< deflate level 0 to 9 with shuffle; 0: none
+  /// Deflate level 0 to 9, with shuffle; 0: none. Of .nii.gz the level of gzip; 0: its default.
+  int compress = 0;
   double background = 0;               ///< fill value, which chunks that are not stored read as
   bool skip_background_chunks = true;  ///< do not store chunks that hold only the background
   std::string fingerprint = {};  ///< attribute `tetwarp_fingerprint` of /VTKHDF when not empty
@@ -178,7 +200,10 @@ enum class ChunkShape {
   bricks  ///< for arrays that are written in blocks: nearly cubes, edges by block_step()
 };
 
-/// Writes a VTKHDF ImageData file region by region: a static one, or a temporal one step by step.
+/// Writes a volume file region by region: a static one, or a temporal one step by step. A name that
+/// ends in .nii or .nii.gz is written as NIfTI, of one array, along the axes of its NiftiFacts; any
+/// other as VTKHDF ImageData. Blocks and series of NIfTI take their space on the disk twice until
+/// they are finished.
 class TETWARP_IO_EXPORT BlockVolumeWriter {
  public:
   BlockVolumeWriter(const std::string& path,
@@ -190,7 +215,8 @@ class TETWARP_IO_EXPORT BlockVolumeWriter {
   BlockVolumeWriter(BlockVolumeWriter&&) noexcept;
   ~BlockVolumeWriter();  ///< without finish(): removes the temporary file
 
-  /// In a temporal file: begins a step, to which all writes until the next call belong.
+  /// In a temporal file: begins a step, to which all writes until the next call belong. Of NIfTI
+  /// files times should be equally spaced: they keep the first and the mean of the intervals.
   void begin_step(double time);
   /// In a temporal file: appends a step equal to the last one.
   void repeat_step(double time);
@@ -223,7 +249,8 @@ TETWARP_IO_EXPORT void write_mesh(const std::string& path,
                                   const std::vector<double>& times = {},
                                   const std::vector<MeshArray>& arrays = {});
 
-/// The attribute `tetwarp_fingerprint` of a file; nothing when there is no such file or attribute.
+/// The fingerprint that a volume file was written with; nothing when there is no such file or
+/// fingerprint.
 TETWARP_IO_EXPORT std::optional<std::string> read_fingerprint(const std::string& path);
 
 /// Writes an 8-bit RGB PNG.
@@ -236,13 +263,15 @@ enum class FileKind {
   other_vtkhdf,     ///< VTKHDF of another Type
   contact_problem,  ///< FCLIB
   hdf5,             ///< any other HDF5 file, also a damaged one
-  nifti,            ///< NIfTI-1 in a single file, plain or gzip
-  nifti2,           ///< NIfTI-2, plain or gzip
-  image_pair,       ///< NIfTI or Analyze in two files, .hdr and .img
+  nifti,            ///< NIfTI-1 or NIfTI-2, plain or gzip; also either file of a pair
+  analyze,          ///< Analyze 7.5, header or samples
   unknown
 };
 template <>
 TETWARP_IO_EXPORT std::span<const EnumName<FileKind>> names_of();
+
+/// True for names of NIfTI images that can be written: .nii and .nii.gz.
+TETWARP_IO_EXPORT bool has_nifti_name(const std::string& path);
 
 /// The kind of a file, from its content. Throws IoError only when the file cannot be opened.
 TETWARP_IO_EXPORT FileKind kind_of(const std::string& path);

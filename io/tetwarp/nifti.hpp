@@ -1,11 +1,12 @@
 /// @file nifti.hpp
-/// NIfTI-1 files: grid, samples, and what else their headers say.
+/// NIfTI files: grid, samples, and what else their headers say.
 ///
 /// NIfTI's world is RAS, and so are its components. The order of the components of a symmetric
 /// tensor (intent SYMMATRIX) is xx xy yy xz yz zz in NIfTI; a Volume has VTK's order, xx yy zz xy
 /// yz xz. Readers and writers convert.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -38,23 +39,28 @@ inline constexpr int nifti_displacement_intent = 1006;
 /// symmetric tensor, any other number above one is a vector.
 TETWARP_IO_EXPORT NiftiFacts default_nifti_facts(int components);
 
-/// Reads a NIfTI file (.nii, .nii.gz). The affine map (sform, else qform) becomes the grid, in
-/// NIfTI's world: RAS, in the header's unit. With scl_slope and scl_inter other than 1 and 0
-/// samples become float32 (float64 stays). `dim[5]` gives the components; `dim[4]` (time) must be
-/// 1. A symmetric tensor gets VTK's order of components.
+/// Reads a step of a NIfTI file: NIfTI-1 or NIfTI-2, plain or gzip, of a pair .hdr and .img either
+/// name. The affine map (sform, else qform) becomes the grid, in NIfTI's world: RAS, in the
+/// header's unit. With scl_slope and scl_inter other than 1 and 0 samples become float32 (float64
+/// stays). `dim[5]` gives the components, `dim[4]` the steps. A symmetric tensor gets VTK's order
+/// of components.
 /// @param axes  axes of the file's components, which ITK writes as LPS: those of vectors (three
 ///              components) and tensors (SYMMATRIX, or nine) are turned to RAS. The grid comes from
 ///              the header and is RAS in any case
+/// @param step  from 0
 /// @throws IoError if lps is asked for samples that are neither, or not float32 or float64
-TETWARP_IO_EXPORT Volume read_nifti(const std::string& path, Axes axes = Axes::ras);
+TETWARP_IO_EXPORT Volume read_nifti(const std::string& path,
+                                    Axes axes = Axes::ras,
+                                    std::int64_t step = 0);
 
 /// Reads what else the header says. The code of a qform that differs from the sform by more than
 /// 0.01 voxel is 0, because the grid is the sform's. @param axes  as given to read_nifti()
 TETWARP_IO_EXPORT NiftiFacts read_nifti_facts(const std::string& path, Axes axes = Axes::ras);
 
-/// Writes a NIfTI file. The sform holds the grid, and so does the qform when direction is a
-/// rotation. With facts, a form whose code is 0 is left out if the other one, or the voxel sizes
-/// alone, hold the grid. Symmetric tensors get NIfTI's order.
+/// Writes a NIfTI-1 file, or NIfTI-2 where an axis has more than 32767 voxels. The sform holds the
+/// grid, and so does the qform when direction is a rotation. With facts, a form whose code is 0 is
+/// left out if the other one, or the voxel sizes alone, hold the grid. Symmetric tensors get
+/// NIfTI's order.
 /// @param axes   axes of the components in the file, as of read_nifti(); the grid's are RAS. With
 ///               lps a displacement (intent DISPVECT) becomes a VECTOR, because ITK would turn it
 ///               once more

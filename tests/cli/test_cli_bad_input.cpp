@@ -113,7 +113,7 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
            {warp_to("nowhere/out.vtkhdf"), "folder 'nowhere' does not exist"},
            {warp_to("folder.vtkhdf"), "is a folder"},
-           {warp_to("out.nii.gz"), ".vtkhdf, .hdf or .h5"},
+           {warp_to("out.nrrd"), ".vtkhdf, .hdf, .h5, .nii or .nii.gz"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
              "volume.vtkhdf"},
             "is also an input"},
@@ -243,43 +243,6 @@ TEST(BadInput, RefusesATruncatedMesh) {
   fs::resize_file(scene / "mesh.vtkhdf", fs::file_size(scene / "mesh.vtkhdf") / 2);
 
   expect_refused(scene, {warp_with({}), "mesh.vtkhdf"}, 1);
-}
-
-/// Images and meshes of other formats: the message names the file as what it is, and a way in.
-TEST(BadInput, NamesTheWayInForOtherFormats) {
-  const Scene scene;
-  const Volume volume = ramp_volume<float>();
-  write_nifti(scene / "head.nii.gz", volume);
-  write_nifti(scene / "head.nii", volume);
-  const std::string single = text_of(scene / "head.nii");
-  std::string pair = single;
-  pair.replace(344, 3, "ni1");
-  write_text(scene / "pair.hdr", pair);
-  write_text(scene / "pair.img", "samples");
-  std::string second = single;
-  second[0] = 28;  // 540 in little-endian bytes
-  second[1] = 2;
-  second.replace(4, 3, "n+2");
-  write_text(scene / "second.nii", second);
-  write_text(scene / "u.vtu", "<VTKFile type=\"UnstructuredGrid\"/>");
-  const std::string rewrite = "write it as a single NIfTI-1 file, .nii or .nii.gz";
-
-  for (const Refused& refused : std::vector<Refused>{
-           {{"warp", "head.nii.gz", "mesh.vtkhdf", "-o", "out.vtkhdf"},
-            "is a NIfTI image, expected a volume; convert it first: tetwarp import head.nii.gz -o "
-            "NAME.vtkhdf"},
-           {{"render", "head.nii.gz", "-o", "out.png"}, "tetwarp import head.nii.gz"},
-           {{"warp", "volume.vtkhdf", "u.vtu", "-o", "out.vtkhdf"},
-            "expected a mesh; convert it first: tetwarp import u.vtu -o NAME.vtkhdf"},
-           {{"warp", "second.nii", "mesh.vtkhdf", "-o", "out.vtkhdf"},
-            "second.nii: is a NIfTI-2 image, expected a volume; " + rewrite},
-           {{"import", "second.nii", "-o", "out.vtkhdf"}, "is a NIfTI-2 image"},
-           {{"import", "pair.hdr", "-o", "out.vtkhdf"},
-            "pair.hdr: is a part of a pair .hdr and .img, expected a NIfTI image; " + rewrite},
-           {{"import", "pair.img", "-o", "out.vtkhdf"}, "part of a pair"},
-           {{"info", "pair.img"}, "part of a pair"}}) {
-    expect_refused(scene, refused, 1);
-  }
 }
 }  // namespace
 }  // namespace tetwarp::test

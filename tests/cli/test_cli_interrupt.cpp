@@ -60,6 +60,27 @@ TEST(Interrupt, LeavesNoTemporalFileAndNoTemporary) {
   EXPECT_EQ(scene.names(), scene.inputs);
 }
 
+/// While a gzip image is unpacked for blocks, and while blocks stand in a temporary file.
+TEST(Interrupt, LeavesNothingOfAnUnpackedImage) {
+  const Scene scene;
+  write_long_mesh(scene, 40);
+  Volume volume = make_volume(ramp_volume<float>().grid, PixelType::float32);
+  volume.grid.dims = {160, 150, 140};
+  volume.grid.spacing = {24.0 / 160, 20.0 / 150, 16.0 / 140};
+  volume.data.resize(volume.byte_count());
+  write_nifti(scene / "large.nii.gz", volume);
+  const FolderWatch watch(scene);
+  RunningCommand command(scene, {"warp", "large.nii.gz", "mesh.vtkhdf", "-o", "out.nii.gz",
+                                 "--temporal", "--memory", "70M", "--threads", "2"});
+  ASSERT_TRUE(watch.sees_new_file());
+
+  const Ending ending = end_by(SIGINT, command);
+
+  EXPECT_EQ(ending.result.exit_code, 130);
+  EXPECT_LT(ending.seconds, max_seconds);
+  EXPECT_EQ(scene.names(), (Names{"large.nii.gz", "mesh.vtkhdf", "volume.vtkhdf"}));
+}
+
 TEST(Interrupt, LeavesOnlyCompleteStepsThatResumeKeeps) {
   const Scene scene;
   write_long_mesh(scene);

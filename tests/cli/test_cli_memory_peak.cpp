@@ -25,6 +25,8 @@ class PeakMemory : public testing::Test {
     write_volumes(folder / "rows.vtkhdf", {&volume});
     write_layout("contiguous.vtkhdf", volume, 0, 0);
     write_layout("deflated.vtkhdf", volume, 75, 6);
+    write_nifti(folder / "head.nii", volume);
+    write_nifti(folder / "head.nii.gz", volume);
     const Mesh mesh = scenes::lattice({6, 6, 4}, {-0.5, -0.5, -0.5}, {159.5, 159.5, 159.5});
     std::vector<Point3> shifts = scenes::waved(mesh.rest_positions, 5, 3);
     for (std::size_t n = 0; n < shifts.size(); ++n) {
@@ -54,8 +56,10 @@ class PeakMemory : public testing::Test {
     H5Fclose(file);
   }
 
-  CommandResult warp(const std::string& volume, std::vector<std::string> words) const {
-    words.insert(words.begin(), {"warp", volume, "mesh.vtkhdf", "-o", "out.vtkhdf", "--outputs",
+  CommandResult warp(const std::string& volume,
+                     std::vector<std::string> words,
+                     const std::string& output = "out.vtkhdf") const {
+    words.insert(words.begin(), {"warp", volume, "mesh.vtkhdf", "-o", output, "--outputs",
                                  "mask,tet,displacement,jacobian", "--threads", "2"});
     return run_command(folder, words);
   }
@@ -102,8 +106,18 @@ TEST_F(PeakMemory, KeepsToTheLimitWithEveryFilterAndOutput) {
   }
 }
 
+TEST_F(PeakMemory, KeepsToTheLimitFromNiftiToNifti) {
+  for (const std::string end : {".nii", ".nii.gz"}) {
+    const std::vector<std::string> words{"--memory", "60M", "--filter", "cubic"};
+    const CommandResult result = warp("head" + end, words, "out" + end);
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_LE(result.peak_memory, tolerance * 60 * megabyte) << end;
+  }
+}
+
 TEST_F(PeakMemory, TheLeastLimitIsNamedAndWorks) {
-  for (const std::string volume : {"rows.vtkhdf", "deflated.vtkhdf"}) {
+  for (const std::string volume : {"rows.vtkhdf", "deflated.vtkhdf", "head.nii.gz"}) {
     const CommandResult refused = warp(volume, {"--memory", "16M"});
     const CommandResult planned = warp(volume, {"--memory", "16M", "--dry-run"});
     const int least = least_of(refused);

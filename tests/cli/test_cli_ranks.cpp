@@ -90,8 +90,8 @@ TEST_F(Ranks, ShareOutputsAndLeaveTheSameFiles) {
               {"--no-skip", "unchanged-steps"});
 }
 
-TEST_F(Ranks, ShareBlocksOfASingleOutput) {
-  // Large enough for several blocks.
+/// Large enough for several blocks.
+Volume write_large_scene(const Scene& scene) {
   Grid grid;
   grid.dims = {130, 70, 66};
   Volume volume = make_volume(grid, PixelType::int16, 2, "density");
@@ -101,6 +101,28 @@ TEST_F(Ranks, ShareBlocksOfASingleOutput) {
   Mesh mesh = box_mesh();
   for (Point3& p : mesh.rest_positions) p = {5 * p[0] - 20, 4 * p[1] + 15, 5 * p[2] - 500};
   write_mesh(scene / "mesh.vtkhdf", mesh, shifts({0.3, 0.3, 8.25}), {0, 1, 2});
+  return volume;
+}
+
+TEST_F(Ranks, ShareBlocksOfAGzipImage) {
+  write_nifti(scene / "head.nii.gz", write_large_scene(scene));
+  const Names words{"head.nii.gz", "mesh.vtkhdf", "--steps", "2", "--filter", "cubic", "-o"};
+  Names one = words, three = words;
+  one.insert(one.begin(), "warp");
+  one.push_back("one.nii.gz");
+  three.push_back("three.nii.gz");
+  ASSERT_EQ(run_command(scene, one).exit_code, 0);
+
+  const CommandResult shared = run_three(three);
+
+  ASSERT_EQ(shared.exit_code, 0) << shared.err;
+  EXPECT_TRUE(text_of(scene / "three.nii.gz") == text_of(scene / "one.nii.gz"));
+  EXPECT_EQ(scene.names(),
+            (Names{"head.nii.gz", "mesh.vtkhdf", "one.nii.gz", "three.nii.gz", "volume.vtkhdf"}));
+}
+
+TEST_F(Ranks, ShareBlocksOfASingleOutput) {
+  write_large_scene(scene);
 
   expect_same({".vtkhdf"}, {"--steps", "2", "--filter", "cubic", "--overshoot", "clamp"});
   EXPECT_GE(Json::parse(text_of(scene / "three.json"))["counts"]["blocks"], 6);

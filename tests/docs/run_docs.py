@@ -2,7 +2,7 @@
 """Runs what the documentation shows: README.md, the other pages at the root and docs/*.md.
 
     run_docs.py extract ROOT FILE    writes the C++ blocks of all pages as one program
-    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE]
+    run_docs.py run ROOT --command FILE --blocks PROGRAM [--mpirun FILE] [--has gmsh] [--has vtk]
 
 Blocks of a page run in order in one empty folder, which holds head.nii.gz and labels.nii.gz; blocks
 of C++ are functions of PROGRAM. Checked as well: links, paths and options in inline code, sizes of
@@ -23,6 +23,7 @@ from small_images import write_images
 
 MOST_NOT_RUN = 10
 LARGEST_PICTURE = 150 * 1024  # bytes
+LIBRARIES = ("gmsh", "vtk")  # that a build may be without
 SECONDS = 60  # that a block may take
 SOURCE_FOLDERS = ("bench", "cmake", "docs", "examples", "host", "io", "kernels", "tests")
 
@@ -113,6 +114,15 @@ class Runner:
         self.not_run = []
         self.counts = {}
 
+    def has(self, name):
+        """Whether this build or, for other names, the python3 of the blocks has it."""
+        if name == "mpirun":
+            return bool(self.arguments.mpirun)
+        if name in LIBRARIES:
+            return name in self.arguments.has
+        words = ["python3", "-c", f"import {name}"]
+        return subprocess.run(words, env=self.environment, capture_output=True).returncode == 0
+
     def folder_of(self, page):
         return self.scratch / page.name.replace("/", "_")
 
@@ -128,8 +138,8 @@ class Runner:
             if block.not_run:
                 self.not_run.append(f"{where}: {block.not_run}")
                 continue
-            if block.needs == "mpirun" and not self.arguments.mpirun:
-                print(f"left out: {where}: this build has no MPI")
+            if block.needs and not self.has(block.needs):
+                print(f"left out: {where}: there is no {block.needs}")
                 continue
             problem = self.run_one(page, block, folder)
             if problem:
@@ -139,7 +149,7 @@ class Runner:
     def run_one(self, page, block, folder):
         if block.language == "sh":
             words = ["bash", "-euo", "pipefail", "-c", block.text]
-            return run_block(words, folder, self.environment, 3 if block.needs else 1)
+            return run_block(words, folder, self.environment, 3 if block.needs == "mpirun" else 1)
         if block.language == "cpp":
             words = [str(self.arguments.blocks.resolve()), key_of(page, block)]
             return run_block(words, folder, self.environment, 1)
@@ -269,6 +279,7 @@ def main():
     parser.add_argument("--command", type=Path)
     parser.add_argument("--blocks", type=Path)
     parser.add_argument("--mpirun", default="")
+    parser.add_argument("--has", action="append", default=[], choices=("", *LIBRARIES))
     arguments = parser.parse_args()
     if arguments.action == "extract":
         return extract(arguments.root.resolve(), arguments.output)

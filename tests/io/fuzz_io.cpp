@@ -78,12 +78,20 @@ void write_seeds(const test::ScratchFolder& folder) {
   write_mesh(folder / "moving", test::two_tets(), test::slides({0, 1, 2}));
   write_nifti(folder / "v.nii", b);
   write_nifti(folder / "v.nii.gz", a);
+  write_nifti(folder / "v2.nii", make_volume({.dims = {33000, 1, 1}}, PixelType::uint8));
+  BlockVolumeWriter series(folder / "s.nii.gz", b.grid, {{b.name, b.type, b.components}},
+                           {.fingerprint = "f"}, true);
+  for (const double time : {0.0, 1.0}) {
+    series.begin_step(time);
+    series.write(0, {{0, 0, 0}, b.grid.dims}, b.data.data());
+  }
+  series.finish();
   test::write_contact_seeds(folder);
 }
 
 std::vector<std::string> seed_names() {
-  std::vector<std::string> names = {"volume", "packed", "temporal", "mesh",
-                                    "moving", "v.nii",  "v.nii.gz"};
+  std::vector<std::string> names = {"volume", "packed",   "temporal", "mesh",    "moving",
+                                    "v.nii",  "v.nii.gz", "v2.nii",   "s.nii.gz"};
   names.insert(names.end(), test::contact_seeds.begin(), test::contact_seeds.end());
   return names;
 }
@@ -125,6 +133,10 @@ bool read_all(const std::string& path) {
     }
   });
   reads([&] { read_volume(path); });
+  reads([&] {
+    std::array<std::byte, 72> voxel{};  // nine components of eight bytes
+    VolumeReader(path).read({{0, 0, 0}, {1, 1, 1}}, voxel.data());
+  });
   const bool is_mesh = reads([&] {
     const MeshReader reader(path, {.rest_step = 0, .rest_file = path});
     for (std::size_t step = 0; step < reader.header().times.size(); ++step) {

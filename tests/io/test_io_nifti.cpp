@@ -224,6 +224,8 @@ TEST(Nifti, RefusesDamagedFilesByNamingTheField) {
   nifti_1_header times = plain_header();
   times.dim[0] = 4;
   times.dim[4] = 20;
+  nifti_1_header bits = plain_header();
+  bits.bitpix = 8;
   nifti_1_header negative = plain_header();
   negative.dim[2] = -3;
   nifti_1_header huge = plain_header();
@@ -235,7 +237,8 @@ TEST(Nifti, RefusesDamagedFilesByNamingTheField) {
   nifti_1_header offset = plain_header();
   offset.vox_offset = std::numeric_limits<float>::quiet_NaN();
 
-  EXPECT_NE(error(times).find("dim[4]: is 20 times"), std::string::npos) << error(times);
+  EXPECT_NE(error(times).find("truncated"), std::string::npos) << error(times);
+  EXPECT_NE(error(bits).find("bitpix: is 8"), std::string::npos) << error(bits);
   EXPECT_NE(error(negative).find("dim[2]: is -3"), std::string::npos) << error(negative);
   EXPECT_NE(error(huge).find("truncated"), std::string::npos) << error(huge);
   EXPECT_NE(error(color).find("datatype"), std::string::npos) << error(color);
@@ -255,14 +258,11 @@ TEST(Nifti, RefusesATruncatedGzipFile) {
   EXPECT_NE(error.find("truncated"), std::string::npos) << error;
 }
 
-TEST(Nifti, RefusesNamesAndSizesOfOtherFormats) {
+TEST(Nifti, RefusesNamesOfOtherFormats) {
   const ScratchFolder folder;
   const Volume volume = counting_volume(PixelType::uint8);
-  Grid grid;
-  grid.dims = {40000, 1, 1};
 
   EXPECT_THROW(write_nifti(folder / "v.vtkhdf", volume), IoError);
-  EXPECT_THROW(write_nifti(folder / "v.nii", make_volume(grid, PixelType::uint8)), IoError);
   EXPECT_EQ(folder.entry_count(), 0);
 }
 
@@ -272,8 +272,7 @@ TEST(Nifti, IsRecognizedByContent) {
   std::filesystem::rename(folder / "v.nii.gz", folder / "v.vtkhdf");
 
   EXPECT_EQ(kind_of(folder / "v.vtkhdf"), FileKind::nifti);
-  const std::string error = io_error([&] { read_volume(folder / "v.vtkhdf"); });
-  EXPECT_NE(error.find("tetwarp import"), std::string::npos) << error;
+  EXPECT_EQ(read_volume(folder / "v.vtkhdf").data, counting_volume(PixelType::uint8).data);
 }
 }  // namespace
 }  // namespace tetwarp::test

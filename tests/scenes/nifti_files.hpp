@@ -54,7 +54,7 @@ inline std::vector<float> components_in(const std::string& path, int voxel) {
   std::vector<float> components(static_cast<std::size_t>(header.dim[5]));
   const int voxels = header.dim[1] * header.dim[2] * header.dim[3];
   for (std::size_t c = 0; c < components.size(); ++c) {
-    file.seekg(352 + 4 * (static_cast<int>(c) * voxels + voxel));
+    file.seekg(static_cast<int>(header.vox_offset) + 4 * (static_cast<int>(c) * voxels + voxel));
     file.read(reinterpret_cast<char*>(&components[c]), sizeof components[c]);
   }
   return components;

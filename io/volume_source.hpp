@@ -1,0 +1,39 @@
+/// @file volume_source.hpp
+/// What VolumeReader reads from: an array of a file, of any format.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+
+namespace tetwarp {
+
+/// One array at one step. Calls and errors as of VolumeReader.
+class VolumeSource {
+ public:
+  VolumeSource() = default;
+  VolumeSource(const VolumeSource&) = delete;
+  VolumeSource& operator=(const VolumeSource&) = delete;
+  virtual ~VolumeSource() = default;
+
+  virtual const Grid& grid() const = 0;
+  virtual const ArrayHeader& array() const = 0;
+  virtual std::vector<std::string> array_names() const = 0;
+  virtual double chunk_bytes() const = 0;
+  virtual double unpacked_bytes() const { return 0; }
+  virtual void read(const Region& region, void* samples) = 0;
+};
+
+VolumeHeader read_vtkhdf_header(const std::string& path);
+std::unique_ptr<VolumeSource> open_vtkhdf_source(const std::string& path,
+                                                 const std::string& array,
+                                                 std::int64_t step);
+
+VolumeHeader read_nifti_volume_header(const std::string& path, const VolumeReadOptions& options);
+std::unique_ptr<VolumeSource> open_nifti_source(const std::string& path,
+                                                const std::string& array,
+                                                std::int64_t step,
+                                                const VolumeReadOptions& options);
+
+}  // namespace tetwarp
