@@ -130,6 +130,8 @@ Json contact_json(const InfoArguments& arguments) {
     json["entries"] = {{"M", problem.system.value.size()}, {"H", problem.jacobian.value.size()}};
   }
   if (!problem.block_start.empty()) json["blocks"] = problem.block_start.size() - 1;
+  if (!problem.bilateral.empty()) json["bilateral_rows"] = problem.bilateral.row_count();
+  if (!problem.rolling.empty()) json["rolling_contacts"] = problem.rolling.count();
   if (!problem.friction.empty()) {
     const auto [low, high] = std::minmax_element(problem.friction.begin(), problem.friction.end());
     json["friction"] = {*low, *high};

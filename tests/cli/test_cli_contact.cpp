@@ -144,6 +144,9 @@ TEST_F(ContactCommand, SolvesJointsRollingFrictionAndEllipses) {
   const Json json = report();
   EXPECT_EQ(json["bilateral_rows"], 3);
   EXPECT_EQ(json["rolling_contacts"], 1);
+  const Json info = Json::parse(run_command(folder, {"info", "problem.hdf5", "--json"}).out);
+  EXPECT_EQ(info["bilateral_rows"], 3);
+  EXPECT_EQ(info["rolling_contacts"], 1);
   EXPECT_LE(std::abs(json["energy"]["error"].get<double>()), 1e-12);
   EXPECT_GE(json["energy"]["friction_loss"].get<double>(), -1e-9);
 }

@@ -10,11 +10,12 @@
 
 namespace tetwarp::test {
 
-constexpr std::array contact_seeds = {"local", "global", "solved", "triplets"};
+constexpr std::array contact_seeds = {"local", "global", "solved", "triplets", "jointed"};
 
 inline void write_contact_seeds(const ScratchFolder& folder) {
   write_contact_problem(folder / "local", local_problem(), "title", "description");
   write_contact_problem(folder / "global", adhesive_problem());
+  write_contact_problem(folder / "jointed", jointed_problem());
   ContactSolution solution;
   solution.impulse = {1, 2, 3, 4, 5, 6};
   solution.velocity = solution.impulse;
