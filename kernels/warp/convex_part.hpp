@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "kernels/base/hd.hpp"
-#include "kernels/warp/source_shares.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
@@ -210,39 +209,6 @@ TETWARP_HD_RARE const ConvexPart* part_in_tet(const TetSetup& tet,
   }
   return now;
 }
-
-/// The boundaries of the faces of a part, which lists its edges in any order.
-class FaceLoops {
- public:
-  TETWARP_HD explicit FaceLoops(const ConvexPart& part) {
-    for (int face = 0; face < part.face_count; ++face) {
-      for (int c = 0; c < part.corner_count; ++c) next_[face][c] = none;
-    }
-    for (int e = 0; e < part.edge_count; ++e) {
-      next_[part.edge[e][2]][part.edge[e][0]] = part.edge[e][1];
-    }
-  }
-
-  /// Takes the loop that an edge is part of.
-  /// @param position  of the corners
-  /// @param polygon   out
-  /// @returns false if the loop has been taken already or is flat
-  TETWARP_HD bool take(const std::uint8_t* edge, const double (*position)[3], Polygon& polygon) {
-    polygon.count = 0;
-    std::uint8_t corner = edge[0];
-    while (corner != none && next_[edge[2]][corner] != none) {
-      append_corner(polygon, position[corner][0], position[corner][1], position[corner][2]);
-      const std::uint8_t next = next_[edge[2]][corner];
-      next_[edge[2]][corner] = none;
-      corner = next;
-    }
-    return polygon.count > 2;
-  }
-
- private:
-  static constexpr std::uint8_t none = 255;
-  std::uint8_t next_[max_faces][max_corners];  ///< corner after a corner of a face
-};
 
 /// Sets a tetrahedron's box to all voxels of a frame whose own boxes it intersects; set_box()
 /// includes only those whose centres may be inside.

@@ -7,7 +7,7 @@
 #include "kernels/base/any_number.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/convex_part.hpp"
-#include "kernels/warp/source_shares.hpp"
+#include "kernels/warp/voxel_part.hpp"
 #include "kernels/warp/voxel_rounding.hpp"
 #include "kernels/warp/voxel_transform.hpp"
 
@@ -114,69 +114,39 @@ struct VoxelOverlapBody {
     double start[3], linear[3][3];
     map_start(tet, x, start, linear);
     const auto map = make_source_map<double>(start, linear);
-    if (place == BoxPlace::inside) {
-      add_box(map, scale, sums);
-    } else {
-      add_cut_box(tet, height, map, scale, sums);
+    const bool is_whole = place == BoxPlace::inside;
+    if (!add_constant(map, is_whole, scale, sums)) {
+      add_part(VoxelPart(tet, height, is_whole, map), map, scale, sums);
     }
   }
 
  private:
-  /// Adds the contents of a voxel's box that is within a tetrahedron.
-  TETWARP_HD_RARE void add_box(const SourceMap<double>& map, double scale, double* sums) const {
-    double corner[8][3];
-    for (int c = 0; c < 8; ++c) {
-      const double x[3] = {(c & 1) - 0.5, (c >> 1 & 1) - 0.5, (c >> 2 & 1) - 0.5};
-      set_source_position(map, x, corner[c]);
-    }
-    const VoxelRange range = range_of(corner, 8);
-    if (is_one(range)) return add_voxel(map, range.first, scale, sums);
-    add_shares(map, range, scale, sums, [&](SourceShares& shares) {
-      Polygon face;
-      for (const auto& loop : BoxFaces().loop) {
-        face.count = 0;
-        for (const int c : loop) append_corner(face, corner[c][0], corner[c][1], corner[c][2]);
-        shares.add_face(face);
-      }
+  /// Adds the contents of a voxel's box if the source voxels around it are all the same, and the
+  /// box is within the tetrahedron or these voxels are zero.
+  TETWARP_HD_RARE bool add_constant(const SourceMap<double>& map,
+                                    bool is_whole,
+                                    double scale,
+                                    double* sums) const {
+    const VoxelRange range = range_of_box(map);
+    bool is_added = false;
+    with_numbers(source.data, source.kind, [&](const auto* samples) {
+      const auto* const constant = constant_in(range, map, samples);
+      is_added = constant != nullptr && (is_whole || is_zero(constant));
+      if (is_added && is_whole) add_sample(constant, scale, sums);
     });
+    return is_added;
   }
 
-  /// Adds the contents of the part of a voxel's box that is within a tetrahedron.
-  TETWARP_HD_RARE void add_cut_box(const TetSetup& tet,
-                                   const double* height,
-                                   const SourceMap<double>& map,
-                                   double scale,
-                                   double* sums) const {
-    ConvexPart two[2];
-    const ConvexPart* const part = part_in_tet(tet, height, two[0], two[1]);
-    if (part == nullptr) return;
-    double corner[max_corners][3];
-    for (int c = 0; c < part->corner_count; ++c) {
-      set_source_position(map, part->corner[c], corner[c]);
-    }
-    const VoxelRange range = range_of(corner, part->corner_count);
-    if (is_one(range)) return add_voxel(map, range.first, scale * volume_of(*part), sums);
-    add_shares(map, range, scale, sums, [&](SourceShares& shares) {
-      FaceLoops loops(*part);
-      Polygon face;
-      for (int e = 0; e < part->edge_count; ++e) {
-        if (loops.take(part->edge[e], corner, face)) shares.add_face(face);
-      }
-    });
-  }
-
-  /// Adds the contents of a body with given faces.
-  /// @param scale      factor on volumes of the output
-  /// @param add_faces  adds them to a SourceShares
-  template <class AddFaces>
-  TETWARP_HD void add_shares(const SourceMap<double>& map,
-                             const VoxelRange& range,
-                             double scale,
-                             double* sums,
-                             AddFaces&& add_faces) const {
-    const double volume = map_volume(map);
-    if (volume == 0) return;
-    const double per_volume = scale / fabs(volume);
+  /// Adds the contents of a part of a voxel's box.
+  /// @param scale  factor on volumes of the output
+  TETWARP_HD_RARE void add_part(const VoxelPart& part,
+                                const SourceMap<double>& map,
+                                double scale,
+                                double* sums) const {
+    const double volume = fabs(map_volume(map));
+    if (volume == 0 || part.count() == 0) return;
+    const double per_volume = scale / volume;
+    const VoxelRange range = part.range();
     int begin[3], end[3];
     for (int axis = 0; axis < 3; ++axis) {
       begin[axis] = max_of(range.first[axis], -map.whole[axis]);
@@ -187,28 +157,65 @@ struct VoxelOverlapBody {
     for (int k = begin[2]; k < end[2]; k += edge) {
       for (int j = begin[1]; j < end[1]; j += edge) {
         for (int i = begin[0]; i < end[0]; i += edge) {
-          shares.set_block({i, j, k}, end);
-          add_faces(shares);
-          shares.for_voxels(volume < 0 ? -1 : 1, [&](const int* voxel, double share) {
-            add_voxel(map, voxel, share * per_volume, sums);
+          const int first_voxel[3] = {i, j, k};
+          const int size[3] = {min_of(end[0] - i, edge), min_of(end[1] - j, edge),
+                               min_of(end[2] - k, edge)};
+          shares.set_block(first_voxel, size);
+          for (int f = 0; f < part.count(); ++f) shares.add_face(part.face(f));
+          with_numbers(source.data, source.kind, [&](const auto* samples) {
+            shares.for_voxels(least_share * range.volume, [&](int a, int b, int c, double share) {
+              add_sample(samples + place_of(map, a, b, c), share * per_volume, sums);
+            });
           });
         }
       }
     }
   }
 
-  /// Adds the sample of a source voxel, relative to map.whole; nothing outside of the source.
-  TETWARP_HD void add_voxel(const SourceMap<double>& map,
-                            const int* voxel,
-                            double share,
-                            double* sums) const {
-    std::int64_t at[3];
+  /// The sample that all source voxels of a range have in common. Null if they differ, if the range
+  /// is not within the source, or too large to be worth a look.
+  template <class T>
+  TETWARP_HD const T* constant_in(const VoxelRange& range,
+                                  const SourceMap<double>& map,
+                                  const T* samples) const {
     for (int axis = 0; axis < 3; ++axis) {
-      at[axis] = std::int64_t{map.whole[axis]} + voxel[axis];
-      if (at[axis] < 0 || at[axis] >= dims[axis]) return;
+      if (range.first[axis] < -map.whole[axis] ||
+          range.last[axis] >= dims[axis] - map.whole[axis] ||
+          range.last[axis] - range.first[axis] >= SourceShares::edge) {
+        return nullptr;
+      }
     }
-    const std::int64_t from = ((at[2] * dims[1] + at[1]) * dims[0] + at[0]) * components;
-    for (int c = 0; c < components; ++c) sums[c] += share * source.at(from + c);
+    const T* const one = samples + place_of(map, range.first[0], range.first[1], range.first[2]);
+    for (int k = range.first[2]; k <= range.last[2]; ++k) {
+      for (int j = range.first[1]; j <= range.last[1]; ++j) {
+        const T* const row = samples + place_of(map, range.first[0], j, k);
+        const int count = (range.last[0] - range.first[0] + 1) * components;
+        for (int n = 0, c = 0; n < count; ++n) {
+          if (row[n] != one[c]) return nullptr;
+          c = c + 1 < components ? c + 1 : 0;
+        }
+      }
+    }
+    return one;
+  }
+
+  template <class T>
+  TETWARP_HD bool is_zero(const T* sample) const {
+    for (int c = 0; c < components; ++c) {
+      if (sample[c] != 0) return false;
+    }
+    return true;
+  }
+
+  /// Place in the source of the first component of voxel (i, j, k), relative to map.whole.
+  TETWARP_HD std::int64_t place_of(const SourceMap<double>& map, int i, int j, int k) const {
+    const std::int64_t bar = (std::int64_t{map.whole[2]} + k) * dims[1] + (map.whole[1] + j);
+    return (bar * dims[0] + (map.whole[0] + i)) * components;
+  }
+
+  template <class T>
+  TETWARP_HD void add_sample(const T* sample, double share, double* sums) const {
+    for (int c = 0; c < components; ++c) sums[c] += share * static_cast<double>(sample[c]);
   }
 };
 
@@ -224,8 +231,8 @@ struct VoxelOverlapBody {
 /// @pre body.components is at most max_transform_components; the public calls check it
 ///
 /// Determinism: values agree within 2^-44 relative between back ends. Cost: about a microsecond
-/// per voxel within a tetrahedron, most of it for splitting the six faces of its box at the planes
-/// between source voxels.
+/// per voxel within a tetrahedron, most of it for following the edges of its faces through the
+/// source; little where the source is constant.
 /// Source: ours; integration over intersections in a remap that keeps totals: J. K. Dukowicz, 1984.
 template <class Exec>
 void voxel_overlap(Exec& exec, const VoxelOverlapBody& body, std::int64_t count) {

@@ -1,12 +1,13 @@
 /// @file test_source_shares.cpp
-/// Volumes of bodies in source voxels, from their faces: those of bodies cut by the voxels' planes.
+/// Volumes of parts of voxels in source voxels, from their faces: those of bodies cut by the
+/// voxels' planes.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "kernels/warp/convex_part.hpp"
+#include "kernels/warp/voxel_part.hpp"
 #include "tests/scenes/scenes.hpp"
 
 namespace tetwarp::test {
@@ -25,30 +26,59 @@ class RandomNumbers {
   std::uint64_t at_ = 0;
 };
 
+/// A voxel's box, a map to the source, and the first `planes` planes of a tetrahedron.
+struct Case {
+  TetSetup tet = {};
+  double height[4] = {};  ///< of the voxel's centre over the planes
+  int planes = 0;
+  SourceMap<double> map = {};
+
+  void add_plane(double x, double y, double z, double offset) {
+    tet.plane[0][planes] = x;
+    tet.plane[1][planes] = y;
+    tet.plane[2][planes] = z;
+    height[planes++] = offset;
+  }
+};
+
 /// Volumes in the source by SourceShares, in as many blocks as the body needs.
-Shares shares_of(const ConvexPart& part, const SourceMap<double>& map) {
-  double corner[max_corners][3];
-  for (int c = 0; c < part.corner_count; ++c) set_source_position(map, part.corner[c], corner[c]);
-  const VoxelRange range = range_of(corner, part.corner_count);
-  const int end[3] = {range.last[0] + 1, range.last[1] + 1, range.last[2] + 1};
+Shares shares_of(const Case& input) {
+  const VoxelPart part(input.tet, input.height, input.planes == 0, input.map);
+  const VoxelRange& range = part.range();
   Shares found;
+  if (part.count() == 0) return found;
   SourceShares shares;
-  for (int k = range.first[2]; k < end[2]; k += SourceShares::edge) {
-    for (int j = range.first[1]; j < end[1]; j += SourceShares::edge) {
-      for (int i = range.first[0]; i < end[0]; i += SourceShares::edge) {
-        shares.set_block({i, j, k}, end);
-        FaceLoops loops(part);
-        Polygon face;
-        for (int e = 0; e < part.edge_count; ++e) {
-          if (loops.take(part.edge[e], corner, face)) shares.add_face(face);
+  constexpr int edge = SourceShares::edge;
+  for (int k = range.first[2]; k <= range.last[2]; k += edge) {
+    for (int j = range.first[1]; j <= range.last[1]; j += edge) {
+      for (int i = range.first[0]; i <= range.last[0]; i += edge) {
+        const int block[3] = {i, j, k};
+        int size[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          size[axis] = min_of(range.last[axis] + 1 - block[axis], edge);
         }
-        shares.for_voxels(map_volume(map) < 0 ? -1 : 1, [&](const int* voxel, double volume) {
-          found[{voxel[0], voxel[1], voxel[2]}] += volume;
+        shares.set_block(block, size);
+        for (int f = 0; f < part.count(); ++f) shares.add_face(part.face(f));
+        shares.for_voxels(least_share * range.volume, [&](int a, int b, int c, double volume) {
+          found[{a, b, c}] += volume;
         });
       }
     }
   }
   return found;
+}
+
+/// The part of the box within the planes. @returns false if it is empty
+bool set_part(const Case& input, ConvexPart& part) {
+  set_box_part(part);
+  for (int plane = 0; plane < input.planes; ++plane) {
+    const double normal[3] = {input.tet.plane[0][plane], input.tet.plane[1][plane],
+                              input.tet.plane[2][plane]};
+    ConvexPart cut;
+    if (!clip_part(part, normal, input.height[plane], cut)) return false;
+    part = cut;
+  }
+  return true;
 }
 
 /// The volume of the part in one source voxel, by six cuts.
@@ -66,19 +96,20 @@ double cut_volume(const ConvexPart& part, const SourceMap<double>& map, const Vo
   return volume_of(now) * std::abs(map_volume(map));
 }
 
-/// Compares all voxels around the body. @returns the largest difference
-double difference(const ConvexPart& part, const SourceMap<double>& map) {
-  const Shares shares = shares_of(part, map);
-  double corner[max_corners][3];
-  for (int c = 0; c < part.corner_count; ++c) set_source_position(map, part.corner[c], corner[c]);
-  const VoxelRange range = range_of(corner, part.corner_count);
+/// Compares all voxels around the box. @returns the largest difference
+double difference(const Case& input) {
+  const Shares shares = shares_of(input);
+  const VoxelRange range = range_of_box(input.map);
+  ConvexPart part;
+  const bool has_part = set_part(input, part);
   double largest = 0;
   for (int k = range.first[2] - 1; k <= range.last[2] + 1; ++k) {
     for (int j = range.first[1] - 1; j <= range.last[1] + 1; ++j) {
       for (int i = range.first[0] - 1; i <= range.last[0] + 1; ++i) {
         const auto found = shares.find({i, j, k});
         const double share = found == shares.end() ? 0 : found->second;
-        largest = std::max(largest, std::abs(share - cut_volume(part, map, {i, j, k})));
+        const double expected = has_part ? cut_volume(part, input.map, {i, j, k}) : 0;
+        largest = std::max(largest, std::abs(share - expected));
       }
     }
   }
@@ -88,7 +119,7 @@ double difference(const ConvexPart& part, const SourceMap<double>& map) {
 SourceMap<double> random_map(RandomNumbers& numbers, double scale) {
   SourceMap<double> map = {};
   for (int row = 0; row < 3; ++row) {
-    map.base[row] = numbers.next();
+    map.base[row] = 0.5 + 0.5 * numbers.next();
     for (auto& axis : map.axis) axis[row] = scale * numbers.next();
   }
   return map;
@@ -96,16 +127,15 @@ SourceMap<double> random_map(RandomNumbers& numbers, double scale) {
 
 TEST(SourceShares, AreTheVolumesOfBoxesAndCutBoxes) {
   RandomNumbers numbers(3);
-  for (int round = 0; round < 600; ++round) {
-    const SourceMap<double> map = random_map(numbers, 1 << round % 4);
-    ConvexPart part, cut;
-    set_box_part(part);
-    for (int plane = 0; plane < round % 5; ++plane) {
-      const double normal[3] = {numbers.next(), numbers.next(), numbers.next()};
-      if (!clip_part(part, normal, 0.3 * numbers.next() + 0.2, cut)) break;
-      part = cut;
+  for (int round = 0; round < 2000; ++round) {
+    const double scale = 1 << round % 4;
+    Case input;
+    input.map = random_map(numbers, scale);
+    while (input.planes < round % 5) {
+      const double x = numbers.next(), y = numbers.next(), z = numbers.next();
+      input.add_plane(x, y, z, 0.4 * numbers.next() + 0.2);
     }
-    ASSERT_LE(difference(part, map), 1e-13 * std::pow(8, round % 4)) << round;
+    ASSERT_LE(difference(input), 1e-13 * std::pow(scale, 3)) << round;
   }
 }
 
@@ -113,30 +143,28 @@ TEST(SourceShares, AreTheVolumesOfBoxesAndCutBoxes) {
 TEST(SourceShares, AreTheVolumesWhereFacesMeetPlanes) {
   const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   RandomNumbers numbers(4);
-  for (int round = 0; round < 600; ++round) {
-    SourceMap<double> map = {};
+  for (int round = 0; round < 2000; ++round) {
+    Case input;
     const auto eighth = [&] { return std::floor(4 * numbers.next()) / 4; };
     for (int row = 0; row < 3; ++row) {
-      map.base[row] = eighth();
-      map.axis[orders[round % 6][row]][row] = round % 2 == 0 ? 1 + row : -0.5;
-      if (round % 5 == 0) map.axis[(row + round) % 3][row] += eighth();
+      input.map.base[row] = eighth();
+      input.map.axis[orders[round % 6][row]][row] = round % 2 == 0 ? 1 + row : -0.5;
+      if (round % 5 == 0) input.map.axis[(row + round) % 3][row] += eighth();
     }
-    if (map_volume(map) == 0) continue;
-    ConvexPart part, cut;
-    set_box_part(part);
-    const double normal[3] = {eighth(), eighth(), eighth()};
-    if (round % 3 > 0 && clip_part(part, normal, eighth() / 2, cut)) part = cut;
-    ASSERT_LE(difference(part, map), 1e-13) << round;
+    if (map_volume(input.map) == 0) continue;
+    if (round % 3 > 0) {
+      const double x = eighth(), y = eighth(), z = eighth();
+      if (x != 0 || y != 0 || z != 0) input.add_plane(x, y, z, eighth() / 2);
+    }
+    ASSERT_LE(difference(input), 1e-13) << round;
   }
 }
 
 /// A box that is one source voxel has nothing in its neighbours.
 TEST(SourceShares, OfAVoxelAreThatVoxel) {
-  SourceMap<double> map = {};
-  for (int row = 0; row < 3; ++row) map.base[row] = map.axis[row][row] = 1;
-  ConvexPart part;
-  set_box_part(part);
-  EXPECT_EQ(shares_of(part, map), (Shares{{{1, 1, 1}, 1.0}}));
+  Case input;
+  for (int row = 0; row < 3; ++row) input.map.base[row] = input.map.axis[row][row] = 1;
+  EXPECT_EQ(shares_of(input), (Shares{{{1, 1, 1}, 1.0}}));
 }
 }  // namespace
 }  // namespace tetwarp::test

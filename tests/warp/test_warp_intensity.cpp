@@ -151,6 +151,48 @@ TEST(WarpIntensity, DividesByTheVolumeRatio) {
   }
 }
 
+/// Half of the source is zero, a quarter another constant, with a sample per octant that is not a
+/// number: zero stays zero, and only voxels that share such a sample are not numbers.
+TEST(WarpIntensity, KeepsWhatIsNearbyApart) {
+  const scenes::Scene scene = whole_scenes()[1];
+  Volume source = scenes::wavy_volume(scene.source_grid, PixelType::float64, 2);
+  const auto samples = source.samples<double>();
+  const auto dims = scene.source_grid.dims;
+  std::size_t n = 0;
+  for (std::int64_t k = 0; k < dims[2]; ++k) {
+    for (std::int64_t j = 0; j < dims[1]; ++j) {
+      for (std::int64_t i = 0; i < dims[0]; ++i) {
+        for (int c = 0; c < 2; ++c, ++n) {
+          if (2 * k < dims[2]) samples[n] = 0;
+          if (2 * k >= dims[2] && 2 * j < dims[1]) samples[n] = 3 + c;
+          if (i % 4 == 3 && j % 4 == 1 && k == 5) samples[n] = std::nan("");
+        }
+      }
+    }
+  }
+  Volume expected = run(source, scene, Backend::reference, Intensity::conservative).volume;
+  for (const Backend backend : usable_backends()) {
+    SCOPED_TRACE(name_of(backend));
+    Volume volume = run(source, scene, backend, Intensity::conservative).volume;
+    std::int64_t zeros = 0, positive = 0;
+    for (std::size_t at = 0; at < volume.samples<double>().size(); ++at) {
+      const double value = volume.samples<double>()[at], other = expected.samples<double>()[at];
+      if (std::isnan(value)) {
+        ASSERT_TRUE(std::isnan(other)) << at;
+        continue;
+      }
+      zeros += value == 0 && other == 0;
+      positive += value > 0;
+      ASSERT_GE(value, 0) << at;
+      if (!std::isnan(other)) {
+        ASSERT_NEAR(value, other, 1e-12) << at;
+      }
+    }
+    EXPECT_GT(zeros, 1000);
+    EXPECT_GT(positive, 200);
+  }
+}
+
 /// A smooth density on fine voxels: sampling keeps its total to first order.
 TEST(WarpIntensity, DensitiesKeepTheTotalAsFarAsSamplingGoes) {
   const Grid grid = scenes::unit_grid(24, 24, 24);
