@@ -2,9 +2,8 @@
 /// Elimination of bilateral rows: with S = G A^-1 G^T + R, G their Jacobian and R their
 /// compliances, G v + R lambda = c gives lambda = S^+ (c - G (v without lambda)), S^+ the
 /// pseudoinverse.
-#include <Eigen/QR>
-
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/least_norm.hpp"
 
 namespace tetwarp::reference {
 
@@ -36,11 +35,9 @@ void eliminate_bilateral(const ContactProblem& problem,
   // Scaled to a unit diagonal, so that rows in m/s and rad/s count alike in the rank.
   const MatrixXd softness = own * response + compliance;
   const VectorXd scale = softness.diagonal().cwiseSqrt().cwiseInverse();
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse;
-  inverse.setThreshold(rounding);
-  inverse.compute(scale.asDiagonal() * softness * scale.asDiagonal());
-  const auto solve = [&](const MatrixXd& right) {
-    return MatrixXd(scale.asDiagonal() * inverse.solve(scale.asDiagonal() * right));
+  const MatrixXd scaled = scale.asDiagonal() * softness * scale.asDiagonal();
+  const auto solve = [&](const MatrixXd& right) -> MatrixXd {
+    return scale.asDiagonal() * least_norm_solution(scaled, scale.asDiagonal() * right, rounding);
   };
   contacts.free_bilateral = solve(target - own * contacts.free_body_velocity);
   contacts.bilateral_change = solve(-own * contacts.body_change);

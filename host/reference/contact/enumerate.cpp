@@ -1,7 +1,6 @@
 /// @file enumerate.cpp
 /// All solutions of a small problem, by trying all combinations of states of its contacts.
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <span>
 
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/least_norm.hpp"
 
 namespace tetwarp::reference {
 
@@ -79,7 +79,7 @@ class ModeSystem {
   /// r = nu - K (u + o), computed without cancellation from (I + K B) r = nu - K (q + o). Where nu
   /// is not unique, the one of least norm.
   VectorXd impulse() const {
-    const VectorXd nu = matrix_.completeOrthogonalDecomposition().solve(right_);
+    const VectorXd nu = least_norm_solution(matrix_, right_);
     return impulse_from_.solve(
         nu - contacts_.stiffness.cwiseProduct(contacts_.free_velocity + contacts_.offset));
   }

@@ -1,12 +1,12 @@
 /// @file feasible.cpp
 /// Whether some velocity satisfies all contacts.
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/least_norm.hpp"
 
 namespace tetwarp::reference {
 
@@ -38,7 +38,7 @@ double nonnegative_least_squares(const MatrixXd& matrix, const VectorXd& right) 
       for (Index k = 0; k < columns.cols(); ++k) {
         columns.col(k) = matrix.col(passive[static_cast<std::size_t>(k)]);
       }
-      const VectorXd target = columns.completeOrthogonalDecomposition().solve(right);
+      const VectorXd target = least_norm_solution(columns, right);
       double length = 1;
       for (Index k = 0; k < target.size(); ++k) {
         const double old = x(passive[static_cast<std::size_t>(k)]);

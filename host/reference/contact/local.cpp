@@ -1,10 +1,11 @@
 #include "host/reference/contact/local.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "host/reference/contact/least_norm.hpp"
 
 namespace tetwarp::reference {
 
@@ -90,7 +91,7 @@ Vector3d solve_cone(const LocalContact& contact,
   };
   if (start(0) >= 0) return impulse_of(Vector3d::Zero());
 
-  const Vector3d stick = compliance.completeOrthogonalDecomposition().solve(-start);
+  const Vector3d stick = least_norm_solution(compliance, -start);
   if (excess(contact, stick, compliance * stick + start, options) <= 0) return impulse_of(stick);
 
   // Sliding: nu_t = -a u_t with a = mix scale / (1 - mix); mix = 0: no friction, mix = 1: stick. On
@@ -156,7 +157,7 @@ Vector3d update_rolling(
   velocity += delassus.col(0) * (impulse(0) - before);
   const Matrix2d block = delassus.bottomRightCorner<2, 2>();
   const Vector2d start = velocity.tail<2>() - block * impulse.tail<2>();
-  const Vector2d stick = block.completeOrthogonalDecomposition().solve(-start);
+  const Vector2d stick = least_norm_solution(block, -start);
   if (stick.norm() <= rolling || !(block.norm() > 0)) {
     impulse.tail<2>() = stick;
     return impulse;
