@@ -131,7 +131,8 @@ class RowBench {
     for (std::int64_t v = 0; v < source_.grid.voxel_count(); ++v) {
       const std::int64_t patch = v % nx / 5 + v / nx % ny / 4 * 3 + v / nx / ny / 3 * 7;
       const double u = scenes::uniform(7, static_cast<std::uint64_t>(v));
-      samples[v] = labels[static_cast<std::size_t>(u < 0.1 ? 50 * u : patch % 5)];
+      const auto speck = static_cast<std::int64_t>(50 * u);  // a tenth of the voxels
+      samples[v] = labels[static_cast<std::size_t>(speck < 5 ? speck : patch % 5)];
     }
   }
 
