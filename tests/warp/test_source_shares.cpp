@@ -1,8 +1,9 @@
 /// @file test_source_shares.cpp
-/// Volumes of parts of voxels in source voxels, from their faces: those of bodies cut by the
-/// voxels' planes.
+/// Squares cut by lines, and volumes of parts of voxels in source voxels, from their faces: those
+/// of bodies cut by the voxels' planes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -123,6 +124,39 @@ SourceMap<double> random_map(RandomNumbers& numbers, double scale) {
     for (auto& axis : map.axis) axis[row] = scale * numbers.next();
   }
   return map;
+}
+
+double area_of(const CutSquare& square) {
+  double area = 0;
+  for (int c = 0; c < square.count; ++c) {
+    const double *a = square.corner[c], *b = square.corner[(c + 1) % square.count];
+    area += 0.5 * (a[0] * b[1] - a[1] * b[0]);
+  }
+  return area;
+}
+
+/// Up to five lines, a third of them through corners or along sides: both sides of each add up.
+TEST(CutSquare, CutsAddUpAndFit) {
+  RandomNumbers numbers(6);
+  int corners = 0;
+  for (int round = 0; round < 20000; ++round) {
+    CutSquare square;
+    square.set_whole();
+    for (int line = 0; line < 5; ++line) {
+      HalfPlane side = {0.4 * numbers.next(), {numbers.next(), numbers.next()}};
+      if (line % 3 == 2) side = {0.5, {round % 2 == 0 ? 1.0 : -1.0, round % 4 < 2 ? 0.0 : 0.5}};
+      CutSquare above = square, below = square;
+      const double whole = area_of(square);
+      const double up = above.cut(side) ? area_of(above) : 0;
+      const double down =
+          below.cut({-side.offset, {-side.slope[0], -side.slope[1]}}) ? area_of(below) : 0;
+      ASSERT_NEAR(up + down, whole, 1e-15) << round;
+      square = up > down ? above : below;
+      corners = std::max(corners, square.count);
+    }
+  }
+  EXPECT_GE(corners, 7);
+  EXPECT_LE(corners, max_square_corners);
 }
 
 TEST(SourceShares, AreTheVolumesOfBoxesAndCutBoxes) {
