@@ -36,7 +36,7 @@ struct StopCriterion {
 
 enum class StopReason {
   converged,
-  stalled,   ///< the smallest residual has not dropped by a tenth in `patience` sweeps
+  stalled,   ///< the smallest residual has not dropped by a tenth; see Patience
   exhausted  ///< all sweeps of the budget are done
 };
 
@@ -47,6 +47,17 @@ struct ContactEvent {
 };
 
 constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of patience
+
+/// Sweeps without progress after which a method has stalled: a number, and a share of the sweeps
+/// with which it has made progress, so that what it wastes is in proportion to what it has done.
+struct Patience {
+  std::int64_t sweeps = endless;
+  std::int64_t divisor = 0;  ///< of the share; 0: no share
+
+  TETWARP_HD std::int64_t after(std::int64_t progressed) const {
+    return divisor > 0 ? sweeps + progressed / divisor : sweeps;
+  }
+};
 
 /// The convergence test of one island, over all methods that work on it. Measuring a residual costs
 /// about as much as a sweep. is_due() is true when the defect of the iteration, which costs
@@ -75,9 +86,9 @@ class ConvergenceTest {
   TETWARP_HD double best_excess() const { return best_excess_; }
 
   /// Restarts the count of sweeps without progress, for the next method.
-  /// @param patience  sweeps without progress after which the method has stalled
-  TETWARP_HD void start_method(std::int64_t patience) {
+  TETWARP_HD void start_method(const Patience& patience) {
     patience_ = patience;
+    method_sweep_ = sweeps_;
     drop_sweep_ = sweeps_;
     drop_excess_ = best_excess_;
     ratio_ = 0;
@@ -115,7 +126,7 @@ class ConvergenceTest {
       reason_ = StopReason::converged;
       return true;
     }
-    if (sweeps_ - drop_sweep_ >= patience_) {
+    if (sweeps_ - drop_sweep_ >= patience_.after(drop_sweep_ - method_sweep_)) {
       reason_ = StopReason::stalled;
       return true;
     }
@@ -132,7 +143,8 @@ class ConvergenceTest {
   std::int64_t measured_sweep_;
   std::int64_t drop_sweep_;
   bool is_stopped_;
-  std::int64_t patience_ = endless;
+  std::int64_t method_sweep_ = 0;  ///< at which the current method started
+  Patience patience_;
   double best_excess_ = INFINITY;
   double drop_excess_ = INFINITY;
   double ratio_ = 0;  ///< excess per defect at the last measurement; 0: none yet

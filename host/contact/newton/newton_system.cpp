@@ -1,6 +1,7 @@
 #include "host/contact/newton/newton_system.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -41,28 +42,29 @@ Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
 NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)
     : delassus_(delassus),
       is_local_(problem.is_local()),
-      matrix_(make_eigen(is_local_ ? problem.delassus : problem.system)),
-      is_dense_(matrix_.rows() < dense_limit) {
+      matrix_(make_eigen(is_local_ ? problem.delassus : problem.system)) {
   if (!is_local_) jacobian_ = make_eigen(problem.jacobian);
 }
 
-bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
+/// E + F B, or A + J^T E^-1 F J.
+Matrix NewtonSystem::assemble(const std::vector<MapDerivative>& derivatives) {
   const std::size_t contacts = derivatives.size();
   by_impulse_ =
       make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_impulse; });
   by_velocity_ =
       make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_velocity; });
-  Matrix matrix;
-  if (is_local_) {
-    matrix = by_impulse_ + by_velocity_ * matrix_;
-  } else {
-    impulse_inverse_ = make_block_diagonal(
-        contacts, [&](std::size_t c) { return Matrix3d(derivatives[c].by_impulse.inverse()); });
-    const Matrix response = impulse_inverse_ * by_velocity_;
-    const Matrix pushed = response * jacobian_;
-    matrix = matrix_ + Matrix(jacobian_.transpose()) * pushed;
-  }
-  if (is_dense_) {
+  if (is_local_) return by_impulse_ + by_velocity_ * matrix_;
+  impulse_inverse_ = make_block_diagonal(
+      contacts, [&](std::size_t c) { return Matrix3d(derivatives[c].by_impulse.inverse()); });
+  const Matrix response = impulse_inverse_ * by_velocity_;
+  const Matrix pushed = response * jacobian_;
+  return matrix_ + Matrix(jacobian_.transpose()) * pushed;
+}
+
+bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
+  const Matrix matrix = assemble(derivatives);
+  factor_ = matrix.rows() < dense_limit ? Factor::dense : Factor::general;
+  if (factor_ == Factor::dense) {
     dense_factor_.compute(matrix);
     return dense_factor_.matrixLU().diagonal().array().isFinite().all() &&
            (dense_factor_.matrixLU().diagonal().array() != 0).all();
@@ -73,14 +75,23 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
   return sparse_factor_.info() == Eigen::Success;
 }
 
-double newton_bytes(const ContactProblem& problem, double limit) {
+bool NewtonSystem::factorize_symmetric(const std::vector<MapDerivative>& derivatives) {
+  if (is_local_) return factorize(derivatives);
+  const Matrix matrix = assemble(derivatives);
+  factor_ = Factor::symmetric;
+  if (!has_symmetric_order_) symmetric_factor_.analyzePattern(matrix);
+  has_symmetric_order_ = true;
+  symmetric_factor_.factorize(matrix);
+  return symmetric_factor_.info() == Eigen::Success;
+}
+
+NewtonCost newton_cost(const ContactProblem& problem, double limit) {
   // 8 bytes for the number and 4 for its row; growing arrays are copied, and partial pivoting fills
   // more than the symmetric order.
   constexpr double bytes_per_entry = 12 * 2;
   const auto unknowns =
       static_cast<double>(problem.is_local() ? 3 * problem.contact_count() : problem.dof_count());
   const double dense = 2 * bytes_per_entry * unknowns * unknowns / 2;
-  if (dense <= limit) return dense;
   Matrix pattern = make_eigen(problem.is_local() ? problem.delassus : problem.system);
   if (!problem.is_local()) {
     const Matrix jacobian = make_eigen(problem.jacobian).cwiseAbs();
@@ -95,6 +106,7 @@ double newton_bytes(const ContactProblem& problem, double limit) {
   // elimination tree to k.
   std::vector<Index> parent(static_cast<std::size_t>(sorted.cols()), -1);
   std::vector<Index> seen_by(parent.size(), -1);
+  std::vector<double> column_entries(parent.size(), 0.0);  // of L below the diagonal
   double entries = 0;
   for (Index k = 0; k < sorted.cols(); ++k) {
     seen_by[static_cast<std::size_t>(k)] = k;
@@ -103,12 +115,15 @@ double newton_bytes(const ContactProblem& problem, double limit) {
            i = parent[static_cast<std::size_t>(i)]) {
         if (parent[static_cast<std::size_t>(i)] < 0) parent[static_cast<std::size_t>(i)] = k;
         seen_by[static_cast<std::size_t>(i)] = k;
+        ++column_entries[static_cast<std::size_t>(i)];
         ++entries;
       }
     }
-    if (2 * entries * bytes_per_entry > limit) break;
+    if (2 * entries * bytes_per_entry > limit && dense > limit) break;
   }
-  return 2 * entries * bytes_per_entry;
+  NewtonCost cost{std::min(dense, 2 * entries * bytes_per_entry), 0};
+  for (const double below : column_entries) cost.flops += (below + 1) * (below + 1);
+  return cost;
 }
 
 VectorXd NewtonSystem::solve(const VectorXd& right_side) {
@@ -125,7 +140,14 @@ VectorXd NewtonSystem::solve_once(const VectorXd& right_side) {
 }
 
 VectorXd NewtonSystem::solve_factorized(const VectorXd& right_side) {
-  if (is_dense_) return dense_factor_.solve(right_side);
+  switch (factor_) {
+    case Factor::dense:
+      return dense_factor_.solve(right_side);
+    case Factor::symmetric:
+      return symmetric_factor_.solve(right_side);
+    case Factor::general:
+      break;
+  }
   return sparse_factor_.solve(right_side);
 }
 

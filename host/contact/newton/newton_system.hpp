@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <vector>
@@ -31,11 +32,18 @@ class NewtonSystem {
   /// @return false  if the equations are numerically singular
   bool factorize(const std::vector<MapDerivative>& derivatives);
 
+  /// As factorize(), by a sparse Cholesky factorization in global form.
+  /// @pre every E^-1 F is symmetric and positive semidefinite
+  bool factorize_symmetric(const std::vector<MapDerivative>& derivatives);
+
   /// x, after one step of iterative refinement.
-  /// @pre factorize() has returned true
+  /// @pre the last factorization has returned true
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side);
 
  private:
+  enum class Factor { dense, general, symmetric };
+
+  Eigen::SparseMatrix<double> assemble(const std::vector<MapDerivative>& derivatives);
   Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side);
   Eigen::VectorXd solve_factorized(const Eigen::VectorXd& right_side);
 
@@ -46,15 +54,23 @@ class NewtonSystem {
   Eigen::SparseMatrix<double> by_impulse_;       ///< E
   Eigen::SparseMatrix<double> by_velocity_;      ///< F
   Eigen::SparseMatrix<double> impulse_inverse_;  ///< E^-1, global form
-  bool is_dense_;
+  Factor factor_ = Factor::general;              ///< the last one
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_factor_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_factor_;
-  bool has_order_ = false;  ///< the fill-reducing order was computed; the pattern does not change
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric_factor_;
+  bool has_order_ = false;            ///< of sparse_factor_; the pattern does not change
+  bool has_symmetric_order_ = false;  ///< of symmetric_factor_
 };
 
-/// Estimate of the memory [bytes] that the factors of a NewtonSystem take: the fill of a symmetric
-/// elimination of its pattern in minimum-degree order, times a factor for pivoting.
-/// @param limit  counting ends when the estimate exceeds it
-double newton_bytes(const ContactProblem& problem, double limit);
+/// Estimated cost of one factorization of a NewtonSystem.
+struct NewtonCost {
+  double bytes = 0;  ///< of the factors
+  double flops = 0;  ///< of a symmetric elimination; pivoting takes a small multiple
+};
+
+/// Counts the fill of a symmetric elimination of the pattern in minimum-degree order; the memory
+/// includes a factor for pivoting.
+/// @param limit  of the memory [bytes]: counting ends when the estimate exceeds it
+NewtonCost newton_cost(const ContactProblem& problem, double limit);
 
 }  // namespace tetwarp

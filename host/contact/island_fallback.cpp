@@ -1,0 +1,159 @@
+/// @file island_fallback.cpp
+/// What follows on an island where the first sweeps have not converged.
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "host/contact/certificate.hpp"
+#include "host/contact/island_solver.hpp"
+#include "host/contact/method_choice.hpp"
+#include "host/contact/newton/newton.hpp"
+#include "host/contact/structure/extract.hpp"
+#include "host/contact/sweeps/method_names.hpp"
+
+namespace tetwarp {
+namespace {
+/// Of Newton's method: those that the number of contacts allows.
+constexpr std::int64_t all_steps = std::numeric_limits<std::int64_t>::max();
+
+/// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
+/// than Newton's take only where many sweeps are allowed, too.
+bool searches_certificates(const ContactOptions& options) {
+  return options.method == ContactMethod::automatic || options.method == ContactMethod::newton ||
+         options.max_sweeps >= 4096;
+}
+
+/// The contacts of an island that a direction of impulses pushes.
+std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
+                                      const ContactStructure& structure,
+                                      const ContactIsland& island) {
+  std::vector<std::int32_t> contacts;
+  for (std::int64_t c = 0; c < island.contact_count(); ++c) {
+    if (!(direction.impulse[index_of(3 * c)] > 1e-6)) continue;
+    contacts.push_back(structure.contact_of_slot[index_of(island.slot_begin + c)]);
+  }
+  return contacts;
+}
+}  // namespace
+
+void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result) {
+  IslandOutcome& outcome = result.outcomes[index_of(island)];
+  if (budget_ != nullptr && budget_->is_over()) return;
+  const bool is_automatic = options_.method == ContactMethod::automatic;
+  const ContradictionSearch full{std::min<std::int64_t>(options_.max_sweeps, 4096), false};
+  if (!is_automatic && options_.method != ContactMethod::newton) {
+    if (clamp_contradicting(island, run, full, result) || !searches_certificates(options_)) return;
+    const ContactProblem part =
+        make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
+    if (!find_contradiction(island, part, result)) find_unbounded(island, part, result);
+    return;
+  }
+  const ContradictionSearch brief{
+      std::min(full.max_sweeps, std::max<std::int64_t>(outcome.sweeps, 64)), true};
+  if (clamp_contradicting(island, run, brief, result)) return;
+  const ContactProblem part =
+      make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
+  if (is_automatic) take_turns(island, part, run, outcome);
+  if (run.is_done(island, outcome.sums)) return;
+  if (clamp_contradicting(island, run, full, result)) return;
+  polish(island, part, run, outcome, all_steps);
+  if (run.is_done(island, outcome.sums) || find_contradiction(island, part, result)) return;
+  if (is_automatic) {
+    run.sweep_on(island, options_.max_sweeps);
+    outcome.sums = run.measure(island);
+    if (run.is_done(island, outcome.sums)) return;
+    polish(island, part, run, outcome, all_steps);  // this better start may converge
+  }
+  if (!run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
+}
+
+/// Continues with sweeps and with Newton's method in turn, each as long as it promises to be the
+/// cheaper one; see method_choice.hpp.
+void IslandSolver::take_turns(std::int64_t island,
+                              const ContactProblem& part,
+                              ContactRun<double>& run,
+                              IslandOutcome& outcome) {
+  constexpr std::int64_t first_steps = 60, last_steps = 240, growth = 4;  // of Newton's method
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
+  const NewtonCost cost = newton_cost(part, memory);
+  const double price =
+      cost.bytes > memory ? infinity : sweeps_per_newton_step(cost, part.contact_count());
+  std::int64_t turn_start = 0;
+  for (std::int64_t steps = first_steps; steps <= last_steps; steps *= growth) {
+    const double worth = price * static_cast<double>(steps);
+    while (outcome.sweeps < options_.max_sweeps) {
+      const double before = run.excess(island, outcome.sums);
+      const std::int64_t from = outcome.sweeps;
+      run.sweep_on(island, from + std::max<std::int64_t>(64, from / 2));
+      outcome.sums = run.measure(island);
+      const double after = run.excess(island, outcome.sums);
+      if (after <= 1 || (budget_ != nullptr && budget_->is_over())) return;
+      const double left = sweeps_left(before, after, outcome.sweeps - from);
+      if (prefers_newton(worth, outcome.sweeps - turn_start, left)) break;
+    }
+    turn_start = outcome.sweeps;
+    polish(island, part, run, outcome, steps);
+    if (run.is_done(island, outcome.sums) || cost.bytes > memory) return;
+  }
+}
+
+/// @return  whether normal offsets that sweeps show to contradict each other were noted
+bool IslandSolver::clamp_contradicting(std::int64_t island,
+                                       const ContactRun<double>& run,
+                                       ContradictionSearch search,
+                                       EngineResult& result) {
+  for (const std::int64_t slot : contradicting_slots(
+           structure_, run.system(), structure_.islands[index_of(island)], search, budget_)) {
+    result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
+  }
+  return !result.clamped.empty();
+}
+
+/// Searches for a certificate that normal offsets contradict each other. Sweeps, which come first,
+/// need about the square of the number of bodies in a chain to show it.
+bool IslandSolver::find_contradiction(std::int64_t i,
+                                      const ContactProblem& part,
+                                      EngineResult& result) {
+  const std::optional<ImpulseDirection> found =
+      find_direction(part, options_, DirectionCone::normals, budget_);
+  if (!found) return false;
+  result.clamped_speed = found->speed;
+  result.clamped = contacts_of(*found, structure_, structure_.islands[index_of(i)]);
+  return true;
+}
+
+void IslandSolver::find_unbounded(std::int64_t i,
+                                  const ContactProblem& part,
+                                  EngineResult& result) {
+  const std::optional<ImpulseDirection> found =
+      find_direction(part, options_, DirectionCone::friction, budget_);
+  if (!found) return;
+  result.unbounded_speed = found->speed;
+  result.unbounded = contacts_of(*found, structure_, structure_.islands[index_of(i)]);
+}
+
+/// Newton's method from the current impulses; keeps its impulses unless their error is larger.
+/// @param part  the island as a problem
+void IslandSolver::polish(std::int64_t i,
+                          const ContactProblem& part,
+                          ContactRun<double>& run,
+                          IslandOutcome& outcome,
+                          std::int64_t step_limit) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  ContactOptions options = options_;
+  options.tolerance /= 2;  // relative to this island, not to the whole problem
+  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
+  std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
+  const std::vector<double> swept = polished;
+  const NewtonResult newton =
+      newton_polish(part, options, polished, body_velocity, budget_, step_limit);
+  outcome.newton_iterations += newton.iterations;
+  if (newton.iterations > 0) outcome.methods.push_back(report_name_of(ContactMethod::newton));
+  const double before = run.excess(i, outcome.sums);
+  std::copy(polished.begin(), polished.end(), impulse);
+  if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
+  outcome.sums = run.measure(i);
+}
+
+}  // namespace tetwarp

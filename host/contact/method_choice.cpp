@@ -1,0 +1,28 @@
+#include "host/contact/method_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tetwarp {
+
+double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts) {
+  // Measured on packings, stacks and jams: an update of a contact takes as long as 150
+  // multiplications of a symmetric factorization, of which pivoting makes three times as many.
+  constexpr double updates_per_flop = 0.02;
+  constexpr double updates_per_contact = 60;
+  return updates_per_contact +
+         updates_per_flop * cost.flops / static_cast<double>(std::max<std::int64_t>(contacts, 1));
+}
+
+double sweeps_left(double before, double after, std::int64_t sweeps) {
+  if (!(after < before) || !std::isfinite(before)) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(sweeps) * std::log(after) / std::log(before / after);
+}
+
+bool prefers_newton(double worth, std::int64_t spent, double left) {
+  if (left <= worth) return false;
+  return static_cast<double>(spent) * std::min(left, 8 * worth) > worth * worth / 2;
+}
+
+}  // namespace tetwarp
