@@ -73,7 +73,7 @@ void IslandSolver::take_turns(std::int64_t island,
                               const ContactProblem& part,
                               ContactRun<double>& run,
                               IslandOutcome& outcome) {
-  constexpr std::int64_t first_steps = 60, last_steps = 240, growth = 4;  // of Newton's method
+  constexpr std::int64_t first_steps = 200, last_steps = 800, growth = 4;  // of Newton's method
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
   const NewtonCost cost = newton_cost(part, memory);

@@ -7,10 +7,10 @@
 namespace tetwarp {
 
 double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts) {
-  // Measured on packings, stacks and jams: an update of a contact takes as long as 150
-  // multiplications of a symmetric factorization, of which pivoting makes three times as many.
-  constexpr double updates_per_flop = 0.02;
-  constexpr double updates_per_contact = 60;
+  // Measured on stacks of 40, jams of 150 and packings of 224 to 1664 contacts: a Newton step takes
+  // as long as so many updates of a contact by sweeps.
+  constexpr double updates_per_flop = 0.012;
+  constexpr double updates_per_contact = 20;
   return updates_per_contact +
          updates_per_flop * cost.flops / static_cast<double>(std::max<std::int64_t>(contacts, 1));
 }
@@ -22,7 +22,7 @@ double sweeps_left(double before, double after, std::int64_t sweeps) {
 
 bool prefers_newton(double worth, std::int64_t spent, double left) {
   if (left <= worth) return false;
-  return static_cast<double>(spent) * std::min(left, 8 * worth) > worth * worth / 2;
+  return static_cast<double>(spent) * std::min(left, 2 * worth) > worth * worth / 2;
 }
 
 }  // namespace tetwarp

@@ -19,7 +19,7 @@ double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts);
 double sweeps_left(double before, double after, std::int64_t sweeps);
 
 /// Whether to leave sweeps for a series of Newton steps that cost as much as `worth` sweeps. The
-/// slower the sweeps converge, the earlier: after a sixteenth of that cost at the earliest, and not
+/// slower the sweeps converge, the earlier: after a quarter of that cost at the earliest, and not
 /// while they promise to converge sooner.
 /// @param spent  sweeps since the last such series
 /// @param left   of sweeps_left()

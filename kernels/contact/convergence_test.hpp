@@ -36,7 +36,7 @@ struct StopCriterion {
 
 enum class StopReason {
   converged,
-  stalled,   ///< the smallest residual has not dropped by a tenth; see Patience
+  stalled,   ///< the smallest residual has not dropped; see Patience
   exhausted  ///< all sweeps of the budget are done
 };
 
@@ -53,6 +53,7 @@ constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of pati
 struct Patience {
   std::int64_t sweeps = endless;
   std::int64_t divisor = 0;  ///< of the share; 0: no share
+  double drop = 0.9;         ///< of the smallest residual, which counts as progress
 
   TETWARP_HD std::int64_t after(std::int64_t progressed) const {
     return divisor > 0 ? sweeps + progressed / divisor : sweeps;
@@ -118,7 +119,7 @@ class ConvergenceTest {
     ratio_ = defect > 0 ? excess / defect : 0;
     is_best = excess < best_excess_;
     if (is_best) best_excess_ = excess;
-    if (best_excess_ < 0.9 * drop_excess_) {
+    if (best_excess_ < patience_.drop * drop_excess_) {
       drop_excess_ = best_excess_;
       drop_sweep_ = sweeps_;
     }

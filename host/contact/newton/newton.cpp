@@ -164,7 +164,7 @@ void NewtonPolish::run(const VectorXd& start, std::int64_t step_limit) {
   Approach approach{.center = best_};
   advance(approach, limit / 4, first_patience);
   if (is_settled()) return;
-  solve_associated(limit / 2);
+  solve_associated(limit - limit / 4);
   if (is_settled()) return;
   advance(approach, limit - limit / 4);
   if (is_settled()) return;

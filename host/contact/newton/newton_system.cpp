@@ -18,51 +18,68 @@ namespace {
 /// With fewer unknowns a dense factorization is faster than a sparse one.
 constexpr Index dense_limit = 300;
 
-/// A block diagonal matrix. Zeros inside the blocks are stored, so that the pattern is constant.
-/// @param block_of  (contact) -> block
-template <class BlockOf>
-Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
-  const auto size = 3 * static_cast<Index>(count);
+/// A block diagonal matrix.
+Matrix make_block_diagonal(const std::vector<Matrix3d>& blocks) {
+  const auto size = 3 * static_cast<Index>(blocks.size());
   Matrix matrix(size, size);
   matrix.reserve(Eigen::VectorXi::Constant(size, 3));
-  for (std::size_t c = 0; c < count; ++c) {
-    const Matrix3d block = block_of(c);
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
     const Index first = 3 * static_cast<Index>(c);
     for (Index column = 0; column < 3; ++column) {
       for (Index row = 0; row < 3; ++row) {
-        matrix.insert(first + row, first + column) = block(row, column);
+        matrix.insert(first + row, first + column) = blocks[c](row, column);
       }
     }
   }
   matrix.makeCompressed();
   return matrix;
 }
+
+/// Product of a block diagonal matrix and a vector.
+VectorXd product(const std::vector<Matrix3d>& blocks, const VectorXd& x) {
+  VectorXd result(x.size());
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
+    const Index row = 3 * static_cast<Index>(c);
+    result.segment<3>(row) = blocks[c] * x.segment<3>(row);
+  }
+  return result;
+}
 }  // namespace
 
 NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)
-    : delassus_(delassus),
-      is_local_(problem.is_local()),
-      matrix_(make_eigen(is_local_ ? problem.delassus : problem.system)) {
-  if (!is_local_) jacobian_ = make_eigen(problem.jacobian);
+    : delassus_(delassus), is_local_(problem.is_local()) {
+  if (is_local_) {
+    delassus_matrix_ = make_eigen(problem.delassus);
+    return;
+  }
+  jacobian_ = make_eigen(problem.jacobian);
+  assembly_ = ContactAssembly(make_eigen(problem.system), jacobian_);
 }
 
 /// E + F B, or A + J^T E^-1 F J.
-Matrix NewtonSystem::assemble(const std::vector<MapDerivative>& derivatives) {
-  const std::size_t contacts = derivatives.size();
-  by_impulse_ =
-      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_impulse; });
-  by_velocity_ =
-      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_velocity; });
-  if (is_local_) return by_impulse_ + by_velocity_ * matrix_;
-  impulse_inverse_ = make_block_diagonal(
-      contacts, [&](std::size_t c) { return Matrix3d(derivatives[c].by_impulse.inverse()); });
-  const Matrix response = impulse_inverse_ * by_velocity_;
-  const Matrix pushed = response * jacobian_;
-  return matrix_ + Matrix(jacobian_.transpose()) * pushed;
+const Matrix& NewtonSystem::assemble(const std::vector<MapDerivative>& derivatives) {
+  by_impulse_.clear();
+  by_velocity_.clear();
+  for (const MapDerivative& derivative : derivatives) {
+    by_impulse_.push_back(derivative.by_impulse);
+    by_velocity_.push_back(derivative.by_velocity);
+  }
+  if (is_local_) {
+    local_sum_ =
+        make_block_diagonal(by_impulse_) + make_block_diagonal(by_velocity_) * delassus_matrix_;
+    return local_sum_;
+  }
+  impulse_inverse_.clear();
+  response_.clear();
+  for (std::size_t c = 0; c < derivatives.size(); ++c) {
+    impulse_inverse_.push_back(by_impulse_[c].inverse());
+    response_.push_back(impulse_inverse_[c] * by_velocity_[c]);
+  }
+  return assembly_.sum(response_);
 }
 
 bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
-  const Matrix matrix = assemble(derivatives);
+  const Matrix& matrix = assemble(derivatives);
   factor_ = matrix.rows() < dense_limit ? Factor::dense : Factor::general;
   if (factor_ == Factor::dense) {
     dense_factor_.compute(matrix);
@@ -77,7 +94,7 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
 
 bool NewtonSystem::factorize_symmetric(const std::vector<MapDerivative>& derivatives) {
   if (is_local_) return factorize(derivatives);
-  const Matrix matrix = assemble(derivatives);
+  const Matrix& matrix = assemble(derivatives);
   factor_ = Factor::symmetric;
   if (!has_symmetric_order_) symmetric_factor_.analyzePattern(matrix);
   has_symmetric_order_ = true;
@@ -128,15 +145,19 @@ NewtonCost newton_cost(const ContactProblem& problem, double limit) {
 
 VectorXd NewtonSystem::solve(const VectorXd& right_side) {
   VectorXd x = solve_once(right_side);
-  x += solve_once(right_side - by_impulse_ * x - by_velocity_ * delassus_.velocity_change(x));
+  const int refinements = factor_ == Factor::symmetric ? 2 : 1;
+  for (int step = 0; step < refinements; ++step) {
+    x += solve_once(right_side - product(by_impulse_, x) -
+                    product(by_velocity_, delassus_.velocity_change(x)));
+  }
   return x;
 }
 
 VectorXd NewtonSystem::solve_once(const VectorXd& right_side) {
   if (is_local_) return solve_factorized(right_side);
-  const VectorXd pushed = impulse_inverse_ * right_side;
+  const VectorXd pushed = product(impulse_inverse_, right_side);
   const VectorXd y = solve_factorized(jacobian_.transpose() * pushed);
-  return impulse_inverse_ * (right_side - by_velocity_ * (jacobian_ * y));
+  return product(impulse_inverse_, right_side - product(by_velocity_, jacobian_ * y));
 }
 
 VectorXd NewtonSystem::solve_factorized(const VectorXd& right_side) {

@@ -10,6 +10,7 @@
 
 #include <tetwarp/contact_problem.hpp>
 
+#include "host/contact/newton/contact_assembly.hpp"
 #include "host/contact/newton/natural_map.hpp"
 #include "host/contact/problem/delassus.hpp"
 
@@ -36,25 +37,28 @@ class NewtonSystem {
   /// @pre every E^-1 F is symmetric and positive semidefinite
   bool factorize_symmetric(const std::vector<MapDerivative>& derivatives);
 
-  /// x, after one step of iterative refinement.
+  /// x, after iterative refinement: two steps with factorize_symmetric(), else one.
   /// @pre the last factorization has returned true
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side);
 
  private:
   enum class Factor { dense, general, symmetric };
 
-  Eigen::SparseMatrix<double> assemble(const std::vector<MapDerivative>& derivatives);
+  const Eigen::SparseMatrix<double>& assemble(const std::vector<MapDerivative>& derivatives);
   Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side);
   Eigen::VectorXd solve_factorized(const Eigen::VectorXd& right_side);
 
   const Delassus& delassus_;
   bool is_local_;
-  Eigen::SparseMatrix<double> matrix_;           ///< W, or A
-  Eigen::SparseMatrix<double> jacobian_;         ///< J
-  Eigen::SparseMatrix<double> by_impulse_;       ///< E
-  Eigen::SparseMatrix<double> by_velocity_;      ///< F
-  Eigen::SparseMatrix<double> impulse_inverse_;  ///< E^-1, global form
-  Factor factor_ = Factor::general;              ///< the last one
+  Eigen::SparseMatrix<double> delassus_matrix_;   ///< W, local form
+  Eigen::SparseMatrix<double> local_sum_;         ///< E + F W, local form
+  Eigen::SparseMatrix<double> jacobian_;          ///< J, global form
+  ContactAssembly assembly_;                      ///< global form
+  std::vector<Eigen::Matrix3d> by_impulse_;       ///< E
+  std::vector<Eigen::Matrix3d> by_velocity_;      ///< F
+  std::vector<Eigen::Matrix3d> impulse_inverse_;  ///< E^-1, global form
+  std::vector<Eigen::Matrix3d> response_;         ///< E^-1 F, global form
+  Factor factor_ = Factor::general;               ///< the last one
   Eigen::PartialPivLU<Eigen::MatrixXd> dense_factor_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_factor_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> symmetric_factor_;
