@@ -17,10 +17,11 @@ double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts) {
 
 double sweeps_left(double before, double after, std::int64_t sweeps) {
   if (!(after < before) || !std::isfinite(before)) return std::numeric_limits<double>::infinity();
-  return static_cast<double>(sweeps) * std::log(after) / std::log(before / after);
+  return static_cast<double>(sweeps) * std::log(2 * after) / std::log(before / after);
 }
 
 bool prefers_newton(double worth, std::int64_t spent, double left) {
+  if (static_cast<double>(spent) > worth) return true;
   if (left <= worth) return false;
   return static_cast<double>(spent) * std::min(left, 2 * worth) > worth * worth / 2;
 }
