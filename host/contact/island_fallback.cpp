@@ -13,7 +13,8 @@
 
 namespace tetwarp {
 namespace {
-/// Of Newton's method: those that the number of contacts allows.
+/// Limits of Newton's steps: before sweeps continue, and no other than the number of contacts sets.
+constexpr std::int64_t first_steps = 400;
 constexpr std::int64_t all_steps = std::numeric_limits<std::int64_t>::max();
 
 /// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
@@ -53,11 +54,14 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   if (clamp_contradicting(island, run, brief, result)) return;
   const ContactProblem part =
       make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
-  if (is_automatic) take_turns(island, part, run, outcome);
+  if (is_automatic) {
+    sweep_while_cheaper(island, part, run, outcome);
+    if (run.is_done(island, outcome.sums)) return;
+  }
+  polish(island, part, run, outcome, is_automatic ? first_steps : all_steps);
   if (run.is_done(island, outcome.sums)) return;
   if (clamp_contradicting(island, run, full, result)) return;
-  polish(island, part, run, outcome, all_steps);
-  if (run.is_done(island, outcome.sums) || find_contradiction(island, part, result)) return;
+  if (find_contradiction(island, part, result)) return;
   if (is_automatic) {
     run.sweep_on(island, options_.max_sweeps);
     outcome.sums = run.measure(island);
@@ -67,34 +71,30 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   if (!run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
 }
 
-/// Continues with sweeps and with Newton's method in turn, each as long as it promises to be the
-/// cheaper one; see method_choice.hpp.
-void IslandSolver::take_turns(std::int64_t island,
-                              const ContactProblem& part,
-                              ContactRun<double>& run,
-                              IslandOutcome& outcome) {
-  constexpr std::int64_t first_steps = 200, last_steps = 800, growth = 4;  // of Newton's method
+/// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.
+void IslandSolver::sweep_while_cheaper(std::int64_t island,
+                                       const ContactProblem& part,
+                                       ContactRun<double>& run,
+                                       IslandOutcome& outcome) {
+  constexpr std::int64_t usual_steps = 200;  // of Newton's method, on packings with friction
   constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::int64_t contacts = part.contact_count();
   const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
   const NewtonCost cost = newton_cost(part, memory);
-  const double price =
-      cost.bytes > memory ? infinity : sweeps_per_newton_step(cost, part.contact_count());
-  std::int64_t turn_start = 0;
-  for (std::int64_t steps = first_steps; steps <= last_steps; steps *= growth) {
-    const double worth = price * static_cast<double>(steps);
-    while (outcome.sweeps < options_.max_sweeps) {
-      const double before = run.excess(island, outcome.sums);
-      const std::int64_t from = outcome.sweeps;
-      run.sweep_on(island, from + std::max<std::int64_t>(64, from / 2));
-      outcome.sums = run.measure(island);
-      const double after = run.excess(island, outcome.sums);
-      if (after <= 1 || (budget_ != nullptr && budget_->is_over())) return;
-      const double left = sweeps_left(before, after, outcome.sweeps - from);
-      if (prefers_newton(worth, outcome.sweeps - turn_start, left)) break;
-    }
-    turn_start = outcome.sweeps;
-    polish(island, part, run, outcome, steps);
-    if (run.is_done(island, outcome.sums) || cost.bytes > memory) return;
+  double worth = infinity;
+  if (cost.bytes <= memory && options_.max_newton > 0) {
+    const std::int64_t steps = std::min(usual_steps, max_newton_steps(contacts));
+    worth = static_cast<double>(steps) * sweeps_per_newton_step(cost, contacts);
+  }
+  while (outcome.sweeps < options_.max_sweeps && !(budget_ != nullptr && budget_->is_over())) {
+    const double before = run.excess(island, outcome.sums);
+    const std::int64_t from = outcome.sweeps;
+    run.sweep_on(island, from + std::max<std::int64_t>(64, from / 2));
+    outcome.sums = run.measure(island);
+    if (run.is_done(island, outcome.sums)) return;
+    const double left =
+        sweeps_left(before, run.excess(island, outcome.sums), outcome.sweeps - from);
+    if (prefers_newton(worth, outcome.sweeps, left)) return;
   }
 }
 

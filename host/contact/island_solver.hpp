@@ -63,10 +63,10 @@ class IslandSolver {
   void solve_on_device(EngineResult& result);
   void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
-  void take_turns(std::int64_t island,
-                  const ContactProblem& part,
-                  ContactRun<double>& run,
-                  IslandOutcome& outcome);
+  void sweep_while_cheaper(std::int64_t island,
+                           const ContactProblem& part,
+                           ContactRun<double>& run,
+                           IslandOutcome& outcome);
   bool clamp_contradicting(std::int64_t island,
                            const ContactRun<double>& run,
                            ContradictionSearch search,

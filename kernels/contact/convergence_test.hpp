@@ -50,10 +50,16 @@ constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of pati
 
 /// Sweeps without progress after which a method has stalled: a number, and a share of the sweeps
 /// with which it has made progress, so that what it wastes is in proportion to what it has done.
+/// Sweeps that end far above the smallest residual count several times: an acceleration that does
+/// not fit the problem throws the iterates about, one that is slow creeps.
 struct Patience {
+  static constexpr double setback = 1.2;  ///< residual over the smallest one from which sweeps
+                                           ///< count `setback_weight` times
+
   std::int64_t sweeps = endless;
   std::int64_t divisor = 0;  ///< of the share; 0: no share
   double drop = 0.9;         ///< of the smallest residual, which counts as progress
+  std::int64_t setback_weight = 1;
 
   TETWARP_HD std::int64_t after(std::int64_t progressed) const {
     return divisor > 0 ? sweeps + progressed / divisor : sweeps;
@@ -90,6 +96,7 @@ class ConvergenceTest {
   TETWARP_HD void start_method(const Patience& patience) {
     patience_ = patience;
     method_sweep_ = sweeps_;
+    waited_ = 0;
     drop_sweep_ = sweeps_;
     drop_excess_ = best_excess_;
     ratio_ = 0;
@@ -115,6 +122,7 @@ class ConvergenceTest {
   TETWARP_HD bool record(const ContactSums& sums, double defect, bool& is_best) {
     const double excess = criterion_.excess_of(sums);
     log_.note({sweeps_, criterion_.error_of(sums)});
+    const std::int64_t elapsed = sweeps_ - measured_sweep_;
     measured_sweep_ = sweeps_;
     ratio_ = defect > 0 ? excess / defect : 0;
     is_best = excess < best_excess_;
@@ -122,12 +130,16 @@ class ConvergenceTest {
     if (best_excess_ < patience_.drop * drop_excess_) {
       drop_excess_ = best_excess_;
       drop_sweep_ = sweeps_;
+      waited_ = 0;
+    } else {
+      const bool is_setback = excess > Patience::setback * best_excess_;
+      waited_ += elapsed * (is_setback ? patience_.setback_weight : 1);
     }
     if (excess <= 1) {
       reason_ = StopReason::converged;
       return true;
     }
-    if (sweeps_ - drop_sweep_ >= patience_.after(drop_sweep_ - method_sweep_)) {
+    if (waited_ >= patience_.after(drop_sweep_ - method_sweep_)) {
       reason_ = StopReason::stalled;
       return true;
     }
@@ -145,6 +157,7 @@ class ConvergenceTest {
   std::int64_t drop_sweep_;
   bool is_stopped_;
   std::int64_t method_sweep_ = 0;  ///< at which the current method started
+  std::int64_t waited_ = 0;        ///< sweeps without progress, weighted
   Patience patience_;
   double best_excess_ = INFINITY;
   double drop_excess_ = INFINITY;

@@ -44,10 +44,6 @@ constexpr std::int64_t lift_steps = 10;
 constexpr double lift_gain = 0.3;
 constexpr std::int64_t endless_patience = std::numeric_limits<std::int64_t>::max();
 
-std::int64_t iteration_limit(std::size_t contacts) {
-  return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
-}
-
 /// Impulses, the velocities they cause, and the residuals of both.
 struct Iterate {
   VectorXd impulse;
@@ -160,7 +156,8 @@ class NewtonPolish {
 
 void NewtonPolish::run(const VectorXd& start, std::int64_t step_limit) {
   best_ = make_iterate(start);
-  const std::int64_t limit = std::min(step_limit, iteration_limit(contacts_.size()));
+  const std::int64_t limit =
+      std::min(step_limit, max_newton_steps(static_cast<std::int64_t>(contacts_.size())));
   Approach approach{.center = best_};
   advance(approach, limit / 4, first_patience);
   if (is_settled()) return;
@@ -264,6 +261,10 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
   return false;
 }
 }  // namespace
+
+std::int64_t max_newton_steps(std::int64_t contacts) {
+  return std::clamp<std::int64_t>(250000 / (contacts + 1), 50, 1000);
+}
 
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,

@@ -18,6 +18,10 @@ struct NewtonResult {
   bool converged = false;  ///< options.measure is at most options.tolerance
 };
 
+/// Linear systems after which newton_polish() changes its approach or ends; about 1.5 times as many
+/// in all.
+std::int64_t max_newton_steps(std::int64_t contacts);
+
 /// Improves impulses by semismooth Newton steps on the natural map inside a proximal point
 /// iteration: each outer step solves the problem with a compliance epsilon / rho added to every
 /// contact, relative to the current impulses, and epsilon is lowered as long as these steps
