@@ -161,7 +161,7 @@ class ContactMethods {
       case ContactMethod::newton:
         break;
     }
-    if (anderson({60, 4, 0.9, 5}) != StopReason::stalled) return false;
+    if (anderson({100, 4, 0.9, 10}) != StopReason::stalled) return false;
     restore_best();
     conjugate_directions({48, 1, 0.5});
     return true;

@@ -53,7 +53,7 @@ constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of pati
 /// Sweeps that end far above the smallest residual count several times: an acceleration that does
 /// not fit the problem throws the iterates about, one that is slow creeps.
 struct Patience {
-  static constexpr double setback = 1.2;  ///< residual over the smallest one from which sweeps
+  static constexpr double setback = 1.15;  ///< residual over the smallest one from which sweeps
                                            ///< count `setback_weight` times
 
   std::int64_t sweeps = endless;
