@@ -181,6 +181,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_adhesion.cpp
     tests/contact/test_lorentz_cone.cpp
     tests/contact/test_contact_bound.cpp
+    tests/contact/test_contact_choice.cpp
     tests/contact/test_contact_color.cpp
     tests/contact/test_contact_law.cpp
     tests/contact/test_contact_linear.cpp

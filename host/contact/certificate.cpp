@@ -52,7 +52,7 @@ std::optional<ImpulseDirection> find_direction(const ContactProblem& problem,
   constexpr double far = 1e6;
   if (budget != nullptr) {
     if (budget->is_over()) return {};
-    if (!budget->allows_memory(newton_bytes(problem, budget->memory_limit()))) return {};
+    if (!budget->allows_memory(newton_cost(problem, budget->memory_limit()).bytes)) return {};
     budget->start_newton();
   }
   const Delassus delassus(problem, options.recovery_speed);

@@ -32,14 +32,24 @@ double energy_of(ContactPipeline<CpuContactExec, double>& pipeline, const std::v
   pipeline.follow_impulses();
   return energy;
 }
+/// Whether the last of `sweeps` sweeps has added to any impulse about as much as a steady growth
+/// from the first one, 1 / sweeps of it; impulses that converge fall behind that.
+bool grows_steadily(View<const double> impulse,
+                    const std::vector<double>& growth,
+                    std::int64_t sweeps) {
+  for (std::size_t i = 0; i < growth.size(); ++i) {
+    const double steady = impulse.data[i] / static_cast<double>(sweeps);
+    if (growth[i] > 0.01 * steady) return true;
+  }
+  return false;
+}
 }  // namespace
 
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t max_sweeps,
+                                              const ContradictionSearch& search,
                                               SolveBudget* budget) {
-  const std::int64_t sweeps = std::min<std::int64_t>(max_sweeps, 4096);
   // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
@@ -60,7 +70,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
   }
   const View<double> y = pipeline.impulse();
   std::vector<double> before(static_cast<std::size_t>(y.size));
-  for (std::int64_t sweep = 1; sweep <= sweeps; ++sweep) {
+  for (std::int64_t sweep = 1; sweep <= search.max_sweeps; ++sweep) {
     std::copy_n(y.data, y.size, before.data());
     pipeline.sweep({});
     if (budget != nullptr && budget->is_over()) return {};
@@ -72,6 +82,7 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
     }
     const double largest = *std::max_element(growth.begin(), growth.end());
     if (!(largest > 0)) return {};
+    if (search.stops_early && !grows_steadily(y, growth, sweep)) return {};
     for (double& entry : growth) entry /= largest;  // squares of tiny numbers would underflow
     const double energy = energy_of(pipeline, growth);
     double gain = 0;

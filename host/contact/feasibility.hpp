@@ -15,6 +15,13 @@
 
 namespace tetwarp {
 
+/// How long contradictory contacts are searched for.
+struct ContradictionSearch {
+  std::int64_t max_sweeps = 4096;  ///< at most
+  bool stops_early = false;        ///< ends when no impulse grows as fast as such contacts usually
+                                   ///< make it grow
+};
+
 /// Slots of an island whose normal offsets contradict each other; empty when none do, and for
 /// islands with other blocks of rows than contacts.
 ///
@@ -22,13 +29,12 @@ namespace tetwarp {
 /// -y.q / sqrt(y.B y) in the energy norm. Where the offsets contradict each other, the impulses of
 /// frictionless sweeps grow without bound along a y for which this is infinite; the slots with
 /// y > 0 are returned.
-/// @param max_sweeps  sweeps at most; never more than 4096
-/// @param budget      ends the search; null: no limits
+/// @param budget  ends the search; null: no limits
 /// @pre A does not couple the blocks of the island
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
-                                              std::int64_t max_sweeps,
+                                              const ContradictionSearch& search,
                                               SolveBudget* budget = nullptr);
 
 /// Solves a problem; as long as contacts that contradict each other are found, raises their

@@ -10,6 +10,7 @@
 
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/engine_result.hpp"
+#include "host/contact/feasibility.hpp"
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
@@ -63,9 +64,21 @@ class IslandSolver {
   void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void continue_with_rows(std::int64_t island, ContactRun<double>& run, EngineResult& result);
-  bool find_contradiction(std::int64_t island, EngineResult& result);
-  void find_unbounded(std::int64_t island, EngineResult& result);
-  void polish(std::int64_t island, ContactRun<double>& run, IslandOutcome& outcome);
+  void sweep_while_cheaper(std::int64_t island,
+                           const ContactProblem& part,
+                           ContactRun<double>& run,
+                           IslandOutcome& outcome);
+  bool clamp_contradicting(std::int64_t island,
+                           const ContactRun<double>& run,
+                           ContradictionSearch search,
+                           EngineResult& result);
+  bool find_contradiction(std::int64_t island, const ContactProblem& part, EngineResult& result);
+  void find_unbounded(std::int64_t island, const ContactProblem& part, EngineResult& result);
+  void polish(std::int64_t island,
+              const ContactProblem& part,
+              ContactRun<double>& run,
+              IslandOutcome& outcome,
+              std::int64_t step_limit);
 
   ContactOptions options_;
   int threads_;

@@ -91,19 +91,20 @@ class ContactMethods {
     return measure(0);
   }
 
-  TETWARP_ANY_EXEC StopReason gauss_seidel(std::int64_t patience, const FrozenContacts<T>& frozen) {
+  TETWARP_ANY_EXEC StopReason gauss_seidel(const Patience& patience,
+                                           const FrozenContacts<T>& frozen) {
     return iterate<PlainSteps<Exec, T>>(patience, frozen);
   }
-  TETWARP_ANY_EXEC StopReason anderson(std::int64_t patience) {
+  TETWARP_ANY_EXEC StopReason anderson(const Patience& patience) {
     return iterate<AndersonMixer<Exec, T>>(patience, {});
   }
-  TETWARP_ANY_EXEC StopReason conjugate_directions(std::int64_t patience) {
+  TETWARP_ANY_EXEC StopReason conjugate_directions(const Patience& patience) {
     return iterate<ConjugateDirection<Exec, T>>(patience, {});
   }
 
   /// Solves all contacts at once in the metric of split masses (see contact_split.hpp), with
   /// Nesterov's acceleration, restarted when a step leads uphill.
-  TETWARP_ANY_EXEC StopReason mass_splitting(std::int64_t patience) {
+  TETWARP_ANY_EXEC StopReason mass_splitting(const Patience& patience) {
     convergence_.start_method(patience);
     pipeline_.split_metric(work_.metric);
     const View<T> x = pipeline_.impulse();
@@ -143,27 +144,26 @@ class ContactMethods {
   /// @param frozen  contacts that plain sweeps may skip
   /// @return  whether it switched to conjugate directions
   TETWARP_ANY_EXEC bool run(ContactMethod method, const FrozenContacts<T>& frozen) {
-    constexpr std::int64_t patience = 100;  // sweeps without progress
     switch (method) {
       case ContactMethod::gauss_seidel:
-        gauss_seidel(endless, frozen);
+        gauss_seidel({}, frozen);
         return false;
       case ContactMethod::nonlinear_cg:
-        conjugate_directions(endless);
+        conjugate_directions({});
         return false;
       case ContactMethod::anderson:
-        anderson(endless);
+        anderson({});
         return false;
       case ContactMethod::mass_splitting:
-        mass_splitting(endless);
+        mass_splitting({});
         return false;
       case ContactMethod::automatic:
       case ContactMethod::newton:
         break;
     }
-    if (anderson(patience) != StopReason::stalled) return false;
+    if (anderson({100, 4, 0.9, 10}) != StopReason::stalled) return false;
     restore_best();
-    conjugate_directions(2 * patience);
+    conjugate_directions({48, 1, 0.5});
     return true;
   }
 
@@ -177,7 +177,7 @@ class ContactMethods {
   TETWARP_HD Exec& exec() const { return pipeline_.exec(); }
 
   template <class Accelerator>
-  TETWARP_ANY_EXEC StopReason iterate(std::int64_t patience, FrozenContacts<T> frozen) {
+  TETWARP_ANY_EXEC StopReason iterate(const Patience& patience, FrozenContacts<T> frozen) {
     Accelerator accelerator(exec(), work_.weights, work_.mixed);
     convergence_.start_method(patience);
     const View<T> x = pipeline_.impulse();

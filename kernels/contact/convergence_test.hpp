@@ -36,7 +36,7 @@ struct StopCriterion {
 
 enum class StopReason {
   converged,
-  stalled,   ///< the smallest residual has not dropped by a tenth in `patience` sweeps
+  stalled,   ///< the smallest residual has not dropped; see Patience
   exhausted  ///< all sweeps of the budget are done
 };
 
@@ -47,6 +47,24 @@ struct ContactEvent {
 };
 
 constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of patience
+
+/// Sweeps without progress after which a method has stalled: a number, and a share of the sweeps
+/// with which it has made progress, so that what it wastes is in proportion to what it has done.
+/// Sweeps that end far above the smallest residual count several times: an acceleration that does
+/// not fit the problem throws the iterates about, one that is slow creeps.
+struct Patience {
+  static constexpr double setback = 1.15;  ///< residual over the smallest one from which sweeps
+                                           ///< count `setback_weight` times
+
+  std::int64_t sweeps = endless;
+  std::int64_t divisor = 0;  ///< of the share; 0: no share
+  double drop = 0.9;         ///< of the smallest residual, which counts as progress
+  std::int64_t setback_weight = 1;
+
+  TETWARP_HD std::int64_t after(std::int64_t progressed) const {
+    return divisor > 0 ? sweeps + progressed / divisor : sweeps;
+  }
+};
 
 /// The convergence test of one island, over all methods that work on it. Measuring a residual costs
 /// about as much as a sweep. is_due() is true when the defect of the iteration, which costs
@@ -75,9 +93,10 @@ class ConvergenceTest {
   TETWARP_HD double best_excess() const { return best_excess_; }
 
   /// Restarts the count of sweeps without progress, for the next method.
-  /// @param patience  sweeps without progress after which the method has stalled
-  TETWARP_HD void start_method(std::int64_t patience) {
+  TETWARP_HD void start_method(const Patience& patience) {
     patience_ = patience;
+    method_sweep_ = sweeps_;
+    waited_ = 0;
     drop_sweep_ = sweeps_;
     drop_excess_ = best_excess_;
     ratio_ = 0;
@@ -103,19 +122,24 @@ class ConvergenceTest {
   TETWARP_HD bool record(const ContactSums& sums, double defect, bool& is_best) {
     const double excess = criterion_.excess_of(sums);
     log_.note({sweeps_, criterion_.error_of(sums)});
+    const std::int64_t elapsed = sweeps_ - measured_sweep_;
     measured_sweep_ = sweeps_;
     ratio_ = defect > 0 ? excess / defect : 0;
     is_best = excess < best_excess_;
     if (is_best) best_excess_ = excess;
-    if (best_excess_ < 0.9 * drop_excess_) {
+    if (best_excess_ < patience_.drop * drop_excess_) {
       drop_excess_ = best_excess_;
       drop_sweep_ = sweeps_;
+      waited_ = 0;
+    } else {
+      const bool is_setback = excess > Patience::setback * best_excess_;
+      waited_ += elapsed * (is_setback ? patience_.setback_weight : 1);
     }
     if (excess <= 1) {
       reason_ = StopReason::converged;
       return true;
     }
-    if (sweeps_ - drop_sweep_ >= patience_) {
+    if (waited_ >= patience_.after(drop_sweep_ - method_sweep_)) {
       reason_ = StopReason::stalled;
       return true;
     }
@@ -132,7 +156,9 @@ class ConvergenceTest {
   std::int64_t measured_sweep_;
   std::int64_t drop_sweep_;
   bool is_stopped_;
-  std::int64_t patience_ = endless;
+  std::int64_t method_sweep_ = 0;  ///< at which the current method started
+  std::int64_t waited_ = 0;        ///< sweeps without progress, weighted
+  Patience patience_;
   double best_excess_ = INFINITY;
   double drop_excess_ = INFINITY;
   double ratio_ = 0;  ///< excess per defect at the last measurement; 0: none yet

@@ -189,7 +189,7 @@ bool AssociatedContact::factorize() {
     derivative.by_impulse += step_compliance * compliance_of(contact) * derivative.by_velocity;
   }
   ++iterations_;
-  return system_.factorize(derivatives_);
+  return system_.factorize_symmetric(derivatives_);
 }
 
 /// Finds the step by which V^-1 g o V z changes by the target, to first order.

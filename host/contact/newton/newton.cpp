@@ -33,13 +33,16 @@ constexpr int hold_after_miss = 3;  ///< proximal points after a failure before 
 /// The steepness of the map is epsilon^-p; after each proximal point that Newton's method does not
 /// find, the other p is used.
 constexpr double steepness_powers[] = {0.5, 0.75};
+/// The first proximal points end after this many linear systems during which the error has not
+/// halved: what follows does not depend on them.
+constexpr std::int64_t first_patience = 10;
 /// Start of epsilon, and linear systems at most, from the solution of an associated problem.
 constexpr double lift_epsilon = 1e-6;
-constexpr std::int64_t lift_steps = 20;
-
-std::int64_t iteration_limit(std::size_t contacts) {
-  return std::clamp<std::int64_t>(250000 / static_cast<std::int64_t>(contacts + 1), 50, 1000);
-}
+constexpr std::int64_t lift_steps = 10;
+/// Proximal points that reduce the error of an associated solution by this factor give the next
+/// lift, too.
+constexpr double lift_gain = 0.3;
+constexpr std::int64_t endless_patience = std::numeric_limits<std::int64_t>::max();
 
 /// Impulses, the velocities they cause, and the residuals of both.
 struct Iterate {
@@ -74,7 +77,8 @@ class NewtonPolish {
     free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
   }
 
-  void run(const VectorXd& start);
+  /// @param step_limit  linear systems at most, about
+  void run(const VectorXd& start, std::int64_t step_limit);
 
   const Iterate& best() const { return best_; }
   bool is_done(const Iterate& iterate) const { return error_of(iterate) <= options_.tolerance; }
@@ -124,7 +128,8 @@ class NewtonPolish {
   }
 
   /// Finds proximal points until the problem is solved or `limit` linear systems were solved.
-  void advance(Approach& approach, std::int64_t limit);
+  /// @param patience  linear systems without half of the error after which it ends
+  void advance(Approach& approach, std::int64_t limit, std::int64_t patience = endless_patience);
 
   /// De Saxce's fixed point iteration on the lifts: solves a series of convex problems and
   /// continues from each solution with proximal points.
@@ -151,13 +156,14 @@ class NewtonPolish {
   std::int64_t iterations_ = 0;
 };
 
-void NewtonPolish::run(const VectorXd& start) {
+void NewtonPolish::run(const VectorXd& start, std::int64_t step_limit) {
   best_ = make_iterate(start);
-  const std::int64_t limit = iteration_limit(contacts_.size());
+  const std::int64_t limit =
+      std::min(step_limit, max_newton_steps(static_cast<std::int64_t>(contacts_.size())));
   Approach approach{.center = best_};
-  advance(approach, limit / 4);
+  advance(approach, limit / 4, first_patience);
   if (is_settled()) return;
-  if (has_only_contacts_) solve_associated(limit / 2);
+  if (has_only_contacts_) solve_associated(limit - limit / 4);
   if (is_settled()) return;
   advance(approach, limit - limit / 4);
   if (is_settled()) return;
@@ -165,11 +171,18 @@ void NewtonPolish::run(const VectorXd& start) {
   advance(again, limit / 2);
 }
 
-void NewtonPolish::advance(Approach& approach, std::int64_t limit) {
+void NewtonPolish::advance(Approach& approach, std::int64_t limit, std::int64_t patience) {
   double& epsilon = approach.epsilon;
   int idle = 0;
   const std::int64_t end = iterations_ + limit;
+  double halved = error_of(best_) / 2;
+  std::int64_t halved_at = iterations_;
   while (!is_over_ && !is_done(best_) && iterations_ < end) {
+    if (error_of(best_) <= halved) {
+      halved = error_of(best_) / 2;
+      halved_at = iterations_;
+    }
+    if (iterations_ - halved_at >= patience) return;
     const double best_before = error_of(best_);
     const double steepness = std::pow(epsilon, -steepness_powers[approach.misses % 2]);
     Iterate iterate = approach.center;
@@ -202,8 +215,12 @@ void NewtonPolish::solve_associated(std::int64_t limit) {
     iterations_ += associated.iterations() - before;
     is_over_ = associated.is_over();
     keep(approach.center);
+    const double error = error_of(approach.center);
     lift = associated.lift_of(approach.center.velocity);
     advance(approach, lift_steps);
+    if (error_of(approach.center) < lift_gain * error) {
+      lift = associated.lift_of(approach.center.velocity);
+    }
   }
 }
 
@@ -247,13 +264,18 @@ bool NewtonPolish::find_proximal_point(const VectorXd& pull, double steepness, I
 }
 }  // namespace
 
+std::int64_t max_newton_steps(std::int64_t contacts) {
+  return std::clamp<std::int64_t>(250000 / (contacts + 1), 50, 1000);
+}
+
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,
                            std::vector<double>& impulse,
                            std::vector<double>& body_velocity,
-                           SolveBudget* budget) {
+                           SolveBudget* budget,
+                           std::int64_t step_limit) {
   if (budget != nullptr) {
-    const bool fits = budget->allows_memory(newton_bytes(problem, budget->memory_limit()));
+    const bool fits = budget->allows_memory(newton_cost(problem, budget->memory_limit()).bytes);
     if (!fits || budget->is_over()) return {};
     budget->start_newton();
   }
@@ -263,7 +285,7 @@ NewtonResult newton_polish(const ContactProblem& problem,
     start = Eigen::Map<const VectorXd>(impulse.data(), static_cast<Index>(impulse.size()));
   }
   NewtonPolish polish(problem, options, delassus, budget);
-  polish.run(start);
+  polish.run(start, step_limit);
   const Iterate& best = polish.best();
   impulse.assign(best.impulse.begin(), best.impulse.end());
   const VectorXd v = delassus.body_velocity(best.impulse);

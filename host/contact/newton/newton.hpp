@@ -2,6 +2,7 @@
 /// Semismooth Newton method for contact, for problems on which sweeps converge slowly.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -16,6 +17,10 @@ struct NewtonResult {
   double fclib = 0;
   bool converged = false;  ///< options.measure is at most options.tolerance
 };
+
+/// Linear systems after which newton_polish() changes its approach or ends; about 1.5 times as many
+/// in all.
+std::int64_t max_newton_steps(std::int64_t contacts);
 
 /// Improves impulses by semismooth Newton steps on the natural map inside a proximal point
 /// iteration: each outer step solves the problem with a compliance epsilon / rho added to every
@@ -32,17 +37,21 @@ struct NewtonResult {
 /// @param impulse        in: start, [3 contacts], or empty: zeros; out: the best [N s]
 /// @param body_velocity  out: v that the impulses cause, [dofs], m/s; empty in local form
 /// @param budget         ends the iteration; null: no limits
+/// @param step_limit     linear systems at most, about; a smaller limit follows from the number of
+///                       contacts
 /// @pre check_problem(problem) has passed
 /// @throws ContactProblemError  A as a whole is not positive definite
 ///
 /// Determinism: serial; same bits. Cost: a sparse LU factorization per iteration, of (3 contacts)^2
-/// in local form, of (dofs)^2 in global form.
+/// in local form, of (dofs)^2 in global form; there a sparse Cholesky factorization for the convex
+/// problems.
 /// Sources: Alart, Curnier 1991 (the map); Rockafellar 1976 (the proximal point iteration); De
 /// Saxce, Feng 1998 (the lifts).
 NewtonResult newton_polish(const ContactProblem& problem,
                            const ContactOptions& options,
                            std::vector<double>& impulse,
                            std::vector<double>& body_velocity,
-                           SolveBudget* budget = nullptr);
+                           SolveBudget* budget = nullptr,
+                           std::int64_t step_limit = std::numeric_limits<std::int64_t>::max());
 
 }  // namespace tetwarp

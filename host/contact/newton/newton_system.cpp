@@ -1,6 +1,7 @@
 #include "host/contact/newton/newton_system.hpp"
 
 #include <Eigen/OrderingMethods>
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -17,52 +18,70 @@ namespace {
 /// With fewer unknowns a dense factorization is faster than a sparse one.
 constexpr Index dense_limit = 300;
 
-/// A block diagonal matrix. Zeros inside the blocks are stored, so that the pattern is constant.
-/// @param block_of  (contact) -> block
-template <class BlockOf>
-Matrix make_block_diagonal(std::size_t count, const BlockOf& block_of) {
-  const auto size = 3 * static_cast<Index>(count);
+/// A block diagonal matrix.
+Matrix make_block_diagonal(const std::vector<Matrix3d>& blocks) {
+  const auto size = 3 * static_cast<Index>(blocks.size());
   Matrix matrix(size, size);
   matrix.reserve(Eigen::VectorXi::Constant(size, 3));
-  for (std::size_t c = 0; c < count; ++c) {
-    const Matrix3d block = block_of(c);
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
     const Index first = 3 * static_cast<Index>(c);
     for (Index column = 0; column < 3; ++column) {
       for (Index row = 0; row < 3; ++row) {
-        matrix.insert(first + row, first + column) = block(row, column);
+        matrix.insert(first + row, first + column) = blocks[c](row, column);
       }
     }
   }
   matrix.makeCompressed();
   return matrix;
 }
+
+/// Product of a block diagonal matrix and a vector.
+VectorXd product(const std::vector<Matrix3d>& blocks, const VectorXd& x) {
+  VectorXd result(x.size());
+  for (std::size_t c = 0; c < blocks.size(); ++c) {
+    const Index row = 3 * static_cast<Index>(c);
+    result.segment<3>(row) = blocks[c] * x.segment<3>(row);
+  }
+  return result;
+}
 }  // namespace
 
 NewtonSystem::NewtonSystem(const ContactProblem& problem, const Delassus& delassus)
-    : delassus_(delassus),
-      is_local_(problem.is_local()),
-      matrix_(make_eigen(is_local_ ? problem.delassus : problem.system)),
-      is_dense_(matrix_.rows() < dense_limit) {
-  if (!is_local_) jacobian_ = make_eigen(problem.jacobian);
+    : delassus_(delassus), is_local_(problem.is_local()) {
+  if (is_local_) {
+    delassus_matrix_ = make_eigen(problem.delassus);
+    return;
+  }
+  jacobian_ = make_eigen(problem.jacobian);
+  assembly_ = ContactAssembly(make_eigen(problem.system), jacobian_);
+}
+
+/// E + F B, or A + J^T E^-1 F J.
+const Matrix& NewtonSystem::assemble(const std::vector<MapDerivative>& derivatives) {
+  by_impulse_.clear();
+  by_velocity_.clear();
+  for (const MapDerivative& derivative : derivatives) {
+    by_impulse_.push_back(derivative.by_impulse);
+    by_velocity_.push_back(derivative.by_velocity);
+  }
+  if (is_local_) {
+    local_sum_ =
+        make_block_diagonal(by_impulse_) + make_block_diagonal(by_velocity_) * delassus_matrix_;
+    return local_sum_;
+  }
+  impulse_inverse_.clear();
+  response_.clear();
+  for (std::size_t c = 0; c < derivatives.size(); ++c) {
+    impulse_inverse_.push_back(by_impulse_[c].inverse());
+    response_.push_back(impulse_inverse_[c] * by_velocity_[c]);
+  }
+  return assembly_.sum(response_);
 }
 
 bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
-  const std::size_t contacts = derivatives.size();
-  by_impulse_ =
-      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_impulse; });
-  by_velocity_ =
-      make_block_diagonal(contacts, [&](std::size_t c) { return derivatives[c].by_velocity; });
-  Matrix matrix;
-  if (is_local_) {
-    matrix = by_impulse_ + by_velocity_ * matrix_;
-  } else {
-    impulse_inverse_ = make_block_diagonal(
-        contacts, [&](std::size_t c) { return Matrix3d(derivatives[c].by_impulse.inverse()); });
-    const Matrix response = impulse_inverse_ * by_velocity_;
-    const Matrix pushed = response * jacobian_;
-    matrix = matrix_ + Matrix(jacobian_.transpose()) * pushed;
-  }
-  if (is_dense_) {
+  const Matrix& matrix = assemble(derivatives);
+  factor_ = matrix.rows() < dense_limit ? Factor::dense : Factor::general;
+  if (factor_ == Factor::dense) {
     dense_factor_.compute(matrix);
     return dense_factor_.matrixLU().diagonal().array().isFinite().all() &&
            (dense_factor_.matrixLU().diagonal().array() != 0).all();
@@ -73,14 +92,23 @@ bool NewtonSystem::factorize(const std::vector<MapDerivative>& derivatives) {
   return sparse_factor_.info() == Eigen::Success;
 }
 
-double newton_bytes(const ContactProblem& problem, double limit) {
+bool NewtonSystem::factorize_symmetric(const std::vector<MapDerivative>& derivatives) {
+  if (is_local_) return factorize(derivatives);
+  const Matrix& matrix = assemble(derivatives);
+  factor_ = Factor::symmetric;
+  if (!has_symmetric_order_) symmetric_factor_.analyzePattern(matrix);
+  has_symmetric_order_ = true;
+  symmetric_factor_.factorize(matrix);
+  return symmetric_factor_.info() == Eigen::Success;
+}
+
+NewtonCost newton_cost(const ContactProblem& problem, double limit) {
   // 8 bytes for the number and 4 for its row; growing arrays are copied, and partial pivoting fills
   // more than the symmetric order.
   constexpr double bytes_per_entry = 12 * 2;
   const auto unknowns =
       static_cast<double>(problem.is_local() ? 3 * problem.contact_count() : problem.dof_count());
   const double dense = 2 * bytes_per_entry * unknowns * unknowns / 2;
-  if (dense <= limit) return dense;
   Matrix pattern = make_eigen(problem.is_local() ? problem.delassus : problem.system);
   if (!problem.is_local()) {
     const Matrix jacobian = make_eigen(problem.jacobian).cwiseAbs();
@@ -95,6 +123,7 @@ double newton_bytes(const ContactProblem& problem, double limit) {
   // elimination tree to k.
   std::vector<Index> parent(static_cast<std::size_t>(sorted.cols()), -1);
   std::vector<Index> seen_by(parent.size(), -1);
+  std::vector<double> column_entries(parent.size(), 0.0);  // of L below the diagonal
   double entries = 0;
   for (Index k = 0; k < sorted.cols(); ++k) {
     seen_by[static_cast<std::size_t>(k)] = k;
@@ -103,29 +132,43 @@ double newton_bytes(const ContactProblem& problem, double limit) {
            i = parent[static_cast<std::size_t>(i)]) {
         if (parent[static_cast<std::size_t>(i)] < 0) parent[static_cast<std::size_t>(i)] = k;
         seen_by[static_cast<std::size_t>(i)] = k;
+        ++column_entries[static_cast<std::size_t>(i)];
         ++entries;
       }
     }
-    if (2 * entries * bytes_per_entry > limit) break;
+    if (2 * entries * bytes_per_entry > limit && dense > limit) break;
   }
-  return 2 * entries * bytes_per_entry;
+  NewtonCost cost{std::min(dense, 2 * entries * bytes_per_entry), 0};
+  for (const double below : column_entries) cost.flops += (below + 1) * (below + 1);
+  return cost;
 }
 
 VectorXd NewtonSystem::solve(const VectorXd& right_side) {
   VectorXd x = solve_once(right_side);
-  x += solve_once(right_side - by_impulse_ * x - by_velocity_ * delassus_.velocity_change(x));
+  const int refinements = factor_ == Factor::symmetric ? 2 : 1;
+  for (int step = 0; step < refinements; ++step) {
+    x += solve_once(right_side - product(by_impulse_, x) -
+                    product(by_velocity_, delassus_.velocity_change(x)));
+  }
   return x;
 }
 
 VectorXd NewtonSystem::solve_once(const VectorXd& right_side) {
   if (is_local_) return solve_factorized(right_side);
-  const VectorXd pushed = impulse_inverse_ * right_side;
+  const VectorXd pushed = product(impulse_inverse_, right_side);
   const VectorXd y = solve_factorized(jacobian_.transpose() * pushed);
-  return impulse_inverse_ * (right_side - by_velocity_ * (jacobian_ * y));
+  return product(impulse_inverse_, right_side - product(by_velocity_, jacobian_ * y));
 }
 
 VectorXd NewtonSystem::solve_factorized(const VectorXd& right_side) {
-  if (is_dense_) return dense_factor_.solve(right_side);
+  switch (factor_) {
+    case Factor::dense:
+      return dense_factor_.solve(right_side);
+    case Factor::symmetric:
+      return symmetric_factor_.solve(right_side);
+    case Factor::general:
+      break;
+  }
   return sparse_factor_.solve(right_side);
 }
 

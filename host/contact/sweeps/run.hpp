@@ -1,6 +1,7 @@
 /// @file run.hpp
 /// Solves all islands whose blocks A does not couple, in one precision, on the host.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -114,20 +115,23 @@ class ContactRun {
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
       if (island(i).is_coupled) continue;
       if (threads_ > 1 && island(i).contact_count() >= shared_from) {
-        go_on(i, threads_, options_.method);
+        go_on(i, threads_, options_.method, options_.max_sweeps);
       } else {
         small.push_back(i);
       }
     }
     const bool is_worth_it = threads_ > 1 && small.size() > 1 && system_.constants.size() > 128;
     parallel_tasks(is_worth_it ? threads_ : 1, std::ssize(small), [&](std::int64_t k) {
-      go_on(small[static_cast<std::size_t>(k)], 1, options_.method);
+      go_on(small[static_cast<std::size_t>(k)], 1, options_.method, options_.max_sweeps);
     });
   }
 
-  /// Continues one island with nonlinear conjugate gradients until it converges or the budget of
-  /// sweeps is used up.
-  void run_to_budget(std::int64_t i) { go_on(i, threads_, ContactMethod::nonlinear_cg); }
+  /// Continues one island with nonlinear conjugate gradients until it converges or has had
+  /// `sweep_end` sweeps in all; options.max_sweeps at most.
+  void sweep_on(std::int64_t i, std::int64_t sweep_end) {
+    const int threads = island(i).contact_count() >= shared_from ? threads_ : 1;
+    go_on(i, threads, ContactMethod::nonlinear_cg, std::min(sweep_end, options_.max_sweeps));
+  }
 
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
@@ -162,13 +166,14 @@ class ContactRun {
     outcome.free_square = sums.free_square;
   }
 
-  void go_on(std::int64_t i, int threads, ContactMethod method) {
+  void go_on(std::int64_t i, int threads, ContactMethod method, std::int64_t sweep_end) {
     CpuContactExec exec(threads);
     ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
     HostEventLog log{.events = {}, .budget = budget_};
     MethodPlan plan = plan_of(options_);
     plan.method = method;
+    plan.sweep_budget = sweep_end;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
                                        outcome.sweeps, work_, log);
     outcome.add(end, method, island(i).contact_count());
