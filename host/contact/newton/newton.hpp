@@ -18,8 +18,8 @@ struct NewtonResult {
   bool converged = false;  ///< options.measure is at most options.tolerance
 };
 
-/// Linear systems after which newton_polish() changes its approach or ends; about 1.5 times as many
-/// in all.
+/// Limit of the linear systems of newton_polish() for a number of contacts, shared out between its
+/// phases; up to about twice as many in all.
 std::int64_t max_newton_steps(std::int64_t contacts);
 
 /// Improves impulses by semismooth Newton steps on the natural map inside a proximal point
