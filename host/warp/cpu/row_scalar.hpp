@@ -1,6 +1,6 @@
 /// @file row_scalar.hpp
-/// Rows whose voxels are written one by one on the CPU: hexahedra, filters wider than linear, labels
-/// under steep maps, positions at the end of the source, voxels without an owner.
+/// Rows whose voxels are written one by one on the CPU: hexahedra, filters wider than linear,
+/// labels under steep maps, positions at the end of the source, voxels without an owner.
 #pragma once
 #include <cstdint>
 
