@@ -1,6 +1,9 @@
 /// @file fiber.hpp
-/// A coroutine with its own stack: a call that can be suspended and resumed.
+/// A coroutine with its own stack: a call that can be suspended and resumed. Only the first switch
+/// to a stack is one of ucontext, which makes a system call; the others are jumps. A program that
+/// includes this file must be compiled without _FORTIFY_SOURCE, which forbids jumps between stacks.
 #pragma once
+#include <setjmp.h>
 #include <ucontext.h>
 
 #include <cstddef>
@@ -31,28 +34,33 @@ class Fiber {
   /// Prepares a call of `entry`, which must not throw. A call that is still suspended is abandoned.
   void start(std::function<void()> entry) {
     entry_ = std::move(entry);
+    if (std::exchange(is_idle_, false)) return;
+    is_new_ = true;
 #if defined(__SANITIZE_ADDRESS__)
     __asan_unpoison_memory_region(stack_.get(), stack_bytes);
 #endif
-    getcontext(&own_);
-    own_.uc_stack.ss_sp = stack_.get();
-    own_.uc_stack.ss_size = stack_bytes;
-    own_.uc_link = nullptr;
-    makecontext(&own_, &Fiber::run, 0);
+    getcontext(&beginning_);
+    beginning_.uc_stack.ss_sp = stack_.get();
+    beginning_.uc_stack.ss_size = stack_bytes;
+    beginning_.uc_link = nullptr;
+    makecontext(&beginning_, &Fiber::run, 0);
   }
 
   /// Runs the call until it suspends itself or returns.
   void resume() {
     resumed = this;
     const Switch to_fiber(stack_.get(), stack_bytes);
-    swapcontext(&owner_, &own_);
+    if (_setjmp(owner_) == 0) {
+      if (std::exchange(is_new_, false)) setcontext(&beginning_);
+      _longjmp(own_, 1);
+    }
     to_fiber.came_back();
   }
 
   /// Called from inside the call: returns control to the caller of resume().
   void suspend() {
     const Switch to_owner(owner_stack_.bottom, owner_stack_.size);
-    swapcontext(&own_, &owner_);
+    if (_setjmp(own_) == 0) _longjmp(owner_, 1);
     to_owner.came_back(&owner_stack_);
   }
 
@@ -91,8 +99,11 @@ class Fiber {
   static void run() {
     Fiber& self = *resumed;
     Switch::arrived(nullptr, &self.owner_stack_);
-    self.entry_();
-    self.suspend();  // never resumed: start() prepares a new call
+    for (;;) {
+      self.entry_();
+      self.is_idle_ = true;
+      self.suspend();
+    }
   }
 
   static inline thread_local Fiber* resumed =
@@ -100,8 +111,11 @@ class Fiber {
 
   std::unique_ptr<std::byte[]> stack_;
   std::function<void()> entry_;
-  ucontext_t own_{};
-  ucontext_t owner_{};
+  bool is_idle_ = false;  ///< run() waits for the next call
+  bool is_new_ = false;   ///< run() has to be entered at its beginning
+  ucontext_t beginning_{};
+  jmp_buf own_{};
+  jmp_buf owner_{};
   StackRange owner_stack_;
 };
 
