@@ -1,7 +1,7 @@
 #include "io/mesh_arrays.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <span>
 #include <utility>
 
 #include "io/nifti_components.hpp"
@@ -18,9 +18,8 @@ void add_numbers(const std::string& name,
                  bool is_of_cells,
                  const std::vector<std::int64_t>& numbers,
                  ImportedMesh& into) {
-  MeshArray array{name, is_of_cells, PixelType::int64, 1, {}};
-  array.data.resize(numbers.size() * sizeof(std::int64_t));
-  std::memcpy(array.data.data(), numbers.data(), array.data.size());
+  const auto bytes = std::as_bytes(std::span(numbers));
+  MeshArray array{name, is_of_cells, PixelType::int64, 1, {bytes.begin(), bytes.end()}};
   into.arrays.push_back(std::move(array));
 }
 

@@ -49,9 +49,14 @@ std::string as_second(const std::string& first) {
   bytes.replace(240, sizeof header.descrip, header.descrip, sizeof header.descrip);
   put<std::int32_t>(bytes, 344, header.qform_code);
   put<std::int32_t>(bytes, 348, header.sform_code);
-  const float* const quaternion = &header.quatern_b;
+  const float quaternion[] = {header.quatern_b, header.quatern_c, header.quatern_d,
+                              header.qoffset_x, header.qoffset_y, header.qoffset_z};
   for (std::size_t n = 0; n < 6; ++n) put<double>(bytes, 352 + 8 * n, quaternion[n]);
-  for (std::size_t n = 0; n < 12; ++n) put<double>(bytes, 400 + 8 * n, header.srow_x[n]);
+  for (std::size_t n = 0; n < 4; ++n) {
+    put<double>(bytes, 400 + 8 * n, header.srow_x[n]);
+    put<double>(bytes, 432 + 8 * n, header.srow_y[n]);
+    put<double>(bytes, 464 + 8 * n, header.srow_z[n]);
+  }
   put<std::int32_t>(bytes, 500, header.xyzt_units);
   put<std::int32_t>(bytes, 504, header.intent_code);
   return bytes + first.substr(static_cast<std::size_t>(header.vox_offset));
