@@ -18,7 +18,8 @@
 
 namespace tetwarp {
 namespace {
-/// What tells one content of a file from another.
+/// Device, inode, size and time of change of a file. They differ when the file was replaced or
+/// written.
 struct FileIdentity {
   dev_t device = 0;
   ino_t node = 0;

@@ -1,5 +1,5 @@
 /// @file volume_file.cpp
-/// Reading volume files of any format, which their content decides.
+/// Readers of volume files. The content of a file, not its name, decides its format.
 #include <tetwarp/io.hpp>
 
 #include "io/h5.hpp"

@@ -161,7 +161,7 @@ struct ContactReport {
   ContactStatus status = ContactStatus::not_converged;
   std::string status_reason;  ///< one sentence when not converged
   std::int64_t contacts = 0;
-  std::int64_t bilateral_rows = 0;
+  std::int64_t bilateral_rows = 0;    ///< of the problem
   std::int64_t rolling_contacts = 0;  ///< with rolling friction
   std::int64_t colors = 0;   ///< most colors of an island; contacts of a color share no body
   std::int64_t islands = 0;  ///< connected components of bodies that have contacts

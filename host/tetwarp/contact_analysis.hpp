@@ -19,6 +19,7 @@ enum class ContactMode : std::uint8_t {
   adhering  ///< held by its spring: it carries traction or would, and does not touch
 };
 
+/// Per contact: in which branch of its law it is, and how far from it.
 struct ContactModes {
   std::vector<ContactMode> mode;           ///< [contacts]
   std::vector<double> residual;            ///< share of each contact in eta, [contacts]: eta^2 is
@@ -42,7 +43,8 @@ TETWARP_EXPORT ContactModes contact_modes(const ContactProblem& problem,
 ///     after - free = offset_work + bilateral_work - friction_loss - rolling_loss - impact_loss
 ///                    - bilateral_loss - adhesion_loss - (adhesion_after - adhesion_before) + error
 ///
-/// error is what A v = b + J^T r lacks: rounding for condensed and rigid bodies.
+/// Follows from A (v - v_f) = J^T r + J_b^T lambda, multiplied by v. error is what A v = b + J^T r
+/// lacks: rounding for condensed and rigid bodies.
 struct EnergyBalance {
   double before = 0;     ///< 1/2 v_0 . A v_0 with the velocities at the start; 0: not given
   double load_work = 0;  ///< free - before: work of external impulses; 0 without velocities
@@ -59,13 +61,14 @@ struct EnergyBalance {
   double adhesion_before = 0;  ///< of stretched springs, 1/2 kappa (gap / dt)^2, at the start
   double adhesion_after = 0;   ///< and at the end of the step, beta as in the step
   double adhesion_loss = 0;    ///< of the implicit step of these springs, at least 0
-  double error = 0;
+  double error = 0;            ///< what the equation above lacks
 };
 
-/// @param start_velocity  v at the start of the step, [dofs], or empty
+/// The energies of a solved step, in global form; costs a factorization of A.
+/// @param solution        impulses, velocities and body velocities are read
+/// @param start_velocity  v at the start of the step, [dofs], m/s or rad/s, or empty
 /// @throws std::invalid_argument  an array has the wrong size, or the problem is in local form,
-/// which
-///                                has no masses
+///                                which has no masses
 /// @throws ContactProblemError    as ContactSolver::solve()
 TETWARP_EXPORT EnergyBalance energy_balance(const ContactProblem& problem,
                                             const ContactSolution& solution,

@@ -83,8 +83,8 @@ struct RollingFriction {
 /// How the solver itself stores BilateralRows and RollingFriction: as blocks of three rows among
 /// the contacts. Empty in problems of a caller.
 struct RowBlocks {
-  std::vector<std::uint8_t> kind;     ///< [contacts]
-  std::vector<std::int32_t> contact;  ///< [contacts]
+  std::vector<std::uint8_t> kind;     ///< [contacts], a ContactKind of the kernels
+  std::vector<std::int32_t> contact;  ///< [contacts], of rolling friction: whose it is
   std::vector<double> torsion;        ///< [contacts], m
 
   bool empty() const { return kind.empty(); }

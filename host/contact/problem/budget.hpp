@@ -20,8 +20,8 @@ struct BudgetOver {};
 /// true. The clock is read only if there is a time limit or a progress callback, so that without
 /// them results do not depend on time. The first limit that stops the solve gives the reason.
 ///
-/// Sweeps of several threads may call is_over() and count_sweep() at the same time; the callback is
-/// called only on the thread that constructed this object.
+/// Sweeps of several threads may call is_over() and count_sweep() at the same time. Only the thread
+/// that made the object calls the callback.
 class SolveBudget {
  public:
   /// The limits of `options`, counted from now.
