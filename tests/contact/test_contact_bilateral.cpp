@@ -152,35 +152,16 @@ ContactProblem jointed_problem(std::uint32_t seed, double coupling) {
 TEST(ContactBilateral, AgreesWithTheReference) {
   for (const double coupling : {0.0, 0.3}) {
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
-      const ContactProblem problem = jointed_problem(500 + seed, coupling);
-      const ContactSolution expected = solve_contacts(problem, {.backend = Backend::reference});
-      EXPECT_TRUE(expected.converged()) << expected.report.status_reason;
-      for (const ContactMethod method : methods) {
-        const ContactOptions options = {.method = method, .tolerance = 1e-10};
-
-        const ContactSolution solution = solve_contacts(problem, options);
-
-        const std::string what = std::to_string(seed) + " " + report_name_of(method);
-        EXPECT_TRUE(solution.converged()) << what << solution.report.status_reason;
-        EXPECT_LE(residual_of(problem, solution, options).eta, 1.001e-10) << what;
-        for (std::size_t i = 0; i < solution.body_velocity.size(); ++i) {
-          EXPECT_NEAR(solution.body_velocity[i], expected.body_velocity[i], 1e-6) << what;
-        }
-      }
+      SCOPED_TRACE(seed);
+      expect_reference(jointed_problem(500 + seed, coupling), methods, 1e-6);
     }
   }
 }
 
-/// The residual of iterated bodies is an upper bound.
 TEST(ContactBilateral, CoupledBodiesMayBeIterated) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
-    const ContactProblem problem = jointed_problem(600 + seed, 0.3);
-
-    const ContactSolution solution = solve_contacts(
-        problem, {.tolerance = 1e-6, .coupling = ContactCoupling::iterated, .relaxation = 0.3});
-
-    EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
-    EXPECT_LE(residual_of(problem, solution).eta, 1e-6) << seed;
+    SCOPED_TRACE(seed);
+    expect_iteration(jointed_problem(600 + seed, 0.3));
   }
 }
 

@@ -127,34 +127,16 @@ ContactProblem rolling_problem(std::uint32_t seed, double coupling) {
 TEST(ContactRolling, AgreesWithTheReference) {
   for (const double coupling : {0.0, 0.3}) {
     for (std::uint32_t seed = 0; seed < 6; ++seed) {
-      const ContactProblem problem = rolling_problem(40 + seed, coupling);
-      const ContactSolution expected = solve_contacts(problem, {.backend = Backend::reference});
-      EXPECT_TRUE(expected.converged()) << expected.report.status_reason;
-      for (const ContactMethod method : capable) {
-        const ContactOptions options = {.method = method, .tolerance = 1e-10};
-
-        const ContactSolution solution = solve_contacts(problem, options);
-
-        const std::string what = std::to_string(seed) + " " + report_name_of(method);
-        EXPECT_TRUE(solution.converged()) << what << solution.report.status_reason;
-        EXPECT_LE(residual_of(problem, solution, options).eta, 1.001e-10) << what;
-        for (std::size_t i = 0; i < solution.body_velocity.size(); ++i) {
-          EXPECT_NEAR(solution.body_velocity[i], expected.body_velocity[i], 1e-5) << what;
-        }
-      }
+      SCOPED_TRACE(seed);
+      expect_reference(rolling_problem(40 + seed, coupling), capable, 1e-5);
     }
   }
 }
 
 TEST(ContactRolling, CoupledBodiesMayBeIterated) {
   for (std::uint32_t seed = 0; seed < 6; ++seed) {
-    const ContactProblem problem = rolling_problem(60 + seed, 0.3);
-
-    const ContactSolution solution = solve_contacts(
-        problem, {.tolerance = 1e-6, .coupling = ContactCoupling::iterated, .relaxation = 0.3});
-
-    EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
-    EXPECT_LE(residual_of(problem, solution).eta, 1e-6) << seed;
+    SCOPED_TRACE(seed);
+    expect_iteration(rolling_problem(60 + seed, 0.3));
   }
 }
 

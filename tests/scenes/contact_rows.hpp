@@ -1,13 +1,18 @@
 /// @file contact_rows.hpp
 /// Rows beyond those of contacts for seeded problems of bodies of six dofs; see global_problem().
 #pragma once
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
 #include <cstdint>
 #include <random>
+#include <span>
+#include <string>
 #include <vector>
 
-#include <tetwarp/contact_problem.hpp>
+#include <tetwarp/contact.hpp>
 
+#include "tests/scenes/contact_methods.hpp"
 #include "tests/scenes/contact_samples.hpp"
 
 namespace tetwarp::test {
@@ -53,6 +58,35 @@ inline void add_rolling_friction(ContactProblem& problem, std::uint32_t seed) {
 inline void add_ellipses(ContactProblem& problem) {
   problem.second_friction = problem.friction;
   for (double& friction : problem.second_friction) friction /= 2;
+}
+
+/// Expects that every method solves a problem to 1e-10, to the velocities of the reference.
+/// @param tolerance  of the velocities
+inline void expect_reference(const ContactProblem& problem,
+                             std::span<const ContactMethod> methods,
+                             double tolerance) {
+  const ContactSolution expected = solve_contacts(problem, {.backend = Backend::reference});
+  EXPECT_TRUE(expected.converged()) << expected.report.status_reason;
+  for (const ContactMethod method : methods) {
+    const ContactOptions options = {.method = method, .tolerance = 1e-10};
+    const ContactSolution solution = solve_contacts(problem, options);
+
+    const std::string what = report_name_of(method);
+    EXPECT_TRUE(solution.converged()) << what << solution.report.status_reason;
+    EXPECT_LE(residual_of(problem, solution, options).eta, 1.001e-10) << what;
+    for (std::size_t i = 0; i < solution.body_velocity.size(); ++i) {
+      EXPECT_NEAR(solution.body_velocity[i], expected.body_velocity[i], tolerance) << what;
+    }
+  }
+}
+
+/// Expects that the outer iteration solves a problem of coupled bodies, whose residual it bounds.
+inline void expect_iteration(const ContactProblem& problem) {
+  const ContactSolution solution = solve_contacts(
+      problem, {.tolerance = 1e-6, .coupling = ContactCoupling::iterated, .relaxation = 0.3});
+
+  EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
+  EXPECT_LE(residual_of(problem, solution).eta, 1e-6);
 }
 
 }  // namespace tetwarp::test

@@ -49,16 +49,8 @@ class RowBench {
         exec_(2),
         arrays_(exec_),
         stages_(arrays_, input_) {
-    job_.setups = stages_.setups;
-    job_.tets = stages_.tets;
-    job_.nodes = stages_.nodes;
-    job_.pairs = stages_.pairs;
-    job_.ranges = stages_.ranges;
-    job_.frame = input_.frame;
-    job_.source = source_view<T>(Region{{0, 0, 0}, source_.grid.dims}, source_.components,
-                                 source_.data.data());
+    job_ = stages_.template raster_job<T>(input_, source_);
     job_.filter = what.filter;
-    job_.background = T{77};
     job_.copy_whole_shifts = true;
     job_.reorientation = what.reorientation;
     if (what.filter == Filter::labels) make_labels();

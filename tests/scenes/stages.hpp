@@ -10,6 +10,7 @@
 
 #include "host/warp/geometry.hpp"
 #include "kernels/warp/cell_pairs.hpp"
+#include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/corner_mask.hpp"
 #include "kernels/warp/node_quantize.hpp"
 #include "kernels/warp/tet_setup.hpp"
@@ -120,6 +121,22 @@ class Stages {
     accepted = arrays.template zeros<std::int64_t>(1);
     cell_pairs(exec, candidates, View<const std::int64_t>{pair_offsets.data + count, 1},
                input.frame, pairs, pair_count, ranges, accepted);
+  }
+
+  /// A raster of whole sources in the tests' memory; outputs are to be set.
+  template <class T>
+  RasterJob<T> raster_job(const StageInput& input, const Volume& source) const {
+    RasterJob<T> job{};
+    job.setups = setups;
+    job.tets = tets;
+    job.nodes = nodes;
+    job.pairs = pairs;
+    job.ranges = ranges;
+    job.frame = input.frame;
+    job.source =
+        source_view<T>(Region{{0, 0, 0}, source.grid.dims}, source.components, source.data.data());
+    job.background = T{77};
+    return job;
   }
 };
 
