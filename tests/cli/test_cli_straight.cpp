@@ -35,7 +35,9 @@ class Straight : public testing::Test {
     const CommandResult result = run_command(scene, words);
     ASSERT_EQ(result.exit_code, 0) << words.front() << ": " << result.err;
     EXPECT_NE(result.err.find(warning), std::string::npos) << result.err;
-    if (warning.empty()) EXPECT_EQ(result.err, "") << words.front();
+    if (warning.empty()) {
+      EXPECT_EQ(result.err, "") << words.front();
+    }
   }
 
   /// Step 3 through VTKHDF files: import, warp, export.
