@@ -194,6 +194,7 @@ VolumePlan plan_volume(const std::string& path,
   }
   if (arguments.temporal && has_nifti_name(output.string())) {
     std::vector<double> times;
+    times.reserve(steps.size());
     for (const std::int64_t step : steps) {
       times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
     }
@@ -205,7 +206,7 @@ VolumePlan plan_volume(const std::string& path,
 
 /// The name of an output in a folder: that of its volume; of a pair .hdr and .img one NIfTI file.
 std::string output_name_of(const std::string& volume) {
-  const std::string name = fs::path(volume).filename().string();
+  std::string name = fs::path(volume).filename().string();
   for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz"}) {
     if (name.ends_with(end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
   }

@@ -35,7 +35,7 @@ Vector3d row_error(const MeasuredContact& block,
                    const Vector3d& impulse,
                    const Vector3d& velocity,
                    const Vector3d& rho) {
-  const Vector3d stopped = rho.cwiseProduct(velocity);
+  Vector3d stopped = rho.cwiseProduct(velocity);
   if (block.kind == ContactKind::bilateral) return stopped;
   Vector3d target = impulse - stopped;
   const double limit = block.torsion * block.push, radius = block.friction * block.push;
