@@ -226,10 +226,15 @@ if(NOT BUILD_SHARED_LIBS)
     tests/warp/test_warp_rounding.cpp
     tests/warp/test_warp_quantities.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
+  if(TETWARP_FUSED_EMULATION)
+    set_source_files_properties(tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp
+      PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
+  endif()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emu/emulated_backend.cpp
     tests/emu/emulated_contact.cpp
     tests/emu/test_contact_emulated.cpp
+    tests/emu/test_device_errors.cpp
     tests/emu/test_warp_emulated.cpp
     tests/emu/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)

@@ -85,6 +85,7 @@ class DeviceArray {
     copy.extent = extent;
     copy.kind = cudaMemcpyHostToDevice;
     check_cuda(cudaMemcpy3D(&copy), "cudaMemcpy3D");
+    check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");  // as after upload()
     cudaResourceDesc resource = {};
     resource.resType = cudaResourceTypeArray;
     resource.res.array.array = array_;
@@ -168,6 +169,8 @@ void upload(const T* host, std::int64_t count, DeviceBuffer<T>& buffer) {
   check_cuda(cudaMemcpy(buffer.view(count).data, host, static_cast<std::size_t>(count) * sizeof(T),
                         cudaMemcpyHostToDevice),
              "cudaMemcpy to device");
+  // Of pageable memory it returns when the data are staged; the streams here do not wait for it.
+  check_cuda(cudaDeviceSynchronize(), "cudaDeviceSynchronize");
 }
 
 template <class T>

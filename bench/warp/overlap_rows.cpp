@@ -2,6 +2,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <tetwarp/page_lock.hpp>
 #include <vector>
@@ -35,7 +36,9 @@ class TwoBuffers {
     for (std::size_t b = 0; b < 2; ++b) {
       buffers_[b] = Buffer(bytes_);
       pointers_[b] = buffers_[b].data();
-      if (row.backend == Backend::cuda) locks_[b] = PageLock(buffers_[b].data(), bytes_);
+      if (row.backend != Backend::cuda) continue;
+      locks_[b] = PageLock(buffers_[b].data(), bytes_);
+      if (!locks_[b].is_locked()) throw std::runtime_error("the output's pages cannot be locked");
     }
   }
 

@@ -134,7 +134,8 @@ struct WarpTarget {
   /// step that threw, and for arrays other than those of the last two steps.
   bool holds_previous = false;
   /// cudaStream_t on which the step's kernels run, to order them with the caller's work on device
-  /// memory; null: a stream of the Warper. cuda only.
+  /// memory; null: a stream of the Warper, which first waits for the default stream if the step
+  /// uses device memory of the caller. cuda only.
   void* stream = nullptr;
 };
 

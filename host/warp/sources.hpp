@@ -2,6 +2,7 @@
 /// The sources in the memory of an executor, with data derived from them on first use: spline
 /// coefficients, ranges, constant regions.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,12 @@ class WarpSources {
   }
 
   std::size_t size() const { return sources_.size(); }
+
+  /// Whether the caller's device memory holds a source.
+  bool are_on_device() const {
+    return std::any_of(plan_.sources.begin(), plan_.sources.end(),
+                       [](const VolumeView& source) { return source.memory == Memory::device; });
+  }
 
   /// Samples of source s, of type T, with the coefficients and range that the filter needs.
   template <class T>

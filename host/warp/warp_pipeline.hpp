@@ -47,9 +47,11 @@ class WarpPipeline : public WarpBackend {
   ~WarpPipeline() override { exec_.drain(); }
 
   void upload(int number, const PositionsView& deformed) override {
+    [[maybe_unused]] const auto scope = exec_.scope();
     exec_.select(number);
     if (std::exchange(flights_[number].is_open, true)) exec_.times().clear();
     const std::int64_t size = 3 * deformed.node_count;
+    flights_[number].has_device_positions = deformed.memory == Memory::device;
     flights_[number].positions =
         deformed.memory == Memory::device
             ? View<const double>{deformed.xyz, size}
@@ -57,6 +59,7 @@ class WarpPipeline : public WarpBackend {
   }
 
   void compute(int number, const WarpTarget& target, const Progress& progress) override {
+    [[maybe_unused]] const auto scope = exec_.scope();
     exec_.select(number);
     Flight& flight = flights_[number];
     flight.target = target;
@@ -72,6 +75,7 @@ class WarpPipeline : public WarpBackend {
   }
 
   void settle(int number) override {
+    [[maybe_unused]] const auto scope = exec_.scope();
     Flight& flight = flights_[number];
     exec_.select(number);
     for (;;) {
@@ -89,6 +93,7 @@ class WarpPipeline : public WarpBackend {
   }
 
   void download(int number) override {
+    [[maybe_unused]] const auto scope = exec_.scope();
     Flight& flight = flights_[number];
     if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
     exec_.select(number);
@@ -96,6 +101,7 @@ class WarpPipeline : public WarpBackend {
   }
 
   StepReport finish(int number) override {
+    [[maybe_unused]] const auto scope = exec_.scope();
     exec_.select(number);
     StageTimes& times = exec_.times();  // waits for the download
     outputs_.release(flights_[number].slot);
@@ -119,6 +125,7 @@ class WarpPipeline : public WarpBackend {
   struct Flight {
     typename Exec::template Staged<double> position_buffer;
     View<const double> positions;
+    bool has_device_positions = false;
     typename Exec::template PinnedBuffer<StepCounters> counters;
     typename Exec::template PinnedBuffer<double> totals;
     typename Exec::template PinnedBuffer<RoundingChange> roundings;
@@ -132,7 +139,10 @@ class WarpPipeline : public WarpBackend {
   };
 
   void compute(Flight& flight, const Progress& progress) {
-    exec_.begin_compute(flight.target.stream);
+    const bool has_device_memory = flight.has_device_positions ||
+                                   flight.target.memory == Memory::device ||
+                                   sources_.are_on_device();
+    exec_.begin_compute(flight.target.stream, has_device_memory);
     run(flight.positions, flight.target, flight.age, progress);
     ProgressPart{progress, 0, 1}.report(1.0);
     flight.counters.reserve(1);

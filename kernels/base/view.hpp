@@ -19,6 +19,7 @@ struct View {
   requires std::is_same_v<Const, const T> TETWARP_HD operator View<Const>() const {
     return {data, size};
   }
+  bool operator==(const View&) const = default;  ///< the same memory
 };
 
 constexpr int cell_edge = 8;  ///< voxels along the edge of a cell

@@ -16,6 +16,7 @@ namespace tetwarp {
 struct ContactSwitches {
   bool pyramid = false;      ///< FrictionLaw::pyramid, else cone
   bool restrictive = false;  ///< AdhesionRule::restrictive, else parallel
+  bool operator==(const ContactSwitches&) const = default;
 };
 
 /// Which parts of the law a contact needs.

@@ -16,6 +16,7 @@ struct PairView {
   View<const std::int32_t> block;        ///< [pairs]
   View<const std::int64_t> value_start;  ///< [pairs], in the Jacobian and in the responses
   View<const std::int64_t> dof_start;    ///< [blocks + 1], first dof of each block
+  bool operator==(const PairView&) const = default;
 };
 
 /// Inverts a symmetric positive definite matrix in place: Gauss-Jordan without pivoting.

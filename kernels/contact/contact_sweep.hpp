@@ -18,6 +18,7 @@ struct DelassusView {
   View<const std::int32_t> column;     ///< [blocks]
   View<const T> blocks;                ///< [blocks][9]
   View<const T> free_velocity;         ///< q, [contacts][3]
+  bool operator==(const DelassusView&) const = default;
 
   /// u = q + W r at contact c.
   /// @param impulse   r of all contacts, [contacts][3]
@@ -54,6 +55,7 @@ struct BodiesView {
   View<const T> jacobian;  ///< by pairs; see PairView
   View<const T> response;  ///< by pairs
   View<const T> offset;    ///< w, [contacts][3]
+  bool operator==(const BodiesView&) const = default;
 
   /// u = J v + w at contact c.
   /// @param body_velocity  v, [dofs]
@@ -125,6 +127,7 @@ struct FrozenContacts {
   View<std::int32_t> skipped_visits;    ///< visits skipped so far, [contacts]
   bool all_active = true;               ///< this sweep visits frozen contacts, too
   T share = 0;  ///< largest relative change of the impulse that counts as unchanged
+  bool operator==(const FrozenContacts&) const = default;
 
   /// Whether the sweep skips contact c; counts skipped visits.
   TETWARP_HD bool skips(std::int64_t c) const {
@@ -184,6 +187,7 @@ struct DelassusSweepBody {
   ContactSwitches switches;
   FrozenContacts<T> frozen;
   View<T> impulse;
+  bool operator==(const DelassusSweepBody&) const = default;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (frozen.skips(c)) return;
@@ -203,6 +207,7 @@ struct BodySweepBody {
   FrozenContacts<T> frozen;
   View<T> impulse;
   View<T> body_velocity;
+  bool operator==(const BodySweepBody&) const = default;
 
   TETWARP_HD void operator()(std::int64_t c) const {
     if (frozen.skips(c)) return;

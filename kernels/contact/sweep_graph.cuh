@@ -2,6 +2,7 @@
 /// Sweeps over colors as CUDA graphs: a sweep makes the same launches every time, one per color.
 #pragma once
 #include <algorithm>
+#include <any>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -43,6 +44,11 @@ class SweepGraph {
  public:
   template <class Body>
   SweepGraph(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
+    // A kernel is loaded by its first use, which must not be within the recording.
+    cudaFuncAttributes attributes;
+    check_cuda(cudaFuncGetAttributes(
+                   &attributes, reinterpret_cast<const void*>(&each_kernel<FromContact<Body>>)),
+               "cudaFuncGetAttributes");
     StreamCapture capture(stream);
     for (std::int64_t k = 0; k + 1 < color_start.size; ++k) {
       const std::int64_t count = color_start[k + 1] - color_start[k];
@@ -64,36 +70,19 @@ class SweepGraph {
   cudaGraphExec_t graph_ = nullptr;
 };
 
-/// Key of a sweep within one solve: island, arrays changed, whether frozen contacts are visited.
-struct SweepKey {
-  const std::int64_t* colors;
-  const void* impulse;
-  const void* body_velocity;
-  bool all_active;
-
-  bool operator==(const SweepKey&) const = default;
-};
-
-template <class T>
-SweepKey key_of(View<const std::int64_t> color_start, const DelassusSweepBody<T>& body) {
-  return {color_start.data, body.impulse.data, nullptr, body.frozen.all_active};
-}
-template <class T>
-SweepKey key_of(View<const std::int64_t> color_start, const BodySweepBody<T>& body) {
-  return {color_start.data, body.impulse.data, body.body_velocity.data, body.frozen.all_active};
-}
-
 /// The graphs of one solve, recorded on demand.
 class SweepGraphs {
  public:
   /// @param color_start  in memory of the host
   template <class Body>
   void launch(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
-    const SweepKey key = key_of(color_start, body);
-    auto entry = std::find_if(entries_.begin(), entries_.end(),
-                              [&](const Entry& known) { return known.key == key; });
+    auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& known) {
+      const Body* const recorded = std::any_cast<Body>(&known.body);
+      return known.color_start == color_start && recorded != nullptr && *recorded == body;
+    });
     if (entry == entries_.end()) {
-      entries_.push_back({key, std::make_unique<SweepGraph>(stream, color_start, body)});
+      entries_.push_back(
+          {color_start, body, std::make_unique<SweepGraph>(stream, color_start, body)});
       entry = entries_.end() - 1;
     }
     entry->graph->launch_on(stream);
@@ -102,7 +91,8 @@ class SweepGraphs {
 
  private:
   struct Entry {
-    SweepKey key;
+    View<const std::int64_t> color_start;
+    std::any body;  ///< arguments of the recorded launches
     std::unique_ptr<SweepGraph> graph;
   };
 

@@ -11,10 +11,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "kernels/emu/error.hpp"
 #include "kernels/emu/simt.hpp"
 
 namespace tetwarp::simt {
@@ -43,6 +46,8 @@ struct Stream {
   std::uint64_t queued = 0;
   std::uint64_t done = 0;
   std::optional<Recording> recording;  ///< set while capturing: work is stored here and not run
+  std::thread::id recorded_by;         ///< the thread that captures
+  int device = 0;                      ///< the one that was current when the stream was made
 
   void enqueue(std::function<void()> run, const Event& after = {}) {
     if (recording) return recording->push_back(std::move(run));
@@ -98,6 +103,11 @@ class Device {
   /// Number of calls of cudaStreamWaitEvent before the one that is ignored; `none` ignores none.
   /// With it a test shows that each wait is needed.
   int skipped_wait = none;
+  /// Number of allocations, of device or page-locked memory, before the one that fails; `none`
+  /// fails none.
+  int failing_allocation = none;
+  /// The error that all calls return, as after an illegal access of a kernel.
+  cudaError_t failure = cudaSuccess;
 
   static Device& only() {
     static Device device;
@@ -134,12 +144,33 @@ class Device {
     memory_[static_cast<const std::byte*>(data)] = {nullptr, size, true};
   }
 
-  Stream* make_stream() { return streams_.emplace_back(std::make_unique<Stream>()).get(); }
+  bool allocation_fails() { return failing_allocation != none && failing_allocation-- == 0; }
+
+  Stream* make_stream() {
+    Stream* const stream = streams_.emplace_back(std::make_unique<Stream>()).get();
+    stream->device = current_device;
+    return stream;
+  }
+  /// The stream of a handle; null and cudaStreamLegacy are the default stream.
+  Stream& stream(cudaStream_t handle) {
+    return handle == nullptr || handle == cudaStreamLegacy ? default_stream_
+                                                           : *static_cast<Stream*>(handle);
+  }
+  bool is_recorded_by_this_thread() const {
+    return std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) {
+      return stream->recording && stream->recorded_by == std::this_thread::get_id();
+    });
+  }
+  /// Kernels are loaded when they are first used, which must not happen while a stream is captured.
+  void load(const void* kernel) { loaded_.insert(kernel); }
+  bool is_loaded(const void* kernel) const { return loaded_.contains(kernel); }
+
   void end_stream(Stream* stream) {
     stream->run_until(stream->queued);
     std::erase_if(streams_, [&](const auto& one) { return one.get() == stream; });
   }
   void run_all() {
+    default_stream_.run_until(default_stream_.queued);
     for (const auto& stream : streams_) stream->run_until(stream->queued);
   }
   /// Runs the work of eager_stream that is ready; called after each change that may make some
@@ -166,10 +197,14 @@ class Device {
 
   std::map<const std::byte*, Memory> memory_;
   std::vector<std::unique_ptr<Stream>> streams_;
+  Stream default_stream_;
+  std::set<const void*> loaded_;
   std::string calls_;
 };
 
 /// Enqueues a kernel on a stream; with a null stream runs it immediately.
+/// @throws Fault  the stream belongs to another than the current device, or is captured and the
+///                kernel was not loaded before
 template <class Kernel, class... Args>
 void launch_on(cudaStream_t stream,
                Kernel kernel,
@@ -178,11 +213,20 @@ void launch_on(cudaStream_t stream,
                std::size_t shared_bytes,
                const Args&... args) {
   if (stream == nullptr) return launch(kernel, grid, block, shared_bytes, args...);
-  const std::lock_guard guard(Device::only().lock);
-  Device::only().note(ApiCall::launch);
-  static_cast<Stream*>(stream)->enqueue(
-      [=] { launch(kernel, grid, block, shared_bytes, args...); });
-  Device::only().run_eager();
+  Device& device = Device::only();
+  const std::lock_guard guard(device.lock);
+  Stream& own = device.stream(stream);
+  const auto* const address = reinterpret_cast<const void*>(kernel);
+  if (own.device != current_device) {
+    throw Fault("a kernel is launched on a stream of another device");
+  }
+  if (own.recording && !device.is_loaded(address)) {
+    throw Fault("a kernel is first used while a stream is captured");
+  }
+  device.load(address);
+  device.note(ApiCall::launch);
+  own.enqueue([=] { launch(kernel, grid, block, shared_bytes, args...); });
+  device.run_eager();
 }
 
 }  // namespace tetwarp::simt

@@ -30,6 +30,8 @@
 #endif
 
 using cudaStream_t = void*;
+/// The default stream, which null also means.
+inline const cudaStream_t cudaStreamLegacy = reinterpret_cast<cudaStream_t>(1);
 
 struct uint3 {
   unsigned x = 0, y = 0, z = 0;

@@ -15,6 +15,7 @@ namespace tetwarp {
 /// @throws CudaError naming `call` if `error` is one
 inline void check_cuda(cudaError_t error, const char* call) {
   if (error != cudaSuccess) {
+    cudaGetLastError();  // the runtime keeps the error for the next caller that asks; reported here
     throw CudaError(std::string(call) + ": " + cudaGetErrorString(error));
   }
 }

@@ -51,7 +51,13 @@ class CudaExec {
   /// read sizes once, then launch over the capacities of their buffers.
   static constexpr bool reads_are_free = false;
 
+  /// @pre the device is current
   explicit CudaExec(int device) : state_(std::make_unique<State>(device)) {}
+
+  /// Held by every call that uses the executor: makes its device current.
+  using Scope = DeviceScope;
+  Scope scope() const { return Scope(state_->device); }
+  int number() const { return state_->device; }
 
   cudaStream_t stream() const { return state_->stream; }
   std::string device() const {
@@ -62,15 +68,11 @@ class CudaExec {
   int threads() const { return 1; }
 
   /// Makes `flight`, 0 or 1, the current step: all calls after it belong to that step. Initially 0.
-  void select(int flight) {
-    check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
-    state_->flight = &state_->flights[flight];
-  }
+  void select(int flight) { state_->flight = &state_->flights[flight]; }
 
   /// Later kernels run on the caller's stream; null: on this executor's own. Waits for the kernels
   /// of the previous stream if it changes.
   void use_stream(void* stream) {
-    check_cuda(cudaSetDevice(state_->device), "cudaSetDevice");
     const cudaStream_t next =
         stream != nullptr ? static_cast<cudaStream_t>(stream) : cudaStream_t{state_->own_stream};
     if (next == state_->stream) return;
@@ -79,9 +81,14 @@ class CudaExec {
   }
 
   /// To be called before the first kernel of the current step: its kernels wait for its upload().
-  void begin_compute(void* stream) {
+  /// @param has_device_memory  whether the step uses device memory of the caller: without a stream
+  ///                           of the caller its kernels wait for the default stream
+  void begin_compute(void* stream, bool has_device_memory) {
     use_stream(stream);
     flight().uploaded.make_wait(this->stream());
+    if (stream != nullptr || !has_device_memory) return;
+    flight().given.record(cudaStreamLegacy);
+    flight().given.make_wait(this->stream());
   }
   /// To be called after the last kernel of the current step: records the event that download() and
   /// wait_computed() wait for.
@@ -255,14 +262,9 @@ class CudaExec {
     DeviceBuffer<std::byte> scratch;
     DeviceBuffer<CellPair> other_pairs;
 
-    explicit State(int number) : device(made_current(number)) {}
+    explicit State(int number) : device(number) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
-
-    static int made_current(int number) {
-      check_cuda(cudaSetDevice(number), "cudaSetDevice");
-      return number;
-    }
   };
 
   DeviceFlight& flight() { return *state_->flight; }

@@ -10,6 +10,26 @@
 
 namespace tetwarp {
 
+/// Makes a device current on this thread during its life, then the one that was before.
+class DeviceScope {
+ public:
+  explicit DeviceScope(int device) {
+    check_cuda(cudaGetDevice(&before_), "cudaGetDevice");
+    if (device == before_) return;
+    check_cuda(cudaSetDevice(device), "cudaSetDevice");
+    is_changed_ = true;
+  }
+  DeviceScope(const DeviceScope&) = delete;
+  DeviceScope& operator=(const DeviceScope&) = delete;
+  ~DeviceScope() {
+    if (is_changed_) cudaSetDevice(before_);
+  }
+
+ private:
+  int before_ = 0;
+  bool is_changed_ = false;
+};
+
 /// A stream of the current device, independent of the default one.
 class DeviceStream {
  public:
@@ -65,6 +85,7 @@ class DeviceEvent {
 /// Events and stage times of one step in flight.
 class DeviceFlight {
  public:
+  DeviceEvent given;     ///< the default stream's work before the step
   DeviceEvent uploaded;  ///< the step's input is on the device
   DeviceEvent computed;  ///< the step's kernels have run
 

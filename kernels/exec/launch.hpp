@@ -9,6 +9,8 @@
 
 #include <string>
 #include <tetwarp/error.hpp>
+#include <tuple>
+#include <type_traits>
 #else
 #include "kernels/emu/runtime.hpp"
 #endif
@@ -41,8 +43,17 @@ void launch(cudaStream_t stream,
             std::size_t shared_bytes,
             const Args&... args) {
 #if defined(__CUDACC__)
-  kernel<<<grid, block, shared_bytes, stream>>>(args...);
-  if (const cudaError_t status = cudaGetLastError(); status != cudaSuccess) {
+  // Not <<<>>>, whose errors can only be read as the last error, that of an earlier call included.
+  std::tuple<std::remove_const_t<Parameters>...> values(args...);
+  const cudaError_t status = std::apply(
+      [&](auto&... value) {
+        void* addresses[] = {&value...};
+        return cudaLaunchKernel(reinterpret_cast<const void*>(kernel), grid, block, addresses,
+                                shared_bytes, stream);
+      },
+      values);
+  if (status != cudaSuccess) {
+    cudaGetLastError();  // reported here
     throw CudaError(std::string("kernel launch: ") + cudaGetErrorString(status));
   }
 #else

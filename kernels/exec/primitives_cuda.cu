@@ -4,6 +4,8 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 #include <cub/device/device_select.cuh>
+#include <limits>
+#include <string>
 
 #include "kernels/exec/exec_cuda.cuh"
 
@@ -18,6 +20,19 @@ void with_scratch(DeviceBuffer<std::byte>& scratch, const char* name, Call&& cal
   check_cuda(call(scratch.view(0).data, bytes), name);
 }
 
+/// The number of items for a call of CUB. Before version 3.0 some calls take an int.
+/// @throws CudaError  that version cannot handle so many
+std::int64_t item_count(std::int64_t count) {
+#if CUB_VERSION < 300000
+  if (count > std::numeric_limits<int>::max()) {
+    throw CudaError(std::to_string(count) +
+                    " pairs of cells and tetrahedra; more than 2^31-1 need CUDA 13: use smaller "
+                    "regions or a smaller memory limit");
+  }
+#endif
+  return count;
+}
+
 struct IsValid {
   __device__ bool operator()(CellPair pair) const { return pair != rejected_pair; }
 };
@@ -26,7 +41,7 @@ struct IsValid {
 void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
   std::size_t bytes = 0;
   std::int64_t* const none = nullptr;
-  check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, count),
+  check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, item_count(count)),
              "cub::DeviceScan::ExclusiveSum");
   scratch.reserve(static_cast<std::int64_t>(bytes));
 }
@@ -35,8 +50,8 @@ void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values) {
   with_scratch(scratch, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
-    return cub::DeviceScan::ExclusiveSum(memory, bytes, values.data, values.data, values.size,
-                                         stream);
+    return cub::DeviceScan::ExclusiveSum(memory, bytes, values.data, values.data,
+                                         item_count(values.size), stream);
   });
 }
 
@@ -47,7 +62,7 @@ void cuda_select_valid(cudaStream_t stream,
                        std::int64_t* pair_count) {
   with_scratch(scratch, "cub::DeviceSelect::If", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceSelect::If(memory, bytes, candidates.data, pairs.data, pair_count,
-                                 candidates.size, IsValid{}, stream);
+                                 item_count(candidates.size), IsValid{}, stream);
   });
 }
 
@@ -58,8 +73,8 @@ void cuda_sort_pairs(cudaStream_t stream,
                      int cell_bits) {
   cub::DoubleBuffer<CellPair> keys(pairs.data, other.data);
   with_scratch(scratch, "cub::DeviceRadixSort::SortKeys", [&](void* memory, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortKeys(memory, bytes, keys, pairs.size, 32, 32 + cell_bits,
-                                          stream);
+    return cub::DeviceRadixSort::SortKeys(memory, bytes, keys, item_count(pairs.size), 32,
+                                          32 + cell_bits, stream);
   });
   if (keys.Current() != pairs.data) {
     check_cuda(cudaMemcpyAsync(pairs.data, keys.Current(),

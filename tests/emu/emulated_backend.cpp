@@ -17,7 +17,7 @@ template <class Work>
 void enqueue(cudaStream_t stream, Work&& work) {
   const std::lock_guard guard(simt::Device::only().lock);
   simt::Device::only().note(simt::ApiCall::launch);
-  static_cast<simt::Stream*>(stream)->enqueue(std::forward<Work>(work));
+  simt::Device::only().stream(stream).enqueue(std::forward<Work>(work));
   simt::Device::only().run_eager();
 }
 
@@ -78,7 +78,9 @@ double free_device_memory(int device) {
 }
 
 bool cuda_lock_pages(void* data, std::size_t bytes) {
-  return cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess;
+  if (cudaHostRegister(data, bytes, cudaHostRegisterPortable) == cudaSuccess) return true;
+  cudaGetLastError();  // leaves no error behind for the next call
+  return false;
 }
 
 void cuda_unlock_pages(void* data) {
@@ -86,6 +88,7 @@ void cuda_unlock_pages(void* data) {
 }
 
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
+  const DeviceScope scope(plan.options.device);
   return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device));
 }
 

@@ -6,6 +6,7 @@ namespace tetwarp {
 
 std::unique_ptr<ContactDevice> make_contact_device(int device) {
   if (device != 0) throw CudaError("no device " + std::to_string(device) + ", there are 1");
+  const DeviceScope scope(device);
   return std::make_unique<CudaContactDevice>(device, "emulation");
 }
 

@@ -1,7 +1,7 @@
 # ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
 
 # Parts in the order in which they run; each builds into its own folder below build/.
-check_parts=(lint format host tidy small shared cuda release asan fuzz docs)
+check_parts=(lint format host tidy small shared cuda release fused asan fuzz docs)
 
 # source_files EXTENSION...: the C++ and CUDA sources, from the root
 source_files() {
@@ -36,9 +36,9 @@ lint() {
   return "$status"
 }
 
-# register_table: registers, stack and spills of our kernels from ptxas' output. Fails on a spill,
-# unless tests/lint/spills_allowed.txt has a line with the architecture and a part of the kernel's
-# name.
+# register_table: registers, stack and spills of our kernels from ptxas' output. Fails on a stack
+# larger than stack_bytes of host/warp/cuda/backend_cuda.cu, and on a spill, unless
+# tests/lint/spills_allowed.txt has a line with the architecture and a part of the kernel's name.
 register_table() {
   c++filt | awk -v allowed="$root/tests/lint/spills_allowed.txt" '
     BEGIN {
@@ -64,6 +64,7 @@ register_table() {
       match($0, /Used [0-9]+/)
       registers = substr($0, RSTART + 5, RLENGTH - 5)
       verdict = spills == 0 ? "" : is_allowed(architecture, kernel) ? "  (allowed)" : "  (REFUSED)"
+      if (stack > 8192) verdict = verdict "  (REFUSED: stack)"
       printf "%-6s %4d registers %5d stack %5d spilled  %s%s\n",
         architecture, registers, stack, spills, kernel, verdict
       refused += verdict ~ /REFUSED/
@@ -132,6 +133,14 @@ check_cuda() {
 check_release() {
   build_release
   run_tests "$release"
+}
+
+# The emulated device with fused multiply-add, as a device computes, beside a host without.
+check_fused() {
+  local folder=$root/build/check-fused
+  configure "$folder" -DTETWARP_CUDA=OFF -DTETWARP_IO=OFF -DTETWARP_FUSED_EMULATION=ON
+  cmake --build "$folder" --target tetwarp_emulated_tests
+  "$folder/tetwarp_emulated_tests" --gtest_brief=1
 }
 
 check_asan() {

@@ -1,6 +1,9 @@
 /// @file steps_in_flight.hpp
 /// A series of steps twice: two in flight at a time, and one by one from scratch.
 #pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -46,6 +49,11 @@ class StepBuffers {
             .holds_previous = holds_previous};
   }
 
+  bool are_locked() const {
+    return std::all_of(locks_.begin(), locks_.end(),
+                       [](const PageLock& lock) { return lock.is_locked(); });
+  }
+
   Bits bits() const {
     Bits all;
     for (const Bits& part : parts_) all.insert(all.end(), part.begin(), part.end());
@@ -80,6 +88,9 @@ inline std::vector<Bits> steps_in_flight(const std::vector<Volume>& sources,
                                          bool holds_previous) {
   const StepBuffers buffers[] = {{sources, scene.output_grid, pages},
                                  {sources, scene.output_grid, pages}};
+  if (pages == Pages::locked && options.backend == Backend::cuda) {
+    EXPECT_TRUE(buffers[0].are_locked() && buffers[1].are_locked());
+  }
   Warper warper = make_warper(sources, scene, options);
   std::vector<Bits> results;
   const auto finish = [&] {

@@ -11,6 +11,7 @@ std::unique_ptr<ContactDevice> make_contact_device(int device) {
   const BackendStatus status = cuda_status(device);
   if (!status.usable)
     throw CudaError("cuda device " + std::to_string(device) + ": " + status.reason);
+  const DeviceScope scope(device);
   return std::make_unique<CudaContactDevice>(device, status.device);
 }
 

@@ -30,7 +30,7 @@ class CudaContactDevice final : public ContactDevice {
   ContactSavings set_problem(const ContactOptions& options,
                              const ContactStructure& structure,
                              const ContactInput& input) override {
-    exec_.use_stream(nullptr);  // makes the device current on this thread
+    const DeviceScope scope(exec_.number());
     if (serial_ != structure.serial) {
       grid_.forget_sweeps();  // a new structure may move the arrays
       indices_in_memory_.restart();
@@ -56,6 +56,7 @@ class CudaContactDevice final : public ContactDevice {
                                std::vector<double>& impulse,
                                std::vector<double>& body_velocity,
                                std::vector<IslandOutcome>& outcomes) override {
+    const DeviceScope scope(exec_.number());
     float64_.state.reset(grid_, float64_.numbers, freezes_contacts(options));
     sort_islands();
     measure(options, [&](std::size_t i, const IslandSums& sums) {
@@ -95,6 +96,7 @@ class CudaContactDevice final : public ContactDevice {
                      std::vector<double>& impulse,
                      std::vector<double>& body_velocity,
                      IslandOutcome& outcome) override {
+    const DeviceScope scope(exec_.number());
     put(guess, guess_);
     const auto colors = view_of(structure_->color_start);
     const auto start = view_of(std::as_const(guess_));
@@ -106,7 +108,7 @@ class CudaContactDevice final : public ContactDevice {
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
-    exec_.use_stream(nullptr);
+    const DeviceScope scope(exec_.number());
     input_in_memory_.restart();
     labels_.resize(item_count);
     contact_components(grid_, on_device(lists.start), on_device(lists.item), view_of(labels_));
@@ -114,7 +116,7 @@ class CudaContactDevice final : public ContactDevice {
   }
 
   void evolve(const ContactAdhesionBody& body) override {
-    exec_.use_stream(nullptr);
+    const DeviceScope scope(exec_.number());
     ContactAdhesionBody on_device = body;
     on_device.in = adhesion_on_device(grid_, body.in, input_in_memory_);
     next_intensity_.resize(body.next_intensity.size);

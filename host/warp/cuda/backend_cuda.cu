@@ -1,5 +1,7 @@
 /// @file backend_cuda.cu
 /// Back end cuda: device queries, and the pipeline on a device.
+#include <algorithm>
+
 #include "host/warp/cuda/cell_raster_cuda.cuh"
 
 namespace tetwarp {
@@ -24,13 +26,23 @@ BackendStatus cuda_status(int device) {
   return status;
 }
 
+/// No kernel has a larger stack per thread; `./dev check cuda` compares. The first launch of a
+/// kernel reserves its stack for as many threads as the device can hold.
+constexpr double stack_bytes = 8192;
+
 double free_device_memory(int device) {
   std::size_t free = 0, all = 0;
-  if (cudaSetDevice(device) != cudaSuccess || cudaMemGetInfo(&free, &all) != cudaSuccess) {
-    cudaGetLastError();  // leaves no error behind for the next call
+  cudaDeviceProp properties;
+  try {
+    const DeviceScope scope(device);
+    check_cuda(cudaMemGetInfo(&free, &all), "cudaMemGetInfo");
+    check_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
+  } catch (const CudaError&) {
     return 0;
   }
-  return static_cast<double>(free);
+  const double threads = static_cast<double>(properties.maxThreadsPerMultiProcessor) *
+                         properties.multiProcessorCount;
+  return std::max(0.0, static_cast<double>(free) - threads * stack_bytes);
 }
 
 bool cuda_lock_pages(void* data, std::size_t bytes) {
@@ -44,6 +56,7 @@ void cuda_unlock_pages(void* data) {
 }
 
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
+  const DeviceScope scope(plan.options.device);
   return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device));
 }
 
