@@ -34,16 +34,17 @@ class CpuExec {
 
   explicit CpuExec(int threads) : threads_(threads) {}
 
-  struct Scope {};  ///< what calls hold that use a device's executor
-  Scope scope() const { return {}; }
-
   int threads() const { return threads_; }
   std::string device() const { return processor_name(); }
   StageTimes& times() { return times_[flight_]; }
 
+  struct Scope {};  ///< nothing to keep on the host
   /// Selects which of two steps in flight, 0 or 1, the following calls belong to. Every call
   /// returns when its work is done, so that there is nothing to wait for.
-  void select(int flight) { flight_ = flight; }
+  Scope enter(int flight) {
+    flight_ = flight;
+    return {};
+  }
   void begin_compute(void*, bool) {}
   void end_compute() {}
   void wait_computed() {}

@@ -47,20 +47,18 @@ class WarpPipeline : public WarpBackend {
   ~WarpPipeline() override { exec_.drain(); }
 
   void upload(int number, const PositionsView& deformed) override {
-    [[maybe_unused]] const auto scope = exec_.scope();
-    exec_.select(number);
+    [[maybe_unused]] const auto scope = exec_.enter(number);
     if (std::exchange(flights_[number].is_open, true)) exec_.times().clear();
     const std::int64_t size = 3 * deformed.node_count;
     flights_[number].has_device_positions = deformed.memory == Memory::device;
     flights_[number].positions =
-        deformed.memory == Memory::device
+        flights_[number].has_device_positions
             ? View<const double>{deformed.xyz, size}
             : exec_.upload("warp/upload", deformed.xyz, size, flights_[number].position_buffer);
   }
 
   void compute(int number, const WarpTarget& target, const Progress& progress) override {
-    [[maybe_unused]] const auto scope = exec_.scope();
-    exec_.select(number);
+    [[maybe_unused]] const auto scope = exec_.enter(number);
     Flight& flight = flights_[number];
     flight.target = target;
     flight.age = outputs_.take(target);
@@ -75,9 +73,8 @@ class WarpPipeline : public WarpBackend {
   }
 
   void settle(int number) override {
-    [[maybe_unused]] const auto scope = exec_.scope();
+    [[maybe_unused]] const auto scope = exec_.enter(number);
     Flight& flight = flights_[number];
-    exec_.select(number);
     for (;;) {
       exec_.wait_computed();
       if (pairs_.had_room(*flight.counters.view(1).data)) break;
@@ -93,16 +90,14 @@ class WarpPipeline : public WarpBackend {
   }
 
   void download(int number) override {
-    [[maybe_unused]] const auto scope = exec_.scope();
+    [[maybe_unused]] const auto scope = exec_.enter(number);
     Flight& flight = flights_[number];
     if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
-    exec_.select(number);
     outputs_.download(flight.slot, flight.target, flight.window);
   }
 
   StepReport finish(int number) override {
-    [[maybe_unused]] const auto scope = exec_.scope();
-    exec_.select(number);
+    [[maybe_unused]] const auto scope = exec_.enter(number);
     StageTimes& times = exec_.times();  // waits for the download
     outputs_.release(flights_[number].slot);
     StepReport report = flights_[number].report;
@@ -113,7 +108,6 @@ class WarpPipeline : public WarpBackend {
   }
 
   void drain() noexcept override { exec_.drain(); }
-
   std::string device() const override { return exec_.device(); }
   int threads() const override { return exec_.threads(); }
 
@@ -139,10 +133,9 @@ class WarpPipeline : public WarpBackend {
   };
 
   void compute(Flight& flight, const Progress& progress) {
-    const bool has_device_memory = flight.has_device_positions ||
-                                   flight.target.memory == Memory::device ||
-                                   sources_.are_on_device();
-    exec_.begin_compute(flight.target.stream, has_device_memory);
+    exec_.begin_compute(flight.target.stream, flight.has_device_positions ||
+                                                  flight.target.memory == Memory::device ||
+                                                  sources_.are_on_device());
     run(flight.positions, flight.target, flight.age, progress);
     ProgressPart{progress, 0, 1}.report(1.0);
     flight.counters.reserve(1);

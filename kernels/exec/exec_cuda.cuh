@@ -54,9 +54,6 @@ class CudaExec {
   /// @pre the device is current
   explicit CudaExec(int device) : state_(std::make_unique<State>(device)) {}
 
-  /// Held by every call that uses the executor: makes its device current.
-  using Scope = DeviceScope;
-  Scope scope() const { return Scope(state_->device); }
   int number() const { return state_->device; }
 
   cudaStream_t stream() const { return state_->stream; }
@@ -68,7 +65,11 @@ class CudaExec {
   int threads() const { return 1; }
 
   /// Makes `flight`, 0 or 1, the current step: all calls after it belong to that step. Initially 0.
-  void select(int flight) { state_->flight = &state_->flights[flight]; }
+  /// @returns  an object during whose life the device is the current one of this thread
+  DeviceScope enter(int flight) {
+    state_->flight = &state_->flights[flight];
+    return DeviceScope(state_->device);
+  }
 
   /// Later kernels run on the caller's stream; null: on this executor's own. Waits for the kernels
   /// of the previous stream if it changes.
