@@ -2,6 +2,7 @@
 #include <tetwarp/contact.hpp>
 #include <tetwarp/make.hpp>
 #include <tetwarp/names.hpp>
+#include <tetwarp/scene.hpp>
 #include <tetwarp/warp.hpp>
 
 namespace tetwarp {
@@ -59,6 +60,16 @@ constexpr EnumName<ContactStatus> contact_status_names[] = {
     {ContactStatus::unbounded, "unbounded"}};
 constexpr EnumName<AdhesionIntegrator> adhesion_integrator_names[] = {
     {AdhesionIntegrator::exact, "exact"}, {AdhesionIntegrator::explicit_euler, "explicit-euler"}};
+constexpr EnumName<BodyKind> body_kind_names[] = {{BodyKind::fem, "fem"},
+                                                  {BodyKind::rigid, "rigid"},
+                                                  {BodyKind::cloth, "cloth"},
+                                                  {BodyKind::scripted, "scripted"}};
+constexpr EnumName<TransferLookup> transfer_lookup_names[] = {{TransferLookup::linear, "linear"},
+                                                              {TransferLookup::label, "label"}};
+constexpr EnumName<MaterialMean> material_mean_names[] = {{MaterialMean::arithmetic, "arithmetic"},
+                                                          {MaterialMean::harmonic, "harmonic"}};
+constexpr EnumName<MassKind> mass_kind_names[] = {{MassKind::consistent, "consistent"},
+                                                  {MassKind::lumped, "lumped"}};
 }  // namespace
 
 template <>
@@ -124,6 +135,22 @@ TETWARP_EXPORT std::span<const EnumName<ContactStatus>> names_of() {
 template <>
 TETWARP_EXPORT std::span<const EnumName<AdhesionIntegrator>> names_of() {
   return adhesion_integrator_names;
+}
+template <>
+TETWARP_EXPORT std::span<const EnumName<BodyKind>> names_of() {
+  return body_kind_names;
+}
+template <>
+TETWARP_EXPORT std::span<const EnumName<TransferLookup>> names_of() {
+  return transfer_lookup_names;
+}
+template <>
+TETWARP_EXPORT std::span<const EnumName<MaterialMean>> names_of() {
+  return material_mean_names;
+}
+template <>
+TETWARP_EXPORT std::span<const EnumName<MassKind>> names_of() {
+  return mass_kind_names;
 }
 
 }  // namespace tetwarp

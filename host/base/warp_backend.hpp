@@ -56,8 +56,8 @@ std::unique_ptr<WarpBackend> make_reference_backend(const WarpPlan& plan);
 /// Name of CUDA device number `device`, or why it is not usable.
 BackendStatus cuda_status(int device);
 
-/// Free memory of CUDA device number `device` [byte], without what the stacks of kernels may take; 0
-/// when it is not usable.
+/// Free memory of CUDA device number `device` [byte], without what the stacks of kernels may take;
+/// 0 when it is not usable.
 TETWARP_EXPORT double free_device_memory(int device);
 
 /// Page-locks host memory for CUDA devices. @returns whether it succeeded

@@ -11,6 +11,7 @@
 #include <tetwarp/make.hpp>
 #include <vector>
 
+#include "host/base/five_tets.hpp"
 #include "host/base/pixel_dispatch.hpp"
 
 namespace tetwarp {
@@ -187,13 +188,6 @@ std::vector<std::uint8_t> occupied_cells(const Volume& volume,
   }
   return occupied;
 }
-
-/// The five tetrahedra of a cell and of its mirror image, which divide the face between them along
-/// the same diagonal; all have positive volume. Bits 1, 2 and 4 of a corner: at the far end of axis
-/// 0, 1, 2.
-constexpr int tets_of_cell[2][5][4] = {
-    {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 0, 3, 6}, {4, 0, 6, 5}, {7, 6, 3, 5}},
-    {{1, 2, 4, 7}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 1, 4, 7}, {6, 4, 2, 7}}};
 
 /// Calls visit(a, b, c) for the occupied cells.
 template <class Visit>

@@ -1,6 +1,6 @@
 /// @file make.hpp
 /// Input for warps, and pictures of results: lattice meshes, procedural deformations, a phantom
-/// volume, rendering.
+/// volume, pictures of volumes and of surfaces.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -64,6 +64,32 @@ TETWARP_EXPORT std::vector<Point3> deform_positions(const Mesh& mesh,
 /// @param dims  voxels
 TETWARP_EXPORT Volume make_phantom(const std::array<std::int64_t, 3>& dims = {256, 160, 122});
 
+/// Samples of make_orange_phantom() on the surface of the fruit.
+inline constexpr double orange_phantom_threshold = 0.05;
+
+/// An orange: an ellipsoid that fills 95 % of the grid along each axis, float32 from 0 to 1. With r
+/// from 0 at the centre to 1 on the surface, flesh (r^2 <= 0.85) is 1 - r^2, darker in the walls
+/// between its ten segments and brighter in its seeds, always at least 0.15; rind falls from 0.14
+/// to 0.05 at r = 1 and, outside, on to 0. So the isosurface at orange_phantom_threshold is the
+/// ellipsoid.
+/// @param dims     voxels
+/// @param spacing  of voxels; the first one is centred at the origin
+/// @throws std::invalid_argument as check_grid()
+TETWARP_EXPORT Volume make_orange_phantom(const std::array<std::int64_t, 3>& dims,
+                                          const Point3& spacing);
+
+/// Half of the lowest level of make_fish_phantom().
+inline constexpr double fish_phantom_threshold = 45;
+
+/// A fish along k with its head at k = 0, its back towards +j and its sides towards +-i: uint8,
+/// fins 90, flesh 128, spine and ribs 220, 0 outside; edges are soft. Tail and fins reach the
+/// margins, 2 % of the grid along each axis.
+/// @param dims     voxels
+/// @param spacing  of voxels; the first one is centred at the origin
+/// @throws std::invalid_argument as check_grid()
+TETWARP_EXPORT Volume make_fish_phantom(const std::array<std::int64_t, 3>& dims,
+                                        const Point3& spacing);
+
 /// An 8-bit RGB picture, rows from top to bottom.
 struct Image {
   int width = 0;                  ///< [pixel]
@@ -85,5 +111,51 @@ struct RenderOptions {
 /// @throws std::invalid_argument when there is no volume, or an option is out of range
 TETWARP_EXPORT Image render(std::span<const Volume* const> volumes,
                             const RenderOptions& options = {});
+
+// ---- pictures of surfaces -------------------------------------------------------
+
+/// A triangle mesh to draw; both sides of its triangles are seen.
+struct DrawnSurface {
+  std::span<const Point3> points;                          ///< [world]
+  std::span<const std::array<std::int32_t, 3>> triangles;  ///< indices into points
+  std::array<double, 3> color{0.5, 0.5, 0.5};              ///< red, green, blue in sRGB, 0 to 1
+};
+
+/// An unbounded plane to draw as a checker board that fades out in the distance; seen from the side
+/// to which the normal points.
+struct DrawnPlane {
+  Point3 point{0, 0, 0};
+  Point3 normal{0, 0, 1};  ///< of any length above 0
+};
+
+/// A perspective view. The eye and the target differ, and `up` is not along their line.
+struct Camera {
+  Point3 eye{0, -1, 0};
+  Point3 target{0, 0, 0};  ///< shown in the middle
+  Point3 up{0, 0, 1};      ///< shown upwards
+  double angle = 0.5;      ///< of view from the bottom to the top of the picture, 0 to pi [rad]
+};
+
+/// A view from the front, the right and above in which all points are seen.
+/// @param points  [world]; without any: a box of edge 2 around the origin
+/// @param aspect  width over height of the picture
+/// @throws std::invalid_argument when a number is not finite or `aspect` is not above 0
+TETWARP_EXPORT Camera camera_of(std::span<const Point3> points, double aspect);
+
+/// Choices of render_surfaces().
+struct SurfaceRenderOptions {
+  Camera camera;
+  int width = 960;   ///< [pixel]
+  int height = 640;  ///< [pixel]
+};
+
+/// Draws surfaces in perspective with hidden parts removed: smooth normals except across creases of
+/// more than 40 degrees, a light from above and the left of the camera with shadows, four samples
+/// per pixel. Triangles that reach behind the eye are left out. Equal arguments give equal
+/// pictures.
+/// @throws std::invalid_argument when an index, a position, the camera or the size is invalid
+TETWARP_EXPORT Image render_surfaces(std::span<const DrawnSurface> surfaces,
+                                     std::span<const DrawnPlane> planes,
+                                     const SurfaceRenderOptions& options = {});
 
 }  // namespace tetwarp

@@ -14,6 +14,10 @@
 #include <tetwarp/names.hpp>
 #include <tetwarp/page_lock.hpp>
 #include <tetwarp/report.hpp>
+#include <tetwarp/scene.hpp>
+#include <tetwarp/scene_parts.hpp>
+#include <tetwarp/simulate.hpp>
+#include <tetwarp/surface.hpp>
 #include <tetwarp/version.hpp>
 #include <tetwarp/volume.hpp>
 #include <tetwarp/warp.hpp>

@@ -1,0 +1,19 @@
+/// @file scene_path.hpp
+/// Places in a scene as scene files spell them: "bodies[2].lattice.cells".
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace tetwarp {
+
+/// The place of a key of an object. @param place  of the object; empty: the scene itself
+inline std::string key_of(const std::string& place, const std::string& key) {
+  return place.empty() ? key : place + "." + key;
+}
+
+/// The place of an item of a list.
+inline std::string item_of(const std::string& place, std::size_t index) {
+  return place + "[" + std::to_string(index) + "]";
+}
+
+}  // namespace tetwarp

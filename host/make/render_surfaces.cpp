@@ -1,0 +1,209 @@
+/// @file render_surfaces.cpp
+/// Pictures of surfaces: a depth buffer with four samples per pixel, then light and shadow.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <tetwarp/make.hpp>
+#include <vector>
+
+#include "host/base/parallel.hpp"
+#include "host/make/picture_view.hpp"
+#include "host/make/surface_soup.hpp"
+#include "host/make/triangle_raster.hpp"
+#include "host/make/vector3.hpp"
+
+namespace tetwarp {
+namespace {
+constexpr int largest_edge = 4096;  // of a picture [pixel]
+constexpr int samples = 2;          // per pixel along each axis
+
+using Rgb = std::array<double, 3>;  // in proportion to light, 0 to 1
+
+double linear_of(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+double srgb_of(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
+Rgb mixed(const Rgb& a, const Rgb& b, double share) {
+  return {std::lerp(a[0], b[0], share), std::lerp(a[1], b[1], share), std::lerp(a[2], b[2], share)};
+}
+
+/// A plane with its checker board.
+struct Board {
+  Point3 point, normal, u, v;
+  double cell = 1;  ///< edge of a square
+};
+
+/// 1, 2 or 5 times a power of ten, near `size`.
+double round_number(double size) {
+  if (!(size > 0)) return 1;
+  const double power = std::pow(10, std::floor(std::log10(size)));
+  const double lead = size / power;
+  return power * (lead < 1.5 ? 1 : lead < 3.5 ? 2 : lead < 7.5 ? 5 : 10);
+}
+
+Board board_of(const DrawnPlane& plane, double extent) {
+  const Point3 normal = vec::unit(plane.normal);
+  if (!(std::abs(vec::length(normal) - 1) < 1e-9) ||
+      !std::isfinite(vec::dot(plane.point, normal))) {
+    throw std::invalid_argument("render_surfaces: a plane needs a finite point and a normal");
+  }
+  const Point3 aside = std::abs(normal[0]) < 0.9 ? Point3{1, 0, 0} : Point3{0, 1, 0};
+  const Point3 u = vec::unit(vec::subtract(aside, vec::scaled(normal, vec::dot(aside, normal))));
+  return {plane.point, normal, u, vec::cross(normal, u), round_number(extent / 5)};
+}
+
+class Picture {
+ public:
+  Picture(std::span<const DrawnSurface> surfaces,
+          std::span<const DrawnPlane> planes,
+          const SurfaceRenderOptions& options)
+      : soup_(make_soup(surfaces)),
+        view_(options.camera, samples * options.width, samples * options.height),
+        up_(vec::unit(options.camera.up)),
+        target_(options.camera.target),
+        extent_(extent(options.camera)),
+        light_(vec::unit(
+            vec::add(vec::scaled(up_, 1.1),
+                     vec::add(vec::scaled(view_.forward, -0.5), vec::scaled(view_.right, -0.55))))),
+        fill_(vec::unit(
+            vec::add(vec::scaled(up_, 0.1),
+                     vec::add(vec::scaled(view_.forward, -1), vec::scaled(view_.right, 0.8))))),
+        shadow_(soup_, light_) {
+    for (const DrawnSurface& surface : surfaces) {
+      colors_.push_back(
+          {linear_of(surface.color[0]), linear_of(surface.color[1]), linear_of(surface.color[2])});
+    }
+    for (const DrawnPlane& plane : planes) boards_.push_back(board_of(plane, extent_));
+    points_.reserve(soup_.points.size());
+    for (const Point3& point : soup_.points) points_.push_back(view_.project(point));
+    buffer_ =
+        draw_triangles(points_, soup_.triangles, samples * options.width, samples * options.height);
+  }
+
+  /// Light of one sample.
+  Rgb color_at(int x, int y) const {
+    const Point3 ray = view_.ray(x + 0.5, y + 0.5);
+    const std::size_t at = buffer_.at(x, y);
+    const std::int32_t triangle = buffer_.triangle[at];
+    double depth = triangle < 0 ? INFINITY : 1 / static_cast<double>(buffer_.nearness[at]);
+    Rgb color = background(y);
+    if (triangle >= 0) color = shade(triangle, x, y, ray, depth);
+    for (const Board& board : boards_) {
+      const double along = vec::dot(ray, board.normal);
+      const double distance = vec::dot(vec::subtract(board.point, view_.eye), board.normal) / along;
+      if (!(along < 0) || !(distance > 0) || !(distance < depth)) continue;
+      const Point3 world = vec::add(view_.eye, vec::scaled(ray, distance));
+      const double far = vec::length(vec::subtract(world, target_)) / extent_;
+      const double fade = std::clamp((far - 1.2) / 2.6, 0.0, 1.0);
+      if (fade >= 1) continue;
+      color = mixed(shade(board, world), background(y), fade * fade * (3 - 2 * fade));
+      depth = distance;
+    }
+    return color;
+  }
+
+ private:
+  double extent(const Camera& camera) const {
+    const double size = vec::length(vec::subtract(soup_.high, soup_.low));
+    return size > 0 ? size : vec::length(vec::subtract(camera.target, camera.eye));
+  }
+
+  Rgb background(int y) const {
+    return mixed({0.80, 0.86, 0.93}, {0.98, 0.98, 0.98}, (y + 0.5) / buffer_.height);
+  }
+
+  Rgb shade(const Board& board, const Point3& world) const {
+    const Point3 offset = vec::subtract(world, board.point);
+    const auto column = std::floor(vec::dot(offset, board.u) / board.cell);
+    const auto row = std::floor(vec::dot(offset, board.v) / board.cell);
+    const bool is_dark = std::fmod(std::abs(column + row), 2) == 1;
+    const double gray = is_dark ? 0.50 : 0.66;
+    const double lit = shadow_.light_at(world, board.normal);
+    const double light = 0.50 + 0.62 * std::max(0.0, vec::dot(board.normal, light_)) * lit;
+    return {gray * light, gray * light, gray * light * 1.03};
+  }
+
+  Rgb shade(std::int32_t triangle, int x, int y, const Point3& ray, double depth) const {
+    const auto t = static_cast<std::size_t>(triangle);
+    std::array<PicturePoint, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c] = points_[static_cast<std::size_t>(soup_.triangles[t][c])];
+    }
+    std::array<double, 3> weights{};
+    corner_weights(corners, x + 0.5, y + 0.5, weights);
+    Point3 normal{0, 0, 0};
+    for (std::size_t c = 0; c < 3; ++c) {
+      normal = vec::add(normal,
+                        vec::scaled(soup_.normals[t][c], weights[c] * corners[c].nearness * depth));
+    }
+    normal = vec::unit(normal);
+    const Point3 toward = vec::unit(vec::scaled(ray, -1));
+    if (vec::dot(normal, toward) < 0) normal = vec::scaled(normal, -1);
+    const Point3 world = vec::add(view_.eye, vec::scaled(ray, depth));
+    const double facing = std::max(0.0, vec::dot(normal, light_));
+    const double lit = facing > 0 ? shadow_.light_at(world, normal) : 0;
+    const double sky = 0.5 + 0.5 * vec::dot(normal, up_);
+    const double light =
+        0.24 + 0.22 * sky + 0.78 * facing * lit + 0.26 * std::max(0.0, vec::dot(normal, fill_));
+    const double shine =
+        std::pow(std::max(0.0, vec::dot(normal, vec::unit(vec::add(light_, toward)))), 48);
+    const double rim = std::pow(1 - std::max(0.0, vec::dot(normal, toward)), 3);
+    const Rgb& base = colors_[static_cast<std::size_t>(soup_.surface[t])];
+    Rgb color{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      color[c] = base[c] * light * (1 - 0.25 * rim) + 0.16 * shine * lit + 0.03 * rim;
+    }
+    return color;
+  }
+
+  SurfaceSoup soup_;
+  PictureView view_;
+  Point3 up_, target_;
+  double extent_;  ///< of the scene
+  Point3 light_, fill_;
+  ShadowMap shadow_;
+  std::vector<Rgb> colors_;
+  std::vector<Board> boards_;
+  std::vector<PicturePoint> points_;
+  DepthBuffer buffer_;
+};
+}  // namespace
+
+Image render_surfaces(std::span<const DrawnSurface> surfaces,
+                      std::span<const DrawnPlane> planes,
+                      const SurfaceRenderOptions& options) {
+  const bool is_sized = options.width > 0 && options.height > 0 && options.width <= largest_edge &&
+                        options.height <= largest_edge;
+  if (!is_sized) {
+    throw std::invalid_argument("render_surfaces: a picture of " + std::to_string(options.width) +
+                                " x " + std::to_string(options.height) + " pixels, expected 1 to " +
+                                std::to_string(largest_edge) + " each way");
+  }
+  const Picture picture(surfaces, planes, options);
+  Image image{options.width, options.height, {}};
+  const auto width = static_cast<std::size_t>(options.width);
+  image.rgb.resize(3 * width * static_cast<std::size_t>(options.height));
+  parallel_for(thread_count(0), options.height, [&](std::int64_t y) {
+    for (int x = 0; x < options.width; ++x) {
+      Rgb sum{};
+      for (int s = 0; s < samples * samples; ++s) {
+        const Rgb color = picture.color_at(samples * x + s % samples,
+                                           samples * static_cast<int>(y) + s / samples);
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += std::clamp(color[c], 0.0, 1.0);
+      }
+      const std::size_t pixel = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double level = srgb_of(sum[c] / (samples * samples));
+        image.rgb[3 * pixel + c] = static_cast<std::uint8_t>(std::lround(255 * level));
+      }
+    }
+  });
+  return image;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,154 @@
+#include "host/scene/image_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "host/scene/lattice_search.hpp"
+#include "host/scene/scalar_rows.hpp"
+#include "host/scene/scene_checks.hpp"
+#include "host/scene/voxel_owner.hpp"
+
+namespace tetwarp {
+namespace {
+/// Length of one step along a grid axis [world].
+double step_length(const Grid& grid, std::size_t axis) {
+  const auto& d = grid.direction;
+  return grid.spacing[axis] * std::hypot(d[axis], d[3 + axis], d[6 + axis]);
+}
+
+/// 1 per voxel of the foreground, of a region of the image.
+std::vector<std::uint8_t> foreground_of(const ImageGeometry& image, const Region& region) {
+  std::vector<std::uint8_t> flags;
+  flags.reserve(static_cast<std::size_t>(region.voxel_count()));
+  ScalarRows rows(image.volume);
+  for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
+    for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
+      const auto& row = rows.row(j, k);
+      for (std::int64_t i = region.begin[0]; i < region.end[0]; ++i) {
+        flags.push_back(row[static_cast<std::size_t>(i)] >= image.threshold);
+      }
+    }
+  }
+  return flags;
+}
+
+/// Places tetrahedra around the foreground and drops those outside it. Positions of frames are
+/// index positions of the image.
+class ForegroundLattice {
+ public:
+  ForegroundLattice(const ImageGeometry& image, const Region& box)
+      : image_(image), box_(box), foreground_(foreground_of(image, box)) {}
+
+  TetMesh mesh_of(const LatticeFrame& frame) const {
+    TetMesh mesh = make_lattice(frame);
+    const std::vector<Point3> index_nodes = mesh.nodes;
+    map_nodes(mesh, [&](const Point3& x) { return image_.volume.grid.world_of(x); });
+    keep_tets(mesh, is_kept(mesh, index_nodes));
+    return mesh;
+  }
+
+  /// Of the foreground. @param step  edges of a voxel
+  double volume(const Point3& step) const {
+    const auto count = std::count(foreground_.begin(), foreground_.end(), std::uint8_t{1});
+    return static_cast<double>(count) * step[0] * step[1] * step[2];
+  }
+
+ private:
+  std::vector<std::uint8_t> is_kept(const TetMesh& mesh,
+                                    const std::vector<Point3>& index_nodes) const {
+    std::vector<std::uint8_t> owns_any(mesh.tets.size()), kept(mesh.tets.size());
+    const std::vector<std::int32_t> owners = voxel_owners(image_.volume, box_, mesh);
+    for (std::size_t v = 0; v < owners.size(); ++v) {
+      if (owners[v] < 0) continue;
+      const auto owner = static_cast<std::size_t>(owners[v]);
+      owns_any[owner] = 1;
+      if (foreground_[v]) kept[owner] = 1;
+    }
+    for (std::size_t t = 0; t < kept.size(); ++t) {
+      if (!owns_any[t]) kept[t] = is_foreground_at(centroid_of(index_nodes, mesh.tets[t]));
+    }
+    return kept;
+  }
+
+  static Point3 centroid_of(const std::vector<Point3>& nodes,
+                            const std::array<std::int32_t, 4>& tet) {
+    Point3 sum{0, 0, 0};
+    for (const std::int32_t node : tet) sum = plus(sum, at(nodes, node));
+    return times(0.25, sum);
+  }
+
+  bool is_foreground_at(const Point3& index) const {
+    std::int64_t voxel = 0;
+    for (std::size_t d = 3; d-- > 0;) {
+      const auto nearest = static_cast<std::int64_t>(std::floor(index[d] + 0.5));
+      if (nearest < box_.begin[d] || nearest >= box_.end[d]) return false;
+      voxel = voxel * (box_.end[d] - box_.begin[d]) + nearest - box_.begin[d];
+    }
+    return foreground_[static_cast<std::size_t>(voxel)] != 0;
+  }
+
+  const ImageGeometry& image_;
+  Region box_;
+  std::vector<std::uint8_t> foreground_;  ///< of the box
+};
+}  // namespace
+
+Region foreground_box(const std::string& place, const ImageGeometry& image) {
+  const auto& dims = image.volume.grid.dims;
+  Region box{dims, {0, 0, 0}};
+  double largest = -std::numeric_limits<double>::infinity();
+  ScalarRows rows(image.volume);
+  for (std::int64_t k = 0; k < dims[2]; ++k) {
+    for (std::int64_t j = 0; j < dims[1]; ++j) {
+      const auto& row = rows.row(j, k);
+      for (std::int64_t i = 0; i < dims[0]; ++i) {
+        const double sample = row[static_cast<std::size_t>(i)];
+        largest = std::fmax(largest, sample);
+        if (!(sample >= image.threshold)) continue;
+        const std::array<std::int64_t, 3> voxel{i, j, k};
+        for (std::size_t d = 0; d < 3; ++d) {
+          box.begin[d] = std::min(box.begin[d], voxel[d]);
+          box.end[d] = std::max(box.end[d], voxel[d] + 1);
+        }
+      }
+    }
+  }
+  if (box.end[0] == 0) {
+    fail_at(key_of(place, "threshold"),
+            "no sample of '" + image.volume.name + "' is " + number_text(image.threshold) +
+                " or more, the largest is " + number_text(largest) + "; lower the threshold");
+  }
+  return box;
+}
+
+ImageLattice make_image_lattice(const std::string& body_place,
+                                const ImageGeometry& image,
+                                const Lattice& choice) {
+  const Grid& grid = image.volume.grid;
+  const Region box = foreground_box(key_of(body_place, "volume"), image);
+  Bounds bounds;
+  Point3 length;
+  Point3 step;
+  for (std::size_t d = 0; d < 3; ++d) {
+    bounds.low[d] = static_cast<double>(box.begin[d]) - 0.5;
+    bounds.high[d] = static_cast<double>(box.end[d]) - 0.5;
+    step[d] = step_length(grid, d);
+    length[d] = (bounds.high[d] - bounds.low[d]) * step[d];
+  }
+  const ForegroundLattice foreground(image, box);
+  const auto frame_of_edge = [&](double edge, double offset) {
+    return covering_frame(bounds, {edge / step[0], edge / step[1], edge / step[2]}, offset);
+  };
+  ChosenLattice chosen = choose_lattice(
+      key_of(body_place, "lattice"), choice, bounds, length, foreground.volume(step), frame_of_edge,
+      [&](const LatticeFrame& frame) { return foreground.mesh_of(frame); });
+  ImageLattice lattice{std::move(chosen.mesh), {}};
+  for (std::size_t d = 0; d < 3; ++d) {
+    lattice.cells_across[d] = (bounds.high[d] - bounds.low[d]) / chosen.frame.edge[d];
+  }
+  return lattice;
+}
+
+}  // namespace tetwarp

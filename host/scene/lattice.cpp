@@ -1,0 +1,122 @@
+#include "host/scene/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "host/base/five_tets.hpp"
+#include "host/scene/scene_checks.hpp"
+
+namespace tetwarp {
+
+LatticeFrame fitted_frame(const Bounds& bounds, const std::array<std::int64_t, 3>& cells) {
+  LatticeFrame frame{cells, bounds.low, {}};
+  for (std::size_t d = 0; d < 3; ++d) {
+    frame.edge[d] = (bounds.high[d] - bounds.low[d]) / static_cast<double>(cells[d]);
+  }
+  return frame;
+}
+
+LatticeFrame covering_frame(const Bounds& bounds, const Point3& edge, double offset) {
+  LatticeFrame frame{{1, 1, 1}, {}, edge};
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double extent = bounds.high[d] - bounds.low[d];
+    // Lengths within rounding of a whole number of edges need no further box.
+    const double count = std::max(1.0, std::ceil(extent / edge[d] - 1e-9) + (offset > 0 ? 1 : 0));
+    frame.cells[d] = static_cast<std::int64_t>(count);
+    const double middle = bounds.low[d] + 0.5 * extent;
+    frame.start[d] = middle - (0.5 * count - (offset > 0 ? 0.5 - offset : 0)) * edge[d];
+  }
+  return frame;
+}
+
+void check_cells(const std::string& place, const std::array<double, 3>& cells) {
+  const double count = 5 * cells[0] * cells[1] * cells[2];
+  if (!(count < std::numeric_limits<std::int32_t>::max())) {
+    fail_at(place, "makes 2^31 or more tetrahedra; use larger cells");
+  }
+}
+
+TetMesh make_lattice(const LatticeFrame& frame) {
+  const auto& cells = frame.cells;
+  TetMesh mesh;
+  mesh.nodes.reserve(static_cast<std::size_t>((cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1)));
+  for (std::int64_t c = 0; c <= cells[2]; ++c) {
+    for (std::int64_t b = 0; b <= cells[1]; ++b) {
+      for (std::int64_t a = 0; a <= cells[0]; ++a) {
+        mesh.nodes.push_back({frame.start[0] + frame.edge[0] * static_cast<double>(a),
+                              frame.start[1] + frame.edge[1] * static_cast<double>(b),
+                              frame.start[2] + frame.edge[2] * static_cast<double>(c)});
+      }
+    }
+  }
+  const auto node_of = [&](std::int64_t a, std::int64_t b, std::int64_t c, int corner) {
+    return static_cast<std::int32_t>(
+        ((c + (corner >> 2)) * (cells[1] + 1) + b + (corner >> 1 & 1)) * (cells[0] + 1) + a +
+        (corner & 1));
+  };
+  mesh.tets.reserve(static_cast<std::size_t>(5 * cells[0] * cells[1] * cells[2]));
+  for (std::int64_t c = 0; c < cells[2]; ++c) {
+    for (std::int64_t b = 0; b < cells[1]; ++b) {
+      for (std::int64_t a = 0; a < cells[0]; ++a) {
+        for (const auto& corners : tets_of_cell[(a + b + c) % 2]) {
+          auto& tet = mesh.tets.emplace_back();
+          for (std::size_t n = 0; n < 4; ++n) tet[n] = node_of(a, b, c, corners[n]);
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+std::vector<std::int32_t> keep_tets(TetMesh& mesh, const std::vector<std::uint8_t>& is_kept) {
+  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (!is_kept[t]) continue;
+    for (const std::int32_t node : mesh.tets[t]) number[static_cast<std::size_t>(node)] = 0;
+    mesh.tets[kept++] = mesh.tets[t];
+  }
+  mesh.tets.resize(kept);
+  std::int32_t next = 0;
+  for (std::size_t node = 0; node < number.size(); ++node) {
+    if (number[node] < 0) continue;
+    mesh.nodes[static_cast<std::size_t>(next)] = mesh.nodes[node];
+    number[node] = next++;
+  }
+  mesh.nodes.resize(static_cast<std::size_t>(next));
+  for (auto& tet : mesh.tets) {
+    for (std::int32_t& node : tet) node = at(number, node);
+  }
+  return number;
+}
+
+namespace {
+double volume_of(const TetMesh& mesh, const std::array<std::int32_t, 4>& tet) {
+  return tet_volume(at(mesh.nodes, tet[0]), at(mesh.nodes, tet[1]), at(mesh.nodes, tet[2]),
+                    at(mesh.nodes, tet[3]));
+}
+}  // namespace
+
+void map_nodes(TetMesh& mesh, const std::function<Point3(const Point3&)>& map) {
+  for (Point3& node : mesh.nodes) node = map(node);
+  for (auto& tet : mesh.tets) {
+    if (volume_of(mesh, tet) < 0) std::swap(tet[2], tet[3]);
+  }
+}
+
+void orient_tets(const std::string& place, TetMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    auto& tet = mesh.tets[t];
+    const double volume = volume_of(mesh, tet);
+    if (volume == 0 || !std::isfinite(volume)) {
+      fail_at(place, "tetrahedron " + std::to_string(t) + " (nodes " + std::to_string(tet[0]) +
+                         ", " + std::to_string(tet[1]) + ", " + std::to_string(tet[2]) + ", " +
+                         std::to_string(tet[3]) + ") has no volume, remove it");
+    }
+    if (volume < 0) std::swap(tet[2], tet[3]);
+  }
+}
+
+}  // namespace tetwarp

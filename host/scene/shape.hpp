@@ -1,0 +1,42 @@
+/// @file shape.hpp
+/// Shapes of valid sizes (see check_scene()): which points are inside, bounding box, volume,
+/// surface.
+#pragma once
+#include <cstdint>
+#include <functional>
+
+#include <tetwarp/scene.hpp>
+
+#include "host/scene/point3.hpp"
+
+namespace tetwarp {
+
+/// The smallest box around the shape; of an arc the box of the whole torus' tube around its ends
+/// and the directions of the axes in between.
+Bounds bounds_of(const Shape& shape);
+
+/// In closed form [m^3].
+double volume_of(const Shape& shape);
+
+/// A function of points that is negative inside the shape, 0 on its surface and positive outside,
+/// and that changes by at most level_slope() times the distance of two points of the bounds.
+double level_of(const Shape& shape, const Point3& x);
+/// The same for many points.
+std::function<double(const Point3&)> make_level(const Shape& shape);
+double level_slope(const Shape& shape);
+
+/// The length over which the level of the shape is no longer nearly linear [m]: the smallest radius
+/// of curvature, or the thickness where there are edges.
+double feature_length(const Shape& shape);
+
+/// Height by which a bent strip raises its points at x.
+double rise_of(const BentStripShape& strip, double x);
+
+/// The box whose points rise_of() raises to the strip.
+Bounds straight_bounds(const BentStripShape& strip);
+
+/// Closed triangle surface of about `triangles` triangles, outwards; points are on the surface of
+/// the shape. The count is the nearest that the pattern of the shape allows.
+Surface make_shape_surface(const Shape& shape, std::int64_t triangles);
+
+}  // namespace tetwarp

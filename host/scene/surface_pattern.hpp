@@ -1,0 +1,32 @@
+/// @file surface_pattern.hpp
+/// What the surfaces of all shapes share: counts of triangles, points.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+
+#include <tetwarp/scene.hpp>
+
+namespace tetwarp {
+
+inline std::int32_t add_point(Surface& surface, const Point3& x) {
+  surface.points.push_back(x);
+  return static_cast<std::int32_t>(surface.points.size() - 1);
+}
+
+/// The pattern whose count of triangles, which grows with n, is nearest to the wanted one.
+inline int nearest_pattern(int first,
+                           std::int64_t wanted,
+                           const std::function<double(int)>& count_of) {
+  int n = first;
+  while (count_of(n) < static_cast<double>(wanted)) ++n;
+  const double over = count_of(n) - static_cast<double>(wanted);
+  return n > first && static_cast<double>(wanted) - count_of(n - 1) <= over ? n - 1 : n;
+}
+
+inline int count_along(double length, double spacing) {
+  return std::max(1, static_cast<int>(std::lround(length / spacing)));
+}
+
+}  // namespace tetwarp

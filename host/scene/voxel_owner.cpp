@@ -1,0 +1,52 @@
+#include "host/scene/voxel_owner.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <tetwarp/warp.hpp>
+
+#include "host/scene/scalar_rows.hpp"
+
+namespace tetwarp {
+
+std::vector<std::int32_t> voxel_owners(const Volume& volume,
+                                       const Region& region,
+                                       const TetMesh& mesh) {
+  const auto voxel_count = static_cast<std::size_t>(region.voxel_count());
+  std::vector<std::int32_t> owners(voxel_count, -1);
+  if (mesh.tets.empty()) return owners;
+  WarpOptions options;
+  options.filter = Filter::nearest;
+  options.region = region;
+  options.backend = Backend::cpu;
+  Warper warper(volume, {mesh.nodes, mesh.tets}, options);
+  std::vector<std::byte> samples(voxel_count * size_of(volume.type) *
+                                 static_cast<std::size_t>(volume.components));
+  void* const target = samples.data();
+  warper.step(mesh.nodes, {.volumes = {&target, 1}, .owner = owners.data()});
+  return owners;
+}
+
+std::vector<std::int32_t> owners_of_value(const Volume& volume,
+                                          const BodyGeometry& geometry,
+                                          double value) {
+  const Region whole{{0, 0, 0}, volume.grid.dims};
+  const auto owners = voxel_owners(volume, whole, {geometry.nodes, geometry.tets});
+  std::vector<std::uint8_t> owns(geometry.tets.size());
+  ScalarRows rows(volume);
+  std::size_t voxel = 0;
+  for (std::int64_t k = 0; k < volume.grid.dims[2]; ++k) {
+    for (std::int64_t j = 0; j < volume.grid.dims[1]; ++j) {
+      for (const double sample : rows.row(j, k)) {
+        const std::int32_t owner = owners[voxel++];
+        if (owner >= 0 && sample == value) owns[static_cast<std::size_t>(owner)] = 1;
+      }
+    }
+  }
+  std::vector<std::int32_t> tets;
+  for (std::size_t t = 0; t < owns.size(); ++t) {
+    if (owns[t]) tets.push_back(static_cast<std::int32_t>(t));
+  }
+  return tets;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,161 @@
+/// @file simulate.hpp
+/// Steps the bodies of a Scene through time: backward Euler, one sparse symmetric positive definite
+/// system per group of coupled bodies, solved by conjugate gradients.
+///
+/// Corotational linear finite elements, clamped springs for cloth, rigid bodies with the angular
+/// momentum as state. Sources: Gascon 2010/2013; Hauth and Strasser 2004 (corotational elements).
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tetwarp/backend.hpp>
+#include <tetwarp/export.hpp>
+#include <tetwarp/mesh.hpp>
+#include <tetwarp/scene.hpp>
+
+namespace tetwarp {
+
+/// Work that is left out because it cannot change the result; a member set to false has it done.
+struct SimulateSkipOptions {
+  bool rotations = true;  ///< of tetrahedra whose nodes did not move
+  bool blocks = true;     ///< of the system whose tetrahedra did not turn and whose springs rest
+};
+
+/// How far a running step is.
+struct StepProgress {
+  std::int64_t step = 0;               ///< from 0
+  double time = 0;                     ///< t_n at its start [s]
+  std::int64_t linear_iterations = 0;  ///< of the step so far
+};
+
+struct SimulateOptions {
+  Backend backend = Backend::automatic;  ///< automatic: cpu, until a device has been measured
+  int device = 0;                        ///< CUDA device number
+  int threads = 0;             ///< of the cpu back end, 0: all cores; any number: same bits
+  bool float32_solve = false;  ///< conjugate gradients on a float32 copy of the system, refined
+                               ///< in float64 to the same tolerance
+  std::int64_t max_iterations = 10000;  ///< of conjugate gradients per solve
+  SimulateSkipOptions skip = {};
+  /// Called within steps, from the thread that steps; false ends the step, which then has no
+  /// effect: step() returns false.
+  std::function<bool(const StepProgress&)> progress = {};
+};
+
+/// Energies [J] at the end positions of a step.
+struct SceneEnergy {
+  double kinetic = 0;
+  double elastic = 0;  ///< of elements, cloth, couplings and handles
+  double gravity = 0;  ///< -m g . x
+  double adhesion = 0;
+  double work = 0;  ///< done so far by scripts, anchors and loads
+  double total() const { return kinetic + elastic + gravity + adhesion; }
+};
+
+/// Seconds of the stages of a step.
+struct StepSeconds {
+  double forces = 0, assembly = 0, linear = 0, detection = 0, contact = 0, update = 0, total = 0;
+};
+
+/// One body at the end of a step. Forces are impulses over the step divided by time_step.
+struct BodyRecord {
+  Point3 centre{};            ///< of mass [m]
+  Point3 velocity{};          ///< of the centre of mass [m/s]
+  Point3 angular_momentum{};  ///< about the centre of mass [kg m^2/s]
+  Point3 contact_force{}, support_force{}, handle_force{}, coupling_force{}, load_force{};  ///< [N]
+  std::array<double, 4> rotation{1, 0, 0, 0};  ///< rigid: geometry frame to world, w >= 0
+  Point3 angular_velocity{};                   ///< rigid [rad/s]
+};
+
+/// Diagnostics of a step; of a new Simulator those of the start.
+struct StepRecord {
+  double time = 0;  ///< [s]
+  SceneEnergy energy;
+  Point3 momentum{};          ///< [kg m/s]
+  Point3 angular_momentum{};  ///< about the world's origin [kg m^2/s]
+  std::int64_t inverted = 0;  ///< tetrahedra of negative volume
+  std::int64_t islands = 0, sleeping = 0, substeps = 0;
+  std::int64_t linear_iterations = 0;
+  double linear_residual = 0;  ///< largest of an island, relative
+  bool converged = true;       ///< whether all solves reached their tolerance
+  std::int64_t skipped_rotations = 0, skipped_blocks = 0;  ///< see SimulateSkipOptions
+  StepSeconds seconds;
+  std::vector<BodyRecord> bodies;       ///< as in Scene::bodies
+  std::vector<Point3> obstacle_forces;  ///< [N]
+  std::vector<Point3> coupling_forces;  ///< on a [N]
+};
+
+/// The mesh of a body and what is bound to it; does not change.
+struct BodyMesh {
+  BodyKind kind = BodyKind::fem;
+  double mass = 0;                       ///< [kg]; scripted: 0
+  std::array<double, 3> cells_across{};  ///< extent over mean cell size; not for rigid
+  Mesh mesh;                             ///< fem; nodes in the frame of the geometry
+  Surface surface;                       ///< points in the frame of the geometry
+  std::vector<double> shear_modulus;     ///< fem: mu of each tetrahedron [Pa]
+};
+
+/// Advances a scene. Public calls of one object must not overlap.
+class TETWARP_EXPORT Simulator {
+ public:
+  /// @throws std::invalid_argument  in one line naming the body or entry and what is wrong
+  /// @throws CudaError              backend cuda without a usable device
+  explicit Simulator(Scene scene, const SimulateOptions& options = {});
+  ~Simulator();
+  Simulator(Simulator&&) noexcept;
+  Simulator& operator=(Simulator&&) noexcept;
+
+  const Scene& scene() const;
+  std::int64_t step_index() const;  ///< steps done
+  double time() const;              ///< [s]
+  Backend backend() const;          ///< cpu, cuda or reference
+  std::string device() const;       ///< name of the processor or device
+
+  /// Advances by time_step. @returns false if `progress` ended the step
+  /// @throws std::runtime_error  positions would not be finite; the state is as before
+  bool step();
+
+  /// The last step's diagnostics, computed on request.
+  const StepRecord& record();
+
+  const BodyMesh& body(std::size_t index) const;
+  /// World positions of the nodes of body(index).mesh, on the device with backend cuda: valid until
+  /// the next step. A Warper takes them as they are.
+  PositionsView positions(std::size_t index) const;
+  /// World positions and velocities copied to the host.
+  std::vector<Point3> node_positions(std::size_t index) const;
+  std::vector<Point3> node_velocities(std::size_t index) const;
+  std::vector<Point3> surface_positions(std::size_t index) const;
+
+  /// Of each tetrahedron of body(index).mesh: det F, F the derivative of the world position by the
+  /// rest position; negative where inverted.
+  std::vector<double> cell_jacobians(std::size_t index) const;
+  /// Of each tetrahedron of body(index).mesh: the von Mises stress of the corotational law [Pa],
+  /// without damping; zero for scripted bodies.
+  std::vector<double> cell_stresses(std::size_t index) const;
+
+  /// Moves the anchors of a handle by `displacement` from where they started, instead of its path,
+  /// from the next step on. @throws std::invalid_argument if there is no such handle
+  void move_handle(const std::string& name, const Point3& displacement);
+  /// The springs of a handle let go, until it is moved again.
+  void release_handle(const std::string& name);
+  /// The pose of a scripted body or obstacle relative to its start, instead of its path, from the
+  /// next step on; axis_angle turns about its origin.
+  void move_script(const std::string& name, const Point3& displacement, const Point3& axis_angle);
+
+  /// The whole state, to go on bit for bit in an equal scene with the same options.
+  std::vector<std::byte> checkpoint() const;
+  /// @throws std::invalid_argument if it is not a checkpoint of this scene
+  void restore(std::span<const std::byte> checkpoint);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tetwarp
