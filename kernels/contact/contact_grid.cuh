@@ -9,36 +9,11 @@
 
 #include "kernels/contact/contact_block.cuh"
 #include "kernels/contact/sweep_graph.cuh"
-#include "kernels/exec/block_sum.cuh"
+#include "kernels/exec/device_vector.cuh"
 #include "kernels/exec/exec_cuda.cuh"
+#include "kernels/exec/grid_sum.cuh"
 
 namespace tetwarp {
-
-constexpr int sum_run = 1024;  ///< terms per block of sums_kernel
-
-/// sums[b] = sum of term over the b-th `run` of [first, last).
-/// Blocks: one per run. Threads: sum_threads. Shared: one sum per warp. Registers: up to 128.
-template <class Sum, class Term>
-__global__ void __launch_bounds__(sum_threads, 4) sums_kernel(
-    std::int64_t first, std::int64_t last, std::int64_t run, Term term, View<Sum> sums) {
-  Sum* const of_warp = dynamic_shared<Sum>();
-  const std::int64_t begin = first + run * static_cast<std::int64_t>(blockIdx.x);
-  const std::int64_t end = min_of(begin + run, last);
-  Sum mine{};
-  for (std::int64_t i = begin + static_cast<std::int64_t>(threadIdx.x); i < end; i += sum_threads) {
-    mine += term(i);
-  }
-  const Sum total = block_sum(mine, of_warp);
-  if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
-}
-
-/// One index = one partial sum.
-template <class Sum>
-struct ReadySums {
-  View<const Sum> sums;
-
-  TETWARP_HD Sum operator()(std::int64_t i) const { return sums[i]; }
-};
 
 /// One index = one run of one entry.
 template <class Body>
@@ -47,31 +22,6 @@ struct SingleRuns {
 
   TETWARP_HD auto operator()(std::int64_t i) const { return body.template run<1>(i, i + 1); }
 };
-
-/// A vector in memory of a device.
-template <class T>
-class DeviceVector {
- public:
-  void resize(std::int64_t size) {
-    buffer_.reserve(size);
-    size_ = size;
-  }
-  View<T> view() { return buffer_.view(size_); }
-  View<const T> view() const { return buffer_.const_view(size_); }
-
- private:
-  DeviceBuffer<T> buffer_;
-  std::int64_t size_ = 0;
-};
-
-template <class T>
-View<T> view_of(DeviceVector<T>& values) {
-  return values.view();
-}
-template <class T>
-View<const T> view_of(const DeviceVector<T>& values) {
-  return values.view();
-}
 
 /// Calls enqueue work on the stream of a CudaExec; see CpuContactExec for their definitions.
 class GridContactExec {

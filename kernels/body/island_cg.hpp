@@ -1,0 +1,261 @@
+/// @file island_cg.hpp
+/// Preconditioned conjugate gradients on the rows of one coupling island, with a block Jacobi
+/// preconditioner D. Written once for threads of the host, one block of a device and a whole
+/// device.
+///
+/// Runs of conjugate gradients with T numbers are corrected in float64 until the residual, computed
+/// anew, is within the tolerance: |r|_{D^-1} <= tolerance |b|_{D^-1}, or is as small as the
+/// rounding of A x allows. Source: Hestenes and Stiefel 1952.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/body/row_product.hpp"
+
+namespace tetwarp {
+
+/// Arrays of the solves, shared by all islands; [rows][3] or [3 rows].
+template <class T>
+struct GradientArrays {
+  SystemRows rows;
+  View<const double> values;   ///< A
+  View<const T> copy;          ///< A as T; for T = double the same
+  DiagonalInverse<T> inverse;  ///< D^-1
+  View<const double> load;     ///< b, without prescribed columns
+  View<double> x;              ///< in: start; out: solution
+  View<T> r, z, p, q;
+};
+
+struct GradientOptions {
+  double tolerance = 1e-6;
+  std::int64_t max_iterations = 10000;
+};
+
+/// How the solve of an island ended.
+struct GradientEnd {
+  std::int64_t iterations = 0;
+  double residual = 0;  ///< relative, of the last solution
+  bool is_converged = false;
+  bool is_stopped = false;  ///< the host asked to end
+};
+
+/// Sums and factors of an iteration, in memory of the executor.
+struct GradientScalars {
+  PlainSums<2> start;                    ///< r . D^-1 r and b . D^-1 b of the float64 residual
+  PlainSums<1> square, next, curvature;  ///< r . z, the next one, p . A p
+  double step, turn;
+};
+
+/// r = b - A x, z = p = D^-1 r. Returns r . z and b . D^-1 b.
+template <class T>
+struct GradientStartBody {
+  GradientArrays<T> a;
+
+  TETWARP_HD void residual(std::int64_t row, T* r, T* b) const {
+    double product[3];
+    multiply_blocks(a.values.data, a.rows.column.data, a.rows.start[row], a.rows.free_end[row],
+                    a.x.data, product);
+    for (int i = 0; i < 3; ++i) {
+      b[i] = static_cast<T>(a.load[3 * row + i]);
+      r[i] = static_cast<T>(a.load[3 * row + i] - product[i]);
+    }
+  }
+  TETWARP_HD PlainSums<2> operator()(std::int64_t row) const {
+    T r[6], b[6], z[6], zb[6];
+    if (a.rows.pair[row] == 2) return {};
+    residual(row, r, b);
+    if (a.rows.pair[row] == 1) residual(row + 1, r + 3, b + 3);
+    const int count = a.inverse.multiply(row, r, z);
+    a.inverse.multiply(row, b, zb);
+    PlainSums<2> sums{};
+    for (int i = 0; i < count; ++i) {
+      a.r[3 * row + i] = r[i];
+      a.p[3 * row + i] = z[i];
+      sums.value[0] += static_cast<double>(r[i]) * static_cast<double>(z[i]);
+      sums.value[1] += static_cast<double>(b[i]) * static_cast<double>(zb[i]);
+    }
+    return sums;
+  }
+};
+
+/// q = A p. Returns p . q.
+template <class T>
+struct GradientProductBody {
+  GradientArrays<T> a;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
+    T q[3];
+    multiply_blocks(a.copy.data, a.rows.column.data, a.rows.start[row], a.rows.free_end[row],
+                    static_cast<const T*>(a.p.data), q);
+    PlainSums<1> sum{};
+    for (int i = 0; i < 3; ++i) {
+      a.q[3 * row + i] = q[i];
+      sum.value[0] += static_cast<double>(a.p[3 * row + i]) * static_cast<double>(q[i]);
+    }
+    return sum;
+  }
+};
+
+/// x += step p, r -= step q, z = D^-1 r. Returns r . z.
+template <class T>
+struct GradientStepBody {
+  GradientArrays<T> a;
+  const double* step;
+
+  TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
+    if (a.rows.pair[row] == 2) return {};
+    const double factor = *step;
+    const int count = a.rows.pair[row] == 1 ? 6 : 3;
+    for (int i = 0; i < count; ++i) {
+      const std::int64_t k = 3 * row + i;
+      a.x[k] += factor * static_cast<double>(a.p[k]);
+      a.r[k] -= static_cast<T>(factor) * a.q[k];
+    }
+    a.inverse.multiply(row, a.r.data + 3 * row, a.z.data + 3 * row);
+    PlainSums<1> sum{};
+    for (int i = 0; i < count; ++i) {
+      const std::int64_t k = 3 * row + i;
+      sum.value[0] += static_cast<double>(a.r[k]) * static_cast<double>(a.z[k]);
+    }
+    return sum;
+  }
+};
+
+/// p = z + turn p.
+template <class T>
+struct GradientTurnBody {
+  GradientArrays<T> a;
+  const double* turn;
+
+  TETWARP_HD void operator()(std::int64_t row) const {
+    const T factor = static_cast<T>(*turn);
+    for (std::int64_t k = 3 * row; k < 3 * row + 3; ++k) a.p[k] = a.z[k] + factor * a.p[k];
+  }
+};
+
+/// Returns e . D^-1 e of e = 2^-52 (|A| |x| + |b|), by which rounding may change the residual.
+template <class T>
+struct GradientRoundingBody {
+  GradientArrays<T> a;
+
+  TETWARP_HD void rounding(std::int64_t row, T* e) const {
+    for (int i = 0; i < 3; ++i) {
+      double sum = fabs(a.load[3 * row + i]);
+      for (std::int64_t k = a.rows.start[row]; k < a.rows.free_end[row]; ++k) {
+        const double* const block = a.values.data + 9 * k;
+        const double* const x = a.x.data + 3 * std::int64_t{a.rows.column[k]};
+        for (int j = 0; j < 3; ++j) sum += fabs(block[3 * j + i] * x[j]);
+      }
+      e[i] = static_cast<T>(0x1p-52 * sum);
+    }
+  }
+  TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
+    T e[6], z[6];
+    if (a.rows.pair[row] == 2) return {};
+    rounding(row, e);
+    if (a.rows.pair[row] == 1) rounding(row + 1, e + 3);
+    const int count = a.inverse.multiply(row, e, z);
+    PlainSums<1> sum{};
+    for (int i = 0; i < count; ++i) {
+      sum.value[0] += static_cast<double>(e[i]) * static_cast<double>(z[i]);
+    }
+    return sum;
+  }
+};
+
+/// x = 0.
+template <class T>
+struct GradientZeroBody {
+  GradientArrays<T> a;
+
+  TETWARP_HD void operator()(std::int64_t row) const {
+    for (std::int64_t k = 3 * row; k < 3 * row + 3; ++k) a.x[k] = 0;
+  }
+};
+
+/// A single index, before an iteration.
+struct GradientBeginBody {
+  GradientScalars* s;
+  TETWARP_HD void operator()(std::int64_t) const { s->square.value[0] = s->start.value[0]; }
+};
+/// A single index: the length of the step; zero ends the run.
+struct GradientLengthBody {
+  GradientScalars* s;
+  TETWARP_HD void operator()(std::int64_t) const {
+    const double square = s->square.value[0], curvature = s->curvature.value[0];
+    s->step = curvature > 0 && square > 0 ? square / curvature : 0;
+  }
+};
+/// A single index: how much of the direction before is kept.
+struct GradientMixBody {
+  GradientScalars* s;
+  TETWARP_HD void operator()(std::int64_t) const {
+    const double square = s->square.value[0], next = s->next.value[0];
+    s->turn = square > 0 ? next / square : 0;
+    s->square.value[0] = next;
+  }
+};
+
+/// @param exec     calls bodies for rows [begin, end); see CpuGradientExec for its functions
+/// @param scalars  in memory of the executor
+/// @param proceed  (std::int64_t iterations): whether to go on; called where the executor reads
+/// sums
+/// @pre  rows of rigid bodies are not separated by begin and end
+///
+/// Determinism: same bits for any number of threads; sums are trees that depend on the rows alone.
+template <class T, class Exec, class Proceed>
+TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
+                                       const GradientArrays<T>& a,
+                                       std::int64_t begin,
+                                       std::int64_t end,
+                                       const GradientOptions& options,
+                                       GradientScalars* scalars,
+                                       const Proceed& proceed) {
+  constexpr int max_runs = 60;
+  constexpr double run_target = sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the run's start
+  GradientEnd result;
+  double before = 0;
+  for (int run = 0; run < max_runs; ++run) {
+    exec.sum_to(begin, end, GradientStartBody<T>{a}, &scalars->start);
+    const PlainSums<2> start = exec.load(&scalars->start);
+    const double square = start.value[0], unit = start.value[1];
+    if (unit == 0) {  // b = 0
+      exec.for_each(begin, end, GradientZeroBody<T>{a});
+      result.residual = 0;
+      result.is_converged = true;
+      break;
+    }
+    result.residual = sqrt(square / unit);
+    result.is_converged = result.residual <= options.tolerance;
+    if (result.is_converged || result.iterations >= options.max_iterations) break;
+    if (run > 0 && !(square < 0.25 * before)) {  // no further progress
+      exec.sum_to(begin, end, GradientRoundingBody<T>{a}, &scalars->next);
+      result.is_converged = square <= 16 * exec.load(&scalars->next).value[0];
+      break;
+    }
+    before = square;
+    const double target =
+        max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
+    exec.once(GradientBeginBody{scalars});
+    for (std::int64_t i = 0; result.iterations < options.max_iterations; ++i) {
+      exec.sum_to(begin, end, GradientProductBody<T>{a}, &scalars->curvature);
+      exec.once(GradientLengthBody{scalars});
+      exec.sum_to(begin, end, GradientStepBody<T>{a, &scalars->step}, &scalars->next);
+      exec.once(GradientMixBody{scalars});
+      ++result.iterations;
+      if (exec.is_sync_point(i)) {
+        const GradientScalars now = exec.load(scalars);
+        if (!(now.square.value[0] > target) || now.step == 0) break;
+        if (!proceed(result.iterations)) {
+          result.is_stopped = true;
+          return result;
+        }
+      }
+      exec.for_each(begin, end, GradientTurnBody<T>{a, &scalars->turn});
+    }
+  }
+  return result;
+}
+
+}  // namespace tetwarp

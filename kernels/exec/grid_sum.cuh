@@ -1,0 +1,38 @@
+/// @file grid_sum.cuh
+/// Sums over a whole device by a fixed tree: a kernel that sums runs, launched once for the terms
+/// and once for their sums.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/exec/block_sum.cuh"
+
+namespace tetwarp {
+
+constexpr int sum_run = 1024;  ///< terms per block of sums_kernel
+
+/// sums[b] = sum of term over the b-th `run` of [first, last).
+/// Blocks: one per run. Threads: sum_threads. Shared: one sum per warp. Registers: up to 128.
+template <class Sum, class Term>
+__global__ void __launch_bounds__(sum_threads, 4) sums_kernel(
+    std::int64_t first, std::int64_t last, std::int64_t run, Term term, View<Sum> sums) {
+  Sum* const of_warp = dynamic_shared<Sum>();
+  const std::int64_t begin = first + run * static_cast<std::int64_t>(blockIdx.x);
+  const std::int64_t end = min_of(begin + run, last);
+  Sum mine{};
+  for (std::int64_t i = begin + static_cast<std::int64_t>(threadIdx.x); i < end; i += sum_threads) {
+    mine += term(i);
+  }
+  const Sum total = block_sum(mine, of_warp);
+  if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
+}
+
+/// One index = one partial sum.
+template <class Sum>
+struct ReadySums {
+  View<const Sum> sums;
+
+  TETWARP_HD Sum operator()(std::int64_t i) const { return sums[i]; }
+};
+
+}  // namespace tetwarp
