@@ -1,0 +1,162 @@
+#include "host/reference/simulate/bodies.hpp"
+
+#include <stdexcept>
+
+#include "host/reference/simulate/bodies_parts.hpp"
+
+namespace tetwarp::reference {
+namespace {
+
+std::vector<Point3> points_of(const std::vector<Vector3d>& vectors, int first, int count) {
+  std::vector<Point3> result;
+  for (int i = first; i < first + count; ++i) {
+    result.push_back(point_of(vectors[static_cast<std::size_t>(i)]));
+  }
+  return result;
+}
+
+}  // namespace
+
+ReferenceBodies::ReferenceBodies(const Scene& scene, const SceneGeometry& geometry)
+    : parts_(std::make_unique<Parts>()) {
+  parts_->system = make_system(scene, geometry);
+  parts_->state = start_of(parts_->system);
+  parts_->overrides = Overrides::none_of(scene);
+  parts_->prescribed = prescribed_at(parts_->system, parts_->overrides, 0);
+}
+ReferenceBodies::~ReferenceBodies() = default;
+ReferenceBodies::ReferenceBodies(ReferenceBodies&&) noexcept = default;
+ReferenceBodies& ReferenceBodies::operator=(ReferenceBodies&&) noexcept = default;
+
+std::int64_t ReferenceBodies::step_index() const {
+  return parts_->steps;
+}
+
+double ReferenceBodies::time() const {
+  return static_cast<double>(parts_->steps) * parts_->system.scene.time_step;
+}
+
+void ReferenceBodies::step() {
+  StepDrive drive;
+  drive.time_step = parts_->system.scene.time_step;
+  drive.end_time = static_cast<double>(parts_->steps + 1) * drive.time_step;
+  drive.before = parts_->prescribed;
+  drive.after = prescribed_at(parts_->system, parts_->overrides, drive.end_time);
+  parts_->last = step_once(parts_->system, parts_->state, drive);
+  parts_->work += work_of(parts_->system, drive, *parts_->last);
+  parts_->state = parts_->last->state;
+  parts_->prescribed = drive.after;
+  ++parts_->steps;
+}
+
+std::vector<Point3> ReferenceBodies::node_positions(std::size_t body) const {
+  const BodyPlace& place = parts_->system.places.at(body);
+  return points_of(parts_->state.node, place.first_node, place.node_count);
+}
+
+std::vector<Point3> ReferenceBodies::node_velocities(std::size_t body) const {
+  const BodyPlace& place = parts_->system.places.at(body);
+  return points_of(parts_->state.velocity, place.first_node, place.node_count);
+}
+
+void ReferenceBodies::set_nodes(std::size_t body,
+                                const std::vector<Point3>& positions,
+                                const std::vector<Point3>& velocities) {
+  const BodyPlace& place = parts_->system.places.at(body);
+  for (int n = 0; n < place.node_count; ++n) {
+    const auto node = static_cast<std::size_t>(place.first_node + n);
+    parts_->state.node[node] = vector_of(positions.at(static_cast<std::size_t>(n)));
+    parts_->state.velocity[node] = vector_of(velocities.at(static_cast<std::size_t>(n)));
+  }
+}
+
+std::vector<Point3> ReferenceBodies::surface_positions(std::size_t body) const {
+  const System& system = parts_->system;
+  std::vector<Point3> result;
+  for (const MaterialPoint& point : system.surfaces.at(body)) {
+    result.push_back(point_of(position_of(system, parts_->state, point)));
+  }
+  return result;
+}
+
+BodiesState ReferenceBodies::state() const {
+  const System& system = parts_->system;
+  const State& state = parts_->state;
+  BodiesState result;
+  result.node_positions = points_of(state.node, 0, system.node_count());
+  result.node_velocities = points_of(state.velocity, 0, system.node_count());
+  for (std::size_t r = 0; r < system.rigids.size(); ++r) {
+    const auto block = static_cast<std::size_t>(system.linear_block(static_cast<int>(r)));
+    result.centres.push_back(point_of(state.frame[r].position));
+    result.rotations.push_back(quaternion_of(state.frame[r].rotation));
+    result.velocities.push_back(point_of(state.velocity[block]));
+    result.angular_momenta.push_back(point_of(state.angular_momentum[r]));
+  }
+  return result;
+}
+
+void ReferenceBodies::set_state(const BodiesState& from) {
+  const System& system = parts_->system;
+  State& state = parts_->state;
+  for (std::size_t n = 0; n < state.node.size(); ++n) {
+    state.node[n] = vector_of(from.node_positions.at(n));
+    state.velocity[n] = vector_of(from.node_velocities.at(n));
+  }
+  for (std::size_t r = 0; r < system.rigids.size(); ++r) {
+    const auto block = static_cast<std::size_t>(system.linear_block(static_cast<int>(r)));
+    state.frame[r] = {vector_of(from.centres.at(r)), rotation_of(from.rotations.at(r))};
+    state.velocity[block] = vector_of(from.velocities.at(r));
+    state.angular_momentum[r] = vector_of(from.angular_momenta.at(r));
+    if (system.rigids[r].mass == 0) continue;
+    state.velocity[block + 1] = inertia_of(system.rigids[r], state.frame[r].rotation)
+                                    .llt()
+                                    .solve(state.angular_momentum[r]);
+  }
+}
+
+std::vector<Point3> ReferenceBodies::elastic_forces(std::size_t body) const {
+  const BodyPlace& place = parts_->system.places.at(body);
+  const VectorXd force = elastic_force(parts_->system, parts_->state);
+  std::vector<Point3> result;
+  for (int n = place.first_node; n < place.first_node + place.node_count; ++n) {
+    result.push_back(point_of(force.segment<3>(3 * n)));
+  }
+  return result;
+}
+
+std::vector<double> ReferenceBodies::masses(std::size_t body) const {
+  const BodyPlace& place = parts_->system.places.at(body);
+  if (place.rigid >= 0) {
+    return {parts_->system.rigids[static_cast<std::size_t>(place.rigid)].mass};
+  }
+  const VectorXd sums = parts_->system.mass.rowwise().sum();
+  return {sums.data() + place.first_node, sums.data() + place.first_node + place.node_count};
+}
+
+std::array<double, 9> ReferenceBodies::inertia(std::size_t body) const {
+  const Matrix3d inertia = motion_of(parts_->system, parts_->state, body).inertia;
+  std::array<double, 9> rows;
+  for (std::size_t i = 0; i < 9; ++i) {
+    rows[i] = inertia(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3));
+  }
+  return rows;
+}
+
+void ReferenceBodies::move_handle(const std::string& name, const Point3& displacement) {
+  parts_->overrides.handles[handle_named(parts_->system.scene, name)] =
+      Overrides::Handle{false, vector_of(displacement)};
+}
+
+void ReferenceBodies::release_handle(const std::string& name) {
+  parts_->overrides.handles[handle_named(parts_->system.scene, name)] =
+      Overrides::Handle{true, Vector3d::Zero()};
+}
+
+void ReferenceBodies::move_script(const std::string& name,
+                                  const Point3& displacement,
+                                  const Point3& axis_angle) {
+  parts_->overrides.bodies[script_named(parts_->system.scene, name)] =
+      PathPlace{vector_of(displacement), vector_of(axis_angle)};
+}
+
+}  // namespace tetwarp::reference
