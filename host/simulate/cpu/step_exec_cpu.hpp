@@ -1,0 +1,241 @@
+/// @file step_exec_cpu.hpp
+/// CpuStepExec: the executor of BodyPipeline on host threads. Sums have one fixed tree, so results
+/// do not depend on the number of threads.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "host/base/parallel.hpp"
+#include "host/simulate/cpu/huge_pages.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
+#include "host/simulate/stepper.hpp"
+#include "kernels/base/stage_times.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/body/island_cg.hpp"
+#include "kernels/body/tet_force.hpp"
+
+namespace tetwarp {
+
+/// Runs island_cg(): bodies over rows, on one or several threads.
+class CpuGradientExec {
+ public:
+  static constexpr std::int64_t run_length = 64;  ///< rows that are summed in sequence
+
+  /// @param sums  room for one sum per run of rows, [rows / run_length + 1]
+  CpuGradientExec(int threads, PlainSums<2>* sums) : threads_(threads), sums_(sums) {}
+
+  template <class Body>
+  void for_each(std::int64_t begin, std::int64_t end, const Body& body) const {
+    for_runs(begin, end, [&](std::int64_t, std::int64_t first, std::int64_t past) {
+      for (std::int64_t i = first; i < past; ++i) body(i);
+    });
+  }
+  template <class Body>
+  void once(const Body& body) const {
+    body(0);
+  }
+  /// *out = sum of body(i): runs of rows in sequence, then their sums in sequence.
+  template <class Body, int count>
+  void sum_to(std::int64_t begin, std::int64_t end, const Body& body, PlainSums<count>* out) const {
+    for_runs(begin, end, [&](std::int64_t run, std::int64_t first, std::int64_t past) {
+      const PlainSums<count> sum = sum_of<count>(body, first, past);
+      for (int k = 0; k < count; ++k) sums_[run].value[k] = sum.value[k];
+    });
+    PlainSums<count> total{};
+    for (std::int64_t run = 0; run < (end - begin + run_length - 1) / run_length; ++run) {
+      for (int k = 0; k < count; ++k) total.value[k] += sums_[run].value[k];
+    }
+    *out = total;
+  }
+  template <class Value>
+  Value load(const Value* value) const {
+    return *value;
+  }
+  bool is_sync_point(std::int64_t) const { return true; }
+
+ private:
+  template <int count, class Body>
+  static PlainSums<count> sum_of(const Body& body, std::int64_t begin, std::int64_t end) {
+    if constexpr (std::is_same_v<Body, GradientProductBody<double>>) {
+      return vector_stages().product(body.a, begin, end);
+    } else if constexpr (std::is_same_v<Body, GradientProductBody<float>>) {
+      return vector_stages().product_float(body.a, begin, end);
+    } else {
+      PlainSums<count> sum{};
+      for (std::int64_t i = begin; i < end; ++i) sum += body(i);
+      return sum;
+    }
+  }
+
+  template <class Run>
+  void for_runs(std::int64_t begin, std::int64_t end, const Run& run) const {
+    const std::int64_t runs = (end - begin + run_length - 1) / run_length;
+    const std::int64_t tasks = threads_ == 1 ? 1 : std::min<std::int64_t>(runs, 2 * threads_);
+    parallel_tasks(threads_, tasks, [&](std::int64_t task) {
+      for (std::int64_t r = runs * task / tasks; r < runs * (task + 1) / tasks; ++r) {
+        run(r, begin + r * run_length, std::min(end, begin + (r + 1) * run_length));
+      }
+    });
+  }
+
+  int threads_;
+  PlainSums<2>* sums_;
+};
+
+class CpuStepExec {
+ public:
+  template <class T>
+  using Vector = std::vector<T, HugePageAllocator<T>>;
+
+  explicit CpuStepExec(int threads) : threads_(threads) {}
+
+  int threads() const { return threads_; }
+
+  /// Sets the size; all entries become zero.
+  template <class T>
+  void resize(Vector<T>& values, std::int64_t size) const {
+    values.assign(static_cast<std::size_t>(size), T{});
+  }
+  /// Copies from the host to memory of the executor.
+  template <class T>
+  void put(const T* host, std::int64_t size, Vector<T>& values) const {
+    values.assign(host, host + size);
+  }
+  /// Copies from memory of the executor to the host.
+  template <class T>
+  void get(View<const T> values, T* host) const {
+    std::copy_n(values.data, values.size, host);
+  }
+  template <class T>
+  View<T> view(Vector<T>& values) const {
+    return {values.data(), static_cast<std::int64_t>(values.size())};
+  }
+  template <class T>
+  View<const T> view(const Vector<T>& values) const {
+    return {values.data(), static_cast<std::int64_t>(values.size())};
+  }
+
+  /// body(i) for i in [0, count), any order; adds the time to that of the label.
+  template <class Body>
+  void for_each(const char* label, std::int64_t count, const Body& body) {
+    const Clock clock(times_, label);
+    parallel_for(count < serial_below ? 1 : threads_, count, body);
+  }
+  void tet_forces(const char* label, const TetForceBody& body) {
+    for_ranges(label, body.tets.count, [&](std::int64_t begin, std::int64_t end) {
+      vector_stages().tet_forces(body, begin, end);
+    });
+  }
+  void assemble(const char* label, const BlockAssembleBody& body) {
+    for_ranges(label, body.rows.upper.size, [&](std::int64_t begin, std::int64_t end) {
+      vector_stages().assemble(body, begin, end);
+    });
+  }
+  std::int64_t count_ones(View<const std::uint8_t> flags) const {
+    std::int64_t ones = 0;
+    for (std::int64_t i = 0; i < flags.size; ++i) ones += flags[i];
+    return ones;
+  }
+
+  /// Reserves memory for solve_islands(); sorts the islands by whether one thread solves them.
+  void prepare_solve(const std::vector<std::int32_t>& island_start) {
+    const std::size_t islands = island_start.size() - 1;
+    sums_.resize(static_cast<std::size_t>(island_start.back()) / CpuGradientExec::run_length +
+                 islands + 1);
+    ends_.resize(islands);
+    small_.clear();
+    large_.clear();
+    for (std::size_t i = 0; i < islands; ++i) {
+      const std::int32_t rows = island_start[i + 1] - island_start[i];
+      (rows < serial_below ? small_ : large_).push_back(static_cast<std::int32_t>(i));
+    }
+  }
+
+  /// Solves all islands and calls take(end) for each. Small islands are one task each.
+  /// @param proceed  as of island_cg(); called by this thread only
+  template <class T, class Proceed, class Take>
+  void solve_islands(const char* label,
+                     const std::vector<std::int32_t>& island_start,
+                     const GradientArrays<T>& arrays,
+                     const GradientOptions& options,
+                     const Proceed& proceed,
+                     const Take& take) {
+    const Clock clock(times_, label);
+    const auto solve = [&](std::int32_t island, int threads, const auto& go_on) {
+      const auto i = static_cast<std::size_t>(island);
+      const std::int64_t begin = island_start[i], end = island_start[i + 1];
+      GradientScalars scalars;
+      CpuGradientExec exec(threads, sums_.data() + begin / CpuGradientExec::run_length + i);
+      ends_[i] = island_cg(exec, arrays, begin, end, options, &scalars, go_on);
+    };
+    for (GradientEnd& end : ends_) end = {};
+    bool goes_on = proceed(0);
+    if (goes_on) {
+      parallel_tasks(threads_, static_cast<std::int64_t>(small_.size()), [&](std::int64_t k) {
+        solve(small_[static_cast<std::size_t>(k)], 1, [](std::int64_t) { return true; });
+      });
+    }
+    for (std::size_t k = 0; k < large_.size() && goes_on; ++k) {
+      solve(large_[k], threads_,
+            [&](std::int64_t iterations) { return iterations % 16 != 0 || proceed(iterations); });
+      goes_on = !ends_[static_cast<std::size_t>(large_[k])].is_stopped;
+    }
+    for (GradientEnd& end : ends_) {
+      end.is_stopped |= !goes_on;
+      take(end);
+    }
+  }
+
+  void clear_times() { times_.clear(); }
+  void read_times(StepSeconds& seconds) const {
+    seconds.forces = times_.of("body/forces");
+    seconds.assembly = times_.of("body/assembly");
+    seconds.linear = times_.of("body/linear");
+    seconds.update = times_.of("body/update");
+    seconds.total = seconds.forces + seconds.assembly + seconds.linear + seconds.update;
+  }
+
+ private:
+  /// stage(begin, end) for parts of [0, count) of at most range_length indices.
+  template <class Stage>
+  void for_ranges(const char* label, std::int64_t count, const Stage& stage) {
+    const Clock clock(times_, label);
+    const std::int64_t ranges = (count + range_length - 1) / range_length;
+    parallel_tasks(threads_, ranges, [&](std::int64_t range) {
+      stage(range * range_length, std::min(count, (range + 1) * range_length));
+    });
+  }
+
+  class Clock {
+   public:
+    Clock(StageTimes& times, const char* label)
+        : times_(times), label_(label), start_(std::chrono::steady_clock::now()) {}
+    ~Clock() {
+      const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+      times_.add(label_, passed.count());
+    }
+    Clock(const Clock&) = delete;
+    Clock& operator=(const Clock&) = delete;
+
+   private:
+    StageTimes& times_;
+    const char* label_;
+    std::chrono::steady_clock::time_point start_;
+  };
+
+  static constexpr std::int64_t serial_below = 512;  ///< with fewer indices one thread is faster
+
+  static constexpr std::int64_t range_length = 1024;
+
+  int threads_;
+  StageTimes times_;
+  std::vector<PlainSums<2>> sums_;
+  std::vector<GradientEnd> ends_;
+  std::vector<std::int32_t> small_, large_;  ///< islands
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,35 @@
+/// @file stepper_cpu.cpp
+/// make_cpu_stepper(): BodyPipeline on host threads.
+#include "host/base/warp_backend.hpp"
+#include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cpu/step_exec_cpu.hpp"
+
+namespace tetwarp {
+namespace {
+template <class T>
+class CpuStepper final : public BodyStepper {
+ public:
+  CpuStepper(const Model& model, const StepperOptions& options)
+      : exec_(thread_count(options.threads)), pipeline_(exec_, model, options) {}
+
+  std::string device() const override { return processor_name(); }
+  void set_state(const ModelState& state) override { pipeline_.set_state(state); }
+  void get_state(ModelState& state) const override { pipeline_.get_state(state); }
+  StepOutcome step(const StepInput& input) override { return pipeline_.step(input); }
+  std::vector<Point3> support_impulses() const override { return pipeline_.support_impulses(); }
+  PositionsView positions(std::int32_t first_node, std::int32_t count) const override {
+    return {pipeline_.position_of(first_node), count, Memory::host};
+  }
+
+ private:
+  CpuStepExec exec_;
+  BodyPipeline<CpuStepExec, T> pipeline_;
+};
+}  // namespace
+
+std::unique_ptr<BodyStepper> make_cpu_stepper(const Model& model, const StepperOptions& options) {
+  if (options.float32_solve) return std::make_unique<CpuStepper<float>>(model, options);
+  return std::make_unique<CpuStepper<double>>(model, options);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,115 @@
+/// @file vector_stages-inl.hpp
+/// Definitions of VectorStages, for files that are compiled for one instruction set each.
+///
+/// All functions here are inlined or templates on the width of vectors, which differs between the
+/// files: no code for one instruction set can be linked into another's.
+#pragma once
+#include <cstdint>
+
+#include "host/simulate/cpu/lanes.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
+
+namespace tetwarp {
+
+/// Tetrahedra index[0] to index[count - 1], count <= width; lanes from count on repeat the last.
+template <int width>
+inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index, int count) {
+  using Real = Lanes<width>;
+  const TetConstants& tets = body.tets;
+  Real x[12], g[9], f[9], r[9], gradient[12], force[12], lambda, mu;
+  std::int64_t own[width];
+  for (int k = 0; k < width; ++k) own[k] = index[k < count ? k : count - 1];
+  for (int a = 0; a < 4; ++a) {
+    const std::int32_t* const corner = tets.corner.data + a * tets.count;
+    for (int k = 0; k < width; ++k) {
+      const double* const p = body.position.data + 3 * std::int64_t{corner[own[k]]};
+      for (int i = 0; i < 3; ++i) x[3 * a + i].v[k] = p[i];
+    }
+  }
+  for (int c = 0; c < 9; ++c) {
+    const double* const from = tets.gradient.data + c * tets.count;
+    for (int k = 0; k < width; ++k) g[c].v[k] = from[own[k]];
+  }
+  for (int k = 0; k < width; ++k) {
+    lambda.v[k] = tets.volume_lambda[own[k]];
+    mu.v[k] = tets.volume_mu[own[k]];
+  }
+  deformation_gradient(x, g, f);
+  const LaneMask<width> is_valid = rotation_by_quartic(f, r);
+  for (int k = 0; k < count; ++k) {
+    if (is_valid[k]) continue;
+    double lane_f[9], lane_r[9];
+    for (int i = 0; i < 9; ++i) lane_f[i] = f[i].v[k];
+    nearest_rotation(lane_f, lane_r);
+    for (int i = 0; i < 9; ++i) r[i].v[k] = lane_r[i];
+  }
+  corotated_forces(f, r, g, lambda, mu, gradient, force);
+  alignas(64) double gradients[12][width], forces[12][width];
+  for (int i = 0; i < 12; ++i) {
+    __builtin_memcpy(gradients[i], &gradient[i].v, sizeof(gradients[i]));
+    __builtin_memcpy(forces[i], &force[i].v, sizeof(forces[i]));
+  }
+  for (int k = 0; k < count; ++k) {
+    body.store(own[k], gradients[0] + k, forces[0] + k, width);
+  }
+}
+
+template <int width>
+void tet_forces_of(const TetForceBody& body, std::int64_t begin, std::int64_t end) {
+  std::int32_t index[width];
+  int count = 0;
+  for (std::int64_t t = begin; t < end; ++t) {
+    if (body.is_at_rest(t)) {
+      body.skip(t);
+      continue;
+    }
+    index[count++] = static_cast<std::int32_t>(t);
+    if (count < width) continue;
+    tet_force_lanes<width>(body, index, count);
+    count = 0;
+  }
+  if (count > 0) tet_force_lanes<width>(body, index, count);
+}
+
+template <int width>
+void assemble_of(const BlockAssembleBody& body, std::int64_t begin, std::int64_t end) {
+  const BlockAssembleBodyOf<LaneColumn> own{body.rows,   body.from,      body.scalars,
+                                            body.rigid,  body.time_step, body.skips,
+                                            body.values, body.is_skipped};
+  for (std::int64_t k = begin; k < end; ++k) own(k);
+}
+
+/// GradientProductBody of rows [begin, end) with a block's column in a vector. Reads one number
+/// beyond the last block.
+template <int width, class T>
+PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int64_t end) {
+  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
+  constexpr std::int64_t blocks_ahead = 32;  // of what is read: prefetched
+  PlainSums<1> sum{};
+  const T* const p = a.p.data;
+  for (std::int64_t row = begin; row < end; ++row) {
+    Four q = {};
+    for (std::int64_t k = a.rows.start[row]; k < a.rows.free_end[row]; ++k) {
+      const T* const x = p + 3 * std::int64_t{a.rows.column[k]};
+      __builtin_prefetch(a.copy.data + 9 * (k + blocks_ahead));
+      Four column[3];
+      for (int j = 0; j < 3; ++j) {
+        __builtin_memcpy(&column[j], a.copy.data + 9 * k + 3 * j, sizeof(Four));
+      }
+      q += column[0] * x[0] + column[1] * x[1] + column[2] * x[2];
+    }
+    for (int i = 0; i < 3; ++i) {
+      a.q[3 * row + i] = q[i];
+      sum.value[0] += static_cast<double>(p[3 * row + i]) * static_cast<double>(q[i]);
+    }
+  }
+  return sum;
+}
+
+template <int width>
+constexpr VectorStages vector_stages_of(const char* name) {
+  return {name, tet_forces_of<width>, assemble_of<width>, product_of<width, double>,
+          product_of<width, float>};
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,52 @@
+/// @file stepper_cuda.cuh
+/// CudaStepper: BodyPipeline on a device.
+#pragma once
+#include <string>
+#include <utility>
+
+#include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cuda/step_exec_cuda.cuh"
+
+namespace tetwarp {
+
+template <class T>
+class CudaStepper final : public BodyStepper {
+ public:
+  CudaStepper(const Model& model, const StepperOptions& options, std::string name)
+      : exec_(options.device), pipeline_(exec_, model, options), name_(std::move(name)) {}
+
+  std::string device() const override { return name_; }
+  void set_state(const ModelState& state) override {
+    exec_.enter();
+    pipeline_.set_state(state);
+  }
+  void get_state(ModelState& state) const override {
+    exec_.enter();
+    pipeline_.get_state(state);
+  }
+  StepOutcome step(const StepInput& input) override {
+    exec_.enter();
+    return pipeline_.step(input);
+  }
+  std::vector<Point3> support_impulses() const override {
+    exec_.enter();
+    return pipeline_.support_impulses();
+  }
+  PositionsView positions(std::int32_t first_node, std::int32_t count) const override {
+    return {pipeline_.position_of(first_node), count, Memory::device};
+  }
+
+ private:
+  mutable CudaStepExec exec_;  ///< reads need its stream
+  BodyPipeline<CudaStepExec, T> pipeline_;
+  std::string name_;
+};
+
+inline std::unique_ptr<BodyStepper> make_stepper_on_device(const Model& model,
+                                                           const StepperOptions& options,
+                                                           const std::string& name) {
+  if (options.float32_solve) return std::make_unique<CudaStepper<float>>(model, options, name);
+  return std::make_unique<CudaStepper<double>>(model, options, name);
+}
+
+}  // namespace tetwarp

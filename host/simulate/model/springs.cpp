@@ -1,0 +1,106 @@
+#include <numeric>
+#include <stdexcept>
+
+#include "host/simulate/body_points.hpp"
+#include "host/simulate/model/model_parts.hpp"
+
+namespace tetwarp {
+namespace {
+
+/// Springs of one coupling or handle, before its totals are divided among them.
+struct SpringList {
+  std::vector<ModelPoint> a, b;
+  std::vector<double> share;
+};
+
+void add_list(const SpringList& list,
+              double stiffness,
+              double damping,
+              std::int32_t coupling,
+              std::int32_t handle,
+              ModelSprings& springs) {
+  const double sum = std::accumulate(list.share.begin(), list.share.end(), 0.0);
+  for (std::size_t s = 0; s < list.a.size(); ++s) {
+    const double share = sum > 0 ? list.share[s] / sum : 1.0 / static_cast<double>(list.a.size());
+    springs.a.push_back(list.a[s]);
+    springs.b.push_back(list.b[s]);
+    springs.stiffness.push_back(stiffness * share);
+    springs.damping.push_back(damping * share);
+    springs.coupling.push_back(coupling);
+    springs.handle.push_back(handle);
+  }
+}
+
+std::int32_t body_named(const Scene& scene, const std::string& name, const std::string& where) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].name == name) return static_cast<std::int32_t>(b);
+  }
+  throw std::invalid_argument(where + ": there is no body \"" + name + "\"");
+}
+
+SpringList coupling_springs(const Scene& scene,
+                            const SceneGeometry& geometry,
+                            std::size_t c,
+                            const Model& model,
+                            MaterialFinder& finder) {
+  const Coupling& coupling = scene.couplings[c];
+  const std::string where = "couplings[" + std::to_string(c) + "]";
+  if (coupling.a == coupling.b) {
+    throw std::invalid_argument(where + ": couples body \"" + coupling.a + "\" to itself");
+  }
+  SpringList list;
+  for (const Point3& x : coupling.points) {
+    list.a.push_back(finder.fixed_at(coupling.a, x));
+    list.b.push_back(finder.fixed_at(coupling.b, x));
+    list.share.push_back(1);
+  }
+  if (!coupling.points.empty()) return list;
+  const std::int32_t a = body_named(scene, coupling.a, where + ".a");
+  const auto& nodes = geometry.coupling_nodes[c];
+  const std::vector<double> shares = shares_of(geometry.bodies[static_cast<std::size_t>(a)], nodes);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const ModelPoint point = selected_point(model, geometry, a, nodes[i]);
+    const NearestMaterial found =
+        finder.nearest(coupling.b, position_of(point, model.start, model.node_count));
+    if (coupling.within && found.distance > *coupling.within) continue;
+    list.a.push_back(point);
+    list.b.push_back(found.point);
+    list.share.push_back(shares[i]);
+  }
+  if (list.a.empty()) {
+    throw std::invalid_argument(where + ".within: none of the " + std::to_string(nodes.size()) +
+                                " selected points of \"" + coupling.a + "\" is within " +
+                                std::to_string(*coupling.within) + " m of \"" + coupling.b +
+                                "\"; raise it");
+  }
+  return list;
+}
+
+}  // namespace
+
+void add_springs(const Scene& scene, const SceneGeometry& geometry, Model& model) {
+  MaterialFinder finder(scene, geometry, model);
+  for (std::size_t c = 0; c < scene.couplings.size(); ++c) {
+    const Coupling& coupling = scene.couplings[c];
+    add_list(coupling_springs(scene, geometry, c, model, finder), coupling.stiffness,
+             coupling.damping, static_cast<std::int32_t>(c), -1, model.springs);
+  }
+  for (std::size_t h = 0; h < scene.handles.size(); ++h) {
+    const Handle& handle = scene.handles[h];
+    const std::int32_t body =
+        body_named(scene, handle.body, "handles[" + std::to_string(h) + "].handle");
+    const auto& nodes = geometry.handle_nodes[h];
+    SpringList list;
+    list.share = shares_of(geometry.bodies[static_cast<std::size_t>(body)], nodes);
+    for (const std::int32_t node : nodes) {
+      list.a.push_back(selected_point(model, geometry, body, node));
+      ModelPoint anchor;
+      anchor.local = position_of(list.a.back(), model.start, model.node_count);
+      list.b.push_back(anchor);
+    }
+    add_list(list, handle.stiffness, handle.damping, -1, static_cast<std::int32_t>(h),
+             model.springs);
+  }
+}
+
+}  // namespace tetwarp

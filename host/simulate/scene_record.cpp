@@ -1,0 +1,205 @@
+#include "host/simulate/scene_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/parallel.hpp"
+#include "host/simulate/body_points.hpp"
+#include "host/simulate/rotations.hpp"
+#include "kernels/body/tet_rotation.hpp"
+
+namespace tetwarp {
+namespace {
+
+std::size_t index_of(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+struct TetSums {
+  double energy = 0;
+  std::int64_t inverted = 0;
+};
+
+/// V (mu |e|^2 + lambda/2 tr(e)^2), e = sym(R^T F) - 1.
+TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
+  const auto& nodes = model.tets.nodes[t];
+  const auto& gradient = model.tets.gradient[t];
+  double f[9] = {}, r[9], s[9];
+  const Point3& x0 = at(state.position, nodes[0]);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Point3 edge = minus(at(state.position, nodes[a + 1]), x0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) f[3 * i + j] += edge[i] * gradient[3 * a + j];
+    }
+  }
+  tet_rotation(f, r);
+  product3_transposed(r, f, s);
+  double square = 0, trace = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double strain = (s[3 * i + j] + s[3 * j + i]) / 2 - (i == j ? 1 : 0);
+      square += strain * strain;
+      trace += i == j ? strain : 0;
+    }
+  }
+  double cofactors[3];
+  cross3(f + 3, f + 6, cofactors);
+  return {
+      model.tets.volume[t] * (model.tets.mu[t] * square + model.tets.lambda[t] / 2 * trace * trace),
+      dot3(f, cofactors) < 0 ? 1 : 0};
+}
+
+/// Of ranges of fixed length, then of the ranges in order.
+TetSums all_tets(const Model& model, const ModelState& state, int threads) {
+  constexpr std::size_t range = 2048;
+  const std::size_t count = model.tets.nodes.size();
+  std::vector<TetSums> parts((count + range - 1) / range);
+  parallel_for(threads, static_cast<std::int64_t>(parts.size()), [&](std::int64_t p) {
+    const std::size_t begin = static_cast<std::size_t>(p) * range;
+    TetSums sum;
+    for (std::size_t t = begin; t < std::min(begin + range, count); ++t) {
+      const TetSums one = tet_sums(model, state, t);
+      sum.energy += one.energy;
+      sum.inverted += one.inverted;
+    }
+    parts[static_cast<std::size_t>(p)] = sum;
+  });
+  TetSums sum;
+  for (const TetSums& part : parts) {
+    sum.energy += part.energy;
+    sum.inverted += part.inverted;
+  }
+  return sum;
+}
+
+double spring_energy(const Model& model,
+                     const ModelState& state,
+                     const std::vector<std::optional<Point3>>& handles) {
+  double energy = 0;
+  const ModelEdges& edges = model.edges;
+  for (std::size_t e = 0; e < edges.nodes.size(); ++e) {
+    const Point3 line =
+        minus(at(state.position, edges.nodes[e][1]), at(state.position, edges.nodes[e][0]));
+    const double stretch = norm(line) - edges.rest_length[e];
+    energy += edges.stiffness[e] * stretch * stretch / 2;
+  }
+  const ModelSprings& springs = model.springs;
+  for (std::size_t s = 0; s < springs.a.size(); ++s) {
+    Point3 end = position_of(springs.b[s], state, model.node_count);
+    if (springs.handle[s] >= 0) {
+      const auto& displacement = handles[index_of(springs.handle[s])];
+      if (!displacement) continue;
+      end = plus(end, *displacement);
+    }
+    const Point3 line = minus(position_of(springs.a[s], state, model.node_count), end);
+    energy += springs.stiffness[s] * dot(line, line) / 2;
+  }
+  return energy;
+}
+
+/// Centres, then what the blocks of masses add: kinetic energy, angular momenta, bending.
+void record_nodes(const Model& model, const ModelState& state, StepRecord& record) {
+  const std::size_t body_count = record.bodies.size();
+  std::vector<double> mass(body_count, 0);
+  for (std::size_t b = 0; b < body_count; ++b) {
+    BodyRecord& body = record.bodies[b];
+    const auto begin = index_of(model.body_node[b]), end = index_of(model.body_node[b + 1]);
+    double sum = 0;
+    for (std::size_t n = begin; n < end; ++n) mass[b] += model.node_mass[n];
+    for (std::size_t n = begin; n < end; ++n) {
+      const double weight = mass[b] > 0 ? model.node_mass[n] : 1;  // scripted: the mean of nodes
+      sum += weight;
+      body.centre = plus(body.centre, times(weight, state.position[n]));
+      body.velocity = plus(body.velocity, times(weight, state.velocity[n]));
+    }
+    if (begin == end) continue;
+    body.centre = times(1 / sum, body.centre);
+    body.velocity = times(1 / sum, body.velocity);
+    record.momentum = plus(record.momentum, times(mass[b], body.velocity));
+  }
+  const ModelScalarBlocks& blocks = model.scalar_blocks;
+  std::size_t b = 0;
+  for (std::size_t k = 0; k < blocks.nodes.size(); ++k) {
+    const auto [i, j] = blocks.nodes[k];
+    while (i >= model.body_node[b + 1]) ++b;
+    BodyRecord& body = record.bodies[b];
+    const Point3 arm = minus(at(state.position, i), body.centre);
+    const Point3 momentum = times(blocks.mass[k], at(state.velocity, j));
+    record.energy.kinetic += dot(at(state.velocity, i), momentum) / 2;
+    body.angular_momentum = plus(body.angular_momentum, cross(arm, momentum));
+    if (i == j || blocks.bend[k] == 0) continue;
+    // Rows sum to 0: sum_ij B_ij x_i x_j / 2 = -sum_ij B_ij (x_i - x_j)^2 / 4.
+    const Point3 line = minus(at(state.position, i), at(state.position, j));
+    record.energy.elastic -= blocks.bend[k] * dot(line, line) / 4;
+  }
+  for (std::size_t of = 0; of < body_count; ++of) {
+    const BodyRecord& body = record.bodies[of];
+    if (!(mass[of] > 0)) continue;
+    const Point3 orbital = times(mass[of], cross(body.centre, body.velocity));
+    record.angular_momentum = plus(record.angular_momentum, plus(body.angular_momentum, orbital));
+  }
+}
+
+void record_rigid(const Model& model, const ModelState& state, StepRecord& record) {
+  for (std::int32_t r = 0; r < model.rigid_count; ++r) {
+    const auto b = index_of(at(model.rigid.body, r));
+    if (b >= record.bodies.size()) continue;
+    BodyRecord& body = record.bodies[b];
+    const double mass = at(model.rigid.mass, r);
+    body.centre = at(state.position, model.node_count + r);
+    body.velocity = at(state.velocity, model.node_count + 2 * r);
+    body.angular_momentum = at(state.angular_momentum, r);
+    body.angular_velocity = angular_velocity_of(model, state, r);
+    body.rotation = normalized(product(at(state.rotation, r), conjugate(at(model.rigid.axes, r))));
+    if (!(mass > 0)) continue;
+    const Point3 momentum = times(mass, body.velocity);
+    record.energy.kinetic +=
+        dot(momentum, body.velocity) / 2 + dot(body.angular_momentum, body.angular_velocity) / 2;
+    record.momentum = plus(record.momentum, momentum);
+    record.angular_momentum =
+        plus(record.angular_momentum, plus(body.angular_momentum, cross(body.centre, momentum)));
+  }
+}
+
+}  // namespace
+
+bool is_finite_state(const ModelState& state) {
+  const auto all = [](const std::vector<Point3>& list) {
+    return std::all_of(list.begin(), list.end(), [](const Point3& x) { return is_finite(x); });
+  };
+  const auto is_turn = [](const Quaternion& q) { return std::isfinite(q[0] + q[1] + q[2] + q[3]); };
+  return all(state.position) && all(state.velocity) && all(state.angular_momentum) &&
+         std::all_of(state.rotation.begin(), state.rotation.end(), is_turn);
+}
+
+Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid) {
+  const Quaternion& turn = at(state.rotation, rigid);
+  Point3 spin = rotate(conjugate(turn), at(state.angular_momentum, rigid));
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double moment = at(model.rigid.inertia, rigid)[d];
+    spin[d] = moment > 0 ? spin[d] / moment : 0;
+  }
+  return rotate(turn, spin);
+}
+
+void record_state(const Model& model,
+                  const ModelState& state,
+                  const Point3& gravity,
+                  const std::vector<std::optional<Point3>>& handles,
+                  int threads,
+                  StepRecord& record) {
+  const TetSums tets = all_tets(model, state, threads);
+  record.inverted = tets.inverted;
+  record.energy.elastic = tets.energy + spring_energy(model, state, handles);
+  record_nodes(model, state, record);
+  record_rigid(model, state, record);
+  for (std::size_t n = 0; n < model.node_mass.size(); ++n) {
+    record.energy.gravity -= model.node_mass[n] * dot(gravity, state.position[n]);
+  }
+  for (std::int32_t r = 0; r < model.rigid_count; ++r) {
+    record.energy.gravity -=
+        at(model.rigid.mass, r) * dot(gravity, at(state.position, model.node_count + r));
+  }
+}
+
+}  // namespace tetwarp

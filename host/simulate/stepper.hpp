@@ -1,0 +1,72 @@
+/// @file stepper.hpp
+/// BodyStepper: advances the state of a Model by one step on some back end.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tetwarp/mesh.hpp>
+#include <tetwarp/simulate.hpp>
+
+#include "host/simulate/model.hpp"
+
+namespace tetwarp {
+
+/// What acts from outside in one step. Sizes are those of the model.
+struct StepInput {
+  double time_step = 0;                     ///< [s]
+  Point3 gravity{0, 0, 0};                  ///< [m/s^2]
+  std::vector<Point3> prescribed_velocity;  ///< [block_count], read where prescribed
+  std::vector<Point3> block_force;      ///< [block_count] of loads: forces [N], of angular blocks
+                                        ///< torques [N m]
+  std::vector<Point3> anchor;           ///< [springs] world position at the end of the step of b of
+                                        ///< the springs of handles
+  std::vector<Point3> anchor_velocity;  ///< [springs] of it over the step [m/s]; their damping acts
+                                        ///< on the velocity relative to it
+  std::vector<std::uint8_t> is_active;  ///< [springs] 0: lets go
+  double end_time = 0;                  ///< [s] at which paths and loads have been sampled
+};
+
+/// What a step did.
+struct StepOutcome {
+  bool completed = true;  ///< false: `progress` ended it and the state is as before
+  bool converged = true;
+  std::int64_t linear_iterations = 0;  ///< of the island that took the most
+  double linear_residual = 0;          ///< largest of an island, relative
+  std::int64_t skipped_rotations = 0, skipped_blocks = 0;
+  StepSeconds seconds;
+};
+
+struct StepperOptions {
+  double linear_tolerance = 1e-6;  ///< |r|_{D^-1} <= tolerance |b|_{D^-1}
+  std::int64_t max_iterations = 10000;
+  int threads = 1;
+  int device = 0;
+  bool float32_solve = false;
+  SimulateSkipOptions skip = {};
+  std::function<bool(std::int64_t linear_iterations)> progress = {};  ///< false ends the step
+};
+
+class BodyStepper {
+ public:
+  virtual ~BodyStepper() = default;
+  virtual std::string device() const = 0;
+  virtual void set_state(const ModelState& state) = 0;
+  virtual void get_state(ModelState& state) const = 0;
+  /// Solves for the velocities at the end of the step and moves the bodies.
+  virtual StepOutcome step(const StepInput& input) = 0;
+  /// Impulses [N s, N m s] that kept the prescribed blocks on their velocities in the last step:
+  /// A v - b there, zero elsewhere; [block_count].
+  virtual std::vector<Point3> support_impulses() const = 0;
+  /// Positions of successive nodes, in memory of the back end, valid until the next step.
+  virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;
+};
+
+/// @param model  kept by the caller
+std::unique_ptr<BodyStepper> make_cpu_stepper(const Model& model, const StepperOptions& options);
+/// @throws CudaError  without CUDA or a usable device
+std::unique_ptr<BodyStepper> make_cuda_stepper(const Model& model, const StepperOptions& options);
+
+}  // namespace tetwarp
