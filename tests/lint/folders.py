@@ -14,6 +14,7 @@ from pathlib import Path
 # include nothing of the project, so a new folder needs a line here.
 BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
 CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
+SIMULATE = ["host/scene", "host/base", "host/exec", "kernels/body", *BASE]
 ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
     "kernels/base/tetwarp": [],
@@ -44,6 +45,13 @@ ALLOWED = {
         "host/contact/problem", "host/contact/structure", "host/contact/newton",
         "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
         "host/reference/contact", *CONTACT],
+    "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "host/scene": ["host/base", "host/exec", "kernels/warp", *BASE],
+    "host/simulate": ["host/reference/simulate", *SIMULATE],
+    "host/simulate/model": ["host/simulate", *SIMULATE],
+    "host/simulate/cpu": ["host/simulate", *SIMULATE],
+    "host/simulate/cuda": ["host/simulate", "kernels/exec", *SIMULATE],
+    "host/reference/simulate": ["host/base", "host/scene", "host/tetwarp", "kernels/base/tetwarp"],
     "io": ["io/tetwarp", "host/base", *BASE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],
     "host/cli": ["io", "io/tetwarp", "host/base", "host/warp", *BASE],

@@ -1,0 +1,21 @@
+/// @file main.cpp
+/// tetwarp_bench_simulate: time of the stages of a step of an elastic block, and of products with
+/// its system against the rate of copying memory.
+///
+/// Runs blocks of 1e3 to 1e5 tetrahedra; with --full, or with Google Benchmark's
+/// --benchmark_filter, also 1e6. rows.hpp lists rows and counters. Exit code 1 when a result was
+/// wrong.
+#include <benchmark/benchmark.h>
+
+#include "bench/measure/program.hpp"
+#include "bench/simulate/rows.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
+
+int main(int argc, char** argv) {
+  using namespace tetwarp;
+  bench::Program program(argc, argv);
+  bench::add_simulate_rows(program.extent());
+  program.describe(bench::processor_threads());
+  benchmark::AddCustomContext("vectors", vector_stages().name);
+  return program.run({"forces", "assembly", "linear", "iterations", "copy_share"});
+}

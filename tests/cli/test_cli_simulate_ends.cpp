@@ -1,0 +1,144 @@
+/// @file test_cli_simulate_ends.cpp
+/// `tetwarp simulate`: interrupted and killed runs, exit codes, bad input.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <utility>
+#include <vector>
+
+#include "tests/scenes/h5_numbers.hpp"
+#include "tests/scenes/simulate_scene.hpp"
+
+namespace tetwarp::test {
+namespace {
+using Names = std::vector<std::string>;
+
+TEST(Simulate, LeavesReadableFilesWhenInterrupted) {
+  const SimulateScene scene;
+  RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000",
+                                 "--checkpoint", "state"});
+  const std::string series = scene.in("out", "series.h5");
+  for (int tries = 0; tries < 600 && !fs::exists(scene.in("out", "series.h5")); ++tries) {
+    usleep(50'000);
+  }
+  usleep(1'500'000);
+  const auto start = std::chrono::steady_clock::now();
+
+  kill(command.process(), SIGINT);
+  const CommandResult result = command.wait();
+
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "tetwarp: interrupted, stopping\n");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+  const std::size_t rows = h5_numbers(series, "time").size();
+  EXPECT_GT(rows, 1u);
+  EXPECT_EQ(h5_numbers(series, "bodies/beam/support_force").size(), 3 * rows);
+  EXPECT_GT(MeshReader(scene.in("out", "beam.vtkhdf")).header().times.size(), 1u);
+  const auto report = nlohmann::json::parse(text_of(scene.in("out", "report.json")));
+  EXPECT_EQ(report["status"], "interrupted");
+  EXPECT_EQ(report["steps_done"], rows - 1);
+  EXPECT_TRUE(fs::exists(scene / "state"));
+}
+
+/// A process that is killed between two writes leaves what it has flushed.
+TEST(Simulate, LeavesReadableFilesWhenKilled) {
+  const SimulateScene scene;
+  RunningCommand command(scene, {"simulate", "scene.json", "-o", "out", "--steps", "100000000"});
+  for (int tries = 0; tries < 600 && !fs::exists(scene.in("out", "series.h5")); ++tries) {
+    usleep(50'000);
+  }
+  usleep(1'500'000);
+
+  kill(command.process(), SIGKILL);
+  EXPECT_EQ(command.wait().exit_code, 137);
+
+  EXPECT_GT(h5_numbers(scene.in("out", "series.h5"), "time").size(), 1u);
+}
+
+TEST(Simulate, ExitsWith3AfterAStepAboveItsTolerance) {
+  const SimulateScene scene;
+
+  const CommandResult result =
+      scene.simulate({"-o", "out", "--steps", "2", "--max-iterations", "1"});
+
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "converged"), (std::vector<double>{1, 0, 0}));
+}
+
+TEST(Simulate, ListsAndPrintsItsScenes) {
+  const SimulateScene scene;
+
+  const CommandResult list = run_command(scene, {"simulate", "--scene", "list"});
+  const CommandResult chain = run_command(scene, {"simulate", "--scene", "chain", "--print"});
+
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_NE(list.out.find("chain\n"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(chain.out)["tetwarp_scene"], 1);
+}
+
+TEST(SimulateErrors, AreOneLineAndWriteNothing) {
+  const SimulateScene scene;
+  write_text(scene / "broken.json", R"({"tetwarp_scene": 1, "time_step": -1})");
+  write_text(scene / "state", "no checkpoint");
+  const std::vector<std::pair<Names, std::string>> cases{
+      {{"broken.json", "-o", "out"}, "broken.json"},
+      {{"missing.json", "-o", "out"}, "missing.json"},
+      {{"scene.json", "-o", "out", "--warp", "beam"}, "beam"},
+      {{"scene.json", "-o", "out", "--warp", "nobody"}, "nobody"},
+      {{"scene.json", "-o", "out", "--restart", "state"}, "state"},
+      {{"scene.json", "-o", "out", "--restart", "missing"}, "missing"},
+      {{"scene.json", "-o", "out", "--picture", "--camera", "1,1,1,1,1,1"}, "camera"},
+      {{"scene.json", "-o", "missing/deeper/out", "--film", "missing/film.gif"}, "film.gif"},
+      {{"scene.json", "-o", "scene.json"}, "scene.json"},
+      {{"--scene", "nobody", "-o", "out"}, "nobody"}};
+  for (const auto& [words, named] : cases) {
+    Names all = words;
+    all.insert(all.begin(), "simulate");
+
+    const CommandResult result = run_command(scene, all);
+
+    EXPECT_EQ(result.exit_code, 1) << named;
+    EXPECT_TRUE(result.has_one_line_error()) << result.err;
+    EXPECT_NE(result.err.find(named), std::string::npos) << result.err;
+    EXPECT_EQ(scene.names(), (Names{"broken.json", "scene.json", "state"})) << named;
+  }
+}
+
+/// The series is not shortened when a mesh beside it is of another scene.
+TEST(SimulateErrors, LeaveTheFolderOfAnotherRunAsItIs) {
+  const SimulateScene scene;
+  ASSERT_EQ(scene.simulate({"-o", "out", "--steps", "4", "--checkpoint", "state"}).exit_code, 0);
+  ASSERT_EQ(scene.simulate({"-o", "out", "--steps", "8"}).exit_code, 0);
+  fs::copy_file(scene.in("out", "ball.surface.vtkhdf"), scene.in("out", "beam.vtkhdf"),
+                fs::copy_options::overwrite_existing);
+
+  const CommandResult result = scene.simulate({"-o", "out", "--restart", "state"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("beam.vtkhdf"), std::string::npos) << result.err;
+  EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "time").size(), 9u);
+}
+
+TEST(SimulateErrors, OfUsageExitWith2) {
+  const SimulateScene scene;
+  const std::vector<Names> cases{{"scene.json"},
+                                 {"-o", "out"},
+                                 {"scene.json", "--scene", "chain", "-o", "out"},
+                                 {"scene.json", "-o", "out", "--checkpoint-every", "3"},
+                                 {"scene.json", "-o", "out", "--film", "film.avi"},
+                                 {"scene.json", "-o", "out", "--camera", "1,2,3"},
+                                 {"scene.json", "-o", "out", "--backend", "abacus"}};
+  for (const Names& words : cases) {
+    Names all = words;
+    all.insert(all.begin(), "simulate");
+    const CommandResult result = run_command(scene, all);
+    EXPECT_EQ(result.exit_code, 2) << words.back() << ": " << result.err;
+    EXPECT_EQ(scene.names(), (Names{"scene.json"}));
+  }
+}
+}  // namespace
+}  // namespace tetwarp::test

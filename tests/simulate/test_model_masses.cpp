@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "tests/simulate/simulate_scenes.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// Mass, first and second moments of a body at rest: sums of m_ab over blocks.
+struct Moments {
+  double mass = 0;
+  Point3 first{0, 0, 0};
+  std::array<double, 9> second{};
+};
+
+Moments moments_of(const Model& model) {
+  Moments moments;
+  const ModelScalarBlocks& blocks = model.scalar_blocks;
+  for (std::size_t k = 0; k < blocks.nodes.size(); ++k) {
+    const Point3& a = at(model.start.position, blocks.nodes[k][0]);
+    const Point3& b = at(model.start.position, blocks.nodes[k][1]);
+    moments.mass += blocks.mass[k];
+    moments.first = plus(moments.first, times(blocks.mass[k], b));
+    for (std::size_t i = 0; i < 9; ++i) moments.second[i] += blocks.mass[k] * a[i / 3] * b[i % 3];
+  }
+  return moments;
+}
+
+/// An ellipsoid of values from 0 to 1 on a turned grid.
+Volume blob(const std::array<std::int64_t, 3>& dims) {
+  Grid grid;
+  grid.dims = dims;
+  grid.origin = {0.3, -0.2, 0.1};
+  grid.spacing = {0.01, 0.012, 0.009};
+  grid.direction = {0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, 1};
+  Volume volume = make_volume(grid, PixelType::float32);
+  std::size_t v = 0;
+  for (std::int64_t k = 0; k < dims[2]; ++k) {
+    for (std::int64_t j = 0; j < dims[1]; ++j) {
+      for (std::int64_t i = 0; i < dims[0]; ++i, ++v) {
+        double square = 0;
+        const std::array<std::int64_t, 3> ijk{i, j, k};
+        for (std::size_t d = 0; d < 3; ++d) {
+          const double half = static_cast<double>(dims[d] - 1) / 2;
+          square += std::pow((static_cast<double>(ijk[d]) - half) / (0.9 * half), 2);
+        }
+        volume.samples<float>()[v] = static_cast<float>(std::max(0.0, 1 - square));
+      }
+    }
+  }
+  return volume;
+}
+
+Body image_body() {
+  Body body;
+  body.name = "blob";
+  body.geometry = ImageGeometry{blob({22, 19, 17}), 0.1};
+  body.lattice = Lattice{.cells = std::array<std::int64_t, 3>{4, 3, 3}};
+  body.transfer = {{0.1, {1e4, 0.3, 800}}, {0.6, {1e5, 0.4, 1100}}, {1.0, {2e5, 0.2, 900}}};
+  return body;
+}
+
+double density_of(double value) {
+  if (value <= 0.1) return 800;
+  if (value <= 0.6) return 800 + 300 * (value - 0.1) / 0.5;
+  return 1100 - 200 * (value - 0.6) / 0.4;
+}
+
+/// Mass, centre and second moments are those of the image's voxels, taken as points.
+TEST(ImageMass, EqualsTheIntegralOfTheImage) {
+  const Body body = image_body();
+  const auto& volume = std::get<ImageGeometry>(body.geometry).volume;
+  Moments image;
+  const double voxel = 0.01 * 0.012 * 0.009;
+  const auto& dims = volume.grid.dims;
+  std::size_t v = 0;
+  for (std::int64_t k = 0; k < dims[2]; ++k) {
+    for (std::int64_t j = 0; j < dims[1]; ++j) {
+      for (std::int64_t i = 0; i < dims[0]; ++i, ++v) {
+        const double value = static_cast<double>(volume.samples<float>()[v]);
+        if (!(value >= 0.1)) continue;
+        const double mass = density_of(value) * voxel;
+        const Point3 x = volume.grid.world_of(
+            {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+        image.mass += mass;
+        image.first = plus(image.first, times(mass, x));
+        for (std::size_t e = 0; e < 9; ++e) image.second[e] += mass * x[e / 3] * x[e % 3];
+      }
+    }
+  }
+
+  const Moments model = moments_of(model_of(scene_of({body}, 0.01)));
+
+  EXPECT_NEAR(model.mass / image.mass, 1, 1e-12);
+  EXPECT_LT(norm(minus(model.first, image.first)), 1e-12 * image.mass);
+  for (std::size_t e = 0; e < 9; ++e) {
+    EXPECT_NEAR(model.second[e], image.second[e], 1e-12 * image.mass);
+  }
+}
+
+TEST(ImageMass, LumpedKeepsMassAndCentre) {
+  Body body = image_body();
+  const Moments consistent = moments_of(model_of(scene_of({body}, 0.01)));
+  body.mass = MassKind::lumped;
+  const Model model = model_of(scene_of({body}, 0.01));
+  const Moments lumped = moments_of(model);
+
+  EXPECT_NEAR(lumped.mass / consistent.mass, 1, 1e-13);
+  EXPECT_LT(norm(minus(lumped.first, consistent.first)), 1e-13 * lumped.mass);
+  EXPECT_EQ(model.scalar_blocks.nodes.size(), model.start.position.size());
+}
+
+/// Of two layers of equal thickness the arithmetic mean is the upper, the harmonic the lower bound.
+TEST(ImageMaterial, MeansAreThoseOfTheVoxels) {
+  Body body;
+  body.name = "layers";
+  Volume volume = make_volume({.dims = {8, 8, 8}, .spacing = {0.1, 0.1, 0.1}}, PixelType::uint8);
+  for (std::size_t v = 0; v < 512; ++v) {
+    volume.samples<std::uint8_t>()[v] = v % 2 == 0 ? 1 : 3;
+  }
+  body.geometry = ImageGeometry{volume, 1};
+  body.lattice = Lattice{.cells = std::array<std::int64_t, 3>{1, 1, 1}};
+  body.lookup = TransferLookup::label;
+  body.transfer = {{1, {1e4, 0, 1000}}, {3, {4e4, 0, 3000}}};
+  const Model arithmetic = model_of(scene_of({body}, 0.01));
+  body.mean = MaterialMean::harmonic;
+  const Model harmonic = model_of(scene_of({body}, 0.01));
+
+  EXPECT_NEAR(total(arithmetic.node_mass), 2000 * 0.512, 1e-9);
+  double stiffness = 0, volume_of_all = 0, soft = 0;
+  for (std::size_t t = 0; t < arithmetic.tets.volume.size(); ++t) {
+    stiffness += arithmetic.tets.mu[t] * arithmetic.tets.volume[t];
+    soft += harmonic.tets.mu[t] * harmonic.tets.volume[t];
+    volume_of_all += arithmetic.tets.volume[t];
+    EXPECT_EQ(arithmetic.tets.lambda[t], 0);
+    EXPECT_LT(harmonic.tets.mu[t], arithmetic.tets.mu[t]);
+  }
+  EXPECT_NEAR(volume_of_all, 0.512, 1e-12);
+  EXPECT_NEAR(stiffness / volume_of_all, 1.25e4, 1e-8);  // E/2 = mu at nu = 0
+  EXPECT_GT(soft / volume_of_all, 0.7e4);  // 8e3 where every tetrahedron has as many of both
+  EXPECT_LT(soft / volume_of_all, 0.9e4);
+}
+
+TEST(ShapeMass, IsThatOfTheShape) {
+  const double pi = std::numbers::pi;
+  struct Case {
+    Shape shape;
+    double volume;
+  };
+  for (const Case& c : {Case{BoxShape{{0.2, 0.1, 0.3}}, 8 * 0.2 * 0.1 * 0.3},
+                        Case{EllipsoidShape{{0.2, 0.1, 0.3}}, 4 * pi / 3 * 0.2 * 0.1 * 0.3},
+                        Case{CapsuleShape{0.1, 0.4}, pi * 0.01 * (0.4 + 0.4 / 3)},
+                        Case{TorusShape{0.3, 0.1}, 2 * pi * pi * 0.3 * 0.01}}) {
+    Body body = elastic_box("body", {1, 1, 1}, {6, 6, 6});
+    body.geometry = c.shape;
+    const Model model = model_of(scene_of({body}, 0.01));
+
+    EXPECT_NEAR(total(model.node_mass) / (1000 * c.volume), 1, 1e-3);
+  }
+}
+
+/// Consistent masses integrate products of linear functions exactly: the inertia of a box.
+TEST(ShapeMass, HasTheInertiaOfABox) {
+  const Model model = model_of(scene_of({elastic_box("box", {0.2, 0.1, 0.3}, {2, 1, 3})}, 0.01));
+
+  const Moments moments = moments_of(model);
+
+  const double mass = 1000 * 8 * 0.2 * 0.1 * 0.3;
+  EXPECT_NEAR(moments.mass, mass, 1e-12 * mass);
+  EXPECT_NEAR(moments.second[0], mass * 0.04 / 3, 1e-12 * mass);
+  EXPECT_NEAR(moments.second[4], mass * 0.01 / 3, 1e-12 * mass);
+  EXPECT_NEAR(moments.second[8], mass * 0.09 / 3, 1e-12 * mass);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "host/simulate/cpu/vector_stages.hpp"
+
+namespace tetwarp::test {
+namespace {
+std::vector<const VectorStages*> usable_stages() {
+  std::vector<const VectorStages*> stages = {&vector_stages_base};
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) stages.push_back(&vector_stages_avx2);
+#endif
+  if (&vector_stages() != stages.back()) stages.push_back(&vector_stages());
+  return stages;
+}
+
+template <class T>
+View<T> view(std::vector<T>& values) {
+  return {values.data(), static_cast<std::int64_t>(values.size())};
+}
+template <class T>
+View<const T> const_view(const std::vector<T>& values) {
+  return {values.data(), static_cast<std::int64_t>(values.size())};
+}
+
+/// Random, inverted, flat and needle-shaped tetrahedra, some of them at rest.
+class TetScene {
+ public:
+  explicit TetScene(int count) : corner_(4 * static_cast<std::size_t>(count)) {
+    const auto tets = static_cast<std::size_t>(count);
+    for (std::size_t n = 0; n < 4 * tets; ++n) {
+      for (int i = 0; i < 3; ++i) position_.push_back(normal_(random_));
+      moved_.push_back(n / 4 % 5 != 3);
+    }
+    for (std::size_t t = 0; t < tets; ++t) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        corner_[a * tets + t] = static_cast<std::int32_t>(4 * t + a);
+      }
+      double* const x = position_.data() + 12 * t;
+      for (int k = 0; k < 12; ++k) {
+        if (t % 7 == 1) x[k] = k % 3 == 2 ? 0 : x[k];            // flat
+        if (t % 7 == 2) x[k] = k % 3 == 0 ? x[k] : 1e-7 * x[k];  // needle
+        if (t % 7 == 3) x[k] = 1;                                // a point
+      }
+    }
+    for (std::size_t k = 0; k < 9 * tets; ++k) gradient_.push_back(normal_(random_));
+    for (std::size_t t = 0; t < tets; ++t) {
+      lambda_.push_back(1 + std::abs(normal_(random_)));
+      mu_.push_back(1 + std::abs(normal_(random_)));
+    }
+  }
+
+  struct Result {
+    std::vector<TetTurned> turned;
+    std::vector<TetForce> force;
+    std::vector<std::uint8_t> has_turned, is_skipped;
+    bool operator==(const Result& other) const {
+      const auto same = [](const auto& a, const auto& b) {
+        return std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+      };
+      return same(turned, other.turned) && same(force, other.force) &&
+             has_turned == other.has_turned && is_skipped == other.is_skipped;
+    }
+  };
+
+  template <class Run>
+  Result result_of(const Run& run) {
+    const std::size_t tets = lambda_.size();
+    Result result{std::vector<TetTurned>(tets), std::vector<TetForce>(tets),
+                  std::vector<std::uint8_t>(tets), std::vector<std::uint8_t>(tets)};
+    const TetConstants constants{const_view(corner_), const_view(gradient_),
+                                 const_view(lambda_), const_view(mu_),
+                                 const_view(mu_),     static_cast<std::int64_t>(tets)};
+    const TetForceBody body{constants,
+                            const_view(position_),
+                            const_view(moved_),
+                            true,
+                            view(result.turned),
+                            view(result.force),
+                            view(result.has_turned),
+                            view(result.is_skipped)};
+    run(body);
+    return result;
+  }
+
+ private:
+  std::mt19937 random_{5};
+  std::normal_distribution<double> normal_;
+  std::vector<std::int32_t> corner_;
+  std::vector<double> position_, gradient_, lambda_, mu_;
+  std::vector<std::uint8_t> moved_;
+};
+
+TEST(VectorStages, ForcesHaveTheBitsOfSingleTetrahedra) {
+  for (const int count : {0, 1, 3, 8, 31, 1025}) {
+    TetScene scene(count);
+    const auto single = scene.result_of([&](const TetForceBody& body) {
+      for (std::int64_t t = 0; t < count; ++t) body(t);
+    });
+    for (const VectorStages* stages : usable_stages()) {
+      const auto vectors =
+          scene.result_of([&](const TetForceBody& body) { stages->tet_forces(body, 0, count); });
+
+      EXPECT_TRUE(vectors == single) << stages->name << " " << count;
+    }
+  }
+}
+
+template <class T>
+void expect_equal_products() {
+  constexpr std::int32_t rows = 40;
+  std::mt19937 random(8);
+  std::normal_distribution<double> normal;
+  std::vector<std::int32_t> start = {0}, free_end, column;
+  for (std::int32_t row = 0; row < rows; ++row) {
+    for (std::int32_t c = row % 3; c < rows; c += 1 + row % 5) column.push_back(c);
+    start.push_back(static_cast<std::int32_t>(column.size()));
+    free_end.push_back(start.back() - row % 2);
+  }
+  std::vector<T> values(9 * column.size() + 1), p(3 * rows), q(3 * rows), other(3 * rows);
+  for (T& v : values) v = static_cast<T>(normal(random));
+  for (T& v : p) v = static_cast<T>(normal(random));
+  GradientArrays<T> a;
+  a.rows.start = const_view(start);
+  a.rows.free_end = const_view(free_end);
+  a.rows.column = const_view(column);
+  a.copy = const_view(values);
+  a.p = view(p);
+  a.q = view(q);
+  double sum = 0;
+  for (std::int64_t row = 0; row < rows; ++row) sum += GradientProductBody<T>{a}(row).value[0];
+  a.q = view(other);
+  for (const VectorStages* stages : usable_stages()) {
+    double vectors = 0;
+    if constexpr (sizeof(T) == sizeof(double)) {
+      vectors = stages->product(a, 0, rows).value[0];
+    } else {
+      vectors = stages->product_float(a, 0, rows).value[0];
+    }
+
+    EXPECT_EQ(other, q) << stages->name;
+    EXPECT_NEAR(vectors, sum, 1e-12 * std::abs(sum)) << stages->name;
+  }
+}
+
+TEST(VectorStages, ProductsHaveTheBitsOfSingleRows) {
+  expect_equal_products<double>();
+  expect_equal_products<float>();
+}
+
+}  // namespace
+}  // namespace tetwarp::test
