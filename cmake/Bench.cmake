@@ -1,4 +1,5 @@
-# Benchmarks: tetwarp_bench times warps on all back ends, tetwarp_bench_contact contact solvers.
+# Benchmarks: tetwarp_bench times warps on all back ends, tetwarp_bench_contact contact solvers,
+# tetwarp_bench_simulate steps of bodies.
 find_package(benchmark REQUIRED)
 find_package(fmt REQUIRED)
 include(cmake/OpenMp.cmake)
@@ -46,6 +47,22 @@ target_include_directories(tetwarp_bench PRIVATE
 target_link_libraries(tetwarp_bench PRIVATE
   tetwarp tetwarp_hwy tetwarp_openmp tetwarp_options
   benchmark::benchmark Eigen3::Eigen fmt::fmt)
+
+# tetwarp_bench_simulate reaches private code, which a shared library hides.
+if(NOT BUILD_SHARED_LIBS)
+  add_executable(tetwarp_bench_simulate
+    bench/measure/program.cpp
+    bench/measure/row.cpp
+    bench/measure/timing.cpp
+    bench/simulate/main.cpp
+    bench/simulate/rows.cpp
+    tests/simulate/body_measures.cpp
+    tests/simulate/body_models.cpp)
+  target_include_directories(tetwarp_bench_simulate PRIVATE
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
+  target_link_libraries(tetwarp_bench_simulate PRIVATE
+    tetwarp tetwarp_options benchmark::benchmark Eigen3::Eigen)
+endif()
 
 # Rows that read or write files.
 if(TETWARP_IO)

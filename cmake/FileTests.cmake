@@ -11,6 +11,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_nifti.cpp
     tests/io/test_io_nifti_files.cpp
     tests/io/test_io_png.cpp
+    tests/io/test_io_simulation.cpp
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
     tests/io/test_mesh_import.cpp
@@ -57,7 +58,11 @@ if(TETWARP_PYTHON)
     ${PROJECT_SOURCE_DIR}/tests/io/check_axes.py $<TARGET_FILE:tetwarp_command>)
   add_test(NAME walk COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/tests/io/check_walk.py $<TARGET_FILE:tetwarp_command>)
-  set_tests_properties(vtk_reader axes walk PROPERTIES LABELS io SKIP_RETURN_CODE 77)
+  add_test(NAME simulation COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_simulation.py $<TARGET_FILE:tetwarp_command>)
+  add_test(NAME film COMMAND ${TETWARP_PYTHON}
+    ${PROJECT_SOURCE_DIR}/tests/io/check_film.py $<TARGET_FILE:tetwarp_command>)
+  set_tests_properties(vtk_reader axes walk simulation film PROPERTIES LABELS io SKIP_RETURN_CODE 77)
   add_test(NAME bench_report COMMAND ${TETWARP_PYTHON}
     ${PROJECT_SOURCE_DIR}/bench/report self-test)
   set_tests_properties(bench_report PROPERTIES
@@ -79,6 +84,7 @@ endfunction()
 tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli.cpp
   tests/cli/test_cli_arrays.cpp
+  tests/cli/test_cli_mesh.cpp
   tests/cli/test_cli_axes.cpp
   tests/cli/test_cli_bad_images.cpp
   tests/cli/test_cli_bad_input.cpp
@@ -92,6 +98,8 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
+  tests/cli/test_cli_simulate.cpp
+  tests/cli/test_cli_simulate_ends.cpp
   tests/cli/test_cli_skip.cpp
   tests/cli/test_cli_straight.cpp
   tests/cli/test_cli_tools.cpp

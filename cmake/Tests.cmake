@@ -121,6 +121,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/make/test_deform_mesh.cpp
     tests/make/test_lattice_mesh.cpp
     tests/make/test_phantom.cpp
+    tests/make/test_render_surfaces.cpp
     tests/make/test_render_volume.cpp
     tests/warp/test_convex_part.cpp
     tests/warp/test_source_shares.cpp
@@ -257,9 +258,9 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks choices contact contact_problem contact_tracker error make mesh names page_lock report tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks choices contact contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate tetwarp version volume warp)
 if(TETWARP_IO)
-  list(APPEND tetwarp_public_headers contact_io io mesh_import)
+  list(APPEND tetwarp_public_headers contact_io io mesh_import scene_io)
 endif()
 foreach(TETWARP_HEADER IN LISTS tetwarp_public_headers)
   configure_file(tests/base/test_headers.cpp.in test_headers/${TETWARP_HEADER}.cpp @ONLY)
@@ -273,6 +274,8 @@ target_link_libraries(tetwarp_header_tests PRIVATE tetwarp_options)
 if(TETWARP_IO)
   include(cmake/FileTests.cmake)
 endif()
+
+include(cmake/SimulateTests.cmake)
 
 # ---- includes between folders have one direction -----------------------------------------------
 find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

@@ -35,7 +35,7 @@ void exchange_members(Message& message, Value& value) {
 template <class Message>
 void exchange_members(Message& message, ImportedMesh& value) {
   // All members: a new one does not compile.
-  auto& [mesh, displacements, times, skipped, arrays, left_out] = value;
+  auto& [mesh, displacements, times, skipped, arrays, left_out, triangles] = value;
   auto& [rest_positions, tets, hexes] = mesh;
   message(rest_positions);
   message(tets);
@@ -45,6 +45,7 @@ void exchange_members(Message& message, ImportedMesh& value) {
   message(skipped);
   message(arrays);
   message(left_out);
+  message(triangles);
 }
 
 }  // namespace tetwarp

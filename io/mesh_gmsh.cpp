@@ -13,6 +13,7 @@
 
 namespace tetwarp {
 namespace {
+constexpr int gmsh_triangle = 2;     ///< of three nodes
 constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
 constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
 
@@ -68,7 +69,7 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
   gmsh.call<decltype(gmshModelMeshGetElementProperties)>(
       "gmshModelMeshGetElementProperties", type, &name.data, &dimension, &order, &nodes,
       &positions.data, &positions.size, &primary_nodes);
-  const bool is_kept = type == gmsh_tetrahedron || type == gmsh_hexahedron;
+  const bool is_kept = type == gmsh_triangle || type == gmsh_tetrahedron || type == gmsh_hexahedron;
   return {name.data == nullptr ? "cell of type " + std::to_string(type) : name.data, dimension,
           is_kept ? nodes : 0};
 }

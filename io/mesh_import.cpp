@@ -34,18 +34,35 @@ ChildLimits limits_for(const std::string& path, const MeshImportOptions& options
 }
 
 /// Checks what a reader has returned. Throws IoError.
-void check_imported(const std::string& path, const ImportedMesh& imported) {
+void check_imported(const std::string& path, const ImportedMesh& imported, bool needs_solids) {
   const std::size_t node_count = imported.mesh.rest_positions.size();
-  if (imported.mesh.cell_count() == 0) {
+  if (needs_solids && imported.mesh.cell_count() == 0) {
     throw IoError(path, "", "holds no tetrahedron or hexahedron: damaged, or a surface mesh");
+  }
+  if (!needs_solids && imported.triangles.empty()) {
+    throw IoError(path, "", "holds no triangle; extract the surface of its mesh");
   }
   if (node_count > std::numeric_limits<std::int32_t>::max()) {
     throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
   }
+  for (const auto& triangle : imported.triangles) {
+    for (const std::int32_t node : triangle) {
+      if (node < 0 || static_cast<std::size_t>(node) >= node_count) {
+        throw IoError(path, "", "a triangle refers to a node that is not there: damaged");
+      }
+    }
+  }
   try {
-    check_mesh(imported.mesh);
+    if (imported.mesh.cell_count() > 0) check_mesh(imported.mesh);
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "", std::string(error.what()) + ": damaged, write it again");
+  }
+  for (std::size_t node = 0; node < node_count; ++node) {  // those of triangles alone, too
+    const Point3& x = imported.mesh.rest_positions[node];
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2])) {
+      throw IoError(path, "",
+                    "node " + std::to_string(node) + " is not finite, correct or remove it");
+    }
   }
   for (const MeshArray& array : imported.arrays) {
     const std::size_t rows = array.is_of_cells ? imported.mesh.cell_count() : node_count;
@@ -92,7 +109,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   }
   ImportedMesh mesh = read_mesh_in_child(path, limits_for(path, options),
                                          [&] { return read_mesh_here(path, options); });
-  check_imported(path, mesh);
+  check_imported(path, mesh, options.needs_solids);
   if (options.axes == Axes::lps) {
     turn(mesh.mesh.rest_positions);
     for (std::vector<Point3>& displacement : mesh.displacements) turn(displacement);

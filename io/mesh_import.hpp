@@ -25,7 +25,7 @@ ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& op
 struct CellKind {
   std::string name;  ///< in the format's words
   int dimension;
-  int kept_nodes;  ///< 4 of a tetrahedron, 8 of a hexahedron, 0 of others
+  int kept_nodes;  ///< 3 of a triangle, 4 of a tetrahedron, 8 of a hexahedron, 0 of others
 };
 
 /// Counts a cell that is not kept. @throws IoError when it has three dimensions
@@ -34,7 +34,7 @@ void leave_out_cell(const std::string& path,
                     std::int64_t number,
                     ImportedMesh& into);
 
-/// Adds a cell that is kept and its number, counts one of fewer dimensions.
+/// Adds a cell that is kept and its number, counts one of fewer dimensions. Triangles are both.
 /// @param number   of the cell in its file
 /// @param node_at  function from 0, 1 ... in VTK's order of nodes to an index in the mesh
 /// @throws IoError on other cells of three dimensions
@@ -56,6 +56,7 @@ void add_cell(const std::string& path,
     into.mesh.hexes.push_back(nodes(std::array<std::int32_t, 8>{}));
     numbers.hexes.push_back(number);
   } else {
+    if (kind.kept_nodes == 3) into.triangles.push_back(nodes(std::array<std::int32_t, 3>{}));
     leave_out_cell(path, kind, number, into);
   }
 }

@@ -48,7 +48,10 @@ class ErrorNotes {
 CellKind kind_of_type(int type) {
   const char* const name = vtkCellTypes::GetClassNameFromTypeId(type);
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
-  const int kept_nodes = type == VTK_TETRA ? 4 : type == VTK_HEXAHEDRON ? 8 : 0;
+  const int kept_nodes = type == VTK_TRIANGLE     ? 3
+                         : type == VTK_TETRA      ? 4
+                         : type == VTK_HEXAHEDRON ? 8
+                                                  : 0;
   return {name, cell ? cell->GetCellDimension() : 3, kept_nodes};
 }
 

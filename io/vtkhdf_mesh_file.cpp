@@ -181,7 +181,7 @@ std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
   return read_rows(displacement_, parts_of(step), shift);
 }
 
-MeshCells MeshFile::read_cells(std::int64_t step) const {
+MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
   const std::vector<MeshPart> parts = parts_of(step);
   std::int64_t node_count = 0;
   std::int64_t cell_count = 0;
@@ -192,7 +192,9 @@ MeshCells MeshFile::read_cells(std::int64_t step) const {
     id_count += part.id_count;
   }
   if (cell_count == 0) {
-    types_.fail("holds no tetrahedron or hexahedron at step " + std::to_string(step));
+    types_.fail(std::string("holds no ") +
+                (choice == CellChoice::solids ? "tetrahedron or hexahedron" : "triangle") +
+                " at step " + std::to_string(step));
   }
   constexpr std::int64_t limit = std::int64_t{1} << 31;
   if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or cells");
@@ -204,33 +206,40 @@ MeshCells MeshFile::read_cells(std::int64_t step) const {
   MeshCells cells;
   std::int64_t first_node = 0;
   for (const MeshPart& part : parts) {
-    read_part_cells(part, first_node, cells);
+    read_part_cells(part, first_node, choice, cells);
     first_node += part.node_count;
   }
   return cells;
 }
 
 std::vector<std::int64_t> MeshFile::read_cell_sizes(const MeshPart& part,
-                                                    std::size_t first_cell) const {
+                                                    std::size_t first_cell,
+                                                    CellChoice choice) const {
+  const bool is_solid = choice == CellChoice::solids;
   std::vector<std::int64_t> sizes = read_column(types_, part.first_cell, part.cell_count);
   for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
     const std::int64_t type = sizes[cell];
-    if (type != vtk_tetra && type != vtk_hexahedron) {
+    if (is_solid ? type != vtk_tetra && type != vtk_hexahedron : type != vtk_triangle) {
       types_.fail("cell " + std::to_string(first_cell + cell) + " has type " +
                   cell_type_name(type) +
-                  ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, VTK_HEXAHEDRON) only; "
-                  "split the cells into tetrahedra");
+                  (is_solid ? ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, "
+                              "VTK_HEXAHEDRON) only; split the cells into tetrahedra"
+                            : ", expected triangles (5, VTK_TRIANGLE) only; extract the surface"));
     }
-    sizes[cell] = type == vtk_tetra ? 4 : 8;
+    sizes[cell] = type == vtk_triangle ? 3 : type == vtk_tetra ? 4 : 8;
   }
   return sizes;
 }
 
 void MeshFile::read_part_cells(const MeshPart& part,
                                std::int64_t first_node,
+                               CellChoice choice,
                                MeshCells& cells) const {
-  const std::size_t first_cell = cells.tets.size() + cells.hexes.size();
-  const std::vector<std::int64_t> sizes = read_cell_sizes(part, first_cell);
+  const std::size_t first_cell = cells.count();
+  const std::vector<std::int64_t> sizes = read_cell_sizes(part, first_cell, choice);
+  const std::string sizes_text = choice == CellChoice::solids
+                                     ? "4 for each tetrahedron, 8 for each hexahedron"
+                                     : "3 for each triangle";
   const std::vector<std::int64_t> offsets =
       read_column(offsets_, part.first_offset, part.cell_count + 1);
   std::int64_t expected = 0;
@@ -238,14 +247,14 @@ void MeshFile::read_part_cells(const MeshPart& part,
     if (offsets[cell] != expected) {
       offsets_.fail("entry " + std::to_string(cell) + " of a part is " +
                     std::to_string(offsets[cell]) + ", expected " + std::to_string(expected) +
-                    " (from 0 in steps of 4 for tetrahedra, 8 for hexahedra)");
+                    " (from 0 in steps of " + sizes_text + ")");
     }
     if (cell < sizes.size()) expected += sizes[cell];
   }
   if (part.id_count != expected) {
     connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
                        std::to_string(part.cell_count) + " cells, expected " +
-                       std::to_string(expected) + ", 4 for each tetrahedron, 8 for a hexahedron");
+                       std::to_string(expected) + ", " + sizes_text);
   }
   const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
   for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
@@ -262,7 +271,9 @@ void MeshFile::read_part_cells(const MeshPart& part,
         nodes[corner] = static_cast<std::int32_t>(first_node + node);
       }
     };
-    if (sizes[cell] == 4) {
+    if (sizes[cell] == 3) {
+      take(cells.triangles);
+    } else if (sizes[cell] == 4) {
       take(cells.tets);
     } else {
       take(cells.hexes);

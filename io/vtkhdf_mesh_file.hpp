@@ -14,6 +14,7 @@
 namespace tetwarp {
 
 /// Values of the dataset Types.
+constexpr std::uint8_t vtk_triangle = 5;
 constexpr std::uint8_t vtk_tetra = 10;
 constexpr std::uint8_t vtk_hexahedron = 12;
 
@@ -30,10 +31,19 @@ struct MeshPart {
   bool operator==(const MeshPart&) const = default;
 };
 
+/// Kinds of cells that a mesh may have.
+enum class CellChoice {
+  solids,    ///< tetrahedra and hexahedra
+  triangles  ///< triangles alone
+};
+
 /// Cells of a step by kind. Node indices continue from part to part.
 struct MeshCells {
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 8>> hexes;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+
+  std::size_t count() const { return tets.size() + hexes.size() + triangles.size(); }
 };
 
 /// An open mesh file. Every row is checked against the datasets before anything is allocated.
@@ -50,8 +60,8 @@ class MeshFile {
   std::vector<Point3> read_points(std::int64_t step) const;
   std::vector<Point3> read_displacement(std::int64_t step) const;
 
-  /// Cells of all parts.
-  MeshCells read_cells(std::int64_t step) const;
+  /// Cells of all parts. @throws IoError  also on cells of another kind
+  MeshCells read_cells(std::int64_t step, CellChoice choice = CellChoice::solids) const;
 
  private:
   /// Steps/<name> of a step; 0 in static files and where the file has no such dataset.
@@ -59,9 +69,14 @@ class MeshFile {
   std::vector<Point3> read_rows(const h5::Dataset& dataset,
                                 const std::vector<MeshPart>& parts,
                                 std::int64_t shift) const;
-  /// Nodes of each cell of a part: 4 or 8.
-  std::vector<std::int64_t> read_cell_sizes(const MeshPart& part, std::size_t first_cell) const;
-  void read_part_cells(const MeshPart& part, std::int64_t first_node, MeshCells& cells) const;
+  /// Nodes of each cell of a part: 3, 4 or 8.
+  std::vector<std::int64_t> read_cell_sizes(const MeshPart& part,
+                                            std::size_t first_cell,
+                                            CellChoice choice) const;
+  void read_part_cells(const MeshPart& part,
+                       std::int64_t first_node,
+                       CellChoice choice,
+                       MeshCells& cells) const;
 
   VtkhdfInput file_;
   h5::Dataset points_;

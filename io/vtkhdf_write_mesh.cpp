@@ -5,8 +5,10 @@
 #include <set>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
+#include <tetwarp/scene_io.hpp>
 #include <utility>
 
+#include "io/vtkhdf_cells.hpp"
 #include "io/vtkhdf_mesh_file.hpp"
 #include "io/vtkhdf_output.hpp"
 
@@ -43,10 +45,13 @@ void check_arguments(const std::string& path,
   }
 }
 
-void check_arrays(const std::string& path, const Mesh& mesh, const std::vector<MeshArray>& arrays) {
+void check_arrays(const std::string& path,
+                  std::size_t points,
+                  std::size_t cells,
+                  const std::vector<MeshArray>& arrays) {
   std::set<std::pair<bool, std::string>> names{{false, "displacement"}};
   for (const MeshArray& array : arrays) {
-    const std::size_t rows = array.is_of_cells ? mesh.cell_count() : mesh.rest_positions.size();
+    const std::size_t rows = array.is_of_cells ? cells : points;
     const std::string name =
         (array.is_of_cells ? "/VTKHDF/CellData/" : "/VTKHDF/PointData/") + array.name;
     if (array.name.empty() || array.name.find_first_of("/.") != std::string::npos ||
@@ -63,39 +68,11 @@ void check_arrays(const std::string& path, const Mesh& mesh, const std::vector<M
   }
 }
 
-void write_integers(const h5::Object& parent,
-                    const std::string& name,
-                    const std::vector<std::int64_t>& values,
-                    bool is_column = false) {
-  const hsize_t dims[2] = {values.size(), 1};
-  h5::write_dataset(parent, name, H5T_STD_I64LE, H5T_NATIVE_INT64,
-                    {dims, is_column ? std::size_t{2} : std::size_t{1}}, values.data());
-}
-
-void write_topology(const h5::Object& root, const Mesh& mesh) {
-  const auto cell_count = static_cast<std::int64_t>(mesh.cell_count());
-  std::vector<std::int32_t> ids;
-  std::vector<std::int64_t> offsets;
-  const auto add = [&](const auto& cells) {
-    for (const auto& nodes : cells) {
-      offsets.push_back(static_cast<std::int64_t>(ids.size()));
-      ids.insert(ids.end(), nodes.begin(), nodes.end());
-    }
-  };
-  add(mesh.tets);
-  add(mesh.hexes);
-  const hsize_t id_count = ids.size();
-  offsets.push_back(static_cast<std::int64_t>(id_count));
-  write_integers(root, "NumberOfPoints", {static_cast<std::int64_t>(mesh.rest_positions.size())});
-  write_integers(root, "NumberOfCells", {cell_count});
-  write_integers(root, "NumberOfConnectivityIds", {offsets.back()});
-  write_integers(root, "Offsets", offsets);
-  h5::write_dataset(root, "Connectivity", H5T_STD_I64LE, H5T_NATIVE_INT32, {&id_count, 1},
-                    ids.data());
-  std::vector<std::uint8_t> types(mesh.tets.size(), vtk_tetra);
-  types.resize(mesh.cell_count(), vtk_hexahedron);
-  const hsize_t type_count = types.size();
-  h5::write_dataset(root, "Types", H5T_STD_U8LE, H5T_NATIVE_UINT8, {&type_count, 1}, types.data());
+CellRows cells_of(const Mesh& mesh) {
+  CellRows cells;
+  cells.add<4>(vtk_tetra, mesh.tets);
+  cells.add<8>(vtk_hexahedron, mesh.hexes);
+  return cells;
 }
 
 /// One dataset [step * node][3], filled step by step.
@@ -164,15 +141,12 @@ void write_mesh(const std::string& path,
                 const std::vector<MeshArray>& arrays) {
   const h5::Silence silence;
   check_arguments(path, mesh, displacements, times);
-  check_arrays(path, mesh, arrays);
+  check_arrays(path, mesh.rest_positions.size(), mesh.cell_count(), arrays);
   const bool is_temporal = !displacements.empty();
   VtkhdfOutput output(path, "UnstructuredGrid", is_temporal);
   {
     const h5::Object& root = output.root();
-    const hsize_t dims[2] = {mesh.rest_positions.size(), 3};
-    h5::write_dataset(root, "Points", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, dims,
-                      mesh.rest_positions.front().data());
-    write_topology(root, mesh);
+    write_grid(root, mesh.rest_positions, cells_of(mesh));
     const h5::Object cell_data = h5::create_group(root, "CellData");
     h5::create_group(root, "FieldData");
     const h5::Object point_data = h5::create_group(root, "PointData");
@@ -187,6 +161,27 @@ void write_mesh(const std::string& path,
         std::iota(values.begin(), values.end(), 0.0);
       }
       write_steps(root, values, static_cast<std::int64_t>(mesh.rest_positions.size()), arrays);
+    }
+  }
+  output.finish();
+}
+
+void write_surface(const std::string& path,
+                   const Surface& surface,
+                   const std::vector<MeshArray>& arrays) {
+  const h5::Silence silence;
+  if (surface.triangles.empty()) throw IoError(path, "/VTKHDF", "no triangle to write");
+  check_arrays(path, surface.points.size(), surface.triangles.size(), arrays);
+  VtkhdfOutput output(path, "UnstructuredGrid", false);
+  {
+    CellRows cells;
+    cells.add<3>(vtk_triangle, surface.triangles);
+    write_grid(output.root(), surface.points, cells);
+    const h5::Object cell_data = h5::create_group(output.root(), "CellData");
+    h5::create_group(output.root(), "FieldData");
+    const h5::Object point_data = h5::create_group(output.root(), "PointData");
+    for (const MeshArray& array : arrays) {
+      write_array(output, array.is_of_cells ? cell_data : point_data, array);
     }
   }
   output.finish();

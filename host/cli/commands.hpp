@@ -14,6 +14,7 @@ void add_warp_command(CLI::App& app, Run& run);
 void add_mesh_command(CLI::App& app, Run& run);
 void add_deform_command(CLI::App& app, Run& run);
 void add_contact_command(CLI::App& app, Run& run);
+void add_simulate_command(CLI::App& app, Run& run);
 void add_import_command(CLI::App& app, Run& run);
 void add_export_command(CLI::App& app, Run& run);
 void add_render_command(CLI::App& app, Run& run);

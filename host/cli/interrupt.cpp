@@ -16,6 +16,8 @@ constexpr suseconds_t grace = 700'000;  // microseconds between the first signal
 
 volatile std::sig_atomic_t flag = 0;
 volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
+volatile std::sig_atomic_t holds = 0;        // SignalHold objects that exist
+volatile std::sig_atomic_t ends_after_hold = 0;
 volatile std::sig_atomic_t is_silent = 0;    // one of several ranks
 volatile std::sig_atomic_t is_terminal = 0;  // standard error shows a progress bar
 
@@ -29,7 +31,11 @@ void say(std::string_view line) {
   if (write(STDERR_FILENO, line.data(), line.size()) < 0) return;
 }
 
-[[noreturn]] void end_process(int) {
+void end_process(int) {
+  if (holds > 0) {
+    ends_after_hold = 1;
+    return;
+  }
   remove_unfinished_files();
   _exit(interrupted_exit_code);
 }
@@ -73,6 +79,14 @@ InterruptFlag::InterruptFlag() {
 }
 InterruptFlag::~InterruptFlag() {
   flag_scopes = flag_scopes - 1;
+}
+
+SignalHold::SignalHold() {
+  holds = holds + 1;
+}
+SignalHold::~SignalHold() {
+  holds = holds - 1;
+  if (holds == 0 && ends_after_hold != 0) end_process(0);
 }
 
 bool is_interrupted() {

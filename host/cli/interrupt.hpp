@@ -28,6 +28,16 @@ class InterruptFlag {
   InterruptFlag& operator=(const InterruptFlag&) = delete;
 };
 
+/// While one exists a signal does not end the process, so that a file that is changed in place is
+/// left complete; the process ends when the last one is gone. For work of milliseconds.
+class SignalHold {
+ public:
+  SignalHold();
+  ~SignalHold();
+  SignalHold(const SignalHold&) = delete;
+  SignalHold& operator=(const SignalHold&) = delete;
+};
+
 /// True once a signal has set the flag.
 bool is_interrupted();
 

@@ -38,6 +38,7 @@ void declare(CLI::App& app, Run& run) {
   app.set_version_flag("--version", "tetwarp " TETWARP_VERSION);
   app.require_subcommand(1);
   add_warp_command(app, run);
+  add_simulate_command(app, run);
   add_contact_command(app, run);
   add_mesh_command(app, run);
   add_deform_command(app, run);

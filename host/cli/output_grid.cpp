@@ -24,18 +24,14 @@ Point3 index_of(const IndexFromWorld& map, const Point3& world) {
   return index;
 }
 
-/// The smallest box of voxels of the source's lattice, continued beyond the source, that encloses
-/// the deformed cells of all steps; at least two voxels along each axis.
-Grid bounds_grid(const Grid& source,
-                 const MeshReader& mesh,
-                 const std::vector<std::int64_t>& steps) {
-  const IndexFromWorld map = index_from_world(source);
+/// A box in index space around cells.
+struct IndexBox {
   Point3 low{infinity, infinity, infinity};
   Point3 high{-infinity, -infinity, -infinity};
-  for (const std::int64_t step : steps) {
-    stop_if_interrupted();
-    const std::vector<Point3> positions = mesh.read_step(step);
-    const auto include = [&](const auto& cell) {
+
+  /// Extends the box by all deformed cells of a mesh.
+  void include(const IndexFromWorld& map, const Mesh& mesh, const std::vector<Point3>& positions) {
+    const auto include_cell = [&](const auto& cell) {
       for (const std::int32_t node : cell) {
         const Point3 index = index_of(map, positions[static_cast<std::size_t>(node)]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -44,14 +40,19 @@ Grid bounds_grid(const Grid& source,
         }
       }
     };
-    std::ranges::for_each(mesh.mesh().tets, include);
-    std::ranges::for_each(mesh.mesh().hexes, include);
+    std::ranges::for_each(mesh.tets, include_cell);
+    std::ranges::for_each(mesh.hexes, include_cell);
   }
+};
+
+/// The smallest box of voxels of the source's lattice, continued beyond the source, that encloses
+/// an index box; at least two voxels along each axis.
+Grid grid_of(const Grid& source, const IndexBox& box) {
   Grid grid = source;
   Point3 first{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    first[axis] = std::floor(low[axis]);
-    const double count = std::max(std::ceil(high[axis]) - first[axis] + 1, 2.0);
+    first[axis] = std::floor(box.low[axis]);
+    const double count = std::max(std::ceil(box.high[axis]) - first[axis] + 1, 2.0);
     // Far beyond what check_grid() accepts; keeps the conversion defined.
     grid.dims[axis] = static_cast<std::int64_t>(std::min(count, 0x1p40));
   }
@@ -86,13 +87,13 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
 }
 }  // namespace
 
-Grid resolve_grid(const GridChoice& choice,
-                  const Grid& source,
-                  const MeshReader& mesh,
-                  const std::vector<std::int64_t>& steps) {
+namespace {
+/// @param bounds  the grid of `--grid bounds`
+template <class Bounds>
+Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds) {
   Grid grid = source;
   if (choice.base == "bounds") {
-    grid = bounds_grid(source, mesh, steps);
+    grid = bounds();
   } else if (choice.base != "same") {
     grid = read_volume_header(choice.base).grid;
   }
@@ -103,6 +104,32 @@ Grid resolve_grid(const GridChoice& choice,
   grid.direction = choice.direction.value_or(grid.direction);
   check_grid(grid, "output grid");
   return grid;
+}
+}  // namespace
+
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const MeshReader& mesh,
+                  const std::vector<std::int64_t>& steps) {
+  return resolve(choice, source, [&] {
+    IndexBox box;
+    for (const std::int64_t step : steps) {
+      stop_if_interrupted();
+      box.include(index_from_world(source), mesh.mesh(), mesh.read_step(step));
+    }
+    return grid_of(source, box);
+  });
+}
+
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const Mesh& mesh,
+                  const std::vector<Point3>& positions) {
+  return resolve(choice, source, [&] {
+    IndexBox box;
+    box.include(index_from_world(source), mesh, positions);
+    return grid_of(source, box);
+  });
 }
 
 Region parse_region(const std::string& text) {

@@ -31,6 +31,12 @@ Grid resolve_grid(const GridChoice& choice,
                   const MeshReader& mesh,
                   const std::vector<std::int64_t>& steps);
 
+/// The same for one set of positions of the nodes of a mesh.
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const Mesh& mesh,
+                  const std::vector<Point3>& positions);
+
 /// Reads "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
 Region parse_region(const std::string& text);
 

@@ -30,9 +30,10 @@ std::string progress_line(const ProgressState& state, std::size_t width) {
   const std::string step = fmt::format(" {:2}%  step {:.0f} of {:.0f}", percent,
                                        std::min(state.step, state.step_count), state.step_count);
   const double rate_millions = 1e-6 * state.voxel_rate;
-  const std::string rate = rate_millions > 0 ? fmt::format("  {:.{}f} Mvoxel/s", rate_millions,
-                                                           rate_millions < 10 ? 1 : 0)
-                                             : "";
+  const std::string rate = !state.note.empty() ? "  " + state.note
+                           : rate_millions > 0 ? fmt::format("  {:.{}f} Mvoxel/s", rate_millions,
+                                                             rate_millions < 10 ? 1 : 0)
+                                               : "";
   std::string end;
   if (!state.phase.empty()) {
     end = "  " + state.phase;
@@ -55,6 +56,11 @@ ProgressBar::ProgressBar(bool is_enabled, std::string label, std::vector<double>
   state_.step_count = std::max<double>(1, static_cast<double>(step_work_.size()));
 }
 
+ProgressBar::ProgressBar(bool is_enabled, std::string label, std::size_t step_count)
+    : ProgressBar(is_enabled, std::move(label), std::vector<double>()) {
+  state_.step_count = std::max<double>(1, static_cast<double>(step_count));
+}
+
 ProgressBar::~ProgressBar() {
   if (draws_ && !is_interrupted()) std::fputs("\r\033[K", stderr);
 }
@@ -75,6 +81,7 @@ void ProgressBar::update(double steps_done, double voxels_done) {
 }
 
 void ProgressBar::skip_steps(std::size_t count) {
+  if (step_work_.empty()) finished_ += count;
   for (; count > 0 && finished_ < step_work_.size(); --count) step_work_[finished_++] = 0;
 }
 
@@ -86,6 +93,7 @@ void ProgressBar::show_phase(const std::string& phase) {
 
 /// Work of the steps before a step, which may be a fraction.
 double ProgressBar::work_before(double step) const {
+  if (step_work_.empty()) return std::clamp(step, 0.0, state_.step_count);
   double work = 0;
   for (std::size_t s = 0; s < step_work_.size(); ++s) {
     work += std::clamp(step - static_cast<double>(s), 0.0, 1.0) * step_work_[s];

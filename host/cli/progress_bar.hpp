@@ -16,6 +16,7 @@ struct ProgressState {
   double step_count = 1;    ///< steps of the whole job
   double voxel_rate = 0;    ///< output voxels per second
   double seconds_left = 0;  /// negative: not known yet
+  std::string note;         ///< shown in place of the rate, e.g. simulated time; empty: the rate
   std::string phase;        ///< shown instead of the remaining time; empty: computing
 };
 
@@ -33,6 +34,8 @@ class ProgressBar {
   /// @param step_work   work of each step of the job in the order in which they are computed, in
   ///                    units that take equal time
   ProgressBar(bool is_enabled, std::string label, std::vector<double> step_work);
+  /// Of steps that take equal time, in any number.
+  ProgressBar(bool is_enabled, std::string label, std::size_t step_count);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -47,6 +50,9 @@ class ProgressBar {
   /// The next steps need no work: --resume keeps them.
   void skip_steps(std::size_t count);
 
+  /// Shows a text in place of the rate from the next update on.
+  void show_note(const std::string& note) { state_.note = note; }
+
   /// Shows what is done while no share is reported, e.g. "writing"; until the next update.
   void show_phase(const std::string& phase);
 
@@ -58,12 +64,12 @@ class ProgressBar {
 
   bool draws_;
   ProgressState state_;
-  std::vector<double> step_work_;
-  std::size_t finished_ = 0;  ///< steps, skipped ones included
-  double work_ = 0;           ///< done
-  double voxels_ = 0;         ///< done
-  bool has_begun_ = false;    ///< update() has been called
-  double work_at_begin_ = 0;  ///< and voxels are counted from the first update on: rates
+  std::vector<double> step_work_;  ///< empty: 1 each
+  std::size_t finished_ = 0;       ///< steps, skipped ones included
+  double work_ = 0;                ///< done
+  double voxels_ = 0;              ///< done
+  bool has_begun_ = false;         ///< update() has been called
+  double work_at_begin_ = 0;       ///< and voxels are counted from the first update on: rates
   double voxels_at_begin_ = 0;
   Clock::time_point begin_{};
   Clock::time_point drawn_{};

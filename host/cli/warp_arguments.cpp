@@ -99,6 +99,38 @@ void add_quantities(CLI::App& app,
       ->type_name("NAME[=" + CLI::detail::join(words_of(laws), "|") + "]");
 }
 
+}  // namespace
+
+void declare_grid_options(CLI::App& app, GridChoice& grid) {
+  app.add_option("--grid", grid.base,
+                 "output grid: the source's, the deformed mesh's box on it, or a volume's [" +
+                     grid.base + "]")
+      ->type_name("same|bounds|FILE");
+  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
+              "voxels of the output grid; alone it keeps the base's box [--spacing]");
+  add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
+  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z",
+              "distance of its voxel centres; alone it keeps the base's box [--dims]");
+  add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
+}
+
+void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
+  add_choice(app, "--filter", warp.filter, choices_of<Filter>(),
+             "interpolation between voxel centres [linear]");
+  add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
+             "interpolated values beyond the source's range: cubic, bspline, lanczos [keep]");
+  app.add_flag("--antialias", warp.antialias, "average samples where tetrahedra shrink the source");
+  add_choice(app, "--intensity", warp.intensity, choices_of<Intensity>(),
+             "samples are values, densities, or densities with totals preserved [value]");
+}
+
+void declare_outside_options(CLI::App& app, WarpOptions& warp) {
+  add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
+             "voxels outside the mesh: --background, or the source [background]");
+  app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
+}
+
+namespace {
 void declare_files(CLI::App& app, WarpArguments& arguments) {
   app.add_option(
          "FILES", arguments.files,
@@ -136,36 +168,19 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
 }
 
 void declare_grid(CLI::App& app, WarpArguments& arguments) {
-  GridChoice& grid = arguments.grid;
-  app.add_option("--grid", grid.base,
-                 "output grid: the source's, the deformed mesh's box on it, or a volume's [same]")
-      ->type_name("same|bounds|FILE");
-  add_numbers(app, "--dims", grid.dims, "NI,NJ,NK",
-              "voxels of the output grid; alone it keeps the base's box [--spacing]");
-  add_numbers(app, "--origin", grid.origin, "X,Y,Z", "centre of its first voxel");
-  add_numbers(app, "--spacing", grid.spacing, "X,Y,Z",
-              "distance of its voxel centres; alone it keeps the base's box [--dims]");
-  add_numbers(app, "--direction", grid.direction, "D1,...,D9", "its axes as columns, row by row");
+  declare_grid_options(app, arguments.grid);
   add_parsed(app, "--roi", arguments.warp.region, parse_region, "I0:I1,J0:J1,K0:K1",
              "part of the output grid to compute, half-open");
 }
 
 void declare_result(CLI::App& app, WarpArguments& arguments) {
   WarpOptions& warp = arguments.warp;
-  add_choice(app, "--filter", warp.filter, choices_of<Filter>(),
-             "interpolation between voxel centres [linear]");
-  add_choice(app, "--overshoot", warp.overshoot, choices_of<Overshoot>(),
-             "interpolated values beyond the source's range: cubic, bspline, lanczos [keep]");
-  app.add_flag("--antialias", warp.antialias, "average samples where tetrahedra shrink the source");
-  add_choice(app, "--intensity", warp.intensity, choices_of<Intensity>(),
-             "samples are values, densities, or densities with totals preserved [value]");
+  declare_sampling_options(app, warp);
   add_quantities(app, "--vectors", arguments.quantities, vector_laws,
                  "array of 3 components to reorient, repeatable [rotate]");
   add_quantities(app, "--tensors", arguments.quantities, tensor_laws,
                  "array of 6 components XX YY ZZ XY YZ XZ to reorient, repeatable [finite-strain]");
-  add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
-             "voxels outside the mesh: --background, or the source [background]");
-  app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
+  declare_outside_options(app, warp);
   ExtraChoice& extra = arguments.extra;
   add_word_list(
       app, "--outputs", extra_choices(), [&extra](std::size_t output) { extra.insert(output); },
@@ -231,17 +246,20 @@ void declare_warp_options(CLI::App& app, WarpArguments& arguments) {
   declare_running(app, arguments);
 }
 
-void check_complete(const WarpArguments& arguments) {
-  const Filter filter = arguments.warp.filter;
-  if (arguments.warp.antialias && (filter == Filter::nearest || filter == Filter::labels)) {
+void check_sampling(const WarpOptions& warp) {
+  if (warp.antialias && (warp.filter == Filter::nearest || warp.filter == Filter::labels)) {
     throw CLI::ValidationError(
         "--antialias", "cannot average samples with nearest and labels; use another --filter");
   }
+  if (warp.intensity == Intensity::conservative && warp.filter != Filter::linear) {
+    throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
+  }
+}
+
+void check_complete(const WarpArguments& arguments) {
+  check_sampling(arguments.warp);
   if (arguments.pair && arguments.source_step) {
     throw CLI::ValidationError("--pair", "takes all steps of the volume; leave out --source-step");
-  }
-  if (arguments.warp.intensity == Intensity::conservative && filter != Filter::linear) {
-    throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
   }
   if (!arguments.batch.empty()) {
     if (!arguments.files.empty() || !arguments.output.empty()) {

@@ -57,6 +57,15 @@ struct WarpArguments {
 /// Declares every option and binds it to `arguments`, which must outlive `app`.
 void declare_warp_options(CLI::App& app, WarpArguments& arguments);
 
+/// Parts of these options, which `tetwarp simulate` has, too: --grid, --dims, --origin, --spacing
+/// and --direction; --filter, --overshoot, --antialias and --intensity; --outside and --background.
+void declare_grid_options(CLI::App& app, GridChoice& grid);
+void declare_sampling_options(CLI::App& app, WarpOptions& warp);
+void declare_outside_options(CLI::App& app, WarpOptions& warp);
+
+/// Throws CLI::ValidationError when filter and antialiasing or intensity contradict each other.
+void check_sampling(const WarpOptions& warp);
+
 /// Throws CLI::ValidationError when volumes, mesh or output are missing, are given with --batch, or
 /// when options contradict each other.
 void check_complete(const WarpArguments& arguments);

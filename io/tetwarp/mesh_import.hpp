@@ -2,6 +2,7 @@
 /// Meshes of other programs: Gmsh's MSH 2 and 4.1 (.msh), VTK's XML and legacy unstructured grids
 /// (.vtu, .vtk). The libraries of Gmsh and VTK read them; a build may be without either.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -24,6 +25,8 @@ struct MeshImportOptions {
   Axes axes = Axes::ras;
   /// Time that reading may take [s]. 0: 120 s and 5 s per megabyte of the file.
   double time_limit = 0;
+  /// Whether the file must have tetrahedra or hexahedra; else it must have triangles.
+  bool needs_solids = true;
 };
 
 /// The content of a file, in the form that write_mesh() takes.
@@ -31,13 +34,14 @@ struct ImportedMesh {
   Mesh mesh;  ///< every node of the file at rest, in its order (of Gmsh: by tag)
   std::vector<std::vector<Point3>> displacements;  ///< per step, per node [world]; empty: none
   std::vector<double> times;                       ///< one per step
-  /// Number of cells of fewer than three dimensions, which are left out, by their kind.
+  /// Number of cells of fewer than three dimensions, which are not in `mesh`, by their kind.
   std::map<std::string, std::int64_t> skipped;
   /// Other arrays of nodes and cells, of the first step. `original_cell` holds the number of each
   /// cell in the file: in VTK's from 0, in Gmsh's its tag; of Gmsh `original_node` holds the tags
   /// of nodes, `group` the physical group of each cell (0: none).
   std::vector<MeshArray> arrays = {};
   std::vector<std::string> left_out = {};  ///< other content of the file, by kind and name
+  std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions
 };
 
 /// True for names that end in .msh, .vtu or .vtk.

@@ -40,8 +40,8 @@ double free_device_memory(int device) {
   } catch (const CudaError&) {
     return 0;
   }
-  const double threads = static_cast<double>(properties.maxThreadsPerMultiProcessor) *
-                         properties.multiProcessorCount;
+  const double threads =
+      static_cast<double>(properties.maxThreadsPerMultiProcessor) * properties.multiProcessorCount;
   return std::max(0.0, static_cast<double>(free) - threads * stack_bytes);
 }
 
