@@ -113,7 +113,9 @@ std::vector<std::int32_t> select(const std::string& place,
   if (!points.empty()) return points;
   const Bounds bounds = bounds_of(marks.positions());
   const auto text = [](const Point3& x) {
-    return "[" + number_text(x[0]) + ", " + number_text(x[1]) + ", " + number_text(x[2]) + "]";
+    std::string numbers = "[";
+    numbers += number_text(x[0]) + ", " + number_text(x[1]) + ", " + number_text(x[2]);
+    return numbers += "]";
   };
   fail_at(place, "selects nothing; at the start '" + body.name + "' spans " + text(bounds.low) +
                      " to " + text(bounds.high) + " m");
