@@ -48,11 +48,31 @@ bench_peers() {
   done
   cmake --build "$folder" --target tetwarp_bench_peers
   "$folder/tetwarp_bench_peers" "$results-beside.json" || return
+  bench_cantilever
   "$python" -c 'import siconos.numerics, h5py, scipy' 2>/dev/null || return 0
   "$folder/tetwarp_bench_contact" --export="$problems"
   [[ -z ${TETWARP_FCLIB_DATA:-} ]] || cp "$TETWARP_FCLIB_DATA"/*.hdf5 "$problems"
   "$python" "$root/bench/peers/siconos_nsgs.py" "$problems"/*.hdf5 | tee "$results-siconos.log"
   TETWARP_PEERS=$results-siconos.log
+}
+
+# One cantilever in several simulators, on one thread; a program that is missing is left out.
+bench_cantilever() {
+  local peers=$root/bench/peers log=$results-cantilever.log
+  : >"$log"
+  if "$python" -c 'import h5py, numpy' 2>/dev/null; then
+    cmake --build "$folder" --target tetwarp_command
+    OMP_NUM_THREADS=1 "$python" "$peers/cantilever_tetwarp.py" "$folder/tetwarp" | tee -a "$log" ||
+      echo "cantilever_tetwarp.py failed"
+  else
+    echo "missing: h5py or numpy; the cantilever in tetwarp is left out"
+  fi
+  if "$python" -c 'import mujoco' 2>/dev/null; then
+    (cd "$folder" && "$python" "$peers/cantilever_mujoco.py") | tee -a "$log" ||
+      echo "cantilever_mujoco.py failed"
+  else
+    echo "missing: mujoco (PyPI); the cantilever in MuJoCo is left out"
+  fi
 }
 
 # Tables and plots of the results files that were written.
