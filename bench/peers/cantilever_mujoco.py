@@ -1,4 +1,4 @@
-"""The cantilever in MuJoCo: a three-dimensional flex, St. Venant-Kirchhoff tetrahedra.
+"""The cantilever in MuJoCo: a three-dimensional flex, six linear tetrahedra per cell.
 
 MuJoCo gives each vertex the same mass; here each gets its share of the volume.
 """
