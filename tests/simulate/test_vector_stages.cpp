@@ -60,7 +60,8 @@ class TetScene {
     std::vector<std::uint8_t> has_turned, is_skipped;
     bool operator==(const Result& other) const {
       const auto same = [](const auto& a, const auto& b) {
-        return std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+        return a.size() == b.size() &&
+               (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
       };
       return same(turned, other.turned) && same(force, other.force) &&
              has_turned == other.has_turned && is_skipped == other.is_skipped;
