@@ -8,7 +8,7 @@
 namespace tetwarp {
 namespace {
 constexpr std::size_t most_colors = 256;
-constexpr int bits = 6;  // per channel by which colors are told apart
+constexpr int bits = 6;  // per channel of a histogram bin
 constexpr std::size_t bin_count = std::size_t{1} << (3 * bits);
 
 /// Pixels whose colors agree to 6 bits per channel.

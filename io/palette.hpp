@@ -26,7 +26,7 @@ struct IndexedPicture {
 ///
 /// Median cut by variance: the box of colors with the largest sum of squared distances from its
 /// mean is divided at its mean, across the axis on which these distances are largest, until there
-/// are 256. Colors are told apart to 6 bits per channel.
+/// are 256. Colors are counted at 6 bits per channel.
 /// Source: X. Wu, "Efficient Statistical Computations for Optimal Color Quantization", 1991 (the
 /// choice of boxes by variance).
 IndexedPicture index_picture(const Image& image, const PictureBox& box);

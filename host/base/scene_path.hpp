@@ -6,7 +6,8 @@
 
 namespace tetwarp {
 
-/// The place of a key of an object. @param place  of the object; empty: the scene itself
+/// Path of a key in a scene file, as in `bodies[2].lattice`.
+/// @param place  path of the object that holds the key; empty: the scene itself
 inline std::string key_of(const std::string& place, const std::string& key) {
   return place.empty() ? key : place + "." + key;
 }

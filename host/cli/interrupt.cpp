@@ -16,7 +16,7 @@ constexpr suseconds_t grace = 700'000;  // microseconds between the first signal
 
 volatile std::sig_atomic_t flag = 0;
 volatile std::sig_atomic_t flag_scopes = 0;  // InterruptFlag objects that exist
-volatile std::sig_atomic_t holds = 0;        // SignalHold objects that exist
+volatile std::sig_atomic_t holds = 0;        // number of SignalHold objects
 volatile std::sig_atomic_t ends_after_hold = 0;
 volatile std::sig_atomic_t is_silent = 0;    // one of several ranks
 volatile std::sig_atomic_t is_terminal = 0;  // standard error shows a progress bar

@@ -15,8 +15,8 @@ namespace tetwarp::cli {
 namespace {
 using Rgb = std::array<double, 3>;
 
-/// Colors that are told apart, also with the common forms of color blindness: those of Okabe and
-/// Ito without black, in an order in which neighbours differ most.
+/// Colors of bodies, distinguishable with the common forms of color blindness: those of Okabe and
+/// Ito without black, ordered so that successive colors differ most.
 constexpr std::array<Rgb, 7> body_colors{{{0.90, 0.45, 0.20},
                                           {0.16, 0.50, 0.76},
                                           {0.25, 0.66, 0.45},

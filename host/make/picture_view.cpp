@@ -4,58 +4,54 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/make/vector3.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {
 constexpr double pi = 3.14159265358979;
 constexpr int shadow_samples = 1536;
 
-bool is_finite(const Point3& point) {
-  return std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]);
-}
 }  // namespace
 
 PictureView::PictureView(const Camera& camera, int width, int height)
     : eye(camera.eye), half_width_(0.5 * width), half_height_(0.5 * height) {
-  const Point3 line = vec::subtract(camera.target, camera.eye);
-  const double distance = vec::length(line);
-  forward = vec::unit(line);
-  const Point3 side = vec::cross(forward, camera.up);
+  const Point3 line = minus(camera.target, camera.eye);
+  const double distance = norm(line);
+  forward = unit(line);
+  const Point3 side = cross(forward, camera.up);
   const bool is_sound = is_finite(camera.eye) && is_finite(camera.target) && is_finite(camera.up) &&
                         distance > 0 && std::isfinite(distance) &&
-                        vec::length(side) > 1e-9 * vec::length(camera.up) && camera.angle > 0 &&
+                        norm(side) > 1e-9 * norm(camera.up) && camera.angle > 0 &&
                         camera.angle < pi;
   if (!is_sound) {
     throw std::invalid_argument(
         "render_surfaces: the camera needs a finite eye and target that differ, an up vector that "
         "is not along their line, and an angle between 0 and pi");
   }
-  right = vec::unit(side);
-  down = vec::cross(forward, right);
+  right = unit(side);
+  down = cross(forward, right);
   scale_ = half_height_ / std::tan(0.5 * camera.angle);
   nearest_ = 1e-3 * distance;
 }
 
 PicturePoint PictureView::project(const Point3& world) const {
-  const Point3 offset = vec::subtract(world, eye);
-  const double depth = vec::dot(offset, forward);
+  const Point3 offset = minus(world, eye);
+  const double depth = dot(offset, forward);
   if (!(depth > nearest_)) return {0, 0, 0, false};
-  return {half_width_ + scale_ * vec::dot(offset, right) / depth,
-          half_height_ + scale_ * vec::dot(offset, down) / depth, 1 / depth, true};
+  return {half_width_ + scale_ * dot(offset, right) / depth,
+          half_height_ + scale_ * dot(offset, down) / depth, 1 / depth, true};
 }
 
 Point3 PictureView::ray(double x, double y) const {
-  return vec::add(forward, vec::add(vec::scaled(right, (x - half_width_) / scale_),
-                                    vec::scaled(down, (y - half_height_) / scale_)));
+  return plus(forward, plus(times((x - half_width_) / scale_, right),
+                            times((y - half_height_) / scale_, down)));
 }
 
 ShadowMap::ShadowMap(const SurfaceSoup& soup, const Point3& light) : light_(light) {
-  right_ =
-      vec::unit(vec::cross(light, std::abs(light[0]) < 0.9 ? Point3{1, 0, 0} : Point3{0, 1, 0}));
-  down_ = vec::cross(light_, right_);
-  centre_ = vec::scaled(vec::add(soup.low, soup.high), 0.5);
-  const double radius = 0.5 * vec::length(vec::subtract(soup.high, soup.low));
+  right_ = unit(cross(light, std::abs(light[0]) < 0.9 ? Point3{1, 0, 0} : Point3{0, 1, 0}));
+  down_ = cross(light_, right_);
+  centre_ = times(0.5, plus(soup.low, soup.high));
+  const double radius = 0.5 * norm(minus(soup.high, soup.low));
   scale_ = radius > 0 ? 0.5 * shadow_samples / (1.02 * radius) : 1;
   std::vector<PicturePoint> points;
   points.reserve(soup.points.size());
@@ -64,16 +60,15 @@ ShadowMap::ShadowMap(const SurfaceSoup& soup, const Point3& light) : light_(ligh
 }
 
 PicturePoint ShadowMap::project(const Point3& world) const {
-  const Point3 offset = vec::subtract(world, centre_);
-  return {0.5 * shadow_samples + scale_ * vec::dot(offset, right_),
-          0.5 * shadow_samples + scale_ * vec::dot(offset, down_),
-          scale_ * vec::dot(offset, light_), true};
+  const Point3 offset = minus(world, centre_);
+  return {0.5 * shadow_samples + scale_ * dot(offset, right_),
+          0.5 * shadow_samples + scale_ * dot(offset, down_), scale_ * dot(offset, light_), true};
 }
 
 double ShadowMap::light_at(const Point3& world, const Point3& normal) const {
   constexpr int reach = 3;      // samples of the edge to each side
   constexpr double offset = 3;  // along the normal, against shadows of a triangle on itself
-  const PicturePoint point = project(vec::add(world, vec::scaled(normal, offset / scale_)));
+  const PicturePoint point = project(plus(world, times(offset / scale_, normal)));
   if (!(std::abs(point.x) < 2 * shadow_samples && std::abs(point.y) < 2 * shadow_samples)) return 1;
   const int x0 = static_cast<int>(std::floor(point.x));
   const int y0 = static_cast<int>(std::floor(point.y));
@@ -105,22 +100,22 @@ Camera camera_of(std::span<const Point3> points, double aspect) {
   }
   constexpr double filled = 0.85;  // of width or height
   Camera camera;
-  camera.target = vec::scaled(vec::add(low, high), 0.5);
-  const Point3 back = vec::unit({0.55, -1, 0.5});
-  const Point3 right = vec::unit(vec::cross(camera.up, back));
-  const Point3 up = vec::cross(back, right);
+  camera.target = times(0.5, plus(low, high));
+  const Point3 back = unit({0.55, -1, 0.5});
+  const Point3 right = unit(cross(camera.up, back));
+  const Point3 up = cross(back, right);
   const double slope = filled * std::tan(0.5 * camera.angle);
   double distance = 0;
   const auto include = [&](const Point3& point) {
-    const Point3 offset = vec::subtract(point, camera.target);
+    const Point3 offset = minus(point, camera.target);
     const double across =
-        std::max(std::abs(vec::dot(offset, right)) / aspect, std::abs(vec::dot(offset, up)));
-    distance = std::max(distance, across / slope + vec::dot(offset, back));
+        std::max(std::abs(dot(offset, right)) / aspect, std::abs(dot(offset, up)));
+    distance = std::max(distance, across / slope + dot(offset, back));
   };
   std::ranges::for_each(points, include);
   if (points.empty()) distance = 2 / slope;
   if (!(distance > 0)) distance = 1;
-  camera.eye = vec::add(camera.target, vec::scaled(back, distance));
+  camera.eye = plus(camera.target, times(distance, back));
   return camera;
 }
 

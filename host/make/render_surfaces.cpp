@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "host/base/parallel.hpp"
+#include "host/base/point3.hpp"
 #include "host/make/picture_view.hpp"
 #include "host/make/surface_soup.hpp"
 #include "host/make/triangle_raster.hpp"
-#include "host/make/vector3.hpp"
 
 namespace tetwarp {
 namespace {
@@ -47,14 +47,13 @@ double round_number(double size) {
 }
 
 Board board_of(const DrawnPlane& plane, double extent) {
-  const Point3 normal = vec::unit(plane.normal);
-  if (!(std::abs(vec::length(normal) - 1) < 1e-9) ||
-      !std::isfinite(vec::dot(plane.point, normal))) {
+  const Point3 normal = unit(plane.normal);
+  if (!(std::abs(norm(normal) - 1) < 1e-9) || !std::isfinite(dot(plane.point, normal))) {
     throw std::invalid_argument("render_surfaces: a plane needs a finite point and a normal");
   }
   const Point3 aside = std::abs(normal[0]) < 0.9 ? Point3{1, 0, 0} : Point3{0, 1, 0};
-  const Point3 u = vec::unit(vec::subtract(aside, vec::scaled(normal, vec::dot(aside, normal))));
-  return {plane.point, normal, u, vec::cross(normal, u), round_number(extent / 5)};
+  const Point3 u = unit(minus(aside, times(dot(aside, normal), normal)));
+  return {plane.point, normal, u, cross(normal, u), round_number(extent / 5)};
 }
 
 class Picture {
@@ -64,15 +63,12 @@ class Picture {
           const SurfaceRenderOptions& options)
       : soup_(make_soup(surfaces)),
         view_(options.camera, samples * options.width, samples * options.height),
-        up_(vec::unit(options.camera.up)),
+        up_(unit(options.camera.up)),
         target_(options.camera.target),
         extent_(extent(options.camera)),
-        light_(vec::unit(
-            vec::add(vec::scaled(up_, 1.1),
-                     vec::add(vec::scaled(view_.forward, -0.5), vec::scaled(view_.right, -0.55))))),
-        fill_(vec::unit(
-            vec::add(vec::scaled(up_, 0.1),
-                     vec::add(vec::scaled(view_.forward, -1), vec::scaled(view_.right, 0.8))))),
+        light_(unit(
+            plus(times(1.1, up_), plus(times(-0.5, view_.forward), times(-0.55, view_.right))))),
+        fill_(unit(plus(times(0.1, up_), plus(times(-1, view_.forward), times(0.8, view_.right))))),
         shadow_(soup_, light_) {
     for (const DrawnSurface& surface : surfaces) {
       colors_.push_back(
@@ -94,11 +90,11 @@ class Picture {
     Rgb color = background(y);
     if (triangle >= 0) color = shade(triangle, x, y, ray, depth);
     for (const Board& board : boards_) {
-      const double along = vec::dot(ray, board.normal);
-      const double distance = vec::dot(vec::subtract(board.point, view_.eye), board.normal) / along;
+      const double along = dot(ray, board.normal);
+      const double distance = dot(minus(board.point, view_.eye), board.normal) / along;
       if (!(along < 0) || !(distance > 0) || !(distance < depth)) continue;
-      const Point3 world = vec::add(view_.eye, vec::scaled(ray, distance));
-      const double far = vec::length(vec::subtract(world, target_)) / extent_;
+      const Point3 world = plus(view_.eye, times(distance, ray));
+      const double far = norm(minus(world, target_)) / extent_;
       const double fade = std::clamp((far - 1.2) / 2.6, 0.0, 1.0);
       if (fade >= 1) continue;
       color = mixed(shade(board, world), background(y), fade * fade * (3 - 2 * fade));
@@ -109,8 +105,8 @@ class Picture {
 
  private:
   double extent(const Camera& camera) const {
-    const double size = vec::length(vec::subtract(soup_.high, soup_.low));
-    return size > 0 ? size : vec::length(vec::subtract(camera.target, camera.eye));
+    const double size = norm(minus(soup_.high, soup_.low));
+    return size > 0 ? size : norm(minus(camera.target, camera.eye));
   }
 
   Rgb background(int y) const {
@@ -118,13 +114,13 @@ class Picture {
   }
 
   Rgb shade(const Board& board, const Point3& world) const {
-    const Point3 offset = vec::subtract(world, board.point);
-    const auto column = std::floor(vec::dot(offset, board.u) / board.cell);
-    const auto row = std::floor(vec::dot(offset, board.v) / board.cell);
+    const Point3 offset = minus(world, board.point);
+    const auto column = std::floor(dot(offset, board.u) / board.cell);
+    const auto row = std::floor(dot(offset, board.v) / board.cell);
     const bool is_dark = std::fmod(std::abs(column + row), 2) == 1;
     const double gray = is_dark ? 0.50 : 0.66;
     const double lit = shadow_.light_at(world, board.normal);
-    const double light = 0.50 + 0.62 * std::max(0.0, vec::dot(board.normal, light_)) * lit;
+    const double light = 0.50 + 0.62 * std::max(0.0, dot(board.normal, light_)) * lit;
     return {gray * light, gray * light, gray * light * 1.03};
   }
 
@@ -138,21 +134,19 @@ class Picture {
     corner_weights(corners, x + 0.5, y + 0.5, weights);
     Point3 normal{0, 0, 0};
     for (std::size_t c = 0; c < 3; ++c) {
-      normal = vec::add(normal,
-                        vec::scaled(soup_.normals[t][c], weights[c] * corners[c].nearness * depth));
+      normal = plus(normal, times(weights[c] * corners[c].nearness * depth, soup_.normals[t][c]));
     }
-    normal = vec::unit(normal);
-    const Point3 toward = vec::unit(vec::scaled(ray, -1));
-    if (vec::dot(normal, toward) < 0) normal = vec::scaled(normal, -1);
-    const Point3 world = vec::add(view_.eye, vec::scaled(ray, depth));
-    const double facing = std::max(0.0, vec::dot(normal, light_));
+    normal = unit(normal);
+    const Point3 toward = unit(times(-1, ray));
+    if (dot(normal, toward) < 0) normal = times(-1, normal);
+    const Point3 world = plus(view_.eye, times(depth, ray));
+    const double facing = std::max(0.0, dot(normal, light_));
     const double lit = facing > 0 ? shadow_.light_at(world, normal) : 0;
-    const double sky = 0.5 + 0.5 * vec::dot(normal, up_);
+    const double sky = 0.5 + 0.5 * dot(normal, up_);
     const double light =
-        0.24 + 0.22 * sky + 0.78 * facing * lit + 0.26 * std::max(0.0, vec::dot(normal, fill_));
-    const double shine =
-        std::pow(std::max(0.0, vec::dot(normal, vec::unit(vec::add(light_, toward)))), 48);
-    const double rim = std::pow(1 - std::max(0.0, vec::dot(normal, toward)), 3);
+        0.24 + 0.22 * sky + 0.78 * facing * lit + 0.26 * std::max(0.0, dot(normal, fill_));
+    const double shine = std::pow(std::max(0.0, dot(normal, unit(plus(light_, toward)))), 48);
+    const double rim = std::pow(1 - std::max(0.0, dot(normal, toward)), 3);
     const Rgb& base = colors_[static_cast<std::size_t>(soup_.surface[t])];
     Rgb color{};
     for (std::size_t c = 0; c < 3; ++c) {

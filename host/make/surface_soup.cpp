@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/make/vector3.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {
@@ -59,20 +59,20 @@ void set_normals(SurfaceSoup& soup) {
     const Point3& a = soup.points[static_cast<std::size_t>(triangle[0])];
     const Point3& b = soup.points[static_cast<std::size_t>(triangle[1])];
     const Point3& c = soup.points[static_cast<std::size_t>(triangle[2])];
-    areas.push_back(vec::cross(vec::subtract(b, a), vec::subtract(c, a)));
+    areas.push_back(cross(minus(b, a), minus(c, a)));
   }
   const PointTriangles around = triangles_of_points(soup);
   soup.normals.resize(soup.triangles.size());
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    const Point3 own = vec::unit(areas[t]);
+    const Point3 own = unit(areas[t]);
     for (std::size_t c = 0; c < 3; ++c) {
       const auto point = static_cast<std::size_t>(soup.triangles[t][c]);
       Point3 sum{0, 0, 0};
       for (std::size_t n = around.first[point]; n < around.first[point + 1]; ++n) {
         const Point3& area = areas[static_cast<std::size_t>(around.triangle[n])];
-        if (vec::dot(area, own) > crease_cosine * vec::length(area)) sum = vec::add(sum, area);
+        if (dot(area, own) > crease_cosine * norm(area)) sum = plus(sum, area);
       }
-      soup.normals[t][c] = vec::length(sum) > 0 ? vec::unit(sum) : own;
+      soup.normals[t][c] = norm(sum) > 0 ? unit(sum) : own;
     }
   }
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 

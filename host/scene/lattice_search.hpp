@@ -1,6 +1,6 @@
 /// @file lattice_search.hpp
-/// The lattice that a scene asks for: by numbers of cells, by their edge, or by about how many
-/// tetrahedra remain.
+/// Cells of a lattice from the members of Lattice: numbers of cells, their edge, or the approximate
+/// number of tetrahedra.
 #pragma once
 #include <functional>
 #include <string>

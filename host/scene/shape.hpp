@@ -7,7 +7,7 @@
 
 #include <tetwarp/scene.hpp>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 #include "host/scene/scene_checks.hpp"
 
 namespace tetwarp {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 

@@ -199,7 +199,7 @@ struct AdhesionMaterial {
   double saturation_pressure = 0;                   ///< [Pa]
   double initial_intensity = 0;                     ///< 0 to 1
 };
-/// What a surface brings to its contacts; of two surfaces one pair of constants follows.
+/// Contact material of one surface. The constants of a pair of surfaces follow from both.
 struct SurfaceContact {
   double friction = 0;
   std::optional<AdhesionMaterial> adhesion = {};

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/point3.hpp"
 #include "host/scene/lattice.hpp"
-#include "host/scene/point3.hpp"
 
 namespace tetwarp::scene_checks {
 

@@ -6,7 +6,7 @@
 #include <tetwarp/simulate.hpp>
 #include <vector>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model.hpp"
 

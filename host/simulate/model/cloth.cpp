@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 #include "host/simulate/model/model_parts.hpp"
 
 namespace tetwarp {

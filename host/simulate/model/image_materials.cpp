@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "host/base/index_space.hpp"
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 #include "host/scene/scalar_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 #include "host/simulate/model/model_parts.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "host/scene/point3.hpp"
+#include "host/base/point3.hpp"
 #include "host/simulate/model/model_parts.hpp"
 
 namespace tetwarp {

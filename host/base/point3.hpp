@@ -30,6 +30,11 @@ inline Point3 cross(const Point3& a, const Point3& b) {
 inline double norm(const Point3& a) {
   return std::hypot(a[0], a[1], a[2]);
 }
+/// Of length 1; of a zero vector zero.
+inline Point3 unit(const Point3& a) {
+  const double size = norm(a);
+  return size > 0 ? times(1 / size, a) : a;
+}
 inline bool is_finite(const Point3& a) {
   return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]);
 }
