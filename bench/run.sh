@@ -73,6 +73,12 @@ bench_cantilever() {
   else
     echo "missing: mujoco (PyPI); the cantilever in MuJoCo is left out"
   fi
+  if "$python" -c 'import newton' 2>/dev/null; then
+    (cd "$folder" && OMP_NUM_THREADS=1 "$python" "$peers/cantilever_newton.py") | tee -a "$log" ||
+      echo "cantilever_newton.py failed"
+  else
+    echo "missing: newton (PyPI); the cantilever in Newton is left out"
+  fi
 }
 
 # Tables and plots of the results files that were written.

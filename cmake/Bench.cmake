@@ -29,6 +29,7 @@ add_executable(tetwarp_bench
   bench/warp/main.cpp
   bench/warp/overlap_rows.cpp
   bench/warp/region_rows.cpp
+  bench/warp/resident_rows.cpp
   bench/warp/series_rows.cpp
   bench/warp/step_cases.cpp
   bench/warp/step_rows.cpp
@@ -37,10 +38,12 @@ add_executable(tetwarp_bench
   bench/warp/workloads.cpp
   tests/scenes/scenes.cpp)
 if(TETWARP_HAS_CUDA)
-  target_sources(tetwarp_bench PRIVATE bench/measure/device_floors.cu)
+  target_sources(tetwarp_bench PRIVATE
+    bench/measure/device_floors.cu bench/measure/device_memory.cu)
   target_link_libraries(tetwarp_bench PRIVATE CUDA::cudart_static)
 else()
-  target_sources(tetwarp_bench PRIVATE bench/measure/device_floors_nocuda.cpp)
+  target_sources(tetwarp_bench PRIVATE
+    bench/measure/device_floors_nocuda.cpp bench/measure/device_memory_nocuda.cpp)
 endif()
 target_include_directories(tetwarp_bench PRIVATE
   ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)

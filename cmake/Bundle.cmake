@@ -1,11 +1,15 @@
 # Target `bundle`: a folder with the programs and the shared libraries that they need besides glibc,
 # to be copied to a machine that has only a CUDA driver.
-set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_device_tests)
+set(tetwarp_bundled tetwarp_tests tetwarp_stress_tests tetwarp_device_tests
+  tetwarp_device_simulate_tests)
 if(TETWARP_IO)
   list(APPEND tetwarp_bundled tetwarp_command)
 endif()
 if(TETWARP_BENCH)
-  list(APPEND tetwarp_bundled tetwarp_bench)
+  list(APPEND tetwarp_bundled tetwarp_bench tetwarp_bench_simulate)
+  if(TETWARP_IO)
+    list(APPEND tetwarp_bundled tetwarp_bench_contact)
+  endif()
 endif()
 # RPATH, not RUNPATH: it also applies to the libraries that libraries need. The folder must be
 # called lib, because libniftiio looks there for its own dependencies.

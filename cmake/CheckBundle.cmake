@@ -1,9 +1,8 @@
 # Fails when a file in FOLDER needs a library that is neither of glibc nor in FOLDER/lib, or when
-# the folder exceeds its size limit. Run by target `bundle`.
+# the folder's archive exceeds its size limit. Run by target `bundle`.
 cmake_minimum_required(VERSION 3.22)
 set(largest_mib 40)
 file(GLOB_RECURSE files ${FOLDER}/*)
-set(bytes 0)
 list(FILTER files EXCLUDE REGEX "\\.sh$")
 foreach(file IN LISTS files)
   execute_process(COMMAND readelf --dynamic ${file}
@@ -16,11 +15,14 @@ foreach(file IN LISTS files)
       message(FATAL_ERROR "${file} needs ${library}, which the bundle does not hold")
     endif()
   endforeach()
-  file(SIZE ${file} size)
-  math(EXPR bytes "${bytes} + ${size}")
 endforeach()
+get_filename_component(parent ${FOLDER} DIRECTORY)
+get_filename_component(name ${FOLDER} NAME)
+execute_process(COMMAND ${CMAKE_COMMAND} -E tar czf ${FOLDER}.tar.gz ${name}
+  WORKING_DIRECTORY ${parent} COMMAND_ERROR_IS_FATAL ANY)
+file(SIZE ${FOLDER}.tar.gz bytes)
 math(EXPR mib "${bytes} / 1048576")
 if(mib GREATER largest_mib)
-  message(FATAL_ERROR "the bundle is ${mib} MiB, more than ${largest_mib}")
+  message(FATAL_ERROR "the bundle's archive is ${mib} MiB, more than ${largest_mib}")
 endif()
-message(STATUS "bundle: ${mib} MiB in ${FOLDER}, needs glibc and nothing else")
+message(STATUS "bundle: ${FOLDER} and ${FOLDER}.tar.gz, ${mib} MiB; needs glibc and nothing else")

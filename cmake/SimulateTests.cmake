@@ -29,7 +29,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_vector_stages.cpp
     tests/emu/emulated_stepper.cpp
     tests/emu/test_stepper_emulated.cpp
-    tests/emu/test_parity_emulated.cpp
+    tests/simulate/test_parity_cuda.cpp
+    tests/simulate/test_stepper_parity.cpp
     tests/scenes/parity_scenes.cpp)
   set(tetwarp_reference_twin_tests  # closed forms on the reference, parity with it
     tests/scenes/parity_scenes.cpp
@@ -47,6 +48,17 @@ if(NOT BUILD_SHARED_LIBS)
       tetwarp_discover(tetwarp_${name}_tests unit)
     endif()
   endforeach()
+  if(tetwarp_device_tests)  # without the emulated stepper: on a device
+    tetwarp_add_tests(tetwarp_device_simulate_tests SOURCES
+      tests/simulate/body_measures.cpp
+      tests/simulate/body_models.cpp
+      tests/simulate/test_device.cpp
+      tests/simulate/test_parity_cuda.cpp
+      tests/simulate/test_stepper_parity.cpp
+      tests/scenes/parity_scenes.cpp)
+    gtest_discover_tests(tetwarp_device_simulate_tests DISCOVERY_TIMEOUT 120
+      PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
+  endif()
   tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES tests/simulate/test_simulator_large.cpp)
   tetwarp_discover(tetwarp_simulate_large_tests long)
   if(TETWARP_IO)

@@ -164,6 +164,21 @@ class Rows {
     }
   }
 
+  /// The methods that have stages on a device, on the device: the first and the following solves.
+  void add_device(const ContactInput& input) {
+    ContactOptions options = options_for(1e-4);
+    options.backend = Backend::cuda;
+    for (const auto precision : {ContactPrecision::float64, ContactPrecision::float32}) {
+      options.precision = precision;
+      for (const ContactMethod method : {ContactMethod::gauss_seidel, ContactMethod::anderson}) {
+        options.method = method;
+        for (const auto visit : {ContactVisit::first, ContactVisit::kept}) {
+          add({.input = input, .options = options, .visit = visit});
+        }
+      }
+    }
+  }
+
   std::vector<ContactCase> take() { return std::move(rows_); }
 
  private:
@@ -206,9 +221,11 @@ const char* word_of(ContactPrecision precision) {
 
 std::string name_of(const ContactCase& row) {
   const ContactOptions& options = row.options;
-  std::string name = fmt::format("{}/{}/{}/{}/cpu/threads:{}/tolerance:{:.0e}", word_of(row.kind),
+  const std::string place =
+      options.backend == Backend::cuda ? "cuda" : fmt::format("cpu/threads:{}", options.threads);
+  std::string name = fmt::format("{}/{}/{}/{}/{}/tolerance:{:.0e}", word_of(row.kind),
                                  row.input.name, report_name_of(options.method),
-                                 word_of(options.precision), options.threads, options.tolerance);
+                                 word_of(options.precision), place, options.tolerance);
   if (row.visit != ContactVisit::first) name += fmt::format("/visit:{}", word_of(row.visit));
   if (!row.without.empty()) name += "/without:" + row.without;
   if (options.coupling != ContactCoupling::automatic) {
@@ -238,7 +255,8 @@ std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib
 
 std::vector<ContactCase> contact_cases(Extent extent,
                                        int threads,
-                                       const std::string& fclib_folder) {
+                                       const std::string& fclib_folder,
+                                       bool with_cuda) {
   Rows rows(extent, threads);
   for (const ContactInput& input : contact_inputs(extent, fclib_folder)) rows.add_work(input);
   for (const std::int64_t contacts : {151, 531}) {
@@ -250,6 +268,12 @@ std::vector<ContactCase> contact_cases(Extent extent,
     rows.add_scale(packing(fmt::format("packing_edge_{}", edge), {.edge = edge}));
   }
   for (const std::int64_t edge : {32, 64, 128}) rows.add_scale(tray(edge));
+  if (!with_cuda) return rows.take();
+  for (const ContactInput& input : contact_inputs(Extent::brief, fclib_folder)) {
+    rows.add_device(input);
+  }
+  rows.add_device(slab(531));
+  rows.add_device(tray(64));
   return rows.take();
 }
 

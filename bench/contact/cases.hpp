@@ -44,7 +44,8 @@ struct ContactCase {
   std::string without = {};      ///< name of the switch that is off, or empty
 };
 
-/// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04; other kinds are contact_skip,
+/// contact/packing_1k/anderson/float64/cpu/threads:2/tolerance:1e-04, on a device cuda instead of
+/// cpu/threads:2; other kinds are contact_skip,
 /// contact_scale and contact_coupling; then, where not the default, /visit:kept,
 /// /without:frozen_contacts and /coupling:condensed.
 std::string name_of(const ContactCase& row);
@@ -55,6 +56,10 @@ std::vector<ContactInput> contact_inputs(Extent extent, const std::string& fclib
 /// The rows for a processor with `threads` threads, those of one problem next to each other, loose
 /// tolerances first.
 /// @param fclib_folder  of recorded problems, *.hdf5; empty: none
-std::vector<ContactCase> contact_cases(Extent extent, int threads, const std::string& fclib_folder);
+/// @param with_cuda     adds rows of back end cuda
+std::vector<ContactCase> contact_cases(Extent extent,
+                                       int threads,
+                                       const std::string& fclib_folder,
+                                       bool with_cuda = false);
 
 }  // namespace tetwarp::bench

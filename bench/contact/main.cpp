@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <string>
 
+#include <tetwarp/backend.hpp>
 #include <tetwarp/io.hpp>
 
 #include "bench/contact/cases.hpp"
@@ -45,10 +46,13 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (recorded.empty()) std::printf("No recorded problems: TETWARP_FCLIB_DATA is not set\n");
-  for (const bench::ContactCase& row : bench::contact_cases(program.extent(), threads, recorded)) {
+  const BackendStatus cuda = available_backends().front();
+  for (const bench::ContactCase& row :
+       bench::contact_cases(program.extent(), threads, recorded, cuda.usable)) {
     bench::add_contact_row(row);
   }
   program.describe(threads);
+  benchmark::AddCustomContext("device", cuda.usable ? cuda.device : "none: " + cuda.reason);
   benchmark::AddCustomContext("recorded_problems", recorded.empty()
                                                        ? "left out: TETWARP_FCLIB_DATA is not set"
                                                        : "measured");

@@ -9,6 +9,7 @@ import sys
 
 import compare
 import contact_tables
+import device
 import peers
 import rows
 import warp_tables
@@ -58,7 +59,7 @@ def draw_plots(arguments):
 
 
 def self_test(_):
-    for module in (rows, peers, compare):
+    for module in (rows, peers, compare, device):
         module.self_test()
     print("report: all checks passed")
     return 0
@@ -81,6 +82,11 @@ def main():
     both.add_argument("new", metavar="NEW")
     both.add_argument("--threshold", type=float, default=0.05, help="share of the old time")
     both.set_defaults(run=lambda a: compare.print_comparison(a.old, a.new, a.threshold))
+    archive = commands.add_parser("device", help="print the tables of run_on_device.sh's archive")
+    archive.add_argument("archive", metavar="FILE.tar.gz")
+    archive.add_argument("--prefix",
+                         help="also write PREFIX-resident.json, PREFIX-warp.json and so on")
+    archive.set_defaults(run=device.print_archive)
     commands.add_parser("self-test", help="check the parsers").set_defaults(run=self_test)
     arguments = parser.parse_args()
     return arguments.run(arguments)

@@ -7,6 +7,10 @@
 /// wrong.
 #include <benchmark/benchmark.h>
 
+#include <string>
+
+#include <tetwarp/backend.hpp>
+
 #include "bench/measure/program.hpp"
 #include "bench/simulate/rows.hpp"
 #include "host/simulate/cpu/vector_stages.hpp"
@@ -14,8 +18,10 @@
 int main(int argc, char** argv) {
   using namespace tetwarp;
   bench::Program program(argc, argv);
-  bench::add_simulate_rows(program.extent());
+  const BackendStatus cuda = available_backends().front();
+  bench::add_simulate_rows(program.extent(), cuda.usable);
   program.describe(bench::processor_threads());
+  benchmark::AddCustomContext("device", cuda.usable ? cuda.device : "none: " + cuda.reason);
   benchmark::AddCustomContext("vectors", vector_stages().name);
   return program.run({"forces", "assembly", "linear", "iterations", "copy_share"});
 }

@@ -45,12 +45,37 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Largest difference of velocities after a step of two steppers over the largest velocity.
+double difference_of(BodyStepper& a, BodyStepper& b, const StepInput& input) {
+  a.step(input);
+  b.step(input);
+  const ModelState one = test::state_of(a), other = test::state_of(b);
+  double difference = 0, largest = 0;
+  for (std::size_t i = 0; i < one.velocity.size(); ++i) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      difference = std::max(difference, std::abs(one.velocity[i][d] - other.velocity[i][d]));
+      largest = std::max(largest, std::abs(one.velocity[i][d]));
+    }
+  }
+  return difference / largest;
+}
+
+/// @param threads  of back end cpu; 0: back end cuda
 void run_step(benchmark::State& state, int cells, int threads) {
   const Model& model = block_of(cells);
   StepperOptions options;
-  options.threads = threads;
-  const auto stepper = make_cpu_stepper(model, options);
+  options.threads = std::max(threads, 1);
   const StepInput input = test::input_for(model, time_step, {0, 0, -9.81});
+  const auto stepper =
+      threads > 0 ? make_cpu_stepper(model, options) : make_cuda_stepper(model, options);
+  if (threads == 0) {
+    StepperOptions exact = options;
+    exact.linear_tolerance = 1e-10;
+    const auto cuda = make_cuda_stepper(model, exact), cpu = make_cpu_stepper(model, exact);
+    if (!(difference_of(*cuda, *cpu, input) < 1e-6)) {
+      return refuse(state, "velocities on the device differ from those on the cpu");
+    }
+  }
   std::vector<StepOutcome> outcomes;
   const std::function<void()> job = [&] { outcomes.push_back(stepper->step(input)); };
   const double first_seconds = seconds_of(job);
@@ -115,7 +140,7 @@ void run_product(benchmark::State& state, int cells, int threads) {
 }
 }  // namespace
 
-void add_simulate_rows(Extent extent) {
+void add_simulate_rows(Extent extent, bool with_cuda) {
   std::vector<int> sizes = {6, 13, 27};  // cells along an edge: 1080, 10985, 98415 tetrahedra
   if (extent == Extent::full) sizes.push_back(58);  // 975560
   std::vector<int> counts = {1};
@@ -128,6 +153,9 @@ void add_simulate_rows(Extent extent) {
       add_row("product" + axes,
               [=](benchmark::State& state) { run_product(state, cells, threads); });
     }
+    if (!with_cuda) continue;
+    add_row("step/tets:" + std::to_string(5 * cells * cells * cells) + "/cuda",
+            [=](benchmark::State& state) { run_step(state, cells, 0); });
   }
 }
 

@@ -3,6 +3,7 @@
 ///
 /// step/tets:N/threads:T     time of a whole step; counters forces, assembly, linear, update [ms],
 ///                           iterations of conjugate gradients
+/// step/tets:N/cuda          the same on a device; results must agree with back end cpu to 1e-6
 /// product/tets:N/threads:T  one product with the block matrix; counters bytes, rate [byte/s] and
 ///                           copy_share: the time of reading and writing as many bytes by copying
 ///                           over that of the product, both the least of rounds in turn
@@ -11,6 +12,7 @@
 
 namespace tetwarp::bench {
 
-void add_simulate_rows(Extent extent);
+/// @param with_cuda  adds rows of back end cuda
+void add_simulate_rows(Extent extent, bool with_cuda);
 
 }  // namespace tetwarp::bench

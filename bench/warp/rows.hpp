@@ -50,6 +50,15 @@ void add_series_rows(const Selection& selection);
 ///   max_error          of a step
 void add_overlap_rows(const Selection& selection);
 
+/// resident/WORKLOAD/.../cuda: wall time of steps whose source, positions and output stay in memory
+/// of the device, from the call to its return, which waits for the device. Two poses in turn; the
+/// output must have the bits of back end cpu.
+///
+///   kernel                    sum of the stages of one step
+///   floor, floor_ratio        the device's sampling floor, its layout in the label; time / floor
+///   copy_ratio                time / (output read and written at the device's copy bandwidth)
+void add_resident_rows(const Selection& selection);
+
 /// region/WORKLOAD: steps that compute the middle half of each axis, an eighth of the voxels. In
 /// turn with steps of the whole grid, which must have the same bits there.
 ///

@@ -1,0 +1,91 @@
+#include <array>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "bench/measure/device_floors.hpp"
+#include "bench/measure/device_memory.hpp"
+#include "bench/warp/rows.hpp"
+#include "bench/warp/warp_job.hpp"
+
+namespace tetwarp::bench {
+namespace {
+/// A Warper whose source, positions and output are in memory of the device. Steps alternate between
+/// the workload's pose and another one.
+class ResidentJob {
+ public:
+  ResidentJob(const scenes::Scene& scene, const VolumeView& source)
+      : bytes_(static_cast<std::size_t>(scene.output_grid.voxel_count()) * size_of(source.type)),
+        node_count_(static_cast<std::int64_t>(scene.deformed.size())),
+        positions_{DeviceMemory(scene.deformed.size() * sizeof(Point3)),
+                   DeviceMemory(scene.deformed.size() * sizeof(Point3))},
+        output_(bytes_),
+        warper_(std::span(&source, 1),
+                scene.mesh,
+                {.output_grid = scene.output_grid, .backend = Backend::cuda}) {
+    positions_[0].put(scene.deformed.data());
+    positions_[1].put(nudged_centre(scene.deformed, 1.0).data());
+  }
+
+  StepReport step(std::size_t pose) {
+    void* const volume = output_.data();
+    const auto* const xyz = static_cast<const double*>(positions_[pose].data());
+    return warper_.step({xyz, node_count_, Memory::device},
+                        {.volumes = {&volume, 1}, .memory = Memory::device});
+  }
+  std::vector<std::byte> output() const {
+    std::vector<std::byte> copy(bytes_);
+    output_.get(copy.data());
+    return copy;
+  }
+  double bytes() const { return 2.0 * static_cast<double>(bytes_); }
+
+ private:
+  std::size_t bytes_;
+  std::int64_t node_count_;
+  std::array<DeviceMemory, 2> positions_;
+  DeviceMemory output_;
+  Warper warper_;
+};
+
+void run(benchmark::State& state, const Workload& workload) {
+  const scenes::Scene& scene = inputs().scene(workload);
+  const VolumeView source = inputs().image(workload);
+  WarpJob plain(scene, source, {.backend = Backend::cpu});
+  plain.step();
+  ResidentJob job(scene, source);
+  job.step(1);
+  const StepReport report = job.step(0);
+  if (std::memcmp(job.output().data(), plain.output(), plain.output_bytes()) != 0) {
+    return refuse(state, "a step in device memory differs from that of the cpu");
+  }
+  std::size_t pose = 0;
+  const std::function<void()> step = [&] { job.step(pose = 1 - pose); };
+  const Timing timing =
+      time_in_turn(std::span(&step, 1), {.repetitions = 51, .attempts = 51, .seconds = 5}).front();
+  count_timing(state, timing);
+  static const double bandwidth = device_copy_bandwidth(0);
+  Buffer room(plain.output_bytes());
+  const AffineJob floor_job = {source.type, Filter::linear, source.grid.dims,   plain.grid().dims,
+                               source.data, room.data(),    floor_map(workload)};
+  const DeviceFloor floor = measure_device_floor(floor_job, 0);
+  state.SetLabel(floor.layout);
+  state.counters["floor"] = 1e3 * floor.kernel;
+  state.counters["floor_ratio"] = timing.median / floor.kernel;
+  state.counters["copy_ratio"] = timing.median * bandwidth / job.bytes();
+  state.counters["kernel"] = 1e3 * (report.timings.setup + report.timings.mask +
+                                    report.timings.cull + report.timings.raster);
+}
+}  // namespace
+
+void add_resident_rows(const Selection& selection) {
+  if (!selection.with_cuda) return;
+  for (const Workload& workload :
+       {torso_700(), rotated(256), rotated(384), waved(256, 5000), waved(256, 500000)}) {
+    add_row("resident/" + workload.name + "/linear/float32/cuda",
+            [workload](benchmark::State& state) { run(state, workload); });
+  }
+}
+
+}  // namespace tetwarp::bench
