@@ -57,6 +57,7 @@ if(NOT BUILD_SHARED_LIBS)
     bench/measure/program.cpp
     bench/measure/row.cpp
     bench/measure/timing.cpp
+    bench/simulate/error_rows.cpp
     bench/simulate/main.cpp
     bench/simulate/rows.cpp
     tests/simulate/body_measures.cpp

@@ -1,6 +1,7 @@
 /// @file main.cpp
 /// tetwarp_bench_simulate: time of the stages of a step of an elastic block, and of products with
-/// its system against the rate of copying memory.
+/// its system against the rate of copying memory; time against the error of cells, steps and
+/// tolerances.
 ///
 /// Runs blocks of 1e3 to 1e5 tetrahedra; with --full, or with Google Benchmark's
 /// --benchmark_filter, also 1e6. rows.hpp lists rows and counters. Exit code 1 when a result was
@@ -20,8 +21,9 @@ int main(int argc, char** argv) {
   bench::Program program(argc, argv);
   const BackendStatus cuda = available_backends().front();
   bench::add_simulate_rows(program.extent(), cuda.usable);
+  bench::add_error_rows(program.extent());
   program.describe(bench::processor_threads());
   benchmark::AddCustomContext("device", cuda.usable ? cuda.device : "none: " + cuda.reason);
   benchmark::AddCustomContext("vectors", vector_stages().name);
-  return program.run({"forces", "assembly", "linear", "iterations", "copy_share"});
+  return program.run({"forces", "assembly", "linear", "iterations", "copy_share", "error"});
 }
