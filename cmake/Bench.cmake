@@ -1,5 +1,5 @@
 # Benchmarks: tetwarp_bench times warps on all back ends, tetwarp_bench_contact contact solvers,
-# tetwarp_bench_simulate steps of bodies.
+# tetwarp_bench_simulate steps of bodies, tetwarp_bench_collide collision detection.
 find_package(benchmark REQUIRED)
 find_package(fmt REQUIRED)
 include(cmake/OpenMp.cmake)
@@ -51,7 +51,7 @@ target_link_libraries(tetwarp_bench PRIVATE
   tetwarp tetwarp_hwy tetwarp_openmp tetwarp_options
   benchmark::benchmark Eigen3::Eigen fmt::fmt)
 
-# tetwarp_bench_simulate reaches private code, which a shared library hides.
+# These reach private code, which a shared library hides.
 if(NOT BUILD_SHARED_LIBS)
   add_executable(tetwarp_bench_simulate
     bench/measure/program.cpp
@@ -66,6 +66,19 @@ if(NOT BUILD_SHARED_LIBS)
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
   target_link_libraries(tetwarp_bench_simulate PRIVATE
     tetwarp tetwarp_options benchmark::benchmark Eigen3::Eigen)
+
+  add_executable(tetwarp_bench_collide
+    bench/collide/main.cpp
+    bench/collide/rows.cpp
+    bench/collide/sort_and_sweep.cpp
+    bench/measure/program.cpp
+    bench/measure/row.cpp
+    bench/measure/timing.cpp
+    tests/collide/collide_scenes.cpp)
+  target_include_directories(tetwarp_bench_collide PRIVATE
+    ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
+  target_link_libraries(tetwarp_bench_collide PRIVATE
+    tetwarp tetwarp_options benchmark::benchmark)
 endif()
 
 # Rows that read or write files.

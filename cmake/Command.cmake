@@ -34,6 +34,7 @@ add_executable(tetwarp_command
   host/cli/report_exchange.cpp
   host/cli/simulate_arguments.cpp
   host/cli/simulate_bodies.cpp
+  host/cli/simulate_contacts.cpp
   host/cli/simulate_frames.cpp
   host/cli/simulate_pictures.cpp
   host/cli/simulate_report.cpp

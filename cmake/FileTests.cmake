@@ -11,6 +11,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_nifti.cpp
     tests/io/test_io_nifti_files.cpp
     tests/io/test_io_png.cpp
+    tests/io/test_io_points.cpp
     tests/io/test_io_simulation.cpp
     tests/io/test_io_bad_files.cpp
     tests/io/test_mesh_arrays.cpp
@@ -99,6 +100,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_resume.cpp
   tests/cli/test_cli_rules.cpp
   tests/cli/test_cli_simulate.cpp
+  tests/cli/test_cli_simulate_contact.cpp
   tests/cli/test_cli_simulate_ends.cpp
   tests/cli/test_cli_skip.cpp
   tests/cli/test_cli_straight.cpp

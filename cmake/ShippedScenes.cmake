@@ -1,5 +1,6 @@
 # shipped_scenes.cpp: the scenes of scenes/ as texts, read when the build is configured.
-set(tetwarp_scene_names cantilever carps chain sheet top torso)
+set(tetwarp_scene_names
+  candy cantilever carps chain cloth cloth_peels mouth oranges peel sheet shoulder top torso)
 set(TETWARP_SCENES "")
 foreach(name IN LISTS tetwarp_scene_names)
   set(file ${PROJECT_SOURCE_DIR}/scenes/${name}.json)

@@ -43,15 +43,16 @@ set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cu
   host/simulate/cpu/vector_stages.cpp
   host/simulate/cpu/vector_stages_base.cpp
   host/simulate/cuda/stepper_$<IF:$<BOOL:${TETWARP_HAS_CUDA}>,cuda.cu,nocuda.cpp>
-  host/simulate/fingerprint.cpp
+  host/simulate/run/fingerprint.cpp
+  host/simulate/reference_rows.cpp
   host/simulate/reference_stepper.cpp
   host/simulate/scene_drive.cpp
   host/simulate/scene_loads.cpp
   host/simulate/scene_record.cpp
-  host/simulate/simulator.cpp
-  host/simulate/simulator_impl.cpp
-  host/simulate/simulator_step.cpp
-  host/simulate/step_sums.cpp
+  host/simulate/run/simulator.cpp
+  host/simulate/run/simulator_impl.cpp
+  host/simulate/run/simulator_step.cpp
+  host/simulate/run/step_sums.cpp
   host/simulate/system_pattern.cpp)
 set(tetwarp_simulate_reference_sources  # host/reference/simulate
   host/reference/simulate/assemble.cpp
@@ -60,9 +61,12 @@ set(tetwarp_simulate_reference_sources  # host/reference/simulate
   host/reference/simulate/cloth_body.cpp
   host/reference/simulate/elements.cpp
   host/reference/simulate/energy.cpp
+  host/reference/simulate/exact_sign.cpp
   host/reference/simulate/fem_body.cpp
   host/reference/simulate/forces.cpp
   host/reference/simulate/image_material.cpp
+  host/reference/simulate/intersecting_triangles.cpp
+  host/reference/simulate/interval_ccd.cpp
   host/reference/simulate/make_system.cpp
   host/reference/simulate/material_point.cpp
   host/reference/simulate/motion.cpp
@@ -73,7 +77,53 @@ set(tetwarp_simulate_reference_sources  # host/reference/simulate
   host/reference/simulate/shares.cpp
   host/reference/simulate/springs.cpp
   host/reference/simulate/step_system.cpp
-  host/reference/simulate/system.cpp)
+  host/reference/simulate/system.cpp
+  host/reference/simulate/triangle_intersection.cpp)
+set(tetwarp_collide_sources  # host/collide: which features touch during a motion
+  host/collide/body_partners.cpp
+  host/collide/collide_items.cpp
+  host/collide/cpu/detector_cpu.cpp
+  host/collide/cuda/detector_$<IF:$<BOOL:${TETWARP_HAS_CUDA}>,cuda.cu,nocuda.cpp>
+  host/collide/grid_plan.cpp)
+set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their solution
+  host/simulate/contact/cage_growth.cpp
+  host/simulate/contact/cage_pose.cpp
+  host/simulate/contact/coarse_space.cpp
+  host/simulate/contact/contact_islands.cpp
+  host/simulate/contact/contact_rows.cpp
+  host/simulate/contact/contact_system.cpp
+  host/simulate/contact/contact_thickness.cpp
+  host/simulate/contact/edge_side.cpp
+  host/simulate/contact/medial_node.cpp
+  host/simulate/contact/near_pair.cpp
+  host/simulate/contact/pair_contacts.cpp
+  host/simulate/contact/pair_materials.cpp
+  host/simulate/contact/pair_touch.cpp
+  host/simulate/contact/patch_moments.cpp
+  host/simulate/contact/patch_supports.cpp
+  host/simulate/contact/prepare_start.cpp
+  host/simulate/contact/rest_growth.cpp
+  host/simulate/contact/rigid_patches.cpp
+  host/simulate/contact/round_shape.cpp
+  host/simulate/contact/scene_surfaces.cpp
+  host/simulate/contact/start_check.cpp
+  host/simulate/contact/start_shrink.cpp
+  host/simulate/contact/step_problem.cpp
+  host/simulate/contact/surface_motion.cpp
+  host/simulate/contact/touch_area.cpp
+  host/simulate/contact/touching_blocks.cpp
+  host/simulate/contact/touching_sweeps.cpp
+  host/simulate/contact/triangle_tree.cpp
+  host/simulate/contact/two_level_solver.cpp
+  host/simulate/contact/two_level_step.cpp)
+set(tetwarp_contact_step_sources  # host/simulate: the step with contact
+  host/simulate/run/contact_step.cpp
+  host/simulate/run/contact_step_end.cpp
+  host/simulate/run/simulator_checkpoint.cpp
+  host/simulate/run/simulator_record.cpp
+  host/simulate/run/step_groups.cpp)
+target_sources(tetwarp PRIVATE ${tetwarp_collide_sources} ${tetwarp_touch_sources}
+  ${tetwarp_contact_step_sources})
 target_sources(tetwarp PRIVATE ${tetwarp_geometry_sources} ${tetwarp_model_sources}
   ${tetwarp_step_sources} ${tetwarp_simulate_reference_sources})
 

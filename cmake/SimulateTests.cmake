@@ -25,6 +25,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_elastic_forces.cpp
     tests/simulate/test_edge_spring.cpp
     tests/simulate/test_stepper_bodies.cpp
+    tests/simulate/test_stepper_move.cpp
     tests/simulate/test_stepper_options.cpp
     tests/simulate/test_vector_stages.cpp
     tests/emu/emulated_stepper.cpp
@@ -41,7 +42,72 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_reference_motion.cpp
     tests/simulate/test_reference_parity.cpp
     tests/simulate/test_reference_recovery.cpp)
-  foreach(name scene model body reference_twin)
+  set(tetwarp_ccd_tests         # distances and times of pairs of features, the interval reference
+    tests/collide/constructed_hits.cpp
+    tests/collide/cubic_ccd.cpp
+    tests/collide/test_ccd_mutants.cpp
+    tests/collide/test_ccd_turns.cpp
+    tests/collide/test_pair_ccd.cpp
+    tests/collide/test_interval_ccd.cpp
+    tests/collide/test_pair_distance.cpp
+    tests/collide/test_triangle_intersection.cpp)
+  set(tetwarp_detector_tests    # broad phase, detector, emulated cuda
+    tests/collide/brute_force_pairs.cpp
+    tests/collide/collide_scenes.cpp
+    tests/collide/counted_memory.cpp
+    tests/collide/test_detector_closest.cpp
+    tests/collide/test_detector_counts.cpp
+    tests/collide/test_detector_extremes.cpp
+    tests/collide/test_detector_pairs.cpp
+    tests/collide/test_detector_steps.cpp
+    tests/collide/test_detector_turns.cpp
+    tests/emu/emulated_detector.cpp
+    tests/emu/emulated_primitives.cpp
+    tests/emu/test_detector_emulated.cpp)
+  # Replaces the allocation functions of the program: not to be inlined into other files.
+  set_source_files_properties(tests/collide/counted_memory.cpp PROPERTIES
+    SKIP_UNITY_BUILD_INCLUSION ON)
+  set(tetwarp_surfaces_tests    # surfaces of scenes, their motion, starts without collisions
+    tests/simulate/test_pair_materials.cpp
+    tests/simulate/test_rest_growth.cpp
+    tests/simulate/test_scene_surfaces.cpp
+    tests/simulate/test_start_cages.cpp
+    tests/simulate/test_start_check.cpp
+    tests/simulate/test_surface_motion.cpp
+    tests/simulate/test_untangle_run.cpp
+    )
+  set(tetwarp_pair_contact_tests  # contacts of pairs, reduction, tracker of deformable bodies
+    tests/simulate/pair_scene.cpp
+    tests/simulate/test_pair_contacts.cpp
+    tests/simulate/test_rigid_patches.cpp
+    tests/simulate/test_tracker_places.cpp
+    )
+  set(tetwarp_contact_system_tests  # contact problems of steps and their solutions
+    tests/simulate/body_measures.cpp
+    tests/simulate/body_models.cpp
+    tests/simulate/hand_contacts.cpp
+    tests/simulate/mixed_contacts.cpp
+    tests/simulate/test_contact_system.cpp
+    tests/simulate/test_contact_system_blocks.cpp
+    tests/simulate/test_two_level.cpp
+    )
+  set(tetwarp_touch_tests       # whole steps with contact
+    tests/simulate/test_touch_fall.cpp
+    tests/simulate/test_touch_records.cpp
+    tests/simulate/test_touch_state.cpp
+    tests/simulate/test_touch_throw.cpp
+    )
+  set(tetwarp_contact_law_tests  # closed forms of contact, through the Simulator
+    tests/simulate/test_contact_stress.cpp
+    tests/simulate/test_law_adhesion.cpp
+    tests/simulate/test_law_balances.cpp
+    tests/simulate/test_law_repeats.cpp
+    tests/simulate/test_law_slopes.cpp
+    tests/simulate/test_law_soft.cpp
+    tests/simulate/test_law_throws.cpp
+    )
+  foreach(name scene model body reference_twin ccd detector surfaces pair_contact contact_system
+               touch contact_law)
     if(tetwarp_${name}_tests)
       tetwarp_add_tests(tetwarp_${name}_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json
         SOURCES ${tetwarp_${name}_tests})
@@ -59,21 +125,42 @@ if(NOT BUILD_SHARED_LIBS)
     gtest_discover_tests(tetwarp_device_simulate_tests DISCOVERY_TIMEOUT 120
       PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
   endif()
-  tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES tests/simulate/test_simulator_large.cpp)
+  # Pairs of features with their answers, for comparison with ipctk; skipped where it is missing.
+  add_executable(tetwarp_collision_pairs
+    bench/peers/collision_pairs.cpp tests/collide/constructed_hits.cpp)
+  target_include_directories(tetwarp_collision_pairs PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(tetwarp_collision_pairs PRIVATE tetwarp tetwarp_options)
+  find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(TETWARP_PYTHON python3)
+  if(TETWARP_PYTHON)
+    add_test(NAME collision_ipctk COMMAND ${TETWARP_PYTHON}
+      ${PROJECT_SOURCE_DIR}/bench/peers/collision_ipctk.py
+      $<TARGET_FILE:tetwarp_collision_pairs> 10 500)
+    set_tests_properties(collision_ipctk PROPERTIES LABELS unit TIMEOUT 300 SKIP_RETURN_CODE 77)
+  endif()
+  tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
+    tests/simulate/test_contact_large.cpp
+    tests/simulate/test_law_peel.cpp
+    tests/simulate/test_simulator_large.cpp)
   tetwarp_discover(tetwarp_simulate_large_tests long)
   if(TETWARP_IO)
     tetwarp_add_tests(tetwarp_scene_file_tests UNITY 4
       LIBRARIES tetwarp_io tetwarp_hdf5 nlohmann_json::nlohmann_json SOURCES
       tests/scene/test_scene_bad.cpp
       tests/scene/test_scene_check.cpp
+      tests/scene/test_scene_contact.cpp
       tests/scene/test_scene_files.cpp
       tests/scene/test_scene_fuzz.cpp
       tests/scene/test_scene_keys.cpp
       tests/scene/test_scene_page.cpp
       tests/scene/test_scene_phantoms.cpp
-      tests/scene/test_scene_shipped.cpp)
+      tests/scene/test_scene_shipped.cpp
+      tests/scene/test_scene_shipped_contact.cpp)
     target_compile_definitions(tetwarp_scene_file_tests PRIVATE
       TETWARP_SCENE_PAGE="${PROJECT_SOURCE_DIR}/docs/scenes.md")
     tetwarp_discover(tetwarp_scene_file_tests io)
+    tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
+      tests/simulate/test_scene_laws.cpp)
+    tetwarp_discover(tetwarp_scene_law_tests long)
   endif()
 endif()

@@ -233,6 +233,7 @@ if(NOT BUILD_SHARED_LIBS)
   endif()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     tests/emu/emulated_backend.cpp
+    tests/emu/emulated_primitives.cpp
     tests/emu/emulated_contact.cpp
     tests/emu/test_contact_emulated.cpp
     tests/emu/test_device_errors.cpp

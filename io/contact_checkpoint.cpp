@@ -1,6 +1,7 @@
 /// @file contact_checkpoint.cpp
 /// /tetwarp_checkpoint with attributes `version`, `step`, `time`, vectors of the bodies, and a
-/// group `contacts` with one vector per member of ContactRecord.
+/// group `contacts` with one vector per member of ContactRecord. Version 1 is without `standoff`,
+/// `normal_world` and the material points.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -13,21 +14,35 @@
 namespace tetwarp {
 namespace {
 constexpr const char* root_name = "tetwarp_checkpoint";
-constexpr std::int64_t newest_version = 1;
+constexpr std::int64_t newest_version = 2;
 
 /// A member of a record of one or three numbers, and its name in the file.
 struct Member {
   const char* name;
   double ContactRecord::*number = nullptr;
   Point3 ContactRecord::*point = nullptr;
+  std::int64_t first_version = 1;
 };
-constexpr std::array<Member, 7> members = {{{"area", &ContactRecord::area},
-                                            {"intensity", &ContactRecord::intensity},
-                                            {"anchor_a", nullptr, &ContactRecord::anchor_a},
-                                            {"anchor_b", nullptr, &ContactRecord::anchor_b},
-                                            {"normal_a", nullptr, &ContactRecord::normal_a},
-                                            {"normal_b", nullptr, &ContactRecord::normal_b},
-                                            {"impulse", nullptr, &ContactRecord::impulse_world}}};
+constexpr std::array<Member, 9> members = {
+    {{"area", &ContactRecord::area},
+     {"intensity", &ContactRecord::intensity},
+     {"anchor_a", nullptr, &ContactRecord::anchor_a},
+     {"anchor_b", nullptr, &ContactRecord::anchor_b},
+     {"normal_a", nullptr, &ContactRecord::normal_a},
+     {"normal_b", nullptr, &ContactRecord::normal_b},
+     {"impulse", nullptr, &ContactRecord::impulse_world},
+     {"standoff", &ContactRecord::standoff, nullptr, 2},
+     {"normal_world", nullptr, &ContactRecord::normal_world, 2}}};
+
+/// A material point of a record, and its names in the file: vertices and weights.
+struct Material {
+  const char* vertex;
+  const char* weight;
+  MaterialPoint ContactRecord::*point;
+};
+constexpr std::array<Material, 2> materials_of_sides = {
+    {{"vertex_a", "weight_a", &ContactRecord::material_a},
+     {"vertex_b", "weight_b", &ContactRecord::material_b}}};
 
 void write_records(const h5::Object& group, const std::vector<ContactRecord>& records) {
   std::vector<std::int64_t> keys, materials, touched;
@@ -52,6 +67,17 @@ void write_records(const h5::Object& group, const std::vector<ContactRecord>& re
     }
     fclib::write_reals(group, member.name, values);
   }
+  for (const Material& side : materials_of_sides) {
+    std::vector<std::int64_t> vertices;
+    std::vector<double> weights;
+    for (const ContactRecord& record : records) {
+      const MaterialPoint& point = record.*side.point;
+      vertices.insert(vertices.end(), point.vertex.begin(), point.vertex.end());
+      weights.insert(weights.end(), point.weight.begin(), point.weight.end());
+    }
+    fclib::write_integers(group, side.vertex, vertices);
+    fclib::write_reals(group, side.weight, weights);
+  }
 }
 
 /// Integers that fit int32, `per_contact` for each of `count` contacts.
@@ -74,7 +100,7 @@ std::vector<std::int32_t> read_int32(const h5::Object& group,
   return narrow;
 }
 
-std::vector<ContactRecord> read_records(const h5::Object& group) {
+std::vector<ContactRecord> read_records(const h5::Object& group, std::int64_t version) {
   const std::int64_t count = fclib::element_count(h5::open_dataset(group, "intensity"));
   const std::vector<std::int32_t> keys = read_int32(group, "key", count, 4);
   const std::vector<std::int32_t> materials = read_int32(group, "material", count, 1);
@@ -86,6 +112,7 @@ std::vector<ContactRecord> read_records(const h5::Object& group) {
     records[c].has_touched = touched[c] != 0;
   }
   for (const Member& member : members) {
+    if (version < member.first_version) continue;
     const std::int64_t width = member.number != nullptr ? 1 : 3;
     const std::vector<double> values =
         fclib::read_reals(group, member.name, {width * count, "as many contacts as intensities"});
@@ -95,6 +122,17 @@ std::vector<ContactRecord> read_records(const h5::Object& group) {
       } else {
         std::copy_n(&values[3 * c], 3, (records[c].*member.point).begin());
       }
+    }
+  }
+  if (version < 2) return records;
+  for (const Material& side : materials_of_sides) {
+    const std::vector<std::int32_t> vertices = read_int32(group, side.vertex, count, 3);
+    const std::vector<double> weights =
+        fclib::read_reals(group, side.weight, {3 * count, "as many contacts as intensities"});
+    for (std::size_t c = 0; c < records.size(); ++c) {
+      MaterialPoint& point = records[c].*side.point;
+      std::copy_n(&vertices[3 * c], 3, point.vertex.begin());
+      std::copy_n(&weights[3 * c], 3, point.weight.begin());
     }
   }
   return records;
@@ -158,7 +196,7 @@ ContactCheckpoint read_contact_checkpoint(const std::string& path) {
   checkpoint.time = h5::read_real_attribute(root, "time", 1)[0];
   checkpoint.poses = read_poses(root);
   checkpoint.body_velocity = fclib::read_reals(root, "body_velocity");
-  checkpoint.records = read_records(h5::open_group(root, "contacts"));
+  checkpoint.records = read_records(h5::open_group(root, "contacts"), version);
   return checkpoint;
 }
 

@@ -19,6 +19,12 @@ void declare_scene(CLI::App& app, SimulateArguments& arguments) {
   app.add_option("--steps", arguments.steps, "steps from the start of the scene [its duration]")
       ->check(at_least(0))
       ->type_name("N");
+  app.add_flag("--untangle", arguments.simulate.untangle,
+               "shrink bodies that overlap at the start until they are apart, and let them grow "
+               "back within 0.2 s");
+  app.add_option("--contacts", arguments.contacts,
+                 "write the contacts of every output as points with normals and impulses")
+      ->type_name("FILE.vtkhdf");
   app.add_option("--checkpoint", arguments.checkpoint,
                  "file for the state at the end, also of an interrupted run, to go on later")
       ->type_name("FILE");
@@ -109,6 +115,9 @@ void check_complete(const SimulateArguments& arguments) {
   }
   if (!arguments.film.empty() && !arguments.film.ends_with(".gif")) {
     refuse("--film", "the name of a film ends in .gif");
+  }
+  if (!arguments.contacts.empty() && !arguments.contacts.ends_with(".vtkhdf")) {
+    refuse("--contacts", "the name of a file of contacts ends in .vtkhdf");
   }
   if (arguments.camera && !arguments.draws && arguments.film.empty()) {
     refuse("--camera", "needs --picture or --film");

@@ -25,6 +25,7 @@ struct SimulateArguments {
   std::string checkpoint;             ///< file; empty: none
   std::int64_t checkpoint_every = 0;  ///< steps; 0: at the end only
   std::string restart;                ///< file; empty: from the start
+  std::string contacts;               ///< file; empty: none
 
   bool warps = false;
   std::string warped_body;  ///< empty: all that are made of a volume

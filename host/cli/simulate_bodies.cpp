@@ -77,6 +77,10 @@ std::vector<StepArray> BodyFiles::arrays_of(std::size_t body, Points points) con
   const bool has_velocities = points == Points::nodes || is_rigid ||
                               simulator_.node_velocities(body).size() == mesh.surface.points.size();
   if (has_field("velocity") && has_velocities) arrays.push_back({"velocity", false, 3});
+  if (points == Points::surface && has_field("contact")) {
+    arrays.insert(arrays.end(),
+                  {{"impulse", false, 3}, {"intensity", false, 1}, {"gap", false, 1}});
+  }
   if (points == Points::nodes && has_field("stress")) arrays.push_back({"stress", true, 1});
   if (points == Points::nodes && has_field("jacobian")) arrays.push_back({"jacobian", true, 1});
   return arrays;
@@ -100,6 +104,9 @@ std::vector<Point3> BodyFiles::velocities_of(const File& file) const {
 std::vector<double> BodyFiles::values_of(const File& file, const StepArray& array) const {
   if (array.name == "velocity") return flat(velocities_of(file));
   if (array.name == "stress") return simulator_.cell_stresses(file.body);
+  if (array.name == "impulse") return contacts_.at(file.body).impulse;
+  if (array.name == "intensity") return contacts_.at(file.body).intensity;
+  if (array.name == "gap") return contacts_.at(file.body).gap;
   if (array.name == "jacobian") return simulator_.cell_jacobians(file.body);
   const BodyMesh& mesh = simulator_.body(file.body);
   const bool is_of_nodes = file.points == Points::nodes;
@@ -117,6 +124,7 @@ void BodyFiles::drop_later() {
 }
 
 void BodyFiles::append() {
+  if (has_field("contact")) contacts_ = contact_fields(simulator_);
   for (File& file : files_) {
     std::vector<std::vector<double>> values;
     values.reserve(file.arrays.size());

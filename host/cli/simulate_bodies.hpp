@@ -7,6 +7,7 @@
 
 #include <tetwarp/simulate.hpp>
 
+#include "host/cli/simulate_contacts.hpp"
 #include "io/simulation_mesh.hpp"
 
 namespace tetwarp::cli {
@@ -51,6 +52,7 @@ class BodyFiles {
   Simulator& simulator_;
   std::vector<File> files_;
   std::vector<std::string> paths_;
+  std::vector<ContactFields> contacts_;  ///< of the state that append() writes
 };
 
 }  // namespace tetwarp::cli

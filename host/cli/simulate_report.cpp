@@ -56,6 +56,7 @@ std::string report_json(const SimulateArguments& arguments,
   json["steps_done"] = result.steps_done;
   json["time_step"] = simulator.scene().time_step;
   json["time"] = simulator.time();
+  json["thickness"] = simulator.thickness();
   json["frames"] = result.frames;
   json["timings"] = {{"read", result.read_seconds},  {"setup", result.setup_seconds},
                      {"step", result.step_seconds},  {"write", result.write_seconds},

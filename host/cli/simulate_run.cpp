@@ -39,13 +39,27 @@ void check_files(const SimulateArguments& arguments) {
   } else {
     check_new_folder(arguments.folder, arguments.folder);
   }
-  for (const std::string& file : {arguments.checkpoint, arguments.film, arguments.report}) {
+  for (const std::string& file :
+       {arguments.checkpoint, arguments.film, arguments.report, arguments.contacts}) {
     if (file.empty()) continue;
     const fs::path parent = fs::path(file).parent_path();
     const bool is_in_new_folder =
         !parent.empty() && canonical_path(parent.string()) == canonical_path(arguments.folder) &&
         !fs::exists(arguments.folder, error);
     if (!is_in_new_folder) check_output_file(file, inputs);
+  }
+}
+
+/// The file of contacts must not be that of a body.
+void check_contact_file(const SimulateArguments& arguments, const Scene& scene) {
+  if (arguments.contacts.empty()) return;
+  for (const Body& body : scene.bodies) {
+    for (const char* const end : {".vtkhdf", ".surface.vtkhdf"}) {
+      const fs::path file = fs::path(arguments.folder) / (body.name + end);
+      if (canonical_path(file.string()) != canonical_path(arguments.contacts)) continue;
+      throw IoError(arguments.contacts, "",
+                    "is the file of body '" + body.name + "'; choose another name for --contacts");
+    }
   }
 }
 
@@ -64,12 +78,9 @@ SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(argume
   const Stopwatch reading;
   Scene scene = load(arguments);
   result_.read_seconds = reading.seconds();
+  check_contact_file(arguments, scene);
   last_step_ = arguments.steps.value_or(scene.step_count());
   frames_.emplace(scene.output, scene.time_step, last_step_);
-  if (std::ranges::count(scene.output.fields, "contact") > 0) {
-    result_.warnings.push_back(arguments.scene() +
-                               ": output.fields: 'contact' is left out: bodies do not collide yet");
-  }
   SimulateOptions options = arguments.simulate;
   options.progress = [](const StepProgress&) { return !is_interrupted(); };
   const Stopwatch setup;
@@ -117,10 +128,15 @@ void SimulateRun::open_files() {
   bodies_.emplace(*simulator_, arguments_.folder, kept_frames);
   result_.outputs = bodies_->paths();
   result_.outputs.push_back(series_path);
+  if (!arguments_.contacts.empty()) {
+    contacts_.emplace(arguments_.contacts, kept_frames);
+    result_.outputs.push_back(arguments_.contacts);
+  }
   if (kept_frames >= 0) {
     const SignalHold until_complete;
     series_file_->drop_later();
     bodies_->drop_later();
+    if (contacts_) contacts_->drop_later();
     return;
   }
   write_row();
@@ -146,6 +162,7 @@ void SimulateRun::write_frame(std::int64_t frame) {
   {
     const SignalHold until_complete;
     bodies_->append();
+    if (contacts_) contacts_->append(*simulator_);
   }
   result_.write_seconds += writing.seconds();
   if (warps_) warps_->write_frame(frame);
@@ -178,7 +195,9 @@ void SimulateRun::take_steps(ProgressBar& bar) {
     }
     bar.finish_step();
     const double rate = static_cast<double>(step - result_.first_step) / total_.seconds();
-    bar.show_note(fmt::format("{:.2f} s, {:.3g} steps/s", simulator_->time(), rate));
+    const std::int64_t contacts = simulator_->record().contacts;
+    bar.show_note(fmt::format("{:.2f} s, {:.3g} steps/s", simulator_->time(), rate) +
+                  (contacts > 0 ? fmt::format(", {} contacts", contacts) : std::string()));
     bar.update(0, 0);
   }
 }
@@ -202,6 +221,7 @@ void SimulateRun::finish() {
     if (series_file_) series_file_->flush();
     series_file_.reset();
     if (bodies_) bodies_->close();
+    if (contacts_) contacts_->close();
   }
   if (!arguments_.checkpoint.empty()) write_checkpoint();
   if (pictures_ && result_.frames > 0) {

@@ -12,6 +12,7 @@
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/simulate_arguments.hpp"
 #include "host/cli/simulate_bodies.hpp"
+#include "host/cli/simulate_contacts.hpp"
 #include "host/cli/simulate_frames.hpp"
 #include "host/cli/simulate_pictures.hpp"
 #include "host/cli/simulate_series.hpp"
@@ -67,6 +68,7 @@ class SimulateRun {
   std::optional<StepSeries> series_;
   std::optional<SeriesWriter> series_file_;
   std::optional<BodyFiles> bodies_;
+  std::optional<ContactFile> contacts_;
   std::optional<BodyWarps> warps_;
   std::optional<ScenePictures> pictures_;
   Stopwatch since_flush_;

@@ -67,22 +67,22 @@ void StepSeries::add_totals() {
   add_number("energy/work", [](Record r) { return r.energy.work; });
   add_vector("momentum", [](Record r) { return r.momentum; });
   add_vector("angular_momentum", [](Record r) { return r.angular_momentum; });
-  const auto none = [](Record) { return std::int64_t{0}; };
-  add_count("contacts", none);
-  add_count("contact_passes", none);
+  add_count("contacts", [](Record r) { return r.contacts; });
+  add_count("contact_passes", [](Record r) { return r.contact_passes; });
   add_count("substeps", [](Record r) { return r.substeps; });
-  add_count("clamped_islands", none);
-  add_count("stalled_scripts", none);
+  add_count("clamped_islands", [](Record r) { return r.clamped_islands; });
+  add_count("stalled_scripts", [](Record r) { return r.stalled_scripts; });
   add_count("inverted", [](Record r) { return r.inverted; });
   add_count("islands", [](Record r) { return r.islands; });
   add_count("sleeping", [](Record r) { return r.sleeping; });
   add_count("linear_iterations", [](Record r) { return r.linear_iterations; });
   add_number("linear_residual", [](Record r) { return r.linear_residual; });
   add_count("converged", [](Record r) { return std::int64_t{r.converged}; });
-  add_count("sweeps", none);
-  add_count("outer_iterations", none);
-  add_number("contact_residual", [](Record) { return 0.0; });
-  add_number("adhered_area", [](Record) { return 0.0; });
+  add_count("sweeps", [](Record r) { return r.sweeps; });
+  add_count("outer_iterations", [](Record r) { return r.outer_iterations; });
+  add_number("contact_residual", [](Record r) { return r.contact_residual; });
+  add_number("smallest_distance", [](Record r) { return r.smallest_distance; });
+  add_number("adhered_area", [](Record r) { return r.adhered_area; });
 }
 
 void StepSeries::add_seconds() {

@@ -19,7 +19,7 @@ struct SeriesSummary {
   double max = -std::numeric_limits<double>::infinity();
 };
 
-/// Turns records into rows. Columns of contact are zero: nothing collides yet.
+/// Turns records into rows.
 class StepSeries {
  public:
   explicit StepSeries(const Scene& scene);

@@ -47,6 +47,7 @@ void check_members(const std::string& place, const Body& body) {
   refuse(!body.fixed.empty() && !has_nodes, "fixed");
   refuse(!body.driven.empty() && !has_nodes, "driven");
   refuse(body.cage_start && body.kind != BodyKind::fem, "cage_start");
+  refuse(body.self.value_or(false) && !has_nodes, "self");
   refuse(!std::holds_alternative<std::monostate>(body.surface) && body.kind == BodyKind::cloth,
          "surface");
   if (!is_scripted) {

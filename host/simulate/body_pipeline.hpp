@@ -1,44 +1,22 @@
 /// @file body_pipeline.hpp
 /// BodyPipeline: one step of bodies as a list of stages, on any executor.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/simulate/body_arrays.hpp"
-#include "kernels/body/island_cg.hpp"
+#include "host/simulate/solve_arrays.hpp"
 #include "kernels/body/node_moved.hpp"
 #include "kernels/body/rigid_midpoint.hpp"
 
 namespace tetwarp {
 
-/// Arrays of conjugate gradients in T numbers; for float also the copy of the system.
-template <class Exec, class T>
-struct SolveArrays {
-  typename Exec::template Vector<T> copy, inverse, r, z, p, q;
-
-  SolveArrays(Exec& exec,
-              const SystemRows& rows,
-              std::int64_t value_count,
-              std::int64_t rigid_count) {
-    if (sizeof(T) != sizeof(double)) exec.resize(copy, value_count);
-    exec.resize(inverse, 9 * std::int64_t{rows.unknown_count} + 36 * rigid_count);
-    for (auto* array : {&r, &z, &p, &q}) exec.resize(*array, 3 * std::int64_t{rows.count});
-  }
-};
-
-/// One index = one number: rounds it.
-struct RoundBody {
-  View<const double> from;
-  View<float> to;
-  TETWARP_HD void operator()(std::int64_t i) const { to[i] = static_cast<float>(from[i]); }
-};
-
 /// Backward Euler: (M + dt C + dt^2 K) v = M v0 + dt F, then x += dt v. See stepper.hpp for what
-/// its functions do. A step allocates no memory.
+/// its functions do. A step allocates no memory once system() and move() have been called.
 /// Exec: host/simulate/cpu/step_exec_cpu.hpp lists its functions.
 template <class Exec, class T>
 class BodyPipeline {
@@ -77,18 +55,36 @@ class BodyPipeline {
     get_blocks(now_.velocity, state.velocity);
   }
 
-  StepOutcome step(const StepInput& input) {
+  StepOutcome solve(const StepInput& input) {
     StepOutcome outcome;
     exec_.clear_times();
     upload(input);
     forces(input);
     assemble(input);
     solve(outcome);
-    if (outcome.completed) update(input.time_step);
     outcome.skipped_rotations = exec_.count_ones(exec_.view(now_.tet_is_skipped));
     outcome.skipped_blocks = exec_.count_ones(exec_.view(now_.block_is_skipped));
     exec_.read_times(outcome.seconds);
     return outcome;
+  }
+
+  StepSystem system() {
+    return system_.get(exec_, model_, pattern_.rows(), const_view(now_.values),
+                       const_view(now_.load), const_view(now_.x));
+  }
+  void get_velocities(std::vector<Point3>& velocity) const { get_blocks(now_.velocity, velocity); }
+  void set_velocities(const std::vector<Point3>& velocity) {
+    check("velocities", count_of(velocity), model_.block_count());
+    put(numbers_of(velocity), now_.velocity);
+  }
+
+  double move(double time_step, std::span<const double> fraction) {
+    exec_.clear_times();
+    put_fractions(fraction);
+    update(time_step);
+    StepSeconds seconds;
+    exec_.read_times(seconds);
+    return seconds.total;
   }
 
   std::vector<Point3> support_impulses() const {
@@ -208,25 +204,9 @@ class BodyPipeline {
         RowLoadBody{rows, from, constants_.scalars, rigid, load, dt, exec_.view(now_.load)});
   }
 
-  GradientArrays<T> gradient_arrays() {
-    const SystemRows& rows = pattern_.rows();
-    GradientArrays<T> a;
-    a.rows = rows;
-    a.values = const_view(now_.values);
-    if constexpr (std::is_same_v<T, double>) {
-      a.copy = a.values;
-    } else {
-      a.copy = const_view(solve_.copy);
-    }
-    a.inverse = {rows.pair, rows.block_of, rows.unknown_count, model_.node_count,
-                 exec_.view(solve_.inverse)};
-    a.load = const_view(now_.load);
-    a.x = exec_.view(now_.x);
-    a.r = exec_.view(solve_.r);
-    a.z = exec_.view(solve_.z);
-    a.p = exec_.view(solve_.p);
-    a.q = exec_.view(solve_.q);
-    return a;
+  void put_fractions(std::span<const double> fraction) {
+    fractions_of(model_, fraction, fraction_);
+    put(numbers_of(fraction_), now_.fraction);
   }
 
   void solve(StepOutcome& outcome) {
@@ -237,7 +217,8 @@ class BodyPipeline {
                                    exec_.view(now_.x)});
     exec_.for_each(linear_label, rows.unknown_count,
                    RowPrescribedBody{rows, values, x, exec_.view(now_.load)});
-    const GradientArrays<T> a = gradient_arrays();
+    const GradientArrays<T> a = solve_.views(exec_, rows, model_.node_count, values,
+                                             const_view(now_.load), exec_.view(now_.x));
     exec_.for_each(linear_label, rows.unknown_count, RowInvertBody<T>{rows, values, a.inverse});
     if constexpr (!std::is_same_v<T, double>) {
       exec_.for_each(linear_label, values.size, RoundBody{values, exec_.view(solve_.copy)});
@@ -254,19 +235,30 @@ class BodyPipeline {
           outcome.linear_residual = std::max(outcome.linear_residual, end.residual);
         });
     if (!outcome.completed) return;
-    exec_.for_each(
-        linear_label, rows.count - rows.unknown_count,
-        RowSupportBody{rows, values, x, const_view(now_.load), exec_.view(now_.support)});
     exec_.for_each(linear_label, rows.count, BlockVelocityBody{rows, x, exec_.view(now_.velocity)});
   }
 
   void update(double time_step) {
-    const auto velocity = const_view(now_.velocity);
-    exec_.for_each(update_label, 3 * std::int64_t{model_.node_count},
-                   NodeUpdateBody{velocity, time_step, exec_.view(now_.position)});
+    const SystemRows& rows = pattern_.rows();
+    const auto velocity = const_view(now_.velocity), fraction = const_view(now_.fraction);
+    const std::int64_t nodes = fraction.size == 0 ? 0 : model_.node_count;
+    // The velocities may be those of set_velocities(); those of prescribed blocks stay.
+    exec_.for_each(update_label, rows.count,
+                   RowVelocityBody{rows, velocity, velocity, exec_.view(now_.x)});
+    exec_.for_each(update_label, rows.count - rows.unknown_count,
+                   RowSupportBody{rows, const_view(now_.values), const_view(now_.x),
+                                  const_view(now_.load), exec_.view(now_.support)});
+    exec_.for_each(
+        update_label, 3 * std::int64_t{model_.node_count},
+        NodeUpdateBody{velocity, time_step, {fraction.data, nodes}, exec_.view(now_.position)});
     exec_.for_each(update_label, model_.rigid_count,
-                   RigidUpdateBody{velocity, model_.node_count, const_view(now_.inertia), time_step,
-                                   exec_.view(now_.centre), exec_.view(now_.rotation),
+                   RigidUpdateBody{velocity,
+                                   model_.node_count,
+                                   const_view(now_.inertia),
+                                   time_step,
+                                   {fraction.data + nodes, fraction.size - nodes},
+                                   exec_.view(now_.centre),
+                                   exec_.view(now_.rotation),
                                    exec_.view(now_.angular_momentum)});
   }
 
@@ -283,6 +275,8 @@ class BodyPipeline {
   ConstantArrays<Exec> constants_;
   StepArrays<Exec> now_;
   SolveArrays<Exec, T> solve_;
+  HostSystem<Exec> system_;
+  std::vector<double> fraction_;    ///< what now_.fraction holds
   double assembled_time_step_ = 0;  ///< 0: no blocks are kept
 };
 

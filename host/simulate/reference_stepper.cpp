@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
 #include "host/reference/simulate/make_system.hpp"
 #include "host/reference/simulate/step_system.hpp"
+#include "host/simulate/reference_rows.hpp"
 #include "host/simulate/rotations.hpp"
 #include "host/simulate/scene_record.hpp"
 
@@ -15,6 +17,10 @@ using reference::point_of;
 using reference::vector_of;
 
 constexpr std::int64_t most_blocks = 2000;  // a dense matrix of 288 MB
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 class ReferenceStepper final : public BodyStepper {
  public:
@@ -41,6 +47,9 @@ class ReferenceStepper final : public BodyStepper {
         if (system_.rigids[of].body == at(model.rigid.body, r)) frame_.push_back(of);
       }
     }
+    std::vector<Eigen::Index> blocks(static_cast<std::size_t>(model.block_count()));
+    for_each_block([&](Eigen::Index own, std::size_t block) { blocks[block] = own; });
+    rows_ = ReferenceRows(model, std::move(blocks));
   }
 
   std::string device() const override { return "dense matrices on the host"; }
@@ -52,7 +61,7 @@ class ReferenceStepper final : public BodyStepper {
     return {count == 0 ? nullptr : state_.position[first].data(), count, Memory::host};
   }
 
-  StepOutcome step(const StepInput& input) override {
+  StepOutcome solve(const StepInput& input) override {
     const auto start = std::chrono::steady_clock::now();
     StepOutcome outcome;
     if (progress_ && !progress_(0)) {
@@ -60,16 +69,39 @@ class ReferenceStepper final : public BodyStepper {
       return outcome;
     }
     put_state();
-    reference::StepDrive drive;
-    drive.time_step = input.time_step;
-    drive.end_time = input.end_time;
-    drive.before = places_now();
-    drive.after = reference::prescribed_at(system_, overrides(), input.end_time);
-    const reference::StepResult result = reference::step_once(system_, twin_, drive);
-    take_state(result);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    outcome.seconds.linear = outcome.seconds.total = seconds.count();
+    drive_now_.time_step = input.time_step;
+    drive_now_.end_time = input.end_time;
+    drive_now_.before = places_now();
+    drive_now_.after = reference::prescribed_at(system_, overrides(), input.end_time);
+    linear_ = reference::assemble(system_, twin_, drive_now_);
+    velocity_ = free_velocity_ = reference::solve_step(system_, twin_, drive_now_, linear_);
+    outcome.seconds.linear = outcome.seconds.total = seconds_since(start);
     return outcome;
+  }
+  StepSystem system() override {
+    rows_.set(linear_, free_velocity_);
+    return rows_.system();
+  }
+  void get_velocities(std::vector<Point3>& velocity) const override {
+    velocity.resize(static_cast<std::size_t>(model_.block_count()));
+    for_each_block([&](Eigen::Index from, std::size_t to) {
+      velocity[to] = point_of(velocity_.segment<3>(3 * from));
+    });
+  }
+  void set_velocities(const std::vector<Point3>& velocity) override {
+    for_each_block([&](Eigen::Index to, std::size_t from) {
+      velocity_.segment<3>(3 * to) = vector_of(velocity[from]);
+    });
+  }
+  double move(double, std::span<const double> fraction) override {
+    const auto start = std::chrono::steady_clock::now();
+    const reference::VectorXd support = reference::support_of(system_, linear_, velocity_);
+    take_state(reference::moved_by(system_, twin_, drive_now_, velocity_, fraction));
+    get_velocities(state_.velocity);
+    for_each_block([&](Eigen::Index from, std::size_t to) {
+      supports_[to] = point_of(support.segment<3>(3 * from));
+    });
+    return seconds_since(start);
   }
 
  private:
@@ -95,27 +127,29 @@ class ReferenceStepper final : public BodyStepper {
     }
   }
 
-  void take_state(const reference::StepResult& result) {
-    const auto copy_block = [&](Eigen::Index from, std::size_t to) {
-      state_.velocity[to] = point_of(result.velocity.segment<3>(3 * from));
-      supports_[to] = point_of(result.support.segment<3>(3 * from));
-    };
-    for (std::int32_t n = 0; n < model_.node_count; ++n) {
-      const auto node = static_cast<std::size_t>(n);
-      state_.position[node] = point_of(result.state.node[node]);
-      copy_block(n, node);
+  /// use(block of the reference, block of the model) for all blocks of the model.
+  template <class Use>
+  void for_each_block(const Use& use) const {
+    for (std::int32_t n = 0; n < model_.node_count; ++n) use(n, static_cast<std::size_t>(n));
+    for (std::int32_t r = 0; r < model_.rigid_count; ++r) {
+      const auto block = static_cast<std::size_t>(model_.node_count + 2 * r);
+      use(block_of(r), block);
+      use(block_of(r) + 1, block + 1);
+    }
+  }
+
+  void take_state(const reference::State& after) {
+    for (std::size_t n = 0; n < after.node.size(); ++n) {
+      state_.position[n] = point_of(after.node[n]);
     }
     for (std::int32_t r = 0; r < model_.rigid_count; ++r) {
       const auto rigid = static_cast<std::size_t>(r);
       const auto of = frame_[rigid];
-      const auto block = static_cast<std::size_t>(model_.node_count + 2 * r);
       state_.position[static_cast<std::size_t>(model_.node_count) + rigid] =
-          point_of(result.state.frame[of].position);
-      state_.rotation[rigid] = product(reference::quaternion_of(result.state.frame[of].rotation),
-                                       model_.rigid.axes[rigid]);
-      state_.angular_momentum[rigid] = point_of(result.state.angular_momentum[of]);
-      copy_block(block_of(r), block);
-      copy_block(block_of(r) + 1, block + 1);
+          point_of(after.frame[of].position);
+      state_.rotation[rigid] =
+          product(reference::quaternion_of(after.frame[of].rotation), model_.rigid.axes[rigid]);
+      state_.angular_momentum[rigid] = point_of(after.angular_momentum[of]);
     }
   }
 
@@ -151,6 +185,7 @@ class ReferenceStepper final : public BodyStepper {
       auto& own = result.bodies.emplace_back();
       if (script) own = {vector_of(script->displacement), vector_of(script->axis_angle)};
     }
+    result.delay = drive_.delays();
     return result;
   }
 
@@ -160,6 +195,10 @@ class ReferenceStepper final : public BodyStepper {
   reference::System system_;
   reference::State twin_;
   std::vector<std::size_t> frame_;  ///< [rigids of the model] frames of the reference
+  ReferenceRows rows_;
+  reference::StepDrive drive_now_;  ///< of the running step, like the next members
+  reference::LinearSystem linear_;
+  reference::VectorXd velocity_, free_velocity_;
   ModelState state_;
   std::vector<Point3> supports_;
 };

@@ -30,6 +30,11 @@ SceneDrive::SceneDrive(const Scene& scene, const SceneGeometry& geometry, const 
   overrides_.scripts.resize(scene.bodies.size() + scene.obstacles.size());
   for (std::size_t h = 0; h < scene.handles.size(); ++h) handles_.push_back(handle_at(h, 0));
   next_handles_ = handles_;
+  delays_.assign(overrides_.scripts.size(), 0);
+}
+
+void SceneDrive::delay(std::span<const double> fraction, double time_step) {
+  for (std::size_t b = 0; b < fraction.size(); ++b) delays_[b] += (1 - fraction[b]) * time_step;
 }
 
 Pose SceneDrive::frame_of(std::size_t body, double time) const {
@@ -42,8 +47,9 @@ Pose SceneDrive::frame_of(std::size_t body, double time) const {
 }
 
 std::vector<Point3> SceneDrive::scripted_positions(std::size_t body, double time) const {
-  std::vector<Point3> positions = waves_[body].points_at(time);
-  const Pose frame = frame_of(body, time);
+  const double delayed = time - delays_[body];
+  std::vector<Point3> positions = waves_[body].points_at(delayed);
+  const Pose frame = frame_of(body, delayed);
   for (Point3& x : positions) x = world_of(frame, x);
   return positions;
 }
@@ -73,7 +79,8 @@ void SceneDrive::fill_prescribed(const ModelState& state,
       for (const Point3& target : scripted_positions(b, end_time)) head_for(node++, target);
     }
     for (const DrivenGroup& group : of.driven) {
-      const Pose frame = moved(body.pose, place_at(*group.path, end_time).value_or(PathPlace{}));
+      const auto place = place_at(*group.path, end_time - delays_[b]);
+      const Pose frame = moved(body.pose, place.value_or(PathPlace{}));
       for (const std::int32_t n : group.nodes) {
         head_for(first + n, world_of(frame, at(of.nodes, n)));
       }
@@ -82,7 +89,8 @@ void SceneDrive::fill_prescribed(const ModelState& state,
   for (std::int32_t r = 0; r < model_.rigid_count; ++r) {
     const std::int32_t block = model_.node_count + 2 * r;
     if (at(model_.prescribed, block) == 0) continue;
-    const Pose frame = frame_of(index_of(at(model_.rigid.body, r)), end_time);
+    const std::size_t body = index_of(at(model_.rigid.body, r));
+    const Pose frame = frame_of(body, end_time - delays_[body]);
     input.prescribed_velocity[index_of(block)] =
         times(1 / dt, minus(frame.position, at(state.position, model_.node_count + r)));
     const Quaternion turn = product(normalized(frame.rotation), conjugate(at(state.rotation, r)));

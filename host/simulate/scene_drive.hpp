@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,12 @@ class SceneDrive {
   void fill(const ModelState& state, double end_time, double time_step, StepInput& input);
   /// The step that fill() prepared has been made.
   void accept() { handles_ = next_handles_; }
+  /// Bodies and obstacles that moved a part of a step only follow their paths later from now on.
+  /// @param fraction  [bodies, then obstacles] of the step that each moved
+  void delay(std::span<const double> fraction, double time_step);
 
-  /// World positions of the nodes of a scripted body at a time, without the rounding of steps: a
-  /// period of a wave returns the same bits.
+  /// World positions of the nodes of a scripted body where its path is at a time, delayed, without
+  /// the rounding of steps: a period of a wave returns the same bits.
   std::vector<Point3> scripted_positions(std::size_t body, double time) const;
 
   /// @throws std::invalid_argument  naming what there is
@@ -44,12 +48,16 @@ class SceneDrive {
   /// Displacement of the anchors of each handle at the end of the last step; nothing: let go.
   std::vector<std::optional<Point3>>& handles() { return handles_; }
   const std::vector<std::optional<Point3>>& handles() const { return handles_; }
+  /// By how much each body or obstacle is behind its path [s], [bodies, then obstacles].
+  std::vector<double>& delays() { return delays_; }
+  const std::vector<double>& delays() const { return delays_; }
   DriveOverrides& overrides() { return overrides_; }
   const DriveOverrides& overrides() const { return overrides_; }
 
  private:
   std::size_t handle_named(const std::string& name) const;
-  Pose frame_of(std::size_t body, double time) const;  ///< of bodies, then obstacles
+  /// Of bodies, then obstacles; `time` is delayed already.
+  Pose frame_of(std::size_t body, double time) const;
   std::optional<Point3> handle_at(std::size_t handle, double time) const;
   void fill_prescribed(const ModelState& state, double end_time, double dt, StepInput& input) const;
   void fill_anchors(double end_time, double dt, StepInput& input);
@@ -60,6 +68,7 @@ class SceneDrive {
   std::vector<WaveMotion> waves_;  ///< [bodies]; of bodies that are not scripted: no points
   DriveOverrides overrides_;
   std::vector<std::optional<Point3>> handles_, next_handles_;
+  std::vector<double> delays_;
 };
 
 }  // namespace tetwarp

@@ -20,18 +20,29 @@ struct TetSums {
   std::int64_t inverted = 0;
 };
 
-/// V (mu |e|^2 + lambda/2 tr(e)^2), e = sym(R^T F) - 1.
-TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
+void deformation_gradient(const Model& model, const ModelState& state, std::size_t t, double* f) {
   const auto& nodes = model.tets.nodes[t];
   const auto& gradient = model.tets.gradient[t];
-  double f[9] = {}, r[9], s[9];
   const Point3& x0 = at(state.position, nodes[0]);
+  std::fill(f, f + 9, 0);
   for (std::size_t a = 0; a < 3; ++a) {
     const Point3 edge = minus(at(state.position, nodes[a + 1]), x0);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) f[3 * i + j] += edge[i] * gradient[3 * a + j];
     }
   }
+}
+
+bool is_inverted(const double* f) {
+  double cofactors[3];
+  cross3(f + 3, f + 6, cofactors);
+  return dot3(f, cofactors) < 0;
+}
+
+/// V (mu |e|^2 + lambda/2 tr(e)^2), e = sym(R^T F) - 1.
+TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
+  double f[9], r[9], s[9];
+  deformation_gradient(model, state, t, f);
   tet_rotation(f, r);
   product3_transposed(r, f, s);
   double square = 0, trace = 0;
@@ -42,11 +53,9 @@ TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
       trace += i == j ? strain : 0;
     }
   }
-  double cofactors[3];
-  cross3(f + 3, f + 6, cofactors);
   return {
       model.tets.volume[t] * (model.tets.mu[t] * square + model.tets.lambda[t] / 2 * trace * trace),
-      dot3(f, cofactors) < 0 ? 1 : 0};
+      is_inverted(f) ? 1 : 0};
 }
 
 /// Of ranges of fixed length, then of the ranges in order.
@@ -170,6 +179,16 @@ bool is_finite_state(const ModelState& state) {
   const auto is_turn = [](const Quaternion& q) { return std::isfinite(q[0] + q[1] + q[2] + q[3]); };
   return all(state.position) && all(state.velocity) && all(state.angular_momentum) &&
          std::all_of(state.rotation.begin(), state.rotation.end(), is_turn);
+}
+
+std::int64_t inverted_count(const Model& model, const ModelState& state) {
+  std::int64_t count = 0;
+  double f[9];
+  for (std::size_t t = 0; t < model.tets.nodes.size(); ++t) {
+    deformation_gradient(model, state, t, f);
+    count += is_inverted(f);
+  }
+  return count;
 }
 
 Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid) {

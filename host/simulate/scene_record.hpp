@@ -1,6 +1,7 @@
 /// @file scene_record.hpp
 /// Energies, momenta and the places of bodies in a state.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace tetwarp {
 
 /// Whether no number is infinite or undefined.
 bool is_finite_state(const ModelState& state);
+
+/// Tetrahedra of negative volume.
+std::int64_t inverted_count(const Model& model, const ModelState& state);
 
 /// omega = R I^-1 R^T L of a rigid body; of a prescribed frame 0.
 Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid);

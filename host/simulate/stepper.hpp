@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/simulate/model.hpp"
+#include "kernels/body/system_lists.hpp"
 
 namespace tetwarp {
 
@@ -49,16 +51,45 @@ struct StepperOptions {
   std::function<bool(std::int64_t linear_iterations)> progress = {};  ///< false ends the step
 };
 
+/// The linear system A v = b of a step, in memory of the host: rows as SystemRows, blocks column by
+/// column. b of rows with unknowns is without the prescribed columns.
+struct StepSystem {
+  SystemRows rows;
+  View<const double> values;    ///< [places][9]
+  View<const double> load;      ///< b, [rows][3]
+  View<const double> velocity;  ///< v without contact, [rows][3]
+};
+
 class BodyStepper {
  public:
   virtual ~BodyStepper() = default;
   virtual std::string device() const = 0;
   virtual void set_state(const ModelState& state) = 0;
   virtual void get_state(ModelState& state) const = 0;
-  /// Solves for the velocities at the end of the step and moves the bodies.
-  virtual StepOutcome step(const StepInput& input) = 0;
+  /// Solves for the velocities at the end of the step, without contact. Nothing moves.
+  virtual StepOutcome solve(const StepInput& input) = 0;
+  /// The system that solve() solved; valid until move().
+  virtual StepSystem system() = 0;
+  /// Velocities of all blocks after solve(), [block_count].
+  virtual void get_velocities(std::vector<Point3>& velocity) const = 0;
+  /// Replaces them by those with contact.
+  virtual void set_velocities(const std::vector<Point3>& velocity) = 0;
+  /// Moves the bodies by their velocities and updates the angular momenta.
+  /// @param fraction  [bodies, then obstacles] of the step that each moves, 0 to 1; empty: 1.
+  ///                  Velocities and angular momenta are those of the whole step
+  /// @returns the seconds that it took
+  virtual double move(double time_step, std::span<const double> fraction) = 0;
+  /// solve() and move().
+  StepOutcome step(const StepInput& input) {
+    StepOutcome outcome = solve(input);
+    if (!outcome.completed) return outcome;
+    outcome.seconds.update = move(input.time_step, {});
+    outcome.seconds.total += outcome.seconds.update;
+    return outcome;
+  }
   /// Impulses [N s, N m s] that kept the prescribed blocks on their velocities in the last step:
-  /// A v - b there, zero elsewhere; [block_count].
+  /// A v - b there, zero elsewhere; [block_count]. With contact those of contacts, J^T r, are part
+  /// of them.
   virtual std::vector<Point3> support_impulses() const = 0;
   /// Positions of successive nodes, in memory of the back end, valid until the next step.
   virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;

@@ -251,4 +251,20 @@ SystemPattern make_system_pattern(const Model& model) {
   return PatternMaker(model).make();
 }
 
+SystemRows rows_of(const SystemPattern& pattern) {
+  const auto view_of = []<class T>(const std::vector<T>& own) {
+    return View<const T>{own.data(), static_cast<std::int64_t>(own.size())};
+  };
+  SystemRows rows;
+  rows.count = pattern.row_count;
+  rows.unknown_count = pattern.unknown_count;
+  rows.block_of = view_of(pattern.block_of);
+  rows.start = view_of(pattern.start);
+  rows.free_end = view_of(pattern.free_end);
+  rows.column = view_of(pattern.column);
+  rows.diagonal = view_of(pattern.diagonal);
+  rows.pair = view_of(pattern.pair);
+  return rows;
+}
+
 }  // namespace tetwarp

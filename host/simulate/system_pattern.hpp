@@ -35,4 +35,7 @@ struct SystemPattern {
 ///                                indices out of range, or unknowns that belong to no island
 SystemPattern make_system_pattern(const Model& model);
 
+/// Views of its arrays, but of those that say what adds to a block.
+SystemRows rows_of(const SystemPattern& pattern);
+
 }  // namespace tetwarp

@@ -1,9 +1,11 @@
 /// @file contact_tracker.hpp
-/// Keeps the state of contacts between rigid bodies from one time step to the next: adhesion
-/// intensity, the bonded material points, and the last impulse as a start for the solver.
+/// Keeps the state of contacts between rigid and deformable bodies from one time step to the next:
+/// adhesion intensity, the bonded material points, and the last impulse as a start for the solver.
 ///
 /// Order of calls in a step:
 ///     collision detection -> begin_step -> fill -> solve -> integrate poses -> end_step
+/// Where the motion that results touches more, begin_step to solve may be repeated with a longer
+/// list of contacts.
 #pragma once
 #include <array>
 #include <compare>
@@ -24,9 +26,28 @@ struct BodyPose {
   std::array<double, 4> rotation = {1, 0, 0, 0};  ///< quaternion w, x, y, z of length 1 within 1e-6
 };
 
+/// Where a body is: rigid bodies have a pose, deformable ones vertices.
+struct BodyPlace {
+  BodyPose pose = {};                     ///< of a rigid body
+  std::span<const Point3> vertices = {};  ///< world positions of a deformable body; empty: rigid
+
+  bool is_rigid() const { return vertices.empty(); }
+};
+
+/// A point of the material of a body: fixed in the frame of a rigid body, or a weighted mean of up
+/// to three vertices of a deformable one.
+struct MaterialPoint {
+  Point3 local = {0, 0, 0};                           ///< of a rigid body
+  std::array<std::int32_t, 3> vertex = {-1, -1, -1};  ///< in BodyPlace::vertices; -1: not used
+  std::array<double, 3> weight = {0, 0, 0};           ///< of the vertices, sum 1
+
+  bool is_rigid() const { return vertex[0] < 0; }
+};
+
 /// Identifies a contact by the two bodies and the features (faces, vertices, ...) that touch.
-/// Bodies are indices into the poses; fixed obstacles are bodies too. The caller chooses feature
-/// numbers and keeps them from step to step.
+/// Bodies are indices into the poses or places; fixed obstacles are bodies too. The caller chooses
+/// feature numbers and keeps them from step to step. The two bodies may be the same one if it is
+/// deformable and the features differ.
 struct ContactKey {
   std::int32_t body_a = 0;
   std::int32_t feature_a = 0;
@@ -57,7 +78,11 @@ struct ReportedContact {
   Point3 point_b_world = {0, 0, 0};  ///< on body b, the nearest to point_a_world
   Point3 normal = {0, 0, 1};         ///< unit, from b to a [world]
   double area = 0;                   ///< [m^2]
-  std::int32_t material = 0;         ///< index into ContactTrackerOptions::materials
+  /// The same points of deformable bodies; those of rigid bodies follow from the poses. The world
+  /// point may stand off the material point along the normal, by a thickness of the surface: this
+  /// distance is kept.
+  MaterialPoint material_a = {}, material_b = {};
+  std::int32_t material = 0;   ///< index into ContactTrackerOptions::materials
   Point3 tangent = {0, 0, 0};  ///< direction of tangent 1 [world], projected onto the tangential
                                ///< plane; zero: chosen by the tracker
   double approach_speed = 0;   ///< at which the gap closes at the start of the step, of all motions
@@ -69,9 +94,17 @@ struct ReportedContact {
   /// The same, of obstacles whose motion is prescribed: their poses at the end of the step contain
   /// it.
   Point3 obstacle_velocity = {0, 0, 0};
+  /// Share of `area` that the bond of an earlier step covers, above 0, at most 1. Below 1, beta of
+  /// the record is multiplied by it, the mean over the whole area, and its anchors go to the
+  /// reported points with the tangential gap as it is.
+  double bonded_share = 1;
 };
 
 /// State of a contact between steps, in body coordinates unless the name ends in _world.
+///
+/// Coordinates of a deformable body: an anchor is a MaterialPoint; a normal is in the frame of the
+/// triangle of its three vertices. A vertex, or a point of an edge, has no such frame: there the
+/// normal is zero and that of the other side counts; if neither has one, normal_a is in world axes.
 struct ContactRecord {
   ContactKey key;             ///< side a has the smaller (body, feature)
   std::int32_t material = 0;  ///< index into ContactTrackerOptions::materials
@@ -82,7 +115,11 @@ struct ContactRecord {
   Point3 anchor_b = {0, 0, 0};
   Point3 normal_a = {0, 0, 1};  ///< the last reported normal, in coordinates of each body
   Point3 normal_b = {0, 0, 1};
-  Point3 impulse_world = {0, 0, 0};  ///< on body a in the last step [N s]
+  Point3 impulse_world = {0, 0, 0};                ///< on body a in the last step [N s]
+  MaterialPoint material_a = {}, material_b = {};  ///< anchors on deformable bodies
+  double standoff = 0;  ///< distance along the normal between the anchors of deformable bodies at
+                        ///< gap 0 [m]: thickness of the surfaces
+  Point3 normal_world = {0, 0, 0};  ///< of the last step; zero: not known
 };
 
 /// One contact of the current step; the caller computes the rows of the jacobian from it.
@@ -90,7 +127,8 @@ struct TrackedContact {
   ContactKey key;
   Point3 point_a_world = {0, 0, 0};  ///< point of body a on which the impulse acts
   Point3 point_b_world = {0, 0, 0};  ///< point of body b on which the opposite impulse acts
-  std::array<Point3, 3> axes = {};   ///< normal, tangent 1, tangent 2 [world]
+  MaterialPoint material_a = {}, material_b = {};  ///< the same points of deformable bodies
+  std::array<Point3, 3> axes = {};                 ///< normal, tangent 1, tangent 2 [world]
   Point3 gap = {0, 0, 0};  ///< components along `axes` [m]; the tangential ones between the anchors
   bool is_reported = true;  ///< false: not reported in this step, kept because it adheres
   Point3 surface_velocity = {0, 0, 0};   ///< of the report, along `axes` [m/s]
@@ -102,7 +140,8 @@ struct TrackedContact {
 struct ContactTrackerOptions {
   std::vector<ContactMaterial> materials = {ContactMaterial{}};
   double match_distance = 0;  ///< a contact with a new key is matched with a record of the same two
-                              ///< bodies whose anchor on body a is at most this far away [m]
+                              ///< bodies whose anchor on body a is at most this far away [m] and
+                              ///< whose normal differs by less than 60 degrees
   double touch_distance = 0;  ///< largest gap that counts as touching [m]
   double restitution_speed = 0;  ///< contacts that approach no faster do not rebound [m/s]
   EvolutionOptions evolution = {};
@@ -121,8 +160,8 @@ struct ContactTrackerOptions {
 /// A contact with restitution e that would close within the step, gap <= dt approach_speed, is an
 /// impact: it separates with e approach_speed or more. Otherwise it closes at most its gap.
 ///
-/// Contacts are sorted by key, independent of the order of the reports. A call that throws changes
-/// nothing.
+/// Contacts are sorted by key, independent of the order of the reports. A contact without area has
+/// no bond. A call that throws changes nothing. A copy goes on as the tracker itself would.
 class TETWARP_EXPORT ContactTracker {
  public:
   /// @param records  records() of an earlier tracker that this one continues; sorted by key
@@ -130,14 +169,21 @@ class TETWARP_EXPORT ContactTracker {
   explicit ContactTracker(ContactTrackerOptions options = {},
                           std::vector<ContactRecord> records = {});
 
-  /// Starts a step: matches the reported contacts with the records.
-  /// @param poses      of all bodies at the start of the step
+  /// Starts a step: matches the reported contacts with the records. A second call before end_step()
+  /// starts the same step again, from the records that the first one had found.
+  /// @param places     of all bodies at the start of the step; vertices are read during the call
   /// @param time_step  dt [s], > 0, finite
   /// @return the contacts of this step, valid until the next call of begin_step()
   /// @throws std::invalid_argument  a key occurs twice, a body has no pose or touches itself, a
   ///                                normal is not a unit vector, an area is negative, a material
   ///                                does not exist, a position, velocity or pose is not finite, a
-  ///                                rotation is not of length 1, or time_step is not > 0 and finite
+  ///                                rotation is not of length 1, time_step is not > 0 and finite,
+  ///                                or a contact has no material point on a deformable body, or one
+  ///                                on a rigid body, with vertices or weights out of range
+  const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
+                                                std::span<const BodyPlace> places,
+                                                double time_step);
+  /// Of rigid bodies alone.
   const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
                                                 std::span<const BodyPose> poses,
                                                 double time_step);
@@ -151,20 +197,29 @@ class TETWARP_EXPORT ContactTracker {
 
   /// Ends the step: updates intensities, anchors and impulses of the records.
   /// @param solution  of the problem that fill() completed
-  /// @param poses     of all bodies at the end of the step
+  /// @param places    of all bodies at the end of the step; vertices are read during the call
   /// @throws std::logic_error       no step has begun, or it has ended already
   /// @throws std::invalid_argument  a body of a record has no pose, a pose, an impulse or a
   ///                                velocity is not finite, a rotation is not of length 1, or as
   ///                                evolve_adhesion()
+  AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPlace> places);
+  /// Of rigid bodies alone.
   AdhesionStep end_step(const ContactSolution& solution, std::span<const BodyPose> poses);
 
-  /// The state of all contacts, sorted by key.
+  /// The state of all contacts, sorted by key; within a step one record for each contact of it.
   const std::vector<ContactRecord>& records() const { return records_; }
+  /// The records before begin_step(), which it starts from.
+  const std::vector<ContactRecord>& start_records() const {
+    return is_in_step_ ? start_records_ : records_;
+  }
 
  private:
   ContactTrackerOptions options_;
   std::vector<ContactRecord> records_;
-  std::vector<TrackedContact> contacts_;  ///< of the last step; in it, in the order of records_
+  std::vector<ContactRecord> start_records_;  ///< of the step that has begun
+  std::vector<ContactRecord> next_records_;   ///< empty between calls: keeps memory
+  std::vector<TrackedContact> contacts_;      ///< of the last step; in it, in the order of records_
+  std::vector<TrackedContact> next_contacts_;  ///< empty between calls: keeps memory
   double time_step_ = 0;
   bool is_in_step_ = false;
 };

@@ -25,6 +25,9 @@ namespace tetwarp {
 struct SimulateSkipOptions {
   bool rotations = true;  ///< of tetrahedra whose nodes did not move
   bool blocks = true;     ///< of the system whose tetrahedra did not turn and whose springs rest
+  bool pairs = true;      ///< broad phase of a detection whose boxes lie inside those of an earlier
+                          ///< one of the same step
+  bool islands = true;    ///< coupling islands without contacts are not solved again with contacts
 };
 
 /// How far a running step is.
@@ -42,6 +45,9 @@ struct SimulateOptions {
                                ///< in float64 to the same tolerance
   std::int64_t max_iterations = 10000;  ///< of conjugate gradients per solve
   SimulateSkipOptions skip = {};
+  bool untangle =
+      false;  ///< bodies that are nearer than the thickness at the start are shrunk until
+              ///< they are apart and grow back within 0.2 s; otherwise they are an error
   /// Called within steps, from the thread that steps; false ends the step, which then has no
   /// effect: step() returns false.
   std::function<bool(const StepProgress&)> progress = {};
@@ -72,6 +78,25 @@ struct BodyRecord {
   Point3 angular_velocity{};                   ///< rigid [rad/s]
 };
 
+/// Where a contact is on a body: a weighted mean of points of BodyMesh::surface.
+struct ContactPlace {
+  std::array<std::int32_t, 3> point{-1, -1, -1};  ///< -1: not used; of rigid bodies and obstacles
+                                                  ///< all three
+  std::array<double, 3> weight{0, 0, 0};          ///< of the points, sum 1
+};
+
+/// One contact at the end of a step.
+struct ContactPoint {
+  std::size_t body_a = 0, body_b = 0;  ///< in Scene::bodies; from their number on: obstacle
+  Point3 position{};                   ///< in the middle between both surfaces [m]
+  Point3 normal{};                     ///< unit, from b to a
+  Point3 impulse{};                    ///< on a over the step, world axes [N s]
+  double gap = 0;                      ///< along the normal, less the thickness [m]
+  double area = 0;                     ///< [m^2]
+  double intensity = 0;                ///< beta, of the adhesion
+  ContactPlace place_a, place_b;
+};
+
 /// Diagnostics of a step; of a new Simulator those of the start.
 struct StepRecord {
   double time = 0;  ///< [s]
@@ -84,6 +109,14 @@ struct StepRecord {
   double linear_residual = 0;  ///< largest of an island, relative
   bool converged = true;       ///< whether all solves reached their tolerance
   std::int64_t skipped_rotations = 0, skipped_blocks = 0;  ///< see SimulateSkipOptions
+  std::int64_t contacts = 0;
+  std::int64_t contact_passes = 0;   ///< detections of the parts of the step, in all
+  std::int64_t clamped_islands = 0;  ///< that moved by a part of a step only, to stay apart
+  std::int64_t stalled_scripts = 0;  ///< scripted bodies, obstacles and driven nodes that did
+  std::int64_t sweeps = 0, outer_iterations = 0;  ///< of contact solves
+  double contact_residual = 0;                    ///< largest eta
+  double smallest_distance = 0;  ///< between surfaces that may touch [m], at most 100 thickness
+  double adhered_area = 0;       ///< sum of intensity and area [m^2]
   StepSeconds seconds;
   std::vector<BodyRecord> bodies;       ///< as in Scene::bodies
   std::vector<Point3> obstacle_forces;  ///< [N]
@@ -122,6 +155,10 @@ class TETWARP_EXPORT Simulator {
 
   /// The last step's diagnostics, computed on request.
   const StepRecord& record();
+
+  /// The contacts at the end of the last step, ordered by bodies and features.
+  std::vector<ContactPoint> contacts() const;
+  double thickness() const;  ///< contact distance [m]
 
   const BodyMesh& body(std::size_t index) const;
   /// World positions of the nodes of body(index).mesh, on the device with backend cuda: valid until

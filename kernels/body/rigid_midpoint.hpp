@@ -59,33 +59,39 @@ struct RigidMidpointBody {
   }
 };
 
-/// One index = one rigid body: x += dt v, Q <- exp(dt omega) Q, L = I omega.
+/// One index = one rigid body: x += f dt v, Q <- exp(f dt omega) Q, L = I omega.
 struct RigidUpdateBody {
   View<const double> velocity;  ///< [blocks][3]
   std::int64_t first_block;     ///< of rigid bodies
   View<const double> inertia;   ///< [rigid][9]
   double time_step;
+  View<const double> fraction;                      ///< f of rigid bodies, or empty: 1
   View<double> centre, rotation, angular_momentum;  ///< in, out
 
   TETWARP_HD void operator()(std::int64_t b) const {
     const double* v = velocity.data + 3 * (first_block + 2 * b);
+    const double time = fraction.size == 0 ? time_step : fraction[b] * time_step;
     double turn[3];
     for (int i = 0; i < 3; ++i) {
-      centre[3 * b + i] += time_step * v[i];
-      turn[i] = time_step * v[3 + i];
+      centre[3 * b + i] += time * v[i];
+      turn[i] = time * v[3 + i];
     }
     turn_by_vector(turn, rotation.data + 4 * b);
     multiply3(inertia.data + 9 * b, v + 3, angular_momentum.data + 3 * b);
   }
 };
 
-/// One index = one number of node positions: x += dt v.
+/// One index = one number of node positions: x += f dt v.
 struct NodeUpdateBody {
   View<const double> velocity;
   double time_step;
-  View<double> position;  ///< in, out
+  View<const double> fraction;  ///< f of nodes, or empty: 1
+  View<double> position;        ///< in, out
 
-  TETWARP_HD void operator()(std::int64_t i) const { position[i] += time_step * velocity[i]; }
+  TETWARP_HD void operator()(std::int64_t i) const {
+    const double time = fraction.size == 0 ? time_step : fraction[i / 3] * time_step;
+    position[i] += time * velocity[i];
+  }
 };
 
 }  // namespace tetwarp

@@ -2,7 +2,8 @@
 
 Usage: check_simulation.py COMMAND
 
-Exits 77 when h5py is missing, 1 when a folder does not hold what docs/formats.md says.
+Where VTK 9.3 or later is installed, its reader opens the file of contacts as well. Exits 77 when
+h5py is missing, 1 when a folder does not hold what docs/formats.md says.
 """
 import json
 import os
@@ -24,11 +25,18 @@ COUNTS = ["contacts", "contact_passes", "substeps", "clamped_islands", "stalled_
           "converged"]
 NUMBERS = ["time", "energy/kinetic", "energy/elastic", "energy/gravity", "energy/adhesion",
            "energy/total", "energy/work", "contact_residual", "linear_residual", "adhered_area",
+           "smallest_distance",
            *(f"seconds/{s}" for s in ("forces", "assembly", "linear", "detection", "contact",
                                       "update", "total"))]
 
+CONTACT = {"normal": (3, np.float64), "impulse": (3, np.float64), "intensity": (1, np.float64),
+           "gap": (1, np.float64), "area": (1, np.float64), "body_a": (1, np.int64),
+           "body_b": (1, np.int64)}
+
 SCENE = {
-    "tetwarp_scene": 1, "time_step": 0.01, "duration": 0.2,
+    "tetwarp_scene": 1, "time_step": 0.01, "duration": 0.2, "thickness": 1e-4,
+    "contact": {"friction": 0.5, "adhesion": {"stiffness": 1e5, "energy": 1e-3, "viscosity": 0.01,
+                                              "bonding_rate": 0.01, "saturation_pressure": 10}},
     "bodies": [
         {"name": "beam", "kind": "fem", "shape": {"type": "box", "half": [0.2, 0.05, 0.05]},
          "lattice": {"cells": [4, 1, 1]}, "material": {"E": 1e5, "nu": 0.3, "density": 1000},
@@ -40,11 +48,14 @@ SCENE = {
                    "axes": [[1, 0, 0], [0, 1, 0]]},
          "areal_density": 0.3, "stretch": 400, "shear": 80, "bend": 2e-4,
          "fixed": [{"box": [[-1, 0.99, -1], [1, 1.01, 1]]}]},
+        {"name": "crate", "kind": "fem", "shape": {"type": "box", "half": [0.1, 0.1, 0.1]},
+         "lattice": {"cells": [2, 2, 2]}, "material": {"E": 1e5, "nu": 0.3, "density": 1000},
+         "pose": {"position": [1, 0, -0.895]}},
     ],
     "obstacles": [{"name": "floor", "plane": {"normal": [0, 0, 1], "point": [0, 0, -1]}}],
     "couplings": [{"name": "link", "a": "beam", "b": "ball", "points": [[0.2, 0, 0]],
                    "stiffness": 10}],
-    "output": {"every": 5, "fields": ["velocity", "stress", "jacobian"]},
+    "output": {"every": 5, "fields": ["velocity", "stress", "jacobian", "contact"]},
 }
 
 
@@ -83,6 +94,10 @@ def check_series(path, scene, steps):
                 assert turns.shape == (steps + 1, 4) and (turns[:, 0] >= 0).all()
                 assert np.allclose(np.linalg.norm(turns, axis=1), 1, atol=1e-12)
                 assert group["angular_velocity"].shape == (steps + 1, 3)
+        for name in COUNTS[:5] + COUNTS[9:11]:
+            assert file[name][0] == 0, f"{name} at the start"
+        assert (file["smallest_distance"][()] > 0).all(), "surfaces intersect"
+        assert file["contacts"][-1] > 0 and file["adhered_area"][-1] > 0, "the crate floats"
         for obstacle in scene.get("obstacles", []):
             assert file["obstacles"][obstacle["name"]]["contact_force"].shape == (steps + 1, 3)
         for coupling in scene.get("couplings", []):
@@ -122,18 +137,74 @@ def check_mesh(path, cell_type, frames, times, arrays):
         return root["Points"][()], root["PointData/displacement"][()].reshape(frames, points, 3)
 
 
+def check_contacts(path, times, bodies):
+    """The file of --contacts: every frame has its own points; all are vertices."""
+    with h5py.File(path, "r") as file:
+        root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
+        assert list(root.attrs["Version"]) == [2, 0] and root.attrs["Type"] == b"UnstructuredGrid"
+        assert steps.attrs["NSteps"] == len(times) and np.array_equal(steps["Values"][()], times)
+        counts = root["NumberOfPoints"][()]
+        assert counts[0] == 0 and counts[-1] > 0, f"contacts per frame {counts}"
+        firsts = np.concatenate([[0], np.cumsum(counts)[:-1]])
+        for name in ("PointOffsets", "CellOffsets", "ConnectivityIdOffsets",
+                     *(f"PointDataOffsets/{array}" for array in CONTACT)):
+            assert np.array_equal(steps[name][()].ravel(), firsts), name
+        assert np.array_equal(steps["PartOffsets"][()], np.arange(len(times)))
+        assert (root["Types"][()] == 1).all() and len(root["Types"]) == counts.sum()
+        assert len(root["Offsets"]) == counts.sum() + len(times)
+        assert root["Points"].shape == (counts.sum(), 3) and np.isfinite(root["Points"][()]).all()
+        for name, (components, kind) in CONTACT.items():
+            array = root["PointData"][name]
+            shape = (counts.sum(),) if components == 1 else (counts.sum(), components)
+            assert array.shape == shape and array.dtype == kind, name
+            assert np.isfinite(array[()]).all(), name
+        normals = root["PointData/normal"][()]
+        assert np.allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-12)
+        assert 0 <= root["PointData/body_a"][()].min()
+        assert root["PointData/body_b"][()].max() < bodies
+        beta = root["PointData/intensity"][()]
+        assert beta.min() >= 0 and beta.max() <= 1 and (root["PointData/area"][()] >= 0).all()
+        return counts
+
+
+def check_vtk_points(path, counts):
+    """VTK reads each frame of a temporal file of points."""
+    try:
+        from vtkmodules.vtkCommonCore import vtkVersion
+        from vtkmodules.vtkIOHDF import vtkHDFReader
+    except ImportError:
+        return
+    if (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) < (9, 3):
+        return
+    reader = vtkHDFReader()
+    reader.SetFileName(path)
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == len(counts)
+    for step, count in enumerate(counts):
+        reader.SetStep(step)
+        reader.Update()
+        data = reader.GetOutputDataObject(0)
+        assert data.GetNumberOfPoints() == count == data.GetNumberOfCells(), f"frame {step}"
+
+
 def check_folder(folder, scene, steps):
     out = os.path.join(folder, "out")
     check_series(os.path.join(out, "series.h5"), scene, steps)
     frame_steps = np.arange(0, steps + 1, scene["output"]["every"])
     times = scene["time_step"] * frame_steps
+    bodies = len(scene["bodies"]) + len(scene["obstacles"])
+    contacts = os.path.join(folder, "contacts.vtkhdf")
+    check_vtk_points(contacts, check_contacts(contacts, times, bodies))
     vector = ("displacement", "PointData", 3)
     velocity = ("velocity", "PointData", 3)
+    touch = [("impulse", "PointData", 3), ("intensity", "PointData", 1), ("gap", "PointData", 1)]
     cells = [("stress", "CellData", 1), ("jacobian", "CellData", 1)]
     for name, kind, arrays in (("beam", 10, [vector, velocity, *cells]),
-                               ("beam.surface", 5, [vector]),
-                               ("ball", 5, [vector, velocity]), ("ball.surface", 5, [vector]),
-                               ("flag", 5, [vector, velocity])):
+                               ("beam.surface", 5, [vector, *touch]),
+                               ("ball", 5, [vector, velocity, *touch]),
+                               ("ball.surface", 5, [vector]), ("crate", 10, [vector, *cells]),
+                               ("crate.surface", 5, [vector, *touch]),
+                               ("flag", 5, [vector, velocity, *touch])):
         points, moved = check_mesh(os.path.join(out, name + ".vtkhdf"), kind, len(times), times,
                                    arrays)
         if name == "beam":
@@ -162,7 +233,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "scene.json"), "w", encoding="utf-8") as file:
             json.dump(SCENE, file)
-        run(command, folder, "scene.json", "-o", "out", "--quiet")
+        run(command, folder, "scene.json", "-o", "out", "--contacts", "contacts.vtkhdf", "--quiet")
         check_folder(folder, SCENE, 20)
         with open(os.path.join(folder, "rate.json"), "w", encoding="utf-8") as file:
             json.dump({**SCENE, "output": {"rate": 30}}, file)

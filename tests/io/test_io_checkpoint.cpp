@@ -138,6 +138,40 @@ TEST(Checkpoint, OfNothingReadsAsNothing) {
   EXPECT_EQ(folder.entry_count(), 1);
 }
 
+/// Contacts of deformable bodies; and files of version 1, which know none.
+TEST(Checkpoint, HoldsMaterialPointsAndReadsFilesWithoutThem) {
+  const ScratchFolder folder;
+  ContactCheckpoint checkpoint;
+  ContactRecord record{.key = {0, 4, 1, -1}};
+  record.intensity = 0.5;
+  record.standoff = 1e-3;
+  record.normal_world = {0, 0, -1};
+  record.material_a = {{0, 0, 0}, {7, -1, -1}, {1, 0, 0}};
+  record.material_b = {{0, 0, 0}, {1, 5, 2}, {0.25, 0.5, 0.25}};
+  checkpoint.records = {record};
+  write_contact_checkpoint(folder / "c.h5", checkpoint);
+
+  const ContactRecord read = read_contact_checkpoint(folder / "c.h5").records.at(0);
+
+  EXPECT_EQ(read.standoff, record.standoff);
+  EXPECT_EQ(read.normal_world, record.normal_world);
+  EXPECT_EQ(read.material_a.vertex, record.material_a.vertex);
+  EXPECT_EQ(read.material_b.weight, record.material_b.weight);
+  {
+    Hdf5Editor editor(folder / "c.h5");
+    const std::string root = "/tetwarp_checkpoint";
+    for (const char* name :
+         {"standoff", "normal_world", "vertex_a", "weight_a", "vertex_b", "weight_b"}) {
+      editor.remove(root + "/contacts/" + name);
+    }
+    editor.attribute(root, "version", std::vector{1});
+  }
+  const ContactRecord old = read_contact_checkpoint(folder / "c.h5").records.at(0);
+  EXPECT_EQ(old.intensity, 0.5);
+  EXPECT_TRUE(old.material_a.is_rigid());
+  EXPECT_EQ(old.normal_world, (Point3{0, 0, 0}));
+}
+
 TEST(Checkpoint, NamesWhatIsWrongWithAFile) {
   const ScratchFolder folder;
   ContactCheckpoint checkpoint;
@@ -153,8 +187,8 @@ TEST(Checkpoint, NamesWhatIsWrongWithAFile) {
   const std::string root = "/tetwarp_checkpoint";
 
   EXPECT_NE(error_after([&](Hdf5Editor& e) {
-              e.attribute(root, "version", std::vector{2});
-            }).find("version 2"),
+              e.attribute(root, "version", std::vector{3});
+            }).find("version 3"),
             std::string::npos);
   EXPECT_NE(error_after([&](Hdf5Editor& e) { e.remove(root + "/contacts/key"); }).find("key"),
             std::string::npos);

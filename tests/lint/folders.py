@@ -14,6 +14,7 @@ from pathlib import Path
 # include nothing of the project, so a new folder needs a line here.
 BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
 CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
+COLLIDE = ["host/base", "host/exec", "kernels/collide", *BASE]
 SIMULATE = ["host/scene", "host/base", "host/exec", "kernels/body", *BASE]
 ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
@@ -46,8 +47,16 @@ ALLOWED = {
         "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
         "host/reference/contact", *CONTACT],
     "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "host/collide": COLLIDE,
+    "host/collide/cpu": ["host/collide", *COLLIDE],
+    "host/collide/cuda": ["host/collide", "kernels/exec", *COLLIDE],
     "host/scene": ["host/base", "host/exec", "kernels/warp", *BASE],
     "host/simulate": ["host/reference/simulate", *SIMULATE],
+    "host/simulate/run": [
+        "host/simulate", "host/simulate/contact", "host/collide", *COLLIDE, *SIMULATE],
+    "host/simulate/contact": [
+        "host/simulate", "host/simulate/cpu", "host/collide", "kernels/contact", *COLLIDE, *SIMULATE],
     "host/simulate/model": ["host/simulate", *SIMULATE],
     "host/simulate/cpu": ["host/simulate", *SIMULATE],
     "host/simulate/cuda": ["host/simulate", "kernels/exec", *SIMULATE],

@@ -9,6 +9,11 @@
 
 namespace tetwarp::test {
 
+/// A scene that ships with the command.
+inline Scene shipped(const std::string& name) {
+  return parse_scene(scene_text(name), name);
+}
+
 /// A scene with every kind of body, obstacle and action and nearly every key, none by default.
 inline const char* const full_scene = R"({
   "tetwarp_scene": 1, "time_step": 0.01, "duration": 0.5, "gravity": [1, 2, 3], "thickness": 1e-3,

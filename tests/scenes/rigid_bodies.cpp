@@ -229,7 +229,7 @@ double RigidWorld::spring_energy() const {
         options_.tracking.materials[static_cast<std::size_t>(record.material)];
     const BodyPose& pose_a = bodies[static_cast<std::size_t>(record.key.body_a)];
     const BodyPose& pose_b = bodies[static_cast<std::size_t>(record.key.body_b)];
-    const Vector3d normal = carried_normal(record, pose_a, pose_b);
+    const Vector3d normal = carried_normal(record, BodyPlace{pose_a}, BodyPlace{pose_b});
     const Vector3d apart = world_of(pose_a, record.anchor_a) - world_of(pose_b, record.anchor_b);
     const double gap = std::max(normal.dot(apart), 0.0);
     const double slip = (apart - normal.dot(apart) * normal).squaredNorm();

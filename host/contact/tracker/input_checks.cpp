@@ -15,6 +15,38 @@ bool are_finite(std::initializer_list<Point3> points) {
     return std::all_of(point.begin(), point.end(), [](double x) { return std::isfinite(x); });
   });
 }
+
+/// @param place  of the body; a rigid one has no vertices
+void check_material(const ContactKey& key, const BodyPlace& place, const MaterialPoint& point) {
+  if (place.is_rigid()) return;
+  double sum = 0;
+  bool is_good = point.vertex[0] >= 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int32_t vertex = point.vertex[k];
+    if (vertex < 0) continue;
+    is_good = is_good && static_cast<std::size_t>(vertex) < place.vertices.size() &&
+              (k == 0 || point.vertex[k - 1] >= 0);
+    sum += point.weight[k];
+  }
+  if (is_good && std::abs(sum - 1) <= 1e-6) return;
+  refuse(name_of(key),
+         "needs a material point on its deformable body: one to three of the body's " +
+             std::to_string(place.vertices.size()) + " vertices, with weights of sum 1");
+}
+
+void check_bodies(const ContactKey& key, std::span<const BodyPlace> places) {
+  const auto is_out = [&](std::int32_t body) {
+    return body < 0 || static_cast<std::size_t>(body) >= places.size();
+  };
+  if (is_out(key.body_a) || is_out(key.body_b)) {
+    refuse(name_of(key),
+           "has a body index out of range, there are " + std::to_string(places.size()) + " bodies");
+  }
+  if (key.body_a != key.body_b) return;
+  if (place_of(places, key.body_a).is_rigid() || key.feature_a == key.feature_b) {
+    refuse(name_of(key), "has the same body on both sides");
+  }
+}
 }  // namespace
 
 void refuse(const std::string& subject, const std::string& problem) {
@@ -43,18 +75,12 @@ void check_materials(const std::vector<ContactMaterial>& materials) {
   }
 }
 
-void check_bodies(const ContactKey& key, std::size_t body_count) {
-  if (key.body_a == key.body_b) refuse(name_of(key), "has the same body on both sides");
-  if (key.body_a < 0 || static_cast<std::size_t>(key.body_b) >= body_count) {
-    refuse(name_of(key),
-           "has a body index out of range, there are " + std::to_string(body_count) + " poses");
-  }
-}
-
 void check_report(const ReportedContact& report,
-                  std::size_t body_count,
+                  std::span<const BodyPlace> places,
                   std::size_t material_count) {
-  check_bodies(report.key, body_count);
+  check_bodies(report.key, places);
+  check_material(report.key, place_of(places, report.key.body_a), report.material_a);
+  check_material(report.key, place_of(places, report.key.body_b), report.material_b);
   if (!(std::abs(vector_of(report.normal).norm() - 1) <= 1e-6)) {
     refuse(name_of(report.key), "has a normal that is not a unit vector");
   }
@@ -73,6 +99,9 @@ void check_report(const ReportedContact& report,
       !std::isfinite(report.approach_speed)) {
     refuse(name_of(report.key), "has a velocity that is not finite");
   }
+  if (!(report.bonded_share > 0 && report.bonded_share <= 1)) {
+    refuse(name_of(report.key), "has a bonded share that is not above 0 and at most 1");
+  }
 }
 
 void check_records(const std::vector<ContactRecord>& records, std::size_t material_count) {
@@ -81,9 +110,11 @@ void check_records(const std::vector<ContactRecord>& records, std::size_t materi
     if (k > 0 && !(records[k - 1].key < record.key)) {
       refuse(name_of(record.key), "is out of order, sort the records by key");
     }
-    if (!(record.key.body_a < record.key.body_b)) {
-      refuse(name_of(record.key), "must name the body with the smaller index first");
-    }
+    const ContactKey& key = record.key;
+    const bool is_ordered =
+        key.body_a < key.body_b || (key.body_a == key.body_b && key.feature_a < key.feature_b &&
+                                    !record.material_a.is_rigid());
+    if (!is_ordered) refuse(name_of(key), "must name the body with the smaller index first");
     if (!(record.intensity >= 0 && record.intensity <= 1) || record.material < 0 ||
         static_cast<std::size_t>(record.material) >= material_count) {
       refuse(name_of(record.key),
@@ -91,18 +122,37 @@ void check_records(const std::vector<ContactRecord>& records, std::size_t materi
     }
     if (!(record.area >= 0) || !std::isfinite(record.area) ||
         !are_finite({record.anchor_a, record.anchor_b, record.normal_a, record.normal_b,
-                     record.impulse_world})) {
+                     record.impulse_world, record.material_a.weight, record.material_b.weight,
+                     record.normal_world}) ||
+        !std::isfinite(record.standoff)) {
       refuse(name_of(record.key), "has a negative area or a number that is not finite");
     }
   }
 }
 
-void check_poses(std::span<const BodyPose> poses) {
-  for (std::size_t b = 0; b < poses.size(); ++b) {
+void check_record_bodies(const std::vector<ContactRecord>& records,
+                         std::span<const BodyPlace> places) {
+  for (const ContactRecord& record : records) {
+    check_bodies(record.key, places);
+    check_material(record.key, place_of(places, record.key.body_a), record.material_a);
+    check_material(record.key, place_of(places, record.key.body_b), record.material_b);
+  }
+}
+
+void check_places(std::span<const BodyPlace> places) {
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    if (!places[b].is_rigid()) {
+      for (const Point3& vertex : places[b].vertices) {
+        if (are_finite({vertex})) continue;
+        refuse("body " + std::to_string(b), "has a vertex whose position is not finite");
+      }
+      continue;
+    }
+    const BodyPose& pose = places[b].pose;
+    if (are_finite({pose.position}) && std::abs(rotation_of(pose).norm() - 1) <= 1e-6) continue;
     const std::string name = "the pose of body " + std::to_string(b);
-    if (!are_finite({poses[b].position})) refuse(name, "has a position that is not finite");
-    const double length = rotation_of(poses[b]).norm();
-    if (std::abs(length - 1) <= 1e-6) continue;
+    if (!are_finite({pose.position})) refuse(name, "has a position that is not finite");
+    const double length = rotation_of(pose).norm();
     refuse(name, "has a rotation of length " + text_of(length) +
                      ", expected 1 within 1e-6: normalize the quaternion");
   }

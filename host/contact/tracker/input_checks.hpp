@@ -18,17 +18,18 @@ std::string name_of(const ContactKey& key);
 
 void check_materials(const std::vector<ContactMaterial>& materials);
 
-/// @param body_count  number of poses
-void check_bodies(const ContactKey& key, std::size_t body_count);
-
 void check_report(const ReportedContact& report,
-                  std::size_t body_count,
+                  std::span<const BodyPlace> places,
                   std::size_t material_count);
 
 void check_records(const std::vector<ContactRecord>& records, std::size_t material_count);
 
+/// The bodies of records exist, and have the vertices of their material points.
+void check_record_bodies(const std::vector<ContactRecord>& records,
+                         std::span<const BodyPlace> places);
+
 /// Positions are finite, rotations of length 1 within 1e-6.
-void check_poses(std::span<const BodyPose> poses);
+void check_places(std::span<const BodyPlace> places);
 
 /// Three finite impulses and velocities for each contact.
 void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts);

@@ -116,11 +116,8 @@ System make_system(const Scene& scene, const SceneGeometry& geometry) {
     if (body.kind == BodyKind::fem) add_fem(body, geometry.bodies[b], first, system);
     if (body.kind == BodyKind::cloth) add_cloth(body, geometry.bodies[b], first, system);
   }
-  for (const Coupling& coupling : scene.couplings) {
-    for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
-      const std::string& name = scene.obstacles[o].name;
-      if (coupling.a == name || coupling.b == name) obstacle_frame(system, static_cast<int>(o));
-    }
+  for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
+    obstacle_frame(system, static_cast<int>(o));
   }
   mark_prescribed(system);
   bind_surfaces(system);

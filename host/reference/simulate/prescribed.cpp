@@ -32,7 +32,7 @@ void script_nodes(const Body& body,
 
 }  // namespace
 
-Prescribed prescribed_at(const System& system, const Overrides& overrides, double time) {
+Prescribed prescribed_at(const System& system, const Overrides& overrides, double end_time) {
   const Scene& scene = system.scene;
   Prescribed result;
   result.nodes.resize(static_cast<std::size_t>(system.node_count()));
@@ -42,6 +42,7 @@ Prescribed prescribed_at(const System& system, const Overrides& overrides, doubl
     const BodyGeometry& geometry = system.geometry.bodies[b];
     const BodyPlace& place = system.places[b];
     const Placement start = placement_of(body.pose);
+    const double time = end_time - overrides.delay[b];
     const auto node_at = [&](int n) -> std::optional<Vector3d>& {
       return result.nodes[static_cast<std::size_t>(place.first_node + n)];
     };
@@ -63,12 +64,12 @@ Prescribed prescribed_at(const System& system, const Overrides& overrides, doubl
   for (std::size_t r = 0; r < system.rigids.size(); ++r) {
     const int obstacle = system.rigids[r].body - static_cast<int>(scene.bodies.size());
     if (obstacle < 0) continue;
-    const auto& override_of_obstacle =
-        overrides.bodies[scene.bodies.size() + static_cast<std::size_t>(obstacle)];
-    const auto place =
-        override_of_obstacle
-            ? override_of_obstacle
-            : path_at(scene.obstacles[static_cast<std::size_t>(obstacle)].path, time);
+    const std::size_t of = scene.bodies.size() + static_cast<std::size_t>(obstacle);
+    const auto& override_of_obstacle = overrides.bodies[of];
+    const auto place = override_of_obstacle
+                           ? override_of_obstacle
+                           : path_at(scene.obstacles[static_cast<std::size_t>(obstacle)].path,
+                                     end_time - overrides.delay[of]);
     result.frames[r] = moved(Placement{}, place.value_or(PathPlace{}));
   }
   for (std::size_t h = 0; h < scene.handles.size(); ++h) {
@@ -76,7 +77,7 @@ Prescribed prescribed_at(const System& system, const Overrides& overrides, doubl
     std::optional<Vector3d> displacement;
     if (moved_handle) {
       if (!moved_handle->is_released) displacement = moved_handle->displacement;
-    } else if (const auto place = path_at(scene.handles[h].path, time)) {
+    } else if (const auto place = path_at(scene.handles[h].path, end_time)) {
       displacement = place->displacement;
     }
     result.handles.push_back(displacement);

@@ -16,6 +16,6 @@ struct Prescribed {
   std::vector<std::optional<Vector3d>> handles;  ///< [handles] displacement; nothing: released
 };
 
-Prescribed prescribed_at(const System& system, const Overrides& overrides, double time);
+Prescribed prescribed_at(const System& system, const Overrides& overrides, double end_time);
 
 }  // namespace tetwarp::reference

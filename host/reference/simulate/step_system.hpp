@@ -2,6 +2,8 @@
 /// One step of backward Euler: A = M - dt dF/dv - dt^2 dF/dx, b = M v + dt F, A v' = b where the
 /// velocity is unknown.
 #pragma once
+#include <span>
+
 #include "host/reference/simulate/prescribed.hpp"
 
 namespace tetwarp::reference {
@@ -28,6 +30,21 @@ struct StepResult {
 };
 
 LinearSystem assemble(const System& system, const State& state, const StepDrive& drive);
+/// Velocities [3 blocks] at the end of the step without contact.
+VectorXd solve_step(const System& system,
+                    const State& state,
+                    const StepDrive& drive,
+                    const LinearSystem& linear);
+/// A v - b where the velocity is prescribed, else zero.
+VectorXd support_of(const System& system, const LinearSystem& linear, const VectorXd& velocity);
+/// The state after a step of these velocities.
+/// @param fraction  [bodies, then obstacles] of the step that each moves; empty: 1
+State moved_by(const System& system,
+               const State& before,
+               const StepDrive& drive,
+               const VectorXd& velocity,
+               std::span<const double> fraction);
+/// A whole step.
 StepResult step_once(const System& system, const State& state, const StepDrive& drive);
 
 /// Force of a load by block at the positions of `state`; zero outside its times.

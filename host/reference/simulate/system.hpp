@@ -81,11 +81,13 @@ struct Overrides {
   };
   std::vector<std::optional<Handle>> handles;    ///< [handles]
   std::vector<std::optional<PathPlace>> bodies;  ///< [bodies, then obstacles]
+  std::vector<double> delay;  ///< [bodies, then obstacles] behind their paths [s]
 
   static Overrides none_of(const Scene& scene) {
     Overrides result;
     result.handles.resize(scene.handles.size());
     result.bodies.resize(scene.bodies.size() + scene.obstacles.size());
+    result.delay.assign(result.bodies.size(), 0);
     return result;
   }
 };

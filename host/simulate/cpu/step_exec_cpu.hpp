@@ -88,6 +88,8 @@ class CpuGradientExec {
 
 class CpuStepExec {
  public:
+  static constexpr bool is_on_host = true;  ///< host reads its memory
+
   template <class T>
   using Vector = std::vector<T, HugePageAllocator<T>>;
 

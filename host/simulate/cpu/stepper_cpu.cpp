@@ -15,7 +15,17 @@ class CpuStepper final : public BodyStepper {
   std::string device() const override { return processor_name(); }
   void set_state(const ModelState& state) override { pipeline_.set_state(state); }
   void get_state(ModelState& state) const override { pipeline_.get_state(state); }
-  StepOutcome step(const StepInput& input) override { return pipeline_.step(input); }
+  StepOutcome solve(const StepInput& input) override { return pipeline_.solve(input); }
+  StepSystem system() override { return pipeline_.system(); }
+  void get_velocities(std::vector<Point3>& velocity) const override {
+    pipeline_.get_velocities(velocity);
+  }
+  void set_velocities(const std::vector<Point3>& velocity) override {
+    pipeline_.set_velocities(velocity);
+  }
+  double move(double time_step, std::span<const double> fraction) override {
+    return pipeline_.move(time_step, fraction);
+  }
   std::vector<Point3> support_impulses() const override { return pipeline_.support_impulses(); }
   PositionsView positions(std::int32_t first_node, std::int32_t count) const override {
     return {pipeline_.position_of(first_node), count, Memory::host};

@@ -104,6 +104,8 @@ struct FlagSumBody {
 
 class CudaStepExec {
  public:
+  static constexpr bool is_on_host = false;  ///< host reads its memory
+
   template <class T>
   using Vector = DeviceVector<T>;
 

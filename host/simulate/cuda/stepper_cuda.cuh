@@ -24,9 +24,25 @@ class CudaStepper final : public BodyStepper {
     exec_.enter();
     pipeline_.get_state(state);
   }
-  StepOutcome step(const StepInput& input) override {
+  StepOutcome solve(const StepInput& input) override {
     exec_.enter();
-    return pipeline_.step(input);
+    return pipeline_.solve(input);
+  }
+  StepSystem system() override {
+    exec_.enter();
+    return pipeline_.system();
+  }
+  void get_velocities(std::vector<Point3>& velocity) const override {
+    exec_.enter();
+    pipeline_.get_velocities(velocity);
+  }
+  void set_velocities(const std::vector<Point3>& velocity) override {
+    exec_.enter();
+    pipeline_.set_velocities(velocity);
+  }
+  double move(double time_step, std::span<const double> fraction) override {
+    exec_.enter();
+    return pipeline_.move(time_step, fraction);
   }
   std::vector<Point3> support_impulses() const override {
     exec_.enter();

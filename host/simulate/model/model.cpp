@@ -79,15 +79,10 @@ void check_size(const SceneGeometry& geometry) {
       "the scene has 2^29 or more nodes or tetrahedra; make lattices coarser");
 }
 
+/// Every obstacle has a frame: paths move it, and so may Simulator::move_script().
 void add_obstacle_frames(const Scene& scene, Model& model) {
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
-    const Obstacle& obstacle = scene.obstacles[o];
-    bool is_coupled = false;
-    for (const Coupling& coupling : scene.couplings) {
-      is_coupled = is_coupled || coupling.a == obstacle.name || coupling.b == obstacle.name;
-    }
-    if (!is_coupled) continue;
-    const PathPlace place = place_at(obstacle.path, 0).value_or(PathPlace{});
+    const PathPlace place = place_at(scene.obstacles[o].path, 0).value_or(PathPlace{});
     add_frame(static_cast<std::int32_t>(scene.bodies.size() + o), moved(Pose{}, place), model);
   }
 }

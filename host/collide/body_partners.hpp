@@ -1,0 +1,40 @@
+/// @file body_partners.hpp
+/// Which bodies can meet during a motion: those whose boxes overlap, and planes that bodies reach.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/collide/collide_items.hpp"
+#include "host/collide/collision_surfaces.hpp"
+
+namespace tetwarp {
+
+/// Lists by body; memory is kept.
+struct BodyPartners {
+  std::vector<Box> boxes;  ///< [bodies + 1]; the last one holds all bodies with a partner
+  std::vector<std::uint8_t> has_box;      ///< [bodies] has vertices
+  std::vector<std::int32_t> start;        ///< [bodies + 1]
+  std::vector<std::int32_t> bodies;       ///< indices into `boxes`
+  std::vector<std::int32_t> plane_start;  ///< [bodies + 1]
+  std::vector<std::int32_t> planes;
+  bool has_pairs = false;   ///< some body has a partner
+  bool has_planes = false;  ///< some body is near a plane
+
+  /// Sets `boxes` and `has_box` to the unions of each body's runs.
+  void unite(const CollideItems& items, const View<const RunBox>& run_boxes);
+  /// Finds the partners of all bodies. Of very many bodies each that overlaps the space of the
+  /// others counts as a partner.
+  void find_bodies(const CollideItems& items);
+  /// Finds the planes that lie within `distance` of a body's box at any time.
+  void find_planes(const CollisionSurfaces& surfaces,
+                   const CollideItems& items,
+                   const SurfaceMotion& motion,
+                   double distance);
+
+ private:
+  std::vector<std::int32_t> order_;
+  std::vector<std::array<std::int32_t, 2>> pairs_;
+};
+
+}  // namespace tetwarp

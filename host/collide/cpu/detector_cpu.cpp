@@ -1,0 +1,36 @@
+/// @file detector_cpu.cpp
+/// make_cpu_detector(): DetectorPipeline on host threads.
+#include "host/collide/cpu/detect_exec_cpu.hpp"
+#include "host/collide/detector_pipeline.hpp"
+
+namespace tetwarp {
+namespace {
+class CpuDetector final : public Detector {
+ public:
+  CpuDetector(const CollisionSurfaces& surfaces, const DetectorOptions& options)
+      : exec_(thread_count(options.threads)), pipeline_(exec_, surfaces, options.reuse_pairs) {}
+
+  void begin_step() override { pipeline_.begin_step(); }
+  const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
+    return pipeline_.detect(motion);
+  }
+  const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
+    return pipeline_.check(motion);
+  }
+  ClosestPair closest(const SurfacePlaces& places, double cap) override {
+    return pipeline_.closest(places, cap);
+  }
+  DetectionCounts counts() override { return pipeline_.take_counts(); }
+
+ private:
+  CpuDetectExec exec_;
+  DetectorPipeline<CpuDetectExec> pipeline_;
+};
+}  // namespace
+
+std::unique_ptr<Detector> make_cpu_detector(const CollisionSurfaces& surfaces,
+                                            const DetectorOptions& options) {
+  return std::make_unique<CpuDetector>(surfaces, options);
+}
+
+}  // namespace tetwarp

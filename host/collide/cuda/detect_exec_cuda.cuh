@@ -1,0 +1,158 @@
+/// @file detect_exec_cuda.cuh
+/// CudaDetectExec: the executor of DetectorPipeline on a device; functions as those of
+/// CpuDetectExec.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "kernels/base/view.hpp"
+#include "kernels/exec/device_vector.cuh"
+#include "kernels/exec/exec_cuda.cuh"
+
+namespace tetwarp {
+
+/// Counts what one index appends.
+struct CountingEmit {
+  std::int64_t values = 0, tallied = 0;
+  template <class T>
+  __device__ void operator()(const T&) {
+    ++values;
+  }
+  __device__ void tally(std::int64_t count) { tallied += count; }
+};
+
+/// Writes what one index appends.
+template <class T>
+struct WritingEmit {
+  T* to;
+  __device__ void operator()(const T& value) { *to++ = value; }
+  __device__ void tally(std::int64_t) {}
+};
+
+/// One index = one index of the body.
+template <class Body>
+struct AppendCountBody {
+  Body body;
+  View<std::int64_t> counts, tallies;  ///< out
+  __device__ void operator()(std::int64_t i) const {
+    CountingEmit emit;
+    body(i, emit);
+    counts[i] = emit.values;
+    tallies[i] = emit.tallied;
+  }
+};
+template <class Body, class T>
+struct AppendWriteBody {
+  static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
+
+  Body body;
+  View<const std::int64_t> first;
+  View<T> values;  ///< out
+  __device__ void operator()(std::int64_t i) const {
+    WritingEmit<T> emit{values.data + first[i]};
+    body(i, emit);
+  }
+};
+
+template <class T>
+class DeviceList {
+ public:
+  std::int64_t size() const { return size_; }
+  View<const T> view() const { return values_.const_view(size_); }
+  std::int64_t tally() const { return tally_; }
+  void clear() { size_ = tally_ = 0; }
+
+ private:
+  friend class CudaDetectExec;
+  DeviceBuffer<T> values_;
+  std::int64_t capacity_ = 0, size_ = 0, tally_ = 0;
+};
+
+class CudaDetectExec {
+ public:
+  template <class T>
+  using Vector = DeviceVector<T>;
+  template <class T>
+  using List = DeviceList<T>;
+
+  explicit CudaDetectExec(int device) : exec_(device) {}
+
+  /// @returns  an object during whose life the device is the current one of this thread
+  DeviceScope enter() {
+    exec_.times().clear();  // reads of the last call have waited for its work
+    return exec_.enter(0);
+  }
+
+  template <class T>
+  void resize(Vector<T>& values, std::int64_t size) {
+    values.resize(size);
+  }
+  template <class T>
+  void put(const T* host, std::int64_t size, Vector<T>& values) {
+    values.resize(size);
+    if (size == 0) return;
+    check_cuda(cudaMemcpyAsync(values.view().data, host, static_cast<std::size_t>(size) * sizeof(T),
+                               cudaMemcpyHostToDevice, exec_.stream()),
+               "cudaMemcpyAsync to device");
+  }
+  template <class T>
+  View<const T> input(const T* host, std::int64_t size, Vector<T>& own) {
+    put(host, size, own);
+    return own.view();
+  }
+  template <class T>
+  View<const T> on_host(View<const T> values, std::vector<T>& host) {
+    host.resize(static_cast<std::size_t>(values.size));
+    if (values.size > 0) exec_.read(values, host.data());
+    return {host.data(), values.size};
+  }
+  template <class T>
+  View<T> view(Vector<T>& values) const {
+    return values.view();
+  }
+  template <class T>
+  View<const T> view(const Vector<T>& values) const {
+    return values.view();
+  }
+
+  template <class Body>
+  void for_each(const char* label, std::int64_t count, const Body& body) {
+    exec_.for_each(label, count, body);
+  }
+  /// Runs the body twice: to count, and to write.
+  template <class Body, class T>
+  void append(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
+    list.clear();
+    if (count == 0) return;
+    counts_.resize(count + 1);
+    tallies_.resize(count + 1);
+    exec_.for_each(label, count, AppendCountBody<Body>{body, counts_.view(), tallies_.view()});
+    exec_.exclusive_scan(label, counts_.view());
+    exec_.exclusive_scan(label, tallies_.view());
+    list.size_ = last_of(counts_);
+    list.tally_ = last_of(tallies_);
+    if (list.size_ > list.capacity_) {
+      list.capacity_ = list.size_ + list.size_ / 2;
+      list.values_.reserve(list.capacity_);
+    }
+    if (list.size_ == 0) return;
+    const AppendWriteBody<Body, T> write{body, counts_.view(), list.values_.view(list.size_)};
+    exec_.for_each(label, count, write);
+  }
+  void sort_pairs(const char* label, DeviceList<CellPair>& list, int key_bits) {
+    exec_.sort_pairs(label, list.values_.view(list.size_), {}, key_bits);
+  }
+
+ private:
+  std::int64_t last_of(const DeviceVector<std::int64_t>& values) {
+    const View<const std::int64_t> all = values.view();
+    std::int64_t last = 0;
+    exec_.read(View<const std::int64_t>{all.data + all.size - 1, 1}, &last);
+    return last;
+  }
+
+  CudaExec exec_;
+  DeviceVector<std::int64_t> counts_, tallies_;
+};
+
+}  // namespace tetwarp

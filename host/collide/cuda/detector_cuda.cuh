@@ -1,0 +1,34 @@
+/// @file detector_cuda.cuh
+/// CudaDetector: DetectorPipeline on a device.
+#pragma once
+#include "host/collide/cuda/detect_exec_cuda.cuh"
+#include "host/collide/detector_pipeline.hpp"
+
+namespace tetwarp {
+
+class CudaDetector final : public Detector {
+ public:
+  CudaDetector(const CollisionSurfaces& surfaces, const DetectorOptions& options)
+      : exec_(options.device), pipeline_(exec_, surfaces, options.reuse_pairs) {}
+
+  void begin_step() override { pipeline_.begin_step(); }
+  const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
+    const auto scope = exec_.enter();
+    return pipeline_.detect(motion);
+  }
+  const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
+    const auto scope = exec_.enter();
+    return pipeline_.check(motion);
+  }
+  ClosestPair closest(const SurfacePlaces& places, double cap) override {
+    const auto scope = exec_.enter();
+    return pipeline_.closest(places, cap);
+  }
+  DetectionCounts counts() override { return pipeline_.take_counts(); }
+
+ private:
+  CudaDetectExec exec_;
+  DetectorPipeline<CudaDetectExec> pipeline_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,77 @@
+/// @file detector.hpp
+/// Detector: the pairs of vertices, edges, faces and planes that touch during a motion.
+///
+/// No pair whose surfaces touch is ever missed, whatever the speed; a pair may be reported that
+/// only comes within the thickness. Sources: Li, Kaufman and Jiang 2021 (additive continuous
+/// collision detection); slack, thickness and the bound of turning bodies are ours.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "host/collide/collision_surfaces.hpp"
+#include "kernels/collide/pair_kind.hpp"
+
+namespace tetwarp {
+
+struct TouchingPair {
+  PairKind kind = PairKind::vertex_face;
+  std::int32_t a = 0, b = 0;
+  double time = 2;            ///< fraction of the motion at which the surfaces come within the
+                              ///< detection distance, 0 to 1; above 1: they do not
+  double start_distance = 0;  ///< between the surfaces at the start, radii subtracted [m]
+
+  auto operator<=>(const TouchingPair&) const = default;
+};
+
+/// What a detection did; adds up until read.
+struct DetectionCounts {
+  std::int64_t skipped_items = 0;  ///< triangles, capsules, spheres that are far from all bodies
+  std::int64_t grid_entries = 0;   ///< (cell, item) entries of the broad phase
+  std::int64_t box_tests = 0;      ///< of two boxes
+  std::int64_t box_pairs = 0;      ///< whose boxes overlap
+  std::int64_t pairs = 0;          ///< of features, tested by the narrow phase
+  std::int64_t evaluations = 0;    ///< of distances
+  std::int64_t reused = 0;         ///< detections that kept the pairs of an earlier one
+};
+
+struct ClosestPair {
+  PairKind kind = PairKind::vertex_face;
+  std::int32_t a = -1, b = -1;  ///< -1: nothing is nearer than the cap
+  double distance = 0;          ///< [m]; without a pair the cap
+};
+
+struct DetectorOptions {
+  int threads = 1;  ///< of the cpu; any number: same pairs
+  int device = 0;   ///< CUDA device number
+  bool reuse_pairs =
+      true;  ///< keeps the broad phase's pairs where boxes lie inside the former ones
+};
+
+class Detector {
+ public:
+  virtual ~Detector() = default;
+
+  /// Starts a step: pairs of the broad phase of earlier motions are forgotten.
+  virtual void begin_step() = 0;
+  /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
+  /// sorted, each once. Valid until the next call.
+  virtual const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) = 0;
+  /// Pairs that come within a tenth of the thickness, sorted, each once: what a step must not do.
+  /// A motion that begins with all pairs apart by more has none where it does not move.
+  virtual const std::vector<TouchingPair>& check(const SurfaceMotion& motion) = 0;
+  /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
+  virtual ClosestPair closest(const SurfacePlaces& places, double cap) = 0;
+
+  /// Of all calls since the last counts().
+  virtual DetectionCounts counts() = 0;
+};
+
+/// @param surfaces  kept by the caller
+std::unique_ptr<Detector> make_cpu_detector(const CollisionSurfaces& surfaces,
+                                            const DetectorOptions& options);
+/// @throws CudaError  without CUDA or a usable device
+std::unique_ptr<Detector> make_cuda_detector(const CollisionSurfaces& surfaces,
+                                             const DetectorOptions& options);
+
+}  // namespace tetwarp

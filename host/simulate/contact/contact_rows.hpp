@@ -1,0 +1,43 @@
+/// @file contact_rows.hpp
+/// The jacobian of contacts in the blocks of a Model: u = J v along the axes of each contact.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tetwarp/contact_tracker.hpp>
+
+#include "host/simulate/contact/scene_surfaces.hpp"
+
+namespace tetwarp {
+
+/// Of each contact the blocks that it acts on, ascending, each once.
+struct ContactRows {
+  std::vector<std::int32_t> start;           ///< [contacts + 1]
+  std::vector<std::int32_t> block;           ///< [entries] of the model
+  std::vector<std::array<double, 9>> value;  ///< [entries] row k: velocity along axis k of the
+                                             ///< contact per velocity of the block
+
+  std::span<const std::int32_t> blocks_of(std::size_t contact) const {
+    return std::span(block).subspan(static_cast<std::size_t>(start[contact]),
+                                    static_cast<std::size_t>(start[contact + 1] - start[contact]));
+  }
+};
+
+/// Frame of the model of each body and obstacle that has one, else -1.
+std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Model& model);
+
+/// A point of a rigid body at x moves with v + omega x (x - centre); a point of a deformable body
+/// with the weighted mean of up to 12 nodes.
+/// @param frames  of frames_of_bodies()
+/// @param state   at the start of the step
+/// @param rows    out; memory is kept
+void set_contact_rows(const SceneSurfaces& scene,
+                      const Model& model,
+                      std::span<const std::int32_t> frames,
+                      const ModelState& state,
+                      const std::vector<TrackedContact>& contacts,
+                      ContactRows& rows);
+
+}  // namespace tetwarp

@@ -1,0 +1,268 @@
+#include "host/simulate/contact/contact_system.hpp"
+
+#include <algorithm>
+
+#include "host/simulate/contact/contact_islands.hpp"
+#include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/step_problem.hpp"
+#include "host/simulate/contact/two_level_solver.hpp"
+
+namespace tetwarp {
+namespace {
+
+std::size_t at(std::int64_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Copies the entries of some contacts, `width` numbers of each.
+void gather(const std::vector<std::int32_t>& contacts,
+            std::size_t width,
+            const std::vector<double>& from,
+            std::vector<double>& to) {
+  to.clear();
+  for (const std::int32_t contact : contacts) {
+    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(width * at(contact));
+    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+  }
+}
+
+/// Copies friction, offsets, adhesion and guess of some contacts.
+void gather_laws(const std::vector<std::int32_t>& contacts,
+                 const ContactProblem& from,
+                 ContactProblem& to) {
+  const AdhesionState& adhesion = from.adhesion;
+  gather(contacts, 1, from.friction, to.friction);
+  gather(contacts, 3, from.velocity_offset, to.velocity_offset);
+  gather(contacts, 3, from.impulse_guess, to.impulse_guess);
+  to.adhesion.time_step = adhesion.time_step;
+  gather(contacts, 1, adhesion.area, to.adhesion.area);
+  gather(contacts, 1, adhesion.stiffness, to.adhesion.stiffness);
+  gather(contacts, 1, adhesion.tangential_stiffness, to.adhesion.tangential_stiffness);
+  gather(contacts, 1, adhesion.intensity, to.adhesion.intensity);
+  gather(contacts, 3, adhesion.gap, to.adhesion.gap);
+  gather(contacts, 1, adhesion.energy, to.adhesion.energy);
+  gather(contacts, 1, adhesion.viscosity, to.adhesion.viscosity);
+  gather(contacts, 1, adhesion.bonding_rate, to.adhesion.bonding_rate);
+  gather(contacts, 1, adhesion.saturation_pressure, to.adhesion.saturation_pressure);
+}
+
+/// Coupling islands and contacts that one solver takes.
+struct Share {
+  std::vector<std::uint8_t> islands;
+  std::vector<std::int32_t> contacts;  ///< ascending
+
+  void clear(std::int32_t island_count) {
+    islands.assign(at(island_count), 0);
+    contacts.clear();
+  }
+  bool is_empty() const { return std::find(islands.begin(), islands.end(), 1) == islands.end(); }
+  void take(const Share& other) {
+    for (std::size_t i = 0; i < islands.size(); ++i) islands[i] |= other.islands[i];
+    contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
+    std::sort(contacts.begin(), contacts.end());
+  }
+};
+
+/// Without Newton's steps no method but sweeps, and no search for the reasons why they fail.
+ContactOptions sweeping(ContactOptions options) {
+  const bool is_automatic = options.method == ContactMethod::automatic;
+  if (is_automatic && options.max_newton == 0) options.method = ContactMethod::nonlinear_cg;
+  return options;
+}
+
+}  // namespace
+
+struct ContactSystem::State {
+  State(const SceneSurfaces& surfaces, const Model& of, const ContactSystemOptions& given)
+      : scene(surfaces),
+        model(of),
+        options(given),
+        frames(frames_of_bodies(surfaces, of)),
+        islands(of),
+        two_level(of, given.solver),
+        solver(sweeping(given.solver)) {}
+
+  void set_laws(const ContactTracker& tracker,
+                const std::vector<TrackedContact>& contacts,
+                const std::vector<Point3>& velocity);
+  void divide();
+  void take_impulses(const Share& share,
+                     const std::vector<double>& impulse,
+                     const std::vector<double>& velocity);
+  void add_block_impulses();
+  double recovery_speed(const ContactKey& key) const;
+  bool iterates_two_levels() const;
+
+  const SceneSurfaces& scene;
+  const Model& model;
+  ContactSystemOptions options;
+  std::vector<std::int32_t> frames;  ///< [bodies, then obstacles]
+  ContactRows rows;
+  ContactIslands islands;
+  ContactProblem laws, soft_laws;  ///< friction, offsets, adhesion, guess; no matrices
+  Share soft, other;               ///< of the two-level iteration, of the contact solver
+  TwoLevelSolver two_level;
+  StepProblem part;
+  ContactSolver solver;
+  std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
+  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery
+  ContactSolution solution;
+  std::vector<Point3> impulses, no_change;  ///< [block_count]
+};
+
+/// Whether the options leave the choice of the method.
+bool ContactSystem::State::iterates_two_levels() const {
+  return options.solver.backend != Backend::reference &&
+         options.solver.method == ContactMethod::automatic &&
+         options.solver.coupling == ContactCoupling::automatic &&
+         options.solver.measure == ContactMeasure::eta;
+}
+
+double ContactSystem::State::recovery_speed(const ContactKey& key) const {
+  return options.recovery_fraction *
+         std::min(scene.body_size[at(key.body_a)], scene.body_size[at(key.body_b)]);
+}
+
+/// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and limits
+/// the normal ones, from which existing penetration is undone within the step.
+void ContactSystem::State::set_laws(const ContactTracker& tracker,
+                                    const std::vector<TrackedContact>& contacts,
+                                    const std::vector<Point3>& velocity) {
+  tracker.fill(laws);
+  const double time_step = laws.adhesion.time_step;
+  prescribed.assign(3 * contacts.size(), 0);
+  recovered.assign(contacts.size(), 0);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
+      const std::int32_t block = rows.block[at(e)];
+      if (model.prescribed[at(block)] == 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          prescribed[3 * c + k] += rows.value[at(e)][3 * k + i] * velocity[at(block)][i];
+        }
+      }
+    }
+    const TrackedContact& contact = contacts[c];
+    const double closing = contact.gap[0] / time_step, limit = -recovery_speed(contact.key);
+    const bool rebounds = contact.rebound_speed > 0 && -contact.rebound_speed <= closing;
+    if (closing < limit && !rebounds) {
+      const double slowest =
+          contact.rebound_speed > 0 ? std::min(limit, -contact.rebound_speed) : limit;
+      recovered[c] = std::max(slowest - closing, 0.0);
+    }
+    laws.velocity_offset[3 * c] += recovered[c];
+    for (std::size_t k = 0; k < 3; ++k) {
+      laws.velocity_offset[3 * c + k] += prescribed[3 * c + k];
+    }
+    laws.adhesion.gap[3 * c] += time_step * prescribed[3 * c];
+  }
+}
+
+/// Contact islands of bodies that A couples go to the two-level iteration, all others to the
+/// contact solver.
+void ContactSystem::State::divide() {
+  soft.clear(islands.count());
+  other.clear(islands.count());
+  const bool divides = iterates_two_levels();
+  for (std::int32_t i = 0; i < islands.count(); ++i) {
+    if (!islands.has_contacts(i) && options.skips_islands) continue;
+    (divides && islands.is_soft(i) ? soft : other).islands[at(i)] = 1;
+  }
+  for (std::size_t c = 0; c < islands.of_contact().size(); ++c) {
+    const std::int32_t island = islands.of_contact()[c];
+    if (island < 0) continue;
+    (soft.islands[at(island)] != 0 ? soft : other).contacts.push_back(static_cast<std::int32_t>(c));
+  }
+}
+
+void ContactSystem::State::take_impulses(const Share& share,
+                                         const std::vector<double>& impulse,
+                                         const std::vector<double>& velocity) {
+  for (std::size_t k = 0; k < share.contacts.size(); ++k) {
+    const std::size_t c = at(share.contacts[k]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      solution.impulse[3 * c + axis] = impulse[3 * k + axis];
+      solution.velocity[3 * c + axis] = velocity[3 * k + axis];
+    }
+  }
+}
+
+void ContactSystem::State::add_block_impulses() {
+  impulses.assign(at(model.block_count()), Point3{0, 0, 0});
+  for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
+    for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
+      Point3& own = impulses[at(rows.block[at(e)])];
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          own[i] += rows.value[at(e)][3 * axis + i] * solution.impulse[3 * c + axis];
+        }
+      }
+    }
+  }
+}
+
+ContactSystem::ContactSystem(const SceneSurfaces& scene,
+                             const Model& model,
+                             const ContactSystemOptions& options)
+    : state_(std::make_unique<State>(scene, model, options)) {}
+
+ContactSystem::~ContactSystem() = default;
+
+ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
+                                         const ModelState& state,
+                                         const ContactTracker& tracker,
+                                         const std::vector<TrackedContact>& contacts,
+                                         std::vector<Point3>& velocity,
+                                         std::vector<Point3>* change) {
+  State& s = *state_;
+  s.no_change.clear();
+  set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.rows);
+  s.islands.join(s.rows);
+  s.set_laws(tracker, contacts, velocity);
+  s.divide();
+  s.solution.report = {};
+  s.solution.impulse.assign(3 * contacts.size(), 0);
+  s.solution.velocity = s.laws.velocity_offset;  // of contacts that act on no unknown
+  ContactSolveOutcome outcome;
+  outcome.islands = s.islands.contact_island_count();
+  if (!s.soft.is_empty()) {
+    gather_laws(s.soft.contacts, s.laws, s.soft_laws);
+    const TwoLevelOutcome solved =
+        s.two_level.solve(system, state, s.islands, s.rows, s.soft.islands, s.soft.contacts,
+                          s.soft_laws, velocity, change != nullptr ? *change : s.no_change);
+    outcome.outer_iterations = solved.outer_iterations;
+    outcome.sweeps = solved.sweeps;
+    if (solved.converged) {
+      outcome.residual = solved.residual;
+      s.take_impulses(s.soft, s.two_level.impulse(), s.two_level.contact_velocity());
+    } else {
+      s.other.take(s.soft);
+    }
+  }
+  if (!s.other.is_empty()) {
+    s.part.set(system, s.islands, s.rows, s.other.islands, s.other.contacts);
+    ContactProblem& problem = s.part.problem();
+    gather_laws(s.other.contacts, s.laws, problem);
+    const ContactSolution solved = s.solver.solve(problem);
+    s.part.scatter(solved.body_velocity, velocity);
+    s.take_impulses(s.other, solved.impulse, solved.velocity);
+    s.solution.report = solved.report;
+    outcome.converged = solved.converged();
+    outcome.residual = std::max(outcome.residual, solved.report.residual.eta);
+    outcome.sweeps += solved.report.sweeps;
+    outcome.outer_iterations += solved.report.outer_iterations;
+  }
+  s.add_block_impulses();
+  // The tracker reads gaps from the velocities: without what slows recovery.
+  for (std::size_t c = 0; c < contacts.size(); ++c) s.solution.velocity[3 * c] -= s.recovered[c];
+  return outcome;
+}
+
+const ContactSolution& ContactSystem::solution() const {
+  return state_->solution;
+}
+const std::vector<Point3>& ContactSystem::block_impulses() const {
+  return state_->impulses;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,201 @@
+#include "host/simulate/contact/pair_contacts.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "host/base/point3.hpp"
+#include "host/simulate/contact/edge_side.hpp"
+
+namespace tetwarp {
+namespace {
+constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
+
+bool is_of_edges(const PairTouch& touch) {
+  return touch.kind == PairKind::edge_edge;
+}
+
+/// Touches of a vertex and a body follow each other: what is near at the start by distance, then
+/// what is hit on the way by time. Edges are last.
+bool comes_before(const PairTouch& p, const PairTouch& q) {
+  const auto order = [](const PairTouch& touch) {
+    return std::tuple(is_of_edges(touch), touch.a, touch.body_b, touch.time, touch.distance,
+                      touch.kind, touch.b);
+  };
+  return order(p) < order(q);
+}
+
+/// Whether the nearest point of a part is on an edge or corner that a nearer part has, too.
+bool is_edge_of(const PairTouch& touch, const PairTouch& nearer) {
+  if (touch.nearest_b == touch.part_b || touch.part_b[0] < 0) return false;
+  return std::all_of(touch.nearest_b.begin(), touch.nearest_b.end(), [&](std::int32_t vertex) {
+    return vertex < 0 ||
+           std::find(nearer.part_b.begin(), nearer.part_b.end(), vertex) != nearer.part_b.end();
+  });
+}
+
+ContactKey key_of(std::int32_t body_a,
+                  std::int32_t feature_a,
+                  std::int32_t body_b,
+                  std::int32_t feature_b) {
+  return std::tie(body_a, feature_a) <= std::tie(body_b, feature_b)
+             ? ContactKey{body_a, feature_a, body_b, feature_b}
+             : ContactKey{body_b, feature_b, body_a, feature_a};
+}
+
+const ContactRecord* record_of(std::span<const ContactRecord> records, const ContactKey& key) {
+  const auto found =
+      std::lower_bound(records.begin(), records.end(), key,
+                       [](const ContactRecord& a, const ContactKey& of) { return a.key < of; });
+  return found != records.end() && found->key == key ? &*found : nullptr;
+}
+}  // namespace
+
+PairContacts::PairContacts(const SceneSurfaces& scene)
+    : scene_(scene), areas_(scene.surfaces), patches_(scene, areas_) {}
+
+/// Whether each of two edges is what is nearest of its surface.
+bool PairContacts::is_nearest_of_edges(const PairTouch& touch,
+                                       const std::vector<Point3>& vertices) const {
+  const CollisionSurfaces& surfaces = scene_.surfaces;
+  return is_nearest(surfaces, areas_, touch.b, touch.normal, vertices) &&
+         is_nearest(surfaces, areas_, touch.a, times(-1, touch.normal), vertices);
+}
+
+void PairContacts::choose(std::size_t first, std::size_t end) {
+  kept_.assign(1, order_[first]);
+  for (std::size_t i = first + 1; i < end; ++i) {
+    const PairTouch& touch = touches_[order_[i]];
+    const double limit = touch.is_inside ? cosine_5 : cosine_45;
+    const bool is_new = std::all_of(kept_.begin(), kept_.end(), [&](std::size_t k) {
+      return dot(touch.normal, touches_[k].normal) < limit && !is_edge_of(touch, touches_[k]);
+    });
+    if (is_new) kept_.push_back(order_[i]);
+  }
+}
+
+std::int32_t PairContacts::slot_of(const PairTouch& touch,
+                                   std::span<const ContactRecord> records) const {
+  constexpr std::int32_t last = -64;
+  std::int32_t free = 0;
+  for (std::int32_t slot = -1; slot > last; --slot) {
+    if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) continue;
+    const ContactKey key = key_of(touch.body_a, touch.a, touch.body_b, slot);
+    const ContactRecord* record = record_of(records, key);
+    if (record == nullptr) {
+      if (free == 0) free = slot;
+      if (slot <= lowest_slot_) break;
+      continue;
+    }
+    const double sign = key.body_a == touch.body_a && key.feature_a == touch.a ? 1 : -1;
+    const double cosine = sign * dot(record->normal_world, touch.normal);
+    if (cosine > cosine_45 || record->normal_world == Point3{0, 0, 0}) return slot;
+  }
+  return free != 0 ? free : last;
+}
+
+void PairContacts::report(const PairTouch& touch,
+                          std::int32_t feature_a,
+                          std::int32_t feature_b,
+                          double area) {
+  ReportedContact& contact = contacts_.emplace_back();
+  contact.key = key_of(touch.body_a, feature_a, touch.body_b, feature_b);
+  const bool is_turned = contact.key.body_a != touch.body_a || contact.key.feature_a != feature_a;
+  const double sign = is_turned ? -1 : 1;
+  contact.point_a_world = touch.point_a;
+  contact.point_b_world = touch.point_b;
+  contact.material_a = touch.material_a;
+  contact.material_b = touch.material_b;
+  if (is_turned) {
+    std::swap(contact.point_a_world, contact.point_b_world);
+    std::swap(contact.material_a, contact.material_b);
+  }
+  contact.normal = times(sign, touch.normal);
+  contact.area = area;
+  contact.material = scene_.material_of(touch.body_a, touch.body_b);
+  const Point3 across = minus(touch.way, times(dot(touch.way, touch.normal), touch.normal));
+  if (norm(across) > 1e-9 * scene_.surfaces.thickness) contact.tangent = times(sign, unit(across));
+}
+
+void PairContacts::report_vertex(std::size_t first,
+                                 std::size_t end,
+                                 const std::vector<Point3>& vertices,
+                                 std::span<const ContactRecord> records) {
+  choose(first, end);
+  slots_.clear();
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    const PairTouch& touch = touches_[kept_[k]];
+    // A part that faces almost as a nearer one takes none of its area.
+    const bool has_area = std::none_of(
+        kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(k), [&](std::size_t nearer) {
+          return dot(touches_[nearer].normal, touch.normal) >= cosine_45;
+        });
+    double area = 0;
+    if (has_area && touch.kind == PairKind::vertex_plane) {
+      area = areas_.seen(touch.a, touch.normal, vertices);
+    } else if (has_area && touch.kind == PairKind::vertex_face) {
+      area =
+          areas_.share(touch.body_a, touch.body_b) * areas_.seen(touch.a, touch.normal, vertices);
+    }
+    slots_.push_back(slot_of(touch, records));
+    report(touch, touch.a, slots_.back(), area);
+  }
+}
+
+const std::vector<ReportedContact>& PairContacts::find(const std::vector<TouchingPair>& pairs,
+                                                       std::span<const std::int32_t> pass,
+                                                       std::span<const SurfaceMotion> motions,
+                                                       std::span<const ContactRecord> records) {
+  touches_.clear();
+  contacts_.clear();
+  if (pairs.empty()) return contacts_;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const SurfaceMotion& motion = motions[static_cast<std::size_t>(pass[p])];
+    const PairTouch touch = touch_of(pairs[p], scene_, motion, motions[0]);
+    const bool is_hit = pairs[p].time <= 1;
+    if (!is_of_edges(touch) ||
+        (touch.is_inside && (is_hit || is_nearest_of_edges(touch, motions[0].start.vertices)))) {
+      touches_.push_back(touch);
+    }
+  }
+  order_.resize(touches_.size());
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::sort(order_.begin(), order_.end(),
+            [&](std::size_t i, std::size_t k) { return comes_before(touches_[i], touches_[k]); });
+  lowest_slot_ = -1;
+  for (const ContactRecord& record : records) {
+    const std::int32_t lowest = std::min(record.key.feature_a, record.key.feature_b);
+    if (lowest > RigidPatches::first_feature) lowest_slot_ = std::min(lowest_slot_, lowest);
+  }
+  const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
+  for (std::size_t first = 0; first < order_.size();) {
+    const PairTouch& touch = touches_[order_[first]];
+    if (is_of_edges(touch)) {
+      report(touch, touch.a + vertex_count, touch.b + vertex_count, 0);
+      ++first;
+      continue;
+    }
+    std::size_t end = first + 1;
+    while (end < order_.size() && !is_of_edges(touches_[order_[end]]) &&
+           touches_[order_[end]].a == touch.a && touches_[order_[end]].body_b == touch.body_b) {
+      ++end;
+    }
+    report_vertex(first, end, motions[0].start.vertices, records);
+    first = end;
+  }
+  patches_.reduce(contacts_, motions[0].start.vertices, records);
+  std::sort(contacts_.begin(), contacts_.end(),
+            [](const ReportedContact& p, const ReportedContact& q) { return p.key < q.key; });
+  return contacts_;
+}
+
+std::vector<ReportedContact> contacts_of(const std::vector<TouchingPair>& pairs,
+                                         std::span<const std::int32_t> pass,
+                                         const SceneSurfaces& scene,
+                                         std::span<const SurfaceMotion> motions) {
+  PairContacts contacts(scene);
+  return contacts.find(pairs, pass, motions);
+}
+
+}  // namespace tetwarp

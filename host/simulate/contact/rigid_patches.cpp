@@ -1,0 +1,138 @@
+#include "host/simulate/contact/rigid_patches.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp {
+namespace {
+constexpr double cosine_20 = 0.9396926207859084;
+constexpr double growth = 1.1;  ///< of a patch before a bonded point moves
+
+ContactKey point_key(const ContactKey& bodies, std::int32_t slot, std::int32_t point) {
+  constexpr std::int32_t first = RigidPatches::first_feature;
+  return {bodies.body_a, first - 4 * slot - point, bodies.body_b, first};
+}
+
+const ContactRecord* record_of(std::span<const ContactRecord> records, const ContactKey& key) {
+  const auto found =
+      std::lower_bound(records.begin(), records.end(), key,
+                       [](const ContactRecord& a, const ContactKey& of) { return a.key < of; });
+  return found != records.end() && found->key == key ? &*found : nullptr;
+}
+
+std::tuple<std::int32_t, std::int32_t> bodies_of(const ReportedContact& contact) {
+  return {contact.key.body_a, contact.key.body_b};
+}
+}  // namespace
+
+bool RigidPatches::is_rigid(const ReportedContact& contact) const {
+  return at(scene_.is_rigid, contact.key.body_a) != 0 &&
+         at(scene_.is_rigid, contact.key.body_b) != 0;
+}
+
+void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
+                          const std::vector<Point3>& vertices,
+                          std::span<const ContactRecord> records) {
+  order_.clear();
+  kept_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (is_rigid(contacts[c])) {
+      order_.push_back(c);
+    } else {
+      kept_.push_back(contacts[c]);
+    }
+  }
+  if (order_.empty()) return;
+  std::sort(order_.begin(), order_.end(), [&](std::size_t i, std::size_t k) {
+    return std::tuple(bodies_of(contacts[i]), contacts[i].key) <
+           std::tuple(bodies_of(contacts[k]), contacts[k].key);
+  });
+  for (std::size_t first = 0; first < order_.size();) {
+    left_.clear();
+    const auto bodies = bodies_of(contacts[order_[first]]);
+    for (; first < order_.size() && bodies_of(contacts[order_[first]]) == bodies; ++first) {
+      left_.push_back(order_[first]);
+    }
+    reduce_pair(contacts, vertices, records);
+  }
+  contacts.swap(kept_);
+}
+
+void RigidPatches::reduce_pair(std::vector<ReportedContact>& contacts,
+                               const std::vector<Point3>& vertices,
+                               std::span<const ContactRecord> records) {
+  slots_.clear();
+  while (!left_.empty()) {
+    patch_.clear();
+    next_left_.clear();
+    const ReportedContact& first = contacts[left_[0]];
+    for (const std::size_t c : left_) {
+      const bool is_alike = dot(contacts[c].normal, first.normal) > cosine_20;
+      (is_alike ? patch_ : next_left_).push_back(c);
+    }
+    left_.swap(next_left_);
+    if (at(scene_.materials, first.material).stiffness > 0) {
+      const PatchPoints points = moments_.points_of(contacts, patch_, vertices);
+      if (points.area > 0) add_points(first, points, records);
+    }
+    supports_.choose(contacts, patch_, scene_.surfaces.thickness, chosen_);
+    for (const std::size_t c : chosen_) {
+      kept_.push_back(contacts[c]);
+      kept_.back().area = 0;
+    }
+  }
+}
+
+/// The number of the patch of these bodies that faces this way, or one that is free.
+std::int32_t RigidPatches::slot_of(const ContactKey& bodies,
+                                   const Point3& normal,
+                                   std::span<const ContactRecord> records) {
+  std::int32_t free = -1;
+  for (std::int32_t slot = 0;; ++slot) {
+    if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) continue;
+    const ContactRecord* record = nullptr;
+    for (std::int32_t k = 0; k < 4 && record == nullptr; ++k) {
+      record = record_of(records, point_key(bodies, slot, k));
+    }
+    if (record == nullptr) {
+      // Patches are numbered from 0; one that has ended leaves a gap of one number at most.
+      if (free >= 0) return free;
+      free = slot;
+    } else if (dot(record->normal_world, normal) > cosine_20) {
+      return slot;
+    }
+  }
+}
+
+void RigidPatches::add_points(const ReportedContact& first,
+                              const PatchPoints& points,
+                              std::span<const ContactRecord> records) {
+  const std::int32_t slot = slot_of(first.key, points.normal, records);
+  slots_.push_back(slot);
+  std::array<const ContactRecord*, 4> record{};
+  double area = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    record[k] = record_of(records, point_key(first.key, slot, static_cast<std::int32_t>(k)));
+    if (record[k] != nullptr) area += record[k]->area;
+  }
+  const bool has_grown = points.area > growth * area;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const bool is_bonded = record[k] != nullptr && record[k]->intensity > 0;
+    if (is_bonded && !has_grown) continue;
+    const auto& [middle, gap] = points.point[k];
+    ReportedContact& contact = kept_.emplace_back();
+    contact.key = point_key(first.key, slot, static_cast<std::int32_t>(k));
+    contact.normal = points.normal;
+    contact.point_a_world = plus(middle, times(gap / 2, points.normal));
+    contact.point_b_world = minus(middle, times(gap / 2, points.normal));
+    contact.area = points.area / 4;
+    contact.material = first.material;
+    contact.tangent = first.tangent;
+    if (is_bonded) contact.bonded_share = std::min(1.0, record[k]->area / contact.area);
+  }
+}
+
+}  // namespace tetwarp

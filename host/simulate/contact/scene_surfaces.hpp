@@ -1,0 +1,75 @@
+/// @file scene_surfaces.hpp
+/// The surfaces of a scene's bodies and obstacles for contact, what they are bound to and which
+/// contact material a pair of bodies has.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tetwarp/contact_tracker.hpp>
+
+#include "host/collide/collision_surfaces.hpp"
+#include "host/scene/scene_geometry.hpp"
+#include "host/simulate/model.hpp"
+
+namespace tetwarp {
+
+/// The contact material of a pair of bodies that have their own.
+struct PairMaterial {
+  std::array<std::int32_t, 2> bodies{0, 0};  ///< first <= second
+  std::int32_t material = 0;                 ///< in SceneSurfaces::materials
+};
+
+struct SceneSurfaces {
+  CollisionSurfaces surfaces;
+  std::vector<ModelPoint> vertex_point;     ///< [vertices] what each vertex is bound to
+  std::vector<std::int32_t> surface_point;  ///< [vertices] its number among the points of the
+                                            ///< body's surface, ascending; -1: of a round body
+  std::vector<std::int32_t> plane_rigid;    ///< [planes] frame that moves it
+  std::vector<PlanePlace> plane_local;      ///< [planes] in that frame
+  std::vector<double> body_size;            ///< [bodies, then obstacles] diagonal of the box at the
+                                            ///< start [m]; infinite of planes, 0 without parts
+  std::vector<std::uint8_t> is_rigid;       ///< [bodies, then obstacles] all is fixed in one frame
+  std::vector<std::int32_t> body_rigid;     ///< [bodies, then obstacles] that frame, as
+                                            ///< ModelPoint::rigid, or -1: deformable
+  std::vector<ContactMaterial> materials;   ///< different ones
+  std::vector<std::int32_t> contact_class;  ///< [bodies, then obstacles] bodies of equal material
+  std::int32_t class_count = 0;
+  std::vector<std::int32_t> class_material;  ///< [classes][classes] of two classes
+  std::vector<PairMaterial> pair_materials;  ///< sorted by bodies
+
+  std::int32_t body_count() const { return static_cast<std::int32_t>(surfaces.bodies.size()); }
+  /// Of two bodies or obstacles, in either order.
+  std::int32_t material_of(std::int32_t a, std::int32_t b) const;
+};
+
+/// @pre check_scene() has passed
+/// @throws std::invalid_argument  in one line naming the body: too many triangles, a thickness that
+///         positions of this size cannot resolve
+SceneSurfaces make_scene_surfaces(const Scene& scene,
+                                  const SceneGeometry& geometry,
+                                  const Model& model);
+
+/// World places of all vertices and planes.
+/// @param places  out; memory is kept
+void surface_places(const SceneSurfaces& scene,
+                    const Model& model,
+                    const ModelState& state,
+                    int threads,
+                    SurfacePlaces& places);
+
+/// How all surfaces move in a step of velocities `velocity` [block_count]: nodes straight, rigid
+/// bodies by exp(dt omega). As BodyStepper::move().
+/// @param fraction  [bodies, then obstacles] of the step that each moves, 0 to 1; empty: 1
+/// @param motion    in: its start from surface_places(); out: end, sagitta
+void surface_motion(const SceneSurfaces& scene,
+                    const Model& model,
+                    const ModelState& state,
+                    const std::vector<Point3>& velocity,
+                    double time_step,
+                    std::span<const double> fraction,
+                    int threads,
+                    SurfaceMotion& motion);
+
+}  // namespace tetwarp

@@ -1,0 +1,96 @@
+/// @file touching_blocks.hpp
+/// Contacts in the metric of a two-level iteration: what their impulses move, and sweeps over them.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+#include "host/simulate/contact/coarse_space.hpp"
+#include "host/simulate/contact/contact_rows.hpp"
+#include "kernels/body/row_product.hpp"
+#include "kernels/contact/contact_law.hpp"
+
+namespace tetwarp {
+
+/// How far contacts are from their law, and the work of their impulses.
+struct TouchingSums {
+  double natural = 0;  ///< sum of natural_square() [J]
+  double work = 0;     ///< r . (u - free)
+};
+
+/// Vectors y hold velocities of all rows of the system [rows][3], then the coarse unknowns. With
+/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T a contact sees u = J y_rows + (J Z) y_coarse + w.
+class TouchingBlocks {
+ public:
+  /// @param laws        friction, offsets, adhesion of the contacts, and their guess
+  /// @param contacts    numbers of the contacts in `rows`
+  /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
+  void set(const StepSystem& system,
+           const CoarseSpace& coarse,
+           const ContactRows& rows,
+           const std::vector<std::int32_t>& contacts,
+           const ContactProblem& laws,
+           const DiagonalInverse<double>& inverse,
+           double relaxation);
+
+  std::int64_t count() const { return static_cast<std::int64_t>(constants_.size()); }
+
+  /// One pass of projected Gauss-Seidel. @param y  in and out. @param impulse  in and out
+  void sweep(ContactSwitches switches, double* y, double* impulse);
+  /// y += M^-1 J^T (after - before), [3 contacts] each.
+  void push(const double* before, const double* after, double* y) const;
+  /// Diagonal of the blocks J M^-1 J^T of the contacts, [3 contacts].
+  const std::vector<double>& diagonal() const { return diagonal_; }
+  /// u = J x + w of all contacts. @param x  [rows][3]. @param velocity  out [3 contacts]
+  void velocities_of_rows(const double* x, double* velocity) const;
+  /// @param free  u without impulses
+  TouchingSums measure(ContactSwitches switches,
+                       const double* impulse,
+                       const double* velocity,
+                       const double* free) const;
+  /// force = load + J^T r in the rows that contacts touch.
+  void add_impulses(View<const double> load, const double* impulse, double* force) const;
+
+  /// Springs whose gap is not dt w_n push by this at u_n = 0: impulses of the laws here are those
+  /// of the contacts plus it, [contacts].
+  const std::vector<double>& preload() const { return preload_; }
+
+ private:
+  /// Numbers of y that a contact moves.
+  struct Part {
+    std::int64_t first = 0;  ///< in y
+    std::int64_t value = 0;  ///< in jacobian_ and response_, both 3 x size
+    std::int32_t size = 0;   ///< a multiple of 3
+  };
+
+  void set_laws(const ContactProblem& laws);
+  void pack();
+  void add_rows(const StepSystem& system,
+                const CoarseSpace& coarse,
+                const ContactRows& rows,
+                std::int32_t contact);
+  void add_modes(const CoarseSpace& coarse, std::int64_t coarse_begin, std::size_t first_part);
+  void set_responses(const CoarseSpace& coarse,
+                     const DiagonalInverse<double>& inverse,
+                     double relaxation);
+  void gather(std::size_t contact, const double* y);
+  void velocity_at(std::size_t contact, const double* x, double* velocity) const;
+
+  std::vector<ContactConstants<double>> constants_;
+  std::vector<double> offset_, preload_, diagonal_;
+  std::vector<std::int32_t> part_start_;    ///< [contacts + 1]
+  std::vector<std::int32_t> coarse_start_;  ///< [contacts] first part of coarse unknowns
+  std::vector<Part> parts_;
+  std::vector<std::int32_t> part_item_;  ///< [parts] row, or island in CoarseSpace::islands()
+  std::vector<double> jacobian_, response_;
+  std::vector<std::int32_t> touched_;       ///< rows, ascending
+  std::vector<std::int64_t> packed_start_;  ///< [contacts + 1] in packed_
+  std::vector<std::int32_t> packed_size_;   ///< [contacts]
+  std::vector<double> packed_;              ///< of each contact three rows of J, three of responses
+  std::vector<double> gathered_;            ///< velocities of one contact
+  std::int32_t most_packed_ = 0;
+  std::vector<std::int32_t> row_of_block_, slots_;
+};
+
+}  // namespace tetwarp

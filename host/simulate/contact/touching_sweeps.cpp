@@ -1,0 +1,182 @@
+/// @file touching_sweeps.cpp
+/// TouchingBlocks in the iteration: sweeps, velocities, residuals.
+#include <algorithm>
+
+#include "host/simulate/contact/touching_blocks.hpp"
+#include "kernels/contact/contact_residual.hpp"
+
+namespace tetwarp {
+namespace {
+
+std::size_t at(std::int64_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+/// Copies Jacobians and responses of each contact to three rows of one length, a multiple of four
+/// that zeros fill up.
+void TouchingBlocks::pack() {
+  packed_start_.assign(1, 0);
+  packed_size_.clear();
+  std::size_t total = 0;
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    std::int32_t size = 0;
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) size += parts_[at(p)].size;
+    size = (size + 3) / 4 * 4;
+    packed_size_.push_back(size);
+    most_packed_ = std::max(most_packed_, size);
+    total += 6 * at(size);
+    packed_start_.push_back(static_cast<std::int64_t>(total));
+  }
+  packed_.assign(total, 0);
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    double* out = packed_.data() + packed_start_[c];
+    const std::int32_t size = packed_size_[c];
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const Part& part = parts_[at(p)];
+      for (std::int32_t a = 0; a < 3; ++a) {
+        const std::int64_t from = part.value + a * part.size;
+        std::copy_n(jacobian_.data() + from, part.size, out + a * size);
+        std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
+      }
+      out += part.size;
+    }
+  }
+  gathered_.assign(at(most_packed_), 0);
+}
+
+namespace {
+
+/// std::copy_n() is a call, which takes longer than copying a few numbers.
+void copy_threes(const double* from, std::int32_t size, double* to) {
+  for (std::int32_t k = 0; k < size; k += 3) {
+    const double a = from[k], b = from[k + 1], c = from[k + 2];
+    to[k] = a, to[k + 1] = b, to[k + 2] = c;
+  }
+}
+
+/// sum[a] += J_a . v, in four partial sums each, which compilers vectorize.
+void add_products(const double* jacobian, std::int32_t size, const double* v, double* sum) {
+  double lanes[3][4] = {};
+  for (std::int32_t k = 0; k < size; k += 4) {
+    for (int a = 0; a < 3; ++a) {
+      for (int i = 0; i < 4; ++i) lanes[a][i] += jacobian[a * size + k + i] * v[k + i];
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    sum[a] += (lanes[a][0] + lanes[a][1]) + (lanes[a][2] + lanes[a][3]);
+  }
+}
+
+}  // namespace
+
+/// The velocities that a contact depends on, in the order of its packed rows.
+void TouchingBlocks::gather(std::size_t contact, const double* y) {
+  double* out = gathered_.data();
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    copy_threes(y + parts_[at(p)].first, parts_[at(p)].size, out);
+    out += parts_[at(p)].size;
+  }
+  std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
+}
+
+void TouchingBlocks::sweep(ContactSwitches switches, double* y, double* impulse) {
+  double* const v = gathered_.data();
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    const std::int32_t size = packed_size_[c];
+    const double* const jacobian = packed_.data() + packed_start_[c];
+    const double* const response = jacobian + 3 * size;
+    gather(c, y);
+    double u[3] = {offset_[3 * c], offset_[3 * c + 1], offset_[3 * c + 2]};
+    add_products(jacobian, size, v, u);
+    double* const r = impulse + 3 * c;
+    const double before[3] = {r[0], r[1], r[2]};
+    solve_contact(constants_[c], switches, u, r);
+    const double change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
+    if (change[0] == 0 && change[1] == 0 && change[2] == 0) continue;
+    for (std::int32_t k = 0; k < size; ++k) {
+      v[k] += response[k] * change[0] + response[size + k] * change[1] +
+              response[2 * size + k] * change[2];
+    }
+    std::int32_t place = 0;
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1];
+         place += parts_[at(p)].size, ++p) {
+      copy_threes(v + place, parts_[at(p)].size, y + parts_[at(p)].first);
+    }
+  }
+}
+
+void TouchingBlocks::push(const double* before, const double* after, double* y) const {
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
+                         after[3 * c + 2] - before[3 * c + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const Part& part = parts_[at(p)];
+      const double* const response = response_.data() + part.value;
+      double* const v = y + part.first;
+      for (std::int32_t k = 0; k < part.size; ++k) {
+        v[k] += response[k] * r[0] + response[part.size + k] * r[1] +
+                response[2 * part.size + k] * r[2];
+      }
+    }
+  }
+}
+
+/// u of the rows of contacts, without coarse unknowns.
+void TouchingBlocks::velocity_at(std::size_t contact, const double* x, double* velocity) const {
+  for (std::size_t a = 0; a < 3; ++a) velocity[a] = offset_[3 * contact + a];
+  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
+    const Part& part = parts_[at(p)];
+    for (int a = 0; a < 3; ++a) {
+      const double* const j = jacobian_.data() + part.value + a * part.size;
+      for (std::int32_t k = 0; k < part.size; ++k) velocity[a] += j[k] * x[part.first + k];
+    }
+  }
+}
+
+void TouchingBlocks::velocities_of_rows(const double* x, double* velocity) const {
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    velocity_at(c, x, velocity + 3 * c);
+  }
+}
+
+TouchingSums TouchingBlocks::measure(ContactSwitches switches,
+                                     const double* impulse,
+                                     const double* velocity,
+                                     const double* free) const {
+  TouchingSums sums;
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    const ContactConstants<double>& own = constants_[c];
+    sums.natural += natural_square(own, switches, normal_weight(own), tangent_weight(own),
+                                   impulse + 3 * c, velocity + 3 * c);
+    for (std::size_t a = 3 * c; a < 3 * c + 3; ++a) {
+      sums.work += impulse[a] * (velocity[a] - free[a]);
+    }
+  }
+  return sums;
+}
+
+void TouchingBlocks::add_impulses(View<const double> load,
+                                  const double* impulse,
+                                  double* force) const {
+  for (const std::int32_t row : touched_) {
+    for (std::int64_t i = 3 * std::int64_t{row}; i < 3 * std::int64_t{row} + 3; ++i) {
+      force[i] = load[i];
+    }
+  }
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    const double r[3] = {impulse[3 * c] - preload_[c], impulse[3 * c + 1], impulse[3 * c + 2]};
+    for (std::int32_t p = part_start_[c]; p < coarse_start_[c]; ++p) {
+      const Part& part = parts_[at(p)];
+      const double* const j = jacobian_.data() + part.value;
+      for (std::int32_t k = 0; k < part.size; ++k) {
+        force[part.first + k] +=
+            j[k] * r[0] + j[part.size + k] * r[1] + j[2 * part.size + k] * r[2];
+      }
+    }
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,99 @@
+/// @file two_level_solver.hpp
+/// Contacts of deformable and coupled bodies: an outer iteration in two levels around sweeps.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/simulate/contact/touching_blocks.hpp"
+#include "kernels/contact/anderson.hpp"
+
+namespace tetwarp {
+
+struct TwoLevelOutcome {
+  bool converged = false;
+  double residual = 0;
+  std::int64_t outer_iterations = 0, sweeps = 0;
+};
+
+/// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
+/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T, D the diagonal blocks of A and Z the coarse space,
+///
+///     v_f = v + M^-1 (b + J^T r - A v)
+///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
+///     v = v_f + M^-1 J^T (r - r before)
+///
+/// with Anderson acceleration of v, and of r in the sweeps. It has converged where the defect of A
+/// v = b + J^T r in the norm of M^-1 and the natural map of the laws are together at most
+/// `tolerance` times the sum of the square root of the work of the impulses and of the natural map
+/// without impulses, or as small as the error of the velocities without contact.
+///
+/// Determinism: same bits for any number of threads.
+class TwoLevelSolver {
+ public:
+  TwoLevelSolver(const Model& model, const ContactOptions& options);
+
+  /// @param takes     [coupling islands] which are taken
+  /// @param contacts  numbers of the contacts in `rows`; they act on these islands
+  /// @param laws      friction, offsets, adhesion and guess of these contacts
+  /// @param velocity  in: without contact, [block_count]; out, if converged: with contact
+  /// @param change    in: how contacts changed the velocities in the step before, or empty; out: in
+  ///                  this one
+  TwoLevelOutcome solve(const StepSystem& system,
+                        const ModelState& state,
+                        const ContactIslands& islands,
+                        const ContactRows& rows,
+                        const std::vector<std::uint8_t>& takes,
+                        const std::vector<std::int32_t>& contacts,
+                        const ContactProblem& laws,
+                        std::vector<Point3>& velocity,
+                        std::vector<Point3>& change);
+
+  /// r and u of the contacts of the last solve(), [3 contacts].
+  const std::vector<double>& impulse() const { return impulse_; }
+  const std::vector<double>& contact_velocity() const { return contact_velocity_; }
+
+ private:
+  struct Chunk {
+    std::int32_t row_begin = 0, row_end = 0;
+    std::int32_t island = 0;  ///< in CoarseSpace::islands()
+  };
+
+  void prepare(const StepSystem& system,
+               const std::vector<std::int32_t>& contacts,
+               const ContactRows& rows,
+               const ContactProblem& laws,
+               const std::vector<Point3>& velocity,
+               const std::vector<Point3>& change);
+  void list_chunks(const SystemRows& rows);
+  double step(const StepSystem& system);
+  void step_chunk(std::int64_t chunk);
+  double find_error(double defect, double& work);
+  std::int64_t sweep(double enough);
+  void find_coarse();
+  void add_coarse();
+
+  const Model& model_;
+  ContactOptions options_;
+  ContactSwitches switches_;
+  int threads_;
+  double relaxation_;  ///< omega
+  CoarseSpace coarse_;
+  TouchingBlocks blocks_;
+  std::vector<Chunk> chunks_;
+  std::vector<double> inverse_;
+  DiagonalInverse<double> diagonal_;
+  std::vector<double> x_, product_, force_;  ///< [rows][3]
+  std::vector<double> y_;                    ///< as TouchingBlocks
+  std::vector<double> weights_, mixed_;
+  std::vector<double> restricted_;  ///< [chunks][most modes of an island] parts of Z^T d
+  std::vector<double> squares_;     ///< [chunks] parts of d . omega D^-1 d
+  std::vector<double> coarse_defect_;
+  std::int64_t restricted_width_ = 0;
+  double least_error_ = 0;                                 ///< of the velocities without contact
+  std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
+  std::vector<double> before_, swept_, mixed_impulses_;    ///< of sweep()
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,296 @@
+#include "host/simulate/run/contact_step.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <tuple>
+#include <utility>
+
+#include "host/base/point3.hpp"
+
+namespace tetwarp {
+namespace {
+
+/// Adds the seconds from its start to its end.
+class Clock {
+ public:
+  explicit Clock(double& seconds) : seconds_(seconds) {}
+  Clock(const Clock&) = delete;
+  Clock& operator=(const Clock&) = delete;
+  ~Clock() {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+    seconds_ += passed.count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool are_finite(const std::vector<Point3>& list) {
+  return std::all_of(list.begin(), list.end(), [](const Point3& x) { return is_finite(x); });
+}
+
+std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
+                                        const ContactStepOptions& options) {
+  DetectorOptions of;
+  of.threads = options.threads;
+  of.device = options.device;
+  of.reuse_pairs = options.skip.pairs;
+  return options.backend == Backend::cuda ? make_cuda_detector(surfaces, of)
+                                          : make_cpu_detector(surfaces, of);
+}
+
+/// Every material twice: the second ones without adhesion of surfaces that are near at the start.
+ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
+  ContactTrackerOptions of;
+  of.materials = surfaces.materials;
+  of.materials.insert(of.materials.end(), surfaces.materials.begin(), surfaces.materials.end());
+  for (std::size_t m = surfaces.materials.size(); m < of.materials.size(); ++m) {
+    of.materials[m].initial_intensity = 0;
+  }
+  of.match_distance = surfaces.surfaces.thickness;
+  of.touch_distance = surfaces.surfaces.thickness;
+  return of;
+}
+
+ContactSystemOptions system_options(const Scene& scene,
+                                    const ContactStepOptions& options,
+                                    std::function<bool(const ContactProgress&)> progress) {
+  ContactSystemOptions of;
+  of.solver.tolerance = scene.solver.contact_tolerance;
+  of.solver.law = scene.solver.pyramid ? FrictionLaw::pyramid : FrictionLaw::cone;
+  of.solver.rule = scene.solver.restrictive ? AdhesionRule::restrictive : AdhesionRule::parallel;
+  of.solver.backend = options.backend == Backend::reference ? Backend::reference : Backend::cpu;
+  of.solver.threads = options.threads;
+  // A step that these sweeps do not solve is divided, which helps more than Newton's method. Very
+  // tight tolerances take many sweeps also where all is well.
+  of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? 5000 : 300;
+  of.solver.max_newton = 0;
+  // A solver that remembers systems would not go on from a checkpoint bit for bit.
+  of.solver.skip.constant_systems = false;
+  if (options.progress) of.solver.progress = std::move(progress);
+  of.skips_islands = options.skip.islands;
+  return of;
+}
+
+}  // namespace
+
+void add_part(const ContactPart& part, ContactPart& sum) {
+  sum.is_completed = sum.is_completed && part.is_completed;
+  sum.converged = sum.converged && part.converged;
+  sum.residual = std::max(sum.residual, part.residual);
+  sum.contacts = part.contacts;
+  sum.islands = part.islands;
+  sum.passes += part.passes;
+  sum.sweeps += part.sweeps;
+  sum.outer_iterations += part.outer_iterations;
+  sum.clamped_islands += part.clamped_islands;
+  sum.stalled_scripts += part.stalled_scripts;
+  sum.smallest_fraction = std::min(sum.smallest_fraction, part.smallest_fraction);
+  sum.detection_seconds += part.detection_seconds;
+  sum.contact_seconds += part.contact_seconds;
+}
+
+ContactStep::ContactStep(const Scene& scene,
+                         const Model& model,
+                         const SceneSurfaces& surfaces,
+                         const ContactStepOptions& options)
+    : scene_(scene),
+      model_(model),
+      surfaces_(surfaces),
+      options_(options),
+      material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
+      detector_(make_detector(surfaces.surfaces, options)),
+      tracker_options_(tracker_options(surfaces)),
+      pair_contacts_(surfaces),
+      tracker_(tracker_options_),
+      system_(surfaces,
+              model,
+              system_options(scene,
+                             options,
+                             [this](const ContactProgress&) {
+                               was_ended_ = was_ended_ || !options_.progress();
+                               return !was_ended_;
+                             })),
+      groups_(model, surfaces.surfaces),
+      motions_(static_cast<std::size_t>(std::max(1, scene.solver.max_passes))) {}
+
+void ContactStep::set_places(const ModelState& state,
+                             const SurfacePlaces& of,
+                             std::vector<BodyPlace>& places) const {
+  places.resize(surfaces_.surfaces.bodies.size());
+  for (std::size_t b = 0; b < places.size(); ++b) {
+    places[b] = {};
+    const CollisionBody& body = surfaces_.surfaces.bodies[b];
+    if (surfaces_.is_rigid[b] != 0) {
+      const auto rigid = static_cast<std::size_t>(surfaces_.body_rigid[b]);
+      places[b].pose = {state.position[static_cast<std::size_t>(model_.node_count) + rigid],
+                        state.rotation[rigid]};
+    } else {
+      places[b].vertices = {of.vertices.data() + body.first_vertex,
+                            static_cast<std::size_t>(body.vertex_end - body.first_vertex)};
+    }
+  }
+}
+
+void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion& motion) {
+  if (&motion != &motions_[0]) motion.start = motions_[0].start;
+  surface_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, options_.threads,
+                 motion);
+}
+
+std::size_t ContactStep::add_pairs(const std::vector<TouchingPair>& found, std::int32_t pass) {
+  const auto key = [](const TouchingPair& pair) { return std::tuple(pair.kind, pair.a, pair.b); };
+  merged_pairs_.clear();
+  merged_pass_.clear();
+  std::size_t old = 0, added = 0;
+  const auto keep_old = [&] {
+    merged_pairs_.push_back(pairs_[old]);
+    merged_pass_.push_back(pass_of_[old++]);
+  };
+  for (const TouchingPair& pair : found) {
+    while (old < pairs_.size() && key(pairs_[old]) < key(pair)) keep_old();
+    if (old < pairs_.size() && key(pairs_[old]) == key(pair)) {
+      // A pair that was only near may have been no contact; one that now touches has to be.
+      if (pairs_[old].time <= 1 || pair.time > 1) continue;
+      ++old;
+    }
+    merged_pairs_.push_back(pair);
+    merged_pass_.push_back(pass);
+    ++added;
+  }
+  while (old < pairs_.size()) keep_old();
+  pairs_.swap(merged_pairs_);
+  pass_of_.swap(merged_pass_);
+  return added;
+}
+
+void ContactStep::report(bool is_first) {
+  reports_ = pair_contacts_.find(pairs_, pass_of_, motions_, tracker_.start_records());
+  for (ReportedContact& report : reports_) {
+    const double gap = dot(report.normal, minus(report.point_a_world, report.point_b_world));
+    if (!is_first || gap > surfaces_.surfaces.thickness) report.material += material_count_;
+  }
+  set_places(*start_, motions_[0].start, start_places_);
+  contacts_ = &tracker_.begin_step(reports_, start_places_, time_step_);
+}
+
+bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
+  const Clock clock(part.contact_seconds);
+  velocity_ = free_velocity_;
+  if (contacts_->empty()) return false;
+  if (!has_step_system_) step_system_ = stepper.system();
+  has_step_system_ = true;
+  const ContactSolveOutcome outcome =
+      system_.solve(step_system_, *start_, tracker_, *contacts_, velocity_, &change_);
+  part.converged = outcome.converged;
+  part.residual = outcome.residual;
+  part.sweeps += outcome.sweeps;
+  part.outer_iterations += outcome.outer_iterations;
+  part.is_completed = !was_ended_;
+  return part.is_completed && are_finite(velocity_);
+}
+
+void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part) {
+  velocity_ = free_velocity_;
+  for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
+    bool is_new = false;
+    {
+      const Clock clock(part.detection_seconds);
+      move_surfaces({}, motions_[pass]);
+      final_ = &motions_[pass];
+      const std::size_t added =
+          add_pairs(detector_->detect(motions_[pass]), static_cast<std::int32_t>(pass));
+      ++part.passes;
+      is_new = added > 0 || (pass == 0 && !tracker_.records().empty());
+      if (!is_new) return;
+      report(is_first);
+    }
+    if (!solve(stepper, part)) return;
+  }
+  const Clock clock(part.detection_seconds);
+  move_surfaces({}, clamped_);
+  final_ = &clamped_;
+}
+
+std::int64_t ContactStep::stalled_scripts() const {
+  const auto is_driven = [&](std::int32_t block) {
+    const auto i = static_cast<std::size_t>(block);
+    return model_.prescribed[i] != 0 && velocity_[i] != Point3{0, 0, 0};
+  };
+  std::int64_t count = 0;
+  for (std::size_t b = 0; b < fractions().size(); ++b) {
+    if (fractions()[b] == 1) continue;
+    bool is_script = false;
+    if (b + 1 < model_.body_node.size()) {
+      for (auto n = model_.body_node[b]; n < model_.body_node[b + 1]; ++n) {
+        is_script = is_script || is_driven(n);
+      }
+    }
+    if (const std::int32_t r = surfaces_.body_rigid[b]; r >= 0) {
+      const std::int32_t block = model_.node_count + 2 * r;
+      is_script = is_script || is_driven(block) || is_driven(block + 1);
+    }
+    count += is_script;
+  }
+  return count;
+}
+
+void ContactStep::keep_apart(ContactPart& part) {
+  const Clock clock(part.detection_seconds);
+  static const std::vector<TrackedContact> none;
+  groups_.begin(contacts_ == nullptr ? none : *contacts_);
+  part.islands = groups_.island_count();
+  // A motion without pairs has passed a detection at a larger distance already.
+  if (pairs_.empty()) return;
+  const SurfaceMotion* motion = final_;
+  while (groups_.stop(detector_->check(*motion), *motion)) {
+    move_surfaces(fractions(), clamped_);
+    motion = &clamped_;
+  }
+  part.smallest_fraction = groups_.smallest_fraction();
+  if (groups_.all_move()) return;
+  part.clamped_islands = groups_.stopped_islands();
+  part.stalled_scripts = stalled_scripts();
+}
+
+ContactPart ContactStep::advance(const ModelState& start,
+                                 double time_step,
+                                 bool is_first,
+                                 BodyStepper& stepper,
+                                 StepSeconds& seconds) {
+  ContactPart part;
+  start_ = &start;
+  time_step_ = time_step;
+  was_ended_ = false;
+  has_step_system_ = false;
+  contacts_ = nullptr;
+  pairs_.clear();
+  pass_of_.clear();
+  block_impulses_.assign(static_cast<std::size_t>(model_.block_count()), {0, 0, 0});
+  body_impulses_.assign(surfaces_.surfaces.bodies.size(), {0, 0, 0});
+  groups_.begin({});
+  stepper.get_velocities(free_velocity_);
+  if (are_finite(free_velocity_)) {
+    {
+      const Clock clock(part.detection_seconds);
+      surface_places(surfaces_, model_, start, options_.threads, motions_[0].start);
+      detector_->begin_step();
+    }
+    find_velocities(is_first, stepper, part);
+    if (!part.is_completed) return part;
+    if (are_finite(velocity_)) keep_apart(part);
+    if (contacts_ == nullptr || contacts_->empty()) {
+      change_.clear();
+    } else {
+      part.contacts = static_cast<std::int64_t>(contacts_->size());
+      stepper.set_velocities(velocity_);
+      sum_impulses();
+    }
+  }
+  seconds.update += stepper.move(
+      time_step, groups_.all_move() ? std::span<const double>{} : std::span(fractions()));
+  return part;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,151 @@
+/// @file contact_step.hpp
+/// ContactStep: the part of a time step that keeps bodies apart.
+///
+/// Detection along the free motion, contacts, their solution, detection along the motion that
+/// results, until nothing new is hit; then a check that no pair comes too near, which shortens the
+/// ways of those that do. A scene that starts apart never intersects.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tetwarp/contact_tracker.hpp>
+#include <tetwarp/simulate.hpp>
+
+#include "host/collide/detector.hpp"
+
+#include "host/simulate/contact/contact_system.hpp"
+#include "host/simulate/contact/pair_contacts.hpp"
+#include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/simulate/run/step_groups.hpp"
+#include "host/simulate/stepper.hpp"
+
+namespace tetwarp {
+
+struct ContactStepOptions {
+  Backend backend = Backend::cpu;
+  int threads = 1;
+  int device = 0;
+  SimulateSkipOptions skip = {};
+  std::function<bool()> progress = {};  ///< false ends the step
+};
+
+/// What contact did in a step or a part of one.
+struct ContactPart {
+  bool is_completed = true;  ///< false: `progress` ended it
+  bool converged = true;
+  double residual = 0;  ///< eta, the largest
+  std::int64_t contacts = 0, islands = 0;
+  std::int64_t passes = 0, sweeps = 0, outer_iterations = 0;
+  std::int64_t clamped_islands = 0, stalled_scripts = 0;
+  double smallest_fraction = 1;  ///< of the step that an island moved
+  double detection_seconds = 0, contact_seconds = 0;
+};
+/// Adds counts and seconds of a later part; contacts and islands are those of the last part.
+void add_part(const ContactPart& part, ContactPart& sum);
+
+/// What goes on from step to step.
+struct ContactMemory {
+  std::vector<ContactRecord> records;
+  std::vector<Point3> change;  ///< of velocities by contacts in the last step, or empty
+};
+
+class ContactStep {
+ public:
+  /// @param scene, model, surfaces  kept by the caller
+  ContactStep(const Scene& scene,
+              const Model& model,
+              const SceneSurfaces& surfaces,
+              const ContactStepOptions& options);
+
+  ContactStep(const ContactStep&) = delete;
+  ContactStep& operator=(const ContactStep&) = delete;
+
+  /// Whether any two surfaces of a scene may ever touch.
+  static bool can_touch(const CollisionSurfaces& surfaces);
+
+  /// For the start of a simulation.
+  Detector& detector() { return *detector_; }
+
+  /// After BodyStepper::solve(): replaces the velocities by those with contact and moves the
+  /// bodies.
+  /// @param start     state at the start of the part
+  /// @param is_first  whether it is the first part of a simulation, in which surfaces that are near
+  ///                  have their initial adhesion
+  ContactPart advance(const ModelState& start,
+                      double time_step,
+                      bool is_first,
+                      BodyStepper& stepper,
+                      StepSeconds& seconds);
+  /// Ends a part that advance() has completed.
+  /// @param after  state at its end
+  void end(const ModelState& after, ContactPart& part);
+
+  /// Of the last part: the fraction of it that each body and obstacle moved.
+  const std::vector<double>& fractions() const { return groups_.fractions(); }
+  /// Of the last part: impulses of contacts on blocks [block_count], and on bodies, then obstacles.
+  const std::vector<Point3>& block_impulses() const { return block_impulses_; }
+  const std::vector<Point3>& body_impulses() const { return body_impulses_; }
+  /// The contacts at the end of the last part.
+  const std::vector<ContactPoint>& points() const { return points_; }
+
+  void remember(ContactMemory& memory) const {
+    memory.records = tracker_.records();
+    memory.change = change_;
+  }
+  void restore(const ContactMemory& memory);
+
+  /// Fills the adhesion's energy and area, and the smallest distance, in a state.
+  void record(const ModelState& state, StepRecord& record);
+
+ private:
+  void set_places(const ModelState& state,
+                  const SurfacePlaces& of,
+                  std::vector<BodyPlace>& places) const;
+  void move_surfaces(std::span<const double> fraction, SurfaceMotion& motion);
+  std::size_t add_pairs(const std::vector<TouchingPair>& found, std::int32_t pass);
+  void report(bool is_first);
+  bool solve(BodyStepper& stepper, ContactPart& part);
+  void find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part);
+  void keep_apart(ContactPart& part);
+  std::int64_t stalled_scripts() const;
+  void sum_impulses();
+  ContactPlace place_of(std::size_t body, const MaterialPoint& point) const;
+  void set_points();
+
+  const Scene& scene_;
+  const Model& model_;
+  const SceneSurfaces& surfaces_;
+  ContactStepOptions options_;
+  std::int32_t material_count_ = 0;
+  bool was_ended_ = false;  ///< by progress
+  std::unique_ptr<Detector> detector_;
+  ContactTrackerOptions tracker_options_;
+  PairContacts pair_contacts_;
+  ContactTracker tracker_;
+  ContactSystem system_;
+  StepGroups groups_;
+
+  // Of the running part; kept, so that steps do not allocate them.
+  const ModelState* start_ = nullptr;
+  double time_step_ = 0;
+  StepSystem step_system_;  ///< read when contacts need it
+  bool has_step_system_ = false;
+  std::vector<Point3> free_velocity_, velocity_;
+  std::vector<Point3> change_;          ///< see ContactMemory
+  std::vector<SurfaceMotion> motions_;  ///< of the detections
+  SurfaceMotion clamped_;               ///< of the end check with fractions below 1
+  const SurfaceMotion* final_ = nullptr;
+  SurfacePlaces end_surfaces_;
+  std::vector<BodyPlace> start_places_, end_places_;
+  std::vector<TouchingPair> pairs_, merged_pairs_;
+  std::vector<std::int32_t> pass_of_, merged_pass_;
+  std::vector<ReportedContact> reports_;
+  const std::vector<TrackedContact>* contacts_ = nullptr;  ///< null: nothing touches
+  std::vector<Point3> block_impulses_, body_impulses_;
+  std::vector<ContactPoint> points_;
+};
+
+}  // namespace tetwarp

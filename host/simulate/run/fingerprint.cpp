@@ -1,0 +1,118 @@
+#include "host/simulate/run/checkpoint.hpp"
+
+namespace tetwarp {
+namespace {
+
+/// Source: Fowler, Noll, Vo (FNV-1a, 64 bits), eight bytes at a time.
+class Hash {
+ public:
+  template <class T>
+  void add(const std::vector<T>& list) {
+    add(static_cast<double>(list.size()));
+    for (const T& item : list) add(item);
+  }
+  template <class T, std::size_t count>
+  void add(const std::array<T, count>& list) {
+    for (const T& item : list) add(item);
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void add(T number) {
+    const auto wide = static_cast<double>(number);
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &wide, sizeof bits);
+    value_ = (value_ ^ bits) * 0x100000001b3U;
+    value_ ^= value_ >> 29;
+  }
+  void add(const ModelPoint& point) {
+    add(point.body);
+    add(point.node);
+    add(point.weight);
+    add(point.rigid);
+    add(point.local);
+  }
+  void add(const PathPoint& point) {
+    add(point.time);
+    add(point.displacement.has_value());
+    if (point.displacement) add(*point.displacement);
+    add(point.axis_angle);
+  }
+  void add(const Hinge& hinge) {
+    add(hinge.point);
+    add(hinge.axis);
+    add(hinge.angle);
+  }
+  void add(const Wave& wave) {
+    add(wave.axis);
+    add(wave.lateral);
+    add(wave.frequency);
+    add(wave.wavelength);
+    add(wave.phase);
+    add(wave.envelope);
+  }
+  void add(const std::monostate&) { add(0); }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325U;
+};
+
+void add_scene(const Scene& scene, Hash& hash) {
+  hash.add(scene.time_step);
+  hash.add(scene.gravity);
+  hash.add(scene.solver.linear_tolerance);
+  hash.add(scene.solver.max_substeps);
+  for (const Body& body : scene.bodies) {
+    hash.add(static_cast<int>(body.kind));
+    hash.add(body.motion.index());
+    std::visit([&](const auto& motion) { hash.add(motion); }, body.motion);
+    for (const DrivenNodes& driven : body.driven) hash.add(driven.path);
+  }
+  for (const Obstacle& obstacle : scene.obstacles) hash.add(obstacle.path);
+  for (const Handle& handle : scene.handles) hash.add(handle.path);
+  for (const Load& load : scene.loads) {
+    hash.add(load.force.value_or(Point3{0, 0, 0}));
+    hash.add(load.pressure.value_or(0));
+    hash.add(load.from);
+    hash.add(load.to);
+  }
+}
+
+}  // namespace
+
+std::uint64_t fingerprint_of(const Scene& scene, const Model& model) {
+  Hash hash;
+  add_scene(scene, hash);
+  hash.add(model.body_node);
+  hash.add(model.body_rigid);
+  hash.add(model.prescribed);
+  hash.add(model.tets.nodes);
+  hash.add(model.tets.gradient);
+  hash.add(model.tets.lambda);
+  hash.add(model.tets.mu);
+  hash.add(model.tets.gamma);
+  hash.add(model.edges.nodes);
+  hash.add(model.edges.stiffness);
+  hash.add(model.edges.rest_length);
+  hash.add(model.edges.gamma);
+  hash.add(model.springs.a);
+  hash.add(model.springs.b);
+  hash.add(model.springs.stiffness);
+  hash.add(model.springs.damping);
+  hash.add(model.springs.coupling);
+  hash.add(model.springs.handle);
+  hash.add(model.scalar_blocks.nodes);
+  hash.add(model.scalar_blocks.mass);
+  hash.add(model.scalar_blocks.mass_alpha);
+  hash.add(model.scalar_blocks.bend);
+  hash.add(model.scalar_blocks.bend_gamma);
+  hash.add(model.rigid.mass);
+  hash.add(model.rigid.inertia);
+  hash.add(model.rigid.alpha);
+  hash.add(model.rigid.centre);
+  hash.add(model.start.position);
+  hash.add(model.start.velocity);
+  return hash.value();
+}
+
+}  // namespace tetwarp

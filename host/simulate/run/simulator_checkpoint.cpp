@@ -1,0 +1,198 @@
+#include <stdexcept>
+
+#include "host/simulate/run/checkpoint.hpp"
+#include "host/simulate/run/simulator_impl.hpp"
+#include "host/simulate/scene_record.hpp"
+
+namespace tetwarp {
+namespace {
+
+constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 2;
+
+// Each of these functions writes with a CheckpointWriter and reads with a CheckpointReader.
+
+template <class Stream, class Record>
+void pass_record(Stream& stream, Record& record) {
+  stream(record.key.body_a);
+  stream(record.key.feature_a);
+  stream(record.key.body_b);
+  stream(record.key.feature_b);
+  stream(record.material);
+  stream(record.has_touched);
+  stream(record.area);
+  stream(record.intensity);
+  stream(record.anchor_a);
+  stream(record.anchor_b);
+  stream(record.normal_a);
+  stream(record.normal_b);
+  stream(record.impulse_world);
+  for (auto* point : {&record.material_a, &record.material_b}) {
+    stream(point->local);
+    stream(point->vertex);
+    stream(point->weight);
+  }
+  stream(record.standoff);
+  stream(record.normal_world);
+}
+
+template <class Stream, class Point>
+void pass_point(Stream& stream, Point& point) {
+  stream(point.body_a);
+  stream(point.body_b);
+  stream(point.position);
+  stream(point.normal);
+  stream(point.impulse);
+  stream(point.gap);
+  stream(point.area);
+  stream(point.intensity);
+  stream(point.place_a.point);
+  stream(point.place_a.weight);
+  stream(point.place_b.point);
+  stream(point.place_b.weight);
+}
+
+template <class Stream, class Part>
+void pass_part(Stream& stream, Part& part) {
+  stream(part.converged);
+  stream(part.residual);
+  stream(part.contacts);
+  stream(part.islands);
+  stream(part.passes);
+  stream(part.sweeps);
+  stream(part.outer_iterations);
+  stream(part.clamped_islands);
+  stream(part.stalled_scripts);
+}
+
+template <class Stream, class Sums>
+void pass_sums(Stream& stream, Sums& sums) {
+  for (auto* list : {&sums.support, &sums.handle, &sums.coupling, &sums.load, &sums.contact,
+                     &sums.obstacle, &sums.on_a}) {
+    stream(*list);
+  }
+}
+
+template <class Stream, class State>
+void pass_state(Stream& stream, State& state) {
+  stream(state.position);
+  stream(state.rotation);
+  stream(state.velocity);
+  stream(state.angular_momentum);
+}
+
+}  // namespace
+
+/// What a checkpoint holds, besides its version and fingerprint.
+struct Simulator::Impl::Saved {
+  std::int64_t steps = 0, substeps = 0, held_steps = 0, undivided_steps = 0;
+  double work = 0;
+  StepOutcome outcome;
+  ContactPart contact;
+  ModelState state;
+  StepSums sums;
+  std::vector<std::optional<Point3>> handles;
+  DriveOverrides overrides;
+  std::vector<double> delays;
+  ContactMemory memory;
+  std::vector<ContactPoint> points;
+
+  template <class Stream, class Self>
+  static void pass(Stream& stream, Self& saved) {
+    stream(saved.steps);
+    stream(saved.work);
+    stream(saved.substeps);
+    stream(saved.held_steps);
+    stream(saved.undivided_steps);
+    stream(saved.outcome.linear_iterations);
+    stream(saved.outcome.linear_residual);
+    stream(saved.outcome.converged);
+    pass_part(stream, saved.contact);
+    pass_state(stream, saved.state);
+    pass_sums(stream, saved.sums);
+    for (auto& handle : saved.handles) stream(handle);
+    for (auto& handle : saved.overrides.handles) stream(handle);
+    for (auto& script : saved.overrides.scripts) stream(script);
+    stream(saved.delays);
+    stream.pass_list(saved.memory.records, [](auto& of, auto& record) { pass_record(of, record); });
+    stream.pass_list(saved.memory.change, [](auto& of, auto& change) { of(change); });
+    stream.pass_list(saved.points, [](auto& of, auto& point) { pass_point(of, point); });
+  }
+};
+
+Simulator::Impl::Saved Simulator::Impl::saved() const {
+  Saved now;
+  now.steps = step_index;
+  now.work = work_;
+  now.substeps = substeps_;
+  now.held_steps = held_steps_;
+  now.undivided_steps = undivided_steps_;
+  now.outcome = outcome_;
+  now.contact = contact_of_step_;
+  now.state = state;
+  now.sums = sums_;
+  now.handles = drive.handles();
+  now.overrides = drive.overrides();
+  now.delays = drive.delays();
+  if (contact_) contact_->remember(now.memory);
+  now.points = contact_points;
+  return now;
+}
+
+std::vector<std::byte> Simulator::Impl::checkpoint() const {
+  CheckpointWriter writer;
+  writer.add(checkpoint_version);
+  writer.add(fingerprint_of(scene, model));
+  const Saved now = saved();
+  Saved::pass(writer, now);
+  return writer.take();
+}
+
+void Simulator::Impl::restore(std::span<const std::byte> bytes) {
+  CheckpointReader reader(bytes);
+  std::uint64_t version = 0, fingerprint = 0;
+  reader.read(version);
+  if (version != checkpoint_version) {
+    throw std::invalid_argument(
+        version >> 32 == checkpoint_kind >> 32
+            ? "checkpoint: written by another version of tetwarp, which cannot be continued; run "
+              "the scene from its start"
+            : "checkpoint: not a checkpoint of this version of tetwarp on this kind of machine");
+  }
+  reader.read(fingerprint);
+  if (fingerprint != fingerprint_of(scene, model)) {
+    throw std::invalid_argument(
+        "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
+  }
+  // All is read before anything changes.
+  Saved read = saved();
+  Saved::pass(reader, read);
+  if (!reader.is_at_end() || read.steps < 0) {
+    throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
+  }
+  if (!is_finite_state(read.state)) {
+    throw std::invalid_argument("checkpoint: damaged, a position or velocity is not a number");
+  }
+  if (!read.memory.change.empty() && read.memory.change.size() != state.velocity.size()) {
+    throw std::invalid_argument("checkpoint: damaged, changes of velocities have another length");
+  }
+  if (contact_) contact_->restore(read.memory);
+  step_index = read.steps;
+  work_ = read.work;
+  substeps_ = read.substeps;
+  held_steps_ = read.held_steps;
+  undivided_steps_ = read.undivided_steps;
+  inverted_ = -1;
+  outcome_ = read.outcome;
+  contact_of_step_ = read.contact;
+  state = std::move(read.state);
+  sums_ = std::move(read.sums);
+  drive.handles() = std::move(read.handles);
+  drive.overrides() = std::move(read.overrides);
+  drive.delays() = std::move(read.delays);
+  contact_points = std::move(read.points);
+  record_.reset();
+  stepper->set_state(state);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,72 @@
+/// @file pair_gap.hpp
+/// Stage "pair_gap" of collision detection: the pair of features that is nearest.
+#pragma once
+#include <cstdint>
+
+#include "kernels/collide/pair_touch.hpp"
+
+namespace tetwarp {
+
+struct PairGap {
+  FeaturePair pair;
+  double distance;
+};
+
+/// Whether a is nearer, or first of equals.
+TETWARP_HD bool is_nearer(const PairGap& a, const PairGap& b) {
+  if (a.distance != b.distance) return a.distance < b.distance;
+  if (a.pair.kind != b.pair.kind) return a.pair.kind < b.pair.kind;
+  return a.pair.a != b.pair.a ? a.pair.a < b.pair.a : a.pair.b < b.pair.b;
+}
+
+constexpr std::int64_t gap_run = 64;  ///< pairs of one index of PairGapBody
+
+/// One index = gap_run pairs of features. Writes the nearest of them.
+struct PairGapBody {
+  CollideView scene;
+  MotionView motion;  ///< its start
+  View<const FeaturePair> pairs;
+  View<PairGap> gaps;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t run) const {
+    const std::int64_t end = min_of(pairs.size, (run + 1) * gap_run);
+    PairGap nearest = gap_of(pairs[run * gap_run]);
+    for (std::int64_t i = run * gap_run + 1; i < end; ++i) {
+      const PairGap gap = gap_of(pairs[i]);
+      if (is_nearer(gap, nearest)) nearest = gap;
+    }
+    gaps[run] = nearest;
+  }
+
+ private:
+  TETWARP_HD PairGap gap_of(const FeaturePair& pair) const {
+    return {pair, axis_distance(pair) - radius_of(scene, pair)};
+  }
+  /// Without radii.
+  TETWARP_HD double axis_distance(const FeaturePair& pair) const {
+    const PairVertices own = vertices_of(scene, pair);
+    const double* x[4] = {};
+    for (int k = 0; k < own.count; ++k) {
+      x[k] = motion.start.data + 3 * std::int64_t{own.vertex[k]};
+    }
+    double weight[3], s = 0, t = 0;
+    switch (pair.kind) {
+      case PairKind::vertex_face:
+        return vertex_face_distance(x[0], x[1], x[2], x[3], weight);
+      case PairKind::edge_edge:
+        return edge_edge_distance(x[0], x[1], x[2], x[3], &s, &t);
+      case PairKind::vertex_edge:
+        return edge_edge_distance(x[0], x[0], x[1], x[2], &s, &t);
+      case PairKind::vertex_vertex:
+        return edge_edge_distance(x[0], x[0], x[1], x[1], &s, &t);
+      default:
+        break;
+    }
+    const double* const plane = motion.plane_start.data + 6 * std::int64_t{pair.b};
+    double height = 0;
+    for (int k = 0; k < 3; ++k) height += plane[3 + k] * (x[0][k] - plane[k]);
+    return height;
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,128 @@
+/// @file pair_touch.hpp
+/// Stage "pair_touch" of collision detection: when two features touch, and how far apart they are.
+#pragma once
+#include <cstdint>
+
+#include "kernels/collide/collide_item.hpp"
+#include "kernels/collide/pair_ccd.hpp"
+#include "kernels/collide/pair_distance.hpp"
+#include "kernels/collide/pair_kind.hpp"
+#include "kernels/collide/plane_ccd.hpp"
+
+namespace tetwarp {
+
+/// The vertices of a pair: first those of a, then those of b.
+struct PairVertices {
+  std::int32_t vertex[4];
+  std::int32_t count_a, count;
+};
+
+TETWARP_HD PairVertices vertices_of(const CollideView& scene, const FeaturePair& pair) {
+  PairVertices own{{pair.a, pair.b, 0, 0}, 1, 2};
+  const std::int64_t a = pair.a, b = pair.b;
+  if (pair.kind == PairKind::vertex_face) {
+    for (int k = 0; k < 3; ++k) own.vertex[1 + k] = scene.triangles[3 * b + k];
+    own.count = 4;
+  } else if (pair.kind == PairKind::edge_edge) {
+    for (int k = 0; k < 2; ++k) {
+      own.vertex[k] = scene.edges[2 * a + k];
+      own.vertex[2 + k] = scene.edges[2 * b + k];
+    }
+    own.count_a = 2;
+    own.count = 4;
+  } else if (pair.kind == PairKind::vertex_edge) {
+    for (int k = 0; k < 2; ++k) own.vertex[1 + k] = scene.edges[2 * b + k];
+    own.count = 3;
+  } else if (pair.kind == PairKind::vertex_plane) {
+    own.count = 1;
+  }
+  return own;
+}
+
+/// Sum of the radii of both features.
+TETWARP_HD double radius_of(const CollideView& scene, const FeaturePair& pair) {
+  switch (pair.kind) {
+    case PairKind::edge_edge:
+      return scene.edge_radius[pair.a] + scene.edge_radius[pair.b];
+    case PairKind::vertex_edge:
+      return scene.vertex_radius[pair.a] + scene.edge_radius[pair.b];
+    case PairKind::vertex_vertex:
+      return scene.vertex_radius[pair.a] + scene.vertex_radius[pair.b];
+    default:
+      return scene.vertex_radius[pair.a];
+  }
+}
+
+/// One index = one pair of features. Writes its own entry; any order.
+struct PairTouchBody {
+  static constexpr int resident_blocks = 1;  ///< else registers are spilled
+
+  CollideView scene;
+  MotionView motion;
+  CcdLimits limits;
+  View<const FeaturePair> pairs;
+  View<CcdResult> results;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    const FeaturePair pair = pairs[i];
+    const PairVertices own = vertices_of(scene, pair);
+    MovingPoints points{};
+    points.radius = radius_of(scene, pair);
+    for (int k = 0; k < own.count; ++k) {
+      const std::int64_t v = own.vertex[k];
+      points.start[k] = motion.start.data + 3 * v;
+      points.end[k] = motion.end.data + 3 * v;
+      double& sagitta = k < own.count_a ? points.sagitta_a : points.sagitta_b;
+      sagitta = max_of(sagitta, motion.sagitta[v]);
+    }
+    points.frame_a = motion.frame_of(scene.vertex_body[own.vertex[0]]);
+    if (own.count > own.count_a) {
+      points.frame_b = motion.frame_of(scene.vertex_body[own.vertex[own.count_a]]);
+    }
+    results[i] = result_of(pair, points);
+  }
+
+ private:
+  TETWARP_HD CcdResult result_of(const FeaturePair& pair, const MovingPoints& points) const {
+    switch (pair.kind) {
+      case PairKind::vertex_face:
+        return vertex_face_ccd(points, limits);
+      case PairKind::edge_edge:
+        return edge_edge_ccd(points, limits);
+      case PairKind::vertex_edge:
+        return vertex_edge_ccd(points, limits);
+      case PairKind::vertex_vertex:
+        return vertex_vertex_ccd(points, limits);
+      default:
+        break;
+    }
+    const double* const start = motion.plane_start.data + 6 * std::int64_t{pair.b};
+    const double* const end = motion.plane_end.data + 6 * std::int64_t{pair.b};
+    const TurningFrame* const frame = motion.frame_of(scene.plane_body[pair.b]);
+    return vertex_plane_ccd(points, MovingPlane{start, start + 3, end, end + 3, frame}, limits);
+  }
+};
+
+/// A pair that touches, or is near at the start.
+struct FeatureTouch {
+  FeaturePair pair;
+  double time, start_distance;
+};
+
+/// One index = one pair of features. Appends those that touch, or begin within a distance.
+struct TouchFilterBody {
+  View<const FeaturePair> pairs;
+  View<const CcdResult> results;
+  double near_at_start;  ///< [m]
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    const CcdResult& result = results[i];
+    emit.tally(result.evaluations);
+    if (result.time <= 1 || result.start_distance < near_at_start) {
+      emit(FeatureTouch{pairs[i], result.time, result.start_distance});
+    }
+  }
+};
+
+}  // namespace tetwarp

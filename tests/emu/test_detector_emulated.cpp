@@ -1,0 +1,81 @@
+/// @file test_detector_emulated.cpp
+/// The detector of back end cuda on the emulated device against that of cpu: the same pairs.
+#include <gtest/gtest.h>
+
+#include "tests/collide/collide_scenes.hpp"
+#include "tests/emu/device_calls.hpp"
+
+namespace tetwarp::test {
+namespace {
+void expect_equal(const DetectionCounts& a, const DetectionCounts& b) {
+  EXPECT_EQ(a.skipped_items, b.skipped_items);
+  EXPECT_EQ(a.grid_entries, b.grid_entries);
+  EXPECT_EQ(a.box_tests, b.box_tests);
+  EXPECT_EQ(a.box_pairs, b.box_pairs);
+  EXPECT_EQ(a.pairs, b.pairs);
+  EXPECT_EQ(a.evaluations, b.evaluations);
+  EXPECT_EQ(a.reused, b.reused);
+}
+
+void expect_parity(const CollideScene& scene) {
+  const auto cpu = make_cpu_detector(scene.surfaces, {});
+  const auto cuda = make_cuda_detector(scene.surfaces, {});
+  for (int step = 0; step < 2; ++step) {
+    cpu->begin_step();
+    cuda->begin_step();
+    EXPECT_EQ(cuda->detect(scene.motion), cpu->detect(scene.motion));
+    EXPECT_EQ(cuda->check(scene.motion), cpu->check(scene.motion));
+    expect_equal(cuda->counts(), cpu->counts());
+  }
+  const ClosestPair a = cpu->closest(scene.motion.start, 0.1);
+  const ClosestPair b = cuda->closest(scene.motion.start, 0.1);
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.a, b.a);
+  EXPECT_EQ(a.b, b.b);
+  EXPECT_EQ(a.distance, b.distance);
+}
+
+TEST(DetectorEmulated, MixedScenesHaveThePairsOfTheCpu) {
+  expect_parity(mixed_scene(41, 0.05));
+  expect_parity(mixed_scene(42, 0.5));
+}
+
+TEST(DetectorEmulated, APileHasThePairsOfTheCpu) {
+  expect_parity(pile_scene(6, 1500, {.touches_itself = true}));
+}
+
+TEST(DetectorEmulated, EmptyScenesHaveNoPairs) {
+  CollideScene scene;
+  scene.surfaces.thickness = 1e-3;
+  expect_parity(scene);
+  scene.add_plane({{0, 0, 0}, {0, 0, 1}});
+  expect_parity(scene);
+}
+
+/// Results must not depend on the order of threads.
+TEST(DetectorEmulated, EveryOrderOfThreadsGivesTheSamePairs) {
+  const CollideScene scene = mixed_scene(43, 0.05);
+  const auto expected = make_cpu_detector(scene.surfaces, {})->detect(scene.motion);
+
+  simt::for_each_schedule([&](const simt::Schedule&) {
+    EXPECT_EQ(make_cuda_detector(scene.surfaces, {})->detect(scene.motion), expected);
+  });
+}
+
+TEST(DetectorEmulated, LaterStepsAllocateNothingOnTheDevice) {
+  const CollideScene scene = mixed_scene(44, 0.05);
+  const auto cuda = make_cuda_detector(scene.surfaces, {});
+  const auto step = [&] {
+    cuda->begin_step();
+    cuda->detect(scene.motion);
+    cuda->check(scene.motion);
+  };
+  for (int k = 0; k < 2; ++k) step();
+  take_calls();
+
+  step();
+
+  EXPECT_EQ(take_calls().count(DeviceCall::allocate), 0);
+}
+}  // namespace
+}  // namespace tetwarp::test

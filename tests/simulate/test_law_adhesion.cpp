@@ -1,0 +1,82 @@
+/// @file test_law_adhesion.cpp
+/// Adhesion through whole steps: the force of a pull.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/simulate/law_scenes.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+/// A closed box whose bottom and top are n x n squares, its half edges as given.
+Surface divided_box(const Point3& half, int n) {
+  Surface box;
+  std::vector<std::int32_t> index(static_cast<std::size_t>((n + 1) * (n + 1) * 2));
+  const auto id = [&](int i, int j, int k) {
+    return static_cast<std::int32_t>((k * (n + 1) + j) * (n + 1) + i);
+  };
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j <= n; ++j) {
+      for (int i = 0; i <= n; ++i) {
+        box.points.push_back(
+            {half[0] * (2. * i / n - 1), half[1] * (2. * j / n - 1), half[2] * (2. * k - 1)});
+      }
+    }
+  }
+  const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d) {
+    box.triangles.push_back({a, b, c});
+    box.triangles.push_back({a, c, d});
+  };
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      quad(id(i, j, 0), id(i, j + 1, 0), id(i + 1, j + 1, 0), id(i + 1, j, 0));
+      quad(id(i, j, 1), id(i + 1, j, 1), id(i + 1, j + 1, 1), id(i, j + 1, 1));
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    quad(id(i, 0, 0), id(i + 1, 0, 0), id(i + 1, 0, 1), id(i, 0, 1));
+    quad(id(i + 1, n, 0), id(i, n, 0), id(i, n, 1), id(i + 1, n, 1));
+    quad(id(0, i + 1, 0), id(0, i, 0), id(0, i, 1), id(0, i + 1, 1));
+    quad(id(n, i, 0), id(n, i + 1, 0), id(n, i + 1, 1), id(n, i, 1));
+  }
+  return box;
+}
+
+/// The largest force on the way of a rigid block that a spring pulls off a floor it is stuck to.
+double pull_off_force(int n) {
+  Body block = rigid_box("block", {0.1, 0.1, 0.05}, {0, 0, 0.05 + 1e-4});
+  block.geometry = divided_box({0.1, 0.1, 0.05}, n);
+  block.rigid.density = 250;
+  block.damping.alpha = 20;
+  Scene scene = floor_scene({block}, 0.002, 0);
+  scene.gravity = {0, 0, 0};
+  scene.contact.material.adhesion =
+      AdhesionMaterial{.stiffness = 8e4, .energy = 2, .viscosity = 1e-5, .initial_intensity = 1};
+  scene.handles = {{.body = "block",
+                    .select = {AllSelection{}},
+                    .stiffness = 1e4,
+                    .path = {{0, Point3{0, 0, 0}}, {0.8, Point3{0, 0, 0.0088}}}}};
+  Simulator simulator(scene);
+  double force = 0;
+  for (int n_step = 0; n_step < 400; ++n_step) {
+    simulator.step();
+    force = std::max(force, -simulator.record().bodies[0].contact_force[2]);
+  }
+  // Beyond the onset the intensity is W / (C g^2).
+  const double gap = simulator.record().bodies[0].centre[2] - 0.05 - 1e-4;
+  EXPECT_NEAR(simulator.record().adhered_area / (0.04 * 2 / (8e4 * gap * gap)), 1, 0.01) << n;
+  return force;
+}
+
+/// Area times sqrt(energy stiffness), however many points carry it.
+TEST(PullOff, ForceIsAreaTimesTheRootOfEnergyAndStiffness) {
+  const double expected = 0.2 * 0.2 * std::sqrt(2 * 8e4);
+  for (const int n : {1, 2, 4, 8}) {
+    EXPECT_NEAR(pull_off_force(n) / expected, 1, 0.01) << n;
+  }
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,133 @@
+/// @file test_scene_laws.cpp
+/// Laws of the scenes with contact that ship: whole runs, or their first part.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tetwarp/scene_io.hpp>
+
+#include "tests/simulate/stress_watch.hpp"
+
+namespace tetwarp::test {
+namespace {
+Scene shipped(const std::string& name) {
+  return parse_scene(scene_text(name), name);
+}
+
+/// A cloth that swings against a wall at x = 0.
+struct Swing {
+  double first_contact = -1, peak_area = 0, half_time = -1;  ///< [s], [m^2], [s]
+  double mean_distance = 0;                                  ///< from the wall at the end [m]
+  double lowest = 1;                                         ///< [m]
+};
+
+Swing swing(const std::string& name, std::int64_t cells) {
+  Scene scene = shipped(name);
+  std::get<Sheet>(scene.bodies[0].geometry).cells = {cells, cells};
+  Simulator simulator(scene);
+  Swing swing;
+  for (std::int64_t n = 0; n < scene.step_count(); ++n) {
+    simulator.step();
+    const StepRecord& record = simulator.record();
+    if (record.contacts > 0 && swing.first_contact < 0) swing.first_contact = record.time;
+    if (record.adhered_area > swing.peak_area) {
+      swing.peak_area = record.adhered_area;
+      swing.half_time = -1;
+    } else if (record.adhered_area < swing.peak_area / 2 && swing.half_time < 0) {
+      swing.half_time = record.time;
+    }
+    for (const Point3& x : simulator.node_positions(0)) swing.lowest = std::min(swing.lowest, x[0]);
+  }
+  const auto nodes = simulator.node_positions(0);
+  for (const Point3& x : nodes) swing.mean_distance += x[0] / static_cast<double>(nodes.size());
+  return swing;
+}
+
+TEST(SceneLaws, ClothStaysOnTheWallWhateverItsMesh) {
+  for (const auto& [cells, area, distance] :
+       {std::tuple{10, 0.1150, 9.1e-3}, {20, 0.1133, 8.8e-3}, {40, 0.1133, 8.6e-3}}) {
+    const Swing found = swing("cloth", cells);
+    EXPECT_NEAR(found.first_contact, 0.5, 0.0051) << cells;
+    EXPECT_NEAR(found.peak_area / area, 1, 0.03) << cells;
+    EXPECT_NEAR(found.mean_distance / distance, 1, 0.06) << cells;
+    EXPECT_GT(found.lowest, 0) << cells;
+  }
+}
+
+TEST(SceneLaws, ClothPeelsOffTheWallWhateverItsMesh) {
+  for (const auto& [cells, area, half, distance] : {std::tuple{10, 0.1115, 0.910, 17.2e-3},
+                                                    {20, 0.1112, 0.955, 17.7e-3},
+                                                    {40, 0.1114, 0.955, 17.5e-3}}) {
+    const Swing found = swing("cloth_peels", cells);
+    EXPECT_NEAR(found.first_contact, 0.5, 0.0051) << cells;
+    EXPECT_NEAR(found.peak_area / area, 1, 0.01) << cells;
+    EXPECT_NEAR(found.half_time / half, 1, 0.1) << cells;
+    EXPECT_NEAR(found.mean_distance / distance, 1, 0.04) << cells;
+    EXPECT_GT(found.lowest, 0) << cells;
+  }
+}
+
+/// The lips bond while the jaw presses; as it opens, every bond ends, and both sides alike.
+TEST(SceneLaws, MouthOpensSymmetricallyAndLosesAllBonds) {
+  const Scene scene = shipped("mouth");
+  Simulator simulator(scene);
+  double bonded = 0, asymmetry = 0;
+  for (std::int64_t n = 0; n < scene.step_count(); ++n) {
+    simulator.step();
+    const StepRecord& record = simulator.record();
+    bonded = std::max(bonded, record.adhered_area);
+    for (std::size_t lip = 0; lip < 2; ++lip) {
+      asymmetry = std::max(asymmetry, std::abs(record.bodies[lip].centre[0]));
+    }
+    EXPECT_GT(record.smallest_distance, 0) << n;
+  }
+  EXPECT_GT(bonded, 0.1 * 0.06 * 0.014);
+  EXPECT_LT(asymmetry, 1e-5);
+  EXPECT_EQ(simulator.record().contacts, 0);
+  EXPECT_EQ(simulator.record().adhered_area, 0);
+}
+
+/// The first second and a half: all sweets have landed.
+TEST(SceneLaws, CandyLandsWithoutCrossingAnything) {
+  Simulator simulator(shipped("candy"));
+  const double start = simulator.record().energy.total();
+  const Watch watch = watch_steps(simulator, 190, 10);
+  SCOPED_TRACE(testing::Message() << watch);
+  EXPECT_TRUE(watch.is_finite);
+  EXPECT_EQ(watch.crossings, 0);
+  EXPECT_GT(watch.least_distance, 0);
+  EXPECT_LT(watch.most_contacts, 800);
+  EXPECT_LT(simulator.record().energy.total(), start);
+}
+
+TEST(SceneLaws, OrangesLandAboveTheFloor) {
+  Simulator simulator(shipped("oranges"));
+  const Watch watch = watch_steps(simulator, 150, 25);
+  SCOPED_TRACE(testing::Message() << watch);
+  EXPECT_TRUE(watch.is_finite);
+  EXPECT_EQ(watch.crossings, 0);
+  EXPECT_GE(watch.least_distance, 0.5 * simulator.thickness());
+  EXPECT_EQ(watch.clamped, 0);
+}
+
+TEST(SceneLaws, ShoulderSettlesUnderItsWeight) {
+  const Scene scene = shipped("shoulder");
+  Simulator simulator(scene);
+  const Watch watch = watch_steps(simulator, 500, 25);
+  SCOPED_TRACE(testing::Message() << watch);
+  EXPECT_TRUE(watch.is_finite);
+  EXPECT_EQ(watch.crossings, 0);
+  EXPECT_GT(watch.least_distance, 0);
+  EXPECT_GE(watch.most_contacts, 15);
+  EXPECT_LT(watch.most_contacts, 200);
+  // The handles carry all of it.
+  double weight = 0, held = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    weight += earth * simulator.body(b).mass;
+    held += simulator.record().bodies[b].handle_force[2];
+  }
+  EXPECT_NEAR(held / weight, 1, 0.01);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,132 @@
+/// Bodies that fall, rest and collide.
+#include "tests/simulate/touch_run.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+Scene falling(Body body, double height) {
+  body.pose.position = {0, 0, height};
+  Scene scene = scene_of({std::move(body)}, 0.005);
+  scene.obstacles = {plane_at(0)};
+  scene.thickness = 1e-4;
+  scene.contact.material.friction = 0.5;
+  scene.solver.contact_tolerance = 1e-8;
+  return scene;
+}
+
+/// The gap at rest is the thickness: the surfaces touch at that distance.
+TEST(Falling, RigidSphereRestsAtTheThickness) {
+  Simulator simulator(falling(rigid_ball("ball", 0.05, {}), 0.08));
+  run(simulator, 100);
+  const StepRecord& record = simulator.record();
+
+  EXPECT_NEAR(record.bodies[0].centre[2], 0.05 + 1e-4, 1e-9);
+  EXPECT_NEAR(record.smallest_distance, 1e-4, 1e-9);
+  EXPECT_LE(norm(record.bodies[0].velocity), 1e-9);
+  EXPECT_EQ(record.contacts, 1);
+  EXPECT_NEAR(record.bodies[0].contact_force[2], 9.81 * simulator.body(0).mass, 1e-9);
+  EXPECT_NEAR(record.obstacle_forces[0][2], -9.81 * simulator.body(0).mass, 1e-9);
+}
+
+TEST(Falling, RigidBoxRestsAtTheThickness) {
+  Simulator simulator(falling(rigid_box("box", {0.05, 0.04, 0.03}, {}), 0.05));
+  run(simulator, 100);
+  const StepRecord& record = simulator.record();
+
+  EXPECT_NEAR(record.bodies[0].centre[2], 0.03 + 1e-4, 1e-7);
+  EXPECT_NEAR(record.bodies[0].contact_force[2], 9.81 * simulator.body(0).mass,
+              1e-4 * 9.81 * simulator.body(0).mass);
+  EXPECT_LE(norm(record.bodies[0].velocity), 1e-5);
+  EXPECT_LE(norm(record.bodies[0].angular_velocity), 1e-3);
+}
+
+TEST(Falling, ElasticBoxRestsAtTheThickness) {
+  Simulator simulator(falling(elastic_box("box", {0.05, 0.05, 0.05}, {2, 2, 2}), 0.06));
+  run(simulator, 300);
+  const StepRecord& record = simulator.record();
+
+  EXPECT_NEAR(lowest(simulator.surface_positions(0)), 1e-4, 2e-6);
+  EXPECT_NEAR(record.bodies[0].contact_force[2], 9.81 * simulator.body(0).mass,
+              1e-2 * 9.81 * simulator.body(0).mass);
+  EXPECT_TRUE(record.converged);
+}
+
+TEST(Falling, ClothRestsOnAPlane) {
+  Simulator simulator(falling(sheet_body("cloth", {0.2, 0.2}, {6, 6}), 0.02));
+  run(simulator, 60);
+
+  EXPECT_GE(lowest(simulator.surface_positions(0)), 0.9e-4);
+  EXPECT_NEAR(simulator.record().bodies[0].centre[2], 1e-4, 1e-5);
+}
+
+/// Two spheres without friction: the impulse along the line of centres, the tangential velocity
+/// stays, and no momentum is lost.
+TEST(Collisions, OfSpheresKeepMomentum) {
+  Body first = rigid_ball("first", 0.05, {0, 0, 0});
+  Body second = rigid_ball("second", 0.05, {0.2, 0.03, 0});
+  first.velocity = {2, 0, 0.5};
+  Scene scene = tight(scene_of({first, second}, 0.002));
+  scene.gravity = {0, 0, 0};
+  scene.thickness = 1e-4;
+  Simulator simulator(scene);
+  const StepRecord start = simulator.record();
+  bool have_touched = false;
+  for (int n = 0; n < 60; ++n) {
+    const StepRecord before = simulator.record();
+    simulator.step();
+    expect_balance(simulator, before, 1e-12);
+    have_touched = have_touched || simulator.record().contacts > 0;
+    EXPECT_GT(simulator.record().smallest_distance, 1e-5);
+  }
+  const StepRecord& end = simulator.record();
+
+  EXPECT_TRUE(have_touched);
+  EXPECT_LE(norm(minus(end.momentum, start.momentum)), 1e-13 * norm(start.momentum));
+  // The impulse acts along the normal where the spheres touch within the step: first order in dt.
+  EXPECT_LE(norm(minus(end.angular_momentum, start.angular_momentum)),
+            2e-3 * 0.2 * norm(start.momentum));
+  EXPECT_GT(end.bodies[1].velocity[0], 0.5);
+  EXPECT_LT(end.energy.kinetic, start.energy.kinetic);
+}
+
+/// Each box carries those above it.
+TEST(Stacks, OfBoxesCarryTheirWeights) {
+  std::vector<Body> boxes;
+  for (int k = 0; k < 3; ++k) {
+    boxes.push_back(
+        rigid_box("box" + std::to_string(k), {0.05, 0.05, 0.05}, {0, 0, 0.051 + 0.101 * k}));
+  }
+  Scene scene = scene_of(boxes, 0.005);
+  scene.obstacles = {plane_at(0)};
+  scene.thickness = 1e-4;
+  scene.contact.material.friction = 0.5;
+  scene.solver.contact_tolerance = 1e-8;
+  Simulator simulator(scene);
+  run(simulator, 200);
+  const StepRecord& record = simulator.record();
+  const double weight = 9.81 * simulator.body(0).mass;
+
+  EXPECT_NEAR(record.obstacle_forces[0][2], -3 * weight, 1e-4 * weight);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(record.bodies[k].contact_force[2], weight, 1e-4 * weight);
+    const double height = 0.05 + 1e-4 + (0.1 + 1e-4) * static_cast<double>(k);
+    EXPECT_NEAR(record.bodies[k].centre[2], height, 1e-6);
+  }
+  EXPECT_EQ(record.islands, 1);
+}
+
+/// Bodies that can meet nothing have no detector: nothing is detected.
+TEST(Apart, ScenesWithoutPairsDetectNothing) {
+  Scene scene =
+      scene_of({rigid_ball("a", 0.05, {0, 0, 0}), rigid_ball("b", 0.05, {0.2, 0, 0})}, 0.005);
+  scene.contact.pairs = {{.a = "a", .b = "b", .collide = false}};
+  Simulator simulator(scene);
+  run(simulator, 2);
+
+  EXPECT_EQ(simulator.record().contact_passes, 0);
+  EXPECT_EQ(simulator.record().seconds.detection, 0);
+  EXPECT_TRUE(simulator.contacts().empty());
+}
+
+}  // namespace
+}  // namespace tetwarp::test

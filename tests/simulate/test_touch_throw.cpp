@@ -1,0 +1,117 @@
+/// Nothing passes anything: fast bodies, moving walls, folding cloth. Judged by a test of all pairs
+/// of triangles at the ends of steps and at 16 instants between.
+#include <cmath>
+
+#include "tests/simulate/touch_judge.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+struct Throw {
+  double speed, youngs_modulus, time_step;
+};
+
+/// A soft ball against a plate of two triangles, at up to ten diameters a step.
+TEST(Throws, ASoftBallStaysAboveAPlate) {
+  for (const Throw& of : {Throw{20, 1e5, 0.01}, Throw{100, 1e5, 0.01}, Throw{100, 1e4, 0.01},
+                          Throw{50, 1e6, 0.004}}) {
+    Body ball = elastic_ball("ball", 0.05, {0.03, 0.01, 0.3});
+    ball.material.youngs_modulus = of.youngs_modulus;
+    ball.velocity = {0.1 * of.speed, 0, -of.speed};
+    Scene scene = scene_of({ball}, of.time_step);
+    scene.obstacles = {plate_at(0, 20)};
+    scene.thickness = 3e-4;
+    scene.contact.material.friction = 0.3;
+    Simulator simulator(scene);
+    Judge judge(simulator);
+    double low = 1;
+    std::int64_t clamped = 0;
+    for (int n = 0; n < 12; ++n) {
+      simulator.step();
+      judge.expect_apart();
+      low = std::min(low, lowest(simulator.surface_positions(0)));
+      clamped += simulator.record().clamped_islands;
+    }
+    EXPECT_GE(low, 0.5 * 3e-4) << of.speed << " m/s, " << of.youngs_modulus << " Pa";
+    EXPECT_LE(low, 0.02);
+    EXPECT_EQ(clamped, 0);
+    EXPECT_EQ(simulator.record().inverted, 0);
+  }
+}
+
+/// A rigid box between walls cannot give way: the walls end where the box is.
+TEST(Squeezing, OfARigidBodyHoldsThePaths) {
+  Body box = rigid_box("box", {0.05, 0.05, 0.05}, {0, 0, 0.06});
+  Body lid;
+  lid.name = "lid";
+  lid.kind = BodyKind::scripted;
+  lid.geometry = Shape{BoxShape{{0.1, 0.1, 0.005}}};
+  lid.lattice = Lattice{.cells = {{1, 1, 1}}};
+  lid.pose.position = {0, 0, 0.13};
+  lid.motion = Path{{0, Point3{0, 0, 0}}, {0.1, Point3{0, 0, -0.1}}};
+  Scene scene = scene_of({box, lid}, 0.005);
+  scene.obstacles = {plane_at(0)};
+  scene.thickness = 2e-4;
+  Simulator simulator(scene);
+  Judge judge(simulator);
+  std::int64_t stalled = 0;
+  for (int n = 0; n < 25; ++n) {
+    ASSERT_TRUE(simulator.step());
+    judge.expect_apart();
+    stalled += simulator.record().stalled_scripts;
+  }
+  EXPECT_GT(stalled, 5);
+  EXPECT_GE(lowest(simulator.surface_positions(0)), 0);
+  EXPECT_GE(simulator.record().bodies[1].centre[2], 0.105);
+}
+
+/// A moving obstacle takes a body with it.
+TEST(Obstacles, PushBodies) {
+  Obstacle wall = plate_at(0, 0.1);
+  wall.geometry = Surface{{{0, -0.2, -0.2}, {0, 0.2, -0.2}, {0, 0.2, 0.2}, {0, -0.2, 0.2}},
+                          {{0, 1, 2}, {0, 2, 3}}};
+  wall.path = {{0, Point3{0, 0, 0}}, {0.5, Point3{0.5, 0, 0}}};
+  Body ball = rigid_ball("ball", 0.05, {0.06, 0, 0});
+  Body soft = elastic_box("soft", {0.03, 0.03, 0.03}, {1, 1, 1});
+  soft.pose.position = {0.2, 0, 0};
+  Scene scene = scene_of({ball, soft}, 0.01);
+  scene.obstacles = {wall};
+  scene.gravity = {0, 0, 0};
+  scene.thickness = 1e-4;
+  Simulator simulator(scene);
+  Judge judge(simulator);
+  for (int n = 0; n < 50; ++n) {
+    simulator.step();
+    judge.expect_apart();
+  }
+  const StepRecord& record = simulator.record();
+
+  EXPECT_GE(record.bodies[0].centre[0], 0.55);
+  EXPECT_GE(record.bodies[0].velocity[0], 0.9);
+  EXPECT_GT(record.bodies[1].centre[0], 0.6);
+  EXPECT_GT(record.energy.work, 0);
+}
+
+/// A cloth that falls over a bar onto the floor.
+TEST(Cloth, FoldsWithoutPassingItself) {
+  Body cloth = sheet_body("cloth", {0.4, 0.1}, {16, 4});
+  cloth.pose.position = {-0.2, -0.05, 0.12};
+  Obstacle bar;
+  bar.name = "bar";
+  bar.geometry = CapsuleObstacle{{-0.03, -0.2, 0.1}, {-0.03, 0.2, 0.1}, 0.01};
+  Scene scene = scene_of({cloth}, 0.005);
+  scene.obstacles = {bar, plane_at(0)};
+  scene.thickness = 5e-4;
+  scene.contact.material.friction = 0.2;
+  scene.solver.linear_tolerance = 1e-6;
+  Simulator simulator(scene);
+  Judge judge(simulator);
+  for (int n = 0; n < 120; ++n) {
+    simulator.step();
+    judge.expect_apart();
+  }
+  EXPECT_GT(simulator.record().contacts, 0);
+}
+
+}  // namespace
+}  // namespace tetwarp::test

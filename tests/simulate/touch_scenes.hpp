@@ -1,0 +1,51 @@
+/// @file touch_scenes.hpp
+/// Bodies and surfaces for tests of contact.
+#pragma once
+#include <string>
+#include <utility>
+
+#include "host/simulate/contact/scene_surfaces.hpp"
+#include "tests/simulate/simulate_scenes.hpp"
+
+namespace tetwarp::test {
+
+inline Body rigid_ball(const std::string& name, double radius, const Point3& position) {
+  Body body;
+  body.name = name;
+  body.kind = BodyKind::rigid;
+  body.geometry = Shape{EllipsoidShape{{radius, radius, radius}}};
+  body.pose.position = position;
+  return body;
+}
+
+inline Body rigid_capsule(const std::string& name,
+                          double radius,
+                          double length,
+                          const Point3& position) {
+  Body body = rigid_ball(name, radius, position);
+  body.geometry = Shape{CapsuleShape{radius, length}};
+  return body;
+}
+
+/// A scene with all that is made of it; refers to itself.
+struct TouchScene {
+  explicit TouchScene(Scene of)
+      : scene(std::move(of)),
+        geometry(make_scene_geometry(scene)),
+        model(make_model(scene, geometry)),
+        surfaces(make_scene_surfaces(scene, geometry, model)) {}
+  TouchScene(const TouchScene&) = delete;
+  TouchScene& operator=(const TouchScene&) = delete;
+
+  const CollisionBody& body(std::size_t index) const { return surfaces.surfaces.bodies[index]; }
+  const ContactMaterial& material(std::int32_t a, std::int32_t b) const {
+    return at(surfaces.materials, surfaces.material_of(a, b));
+  }
+
+  Scene scene;
+  SceneGeometry geometry;
+  Model model;
+  SceneSurfaces surfaces;
+};
+
+}  // namespace tetwarp::test
