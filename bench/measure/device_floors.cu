@@ -14,7 +14,6 @@
 namespace tetwarp::bench {
 namespace {
 constexpr int repetitions = 9;
-constexpr TileShape tile_shapes[] = {{8, 8}, {32, 4}};
 
 /// A stream and two events to time what runs on it.
 class Clock {
@@ -65,6 +64,9 @@ struct ArraySource {
   __device__ T at(int i, int j, int k) const {
     return tex3D<T>(texture, static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f,
                     static_cast<float>(k) + 0.5f);
+  }
+  __device__ PointSampler<T, ArraySource> sampler(const int* whole, int) const {
+    return {*this, whole};
   }
 };
 
@@ -127,31 +129,35 @@ class FloorRun {
       job.output_dims[axis] = static_cast<int>(job_.output_dims[axis]);
       std::copy_n(job_.source_from_output[axis].begin(), 4, job.rows[axis]);
     }
-    job.blends = job_.filter == Filter::linear;
     job.output = output_.view(output_count()).data;
-    for (const TileShape& shape : tile_shapes) {
-      job.shape = shape;
-      const auto tiles = static_cast<unsigned>(job.tiles(0) * job.tiles(1) * job.tiles(2));
-      const auto kernel = [&] {
-        launch(clock_.stream(), affine_kernel<T, Source>, dim3(tiles), dim3(floor_threads), 0, job);
-      };
-      const double seconds = clock_.seconds_of(kernel)[repetitions / 2];
-      if (best_.kernel > 0 && seconds >= best_.kernel) continue;
-      const auto both = clock_.seconds_of([&] {
-        kernel();
-        check_cuda(cudaMemcpyAsync(host_output_.view(output_count()).data, job.output,
-                                   static_cast<std::size_t>(output_count()) * sizeof(T),
-                                   cudaMemcpyDeviceToHost, clock_.stream()),
-                   "cudaMemcpyAsync to host");
-      });
-      best_ = {seconds, both[repetitions / 2],
-               layout + ", tiles " + std::to_string(shape.width) + " wide"};
-    }
+    take<Tile<8, 8>>(layout, job);
+    take<Tile<32, 4>>(layout, job);
   }
 
   const DeviceFloor& best() const { return best_; }
 
  private:
+  template <class Tile, class Source>
+  void take(const std::string& layout, const AffineDeviceJob<T, Source>& job) {
+    const auto kernel = [&] {
+      launch(clock_.stream(),
+             job_.filter == Filter::linear ? affine_kernel<Tile, true, T, Source>
+                                           : affine_kernel<Tile, false, T, Source>,
+             tiles_of<Tile>(job), dim3(floor_threads), 0, job);
+    };
+    const double seconds = clock_.seconds_of(kernel)[repetitions / 2];
+    if (best_.kernel > 0 && seconds >= best_.kernel) return;
+    const auto both = clock_.seconds_of([&] {
+      kernel();
+      check_cuda(cudaMemcpyAsync(host_output_.view(output_count()).data, job.output,
+                                 static_cast<std::size_t>(output_count()) * sizeof(T),
+                                 cudaMemcpyDeviceToHost, clock_.stream()),
+                 "cudaMemcpyAsync to host");
+    });
+    best_ = {seconds, both[repetitions / 2],
+             layout + ", tiles " + std::to_string(Tile::width) + " wide"};
+  }
+
   std::int64_t output_count() const {
     return job_.output_dims[0] * job_.output_dims[1] * job_.output_dims[2];
   }

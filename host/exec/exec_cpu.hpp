@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -13,6 +14,8 @@
 #include "host/base/warp_backend.hpp"
 #include "host/exec/host_buffer.hpp"
 #include "kernels/base/cell_pair.hpp"
+#include "kernels/base/grouped_sums.hpp"
+#include "kernels/base/slice_bytes.hpp"
 #include "kernels/base/stage_times.hpp"
 #include "kernels/base/view.hpp"
 
@@ -46,8 +49,10 @@ class CpuExec {
     return {};
   }
   void begin_compute(void*, bool) {}
-  void end_compute() {}
+  void end_compute(bool) {}
   void wait_computed() {}
+  void end_download() {}
+  void wait_delivered() {}
   void drain() noexcept {}
 
   /// Host memory for a stage to read: no copy.
@@ -65,8 +70,7 @@ class CpuExec {
     return host;
   }
   /// Copies writable() memory to the host: stages have written to it directly.
-  template <class T>
-  void download(const char*, View<const T>, T*) {}
+  void download(const char*, const std::byte*, std::byte*, const SliceBytes&) {}
   bool downloads_async(const void*) const { return true; }
 
   /// Copies entries to the host after all preceding stages.
@@ -140,8 +144,15 @@ class CpuExec {
     }
   }
 
-  /// Reserves memory for scans: not needed on the host.
-  void reserve_scan(std::int64_t) {}
+  /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group). The
+  /// sums before each i are not stored.
+  template <class Body>
+  void grouped_scan(const char* label, std::int64_t count, const Body& body, const GroupedSums&) {
+    const Clock clock(*this, label);
+    std::int64_t total = 0;
+    for (std::int64_t i = 0; i < count; ++i) total += body(i);
+    for (int k = 0; k < sum_group; ++k) body.finish(total, k);
+  }
 
   /// Fills a list with rejected_pair; not needed here, where stages read up to the count only.
   void reject_all(const char*, View<CellPair>) {}

@@ -12,7 +12,7 @@
 
 namespace tetwarp {
 
-/// Seconds per stage. A stage that did not run is zero.
+/// Seconds per stage; zero: it did not run, or was not measured (WarpOptions::stage_times).
 struct TETWARP_EXPORT Timings {
   double read = 0;      ///< of files; 0 for a Warper
   double upload = 0;    ///< host to device: sources once, node positions in each step

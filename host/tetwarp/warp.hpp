@@ -61,6 +61,9 @@ struct SkipOptions {
                                ///< their setup; where WarpTarget::holds_previous, cells without a
                                ///< moved tetrahedron are not written again
   bool constant_cells = true;  ///< cells whose samples all have one value are filled, not sampled
+  bool interior_cells =
+      true;  ///< back end cuda samples cells whose samples lie in the source without
+             ///< tests for its border, cells within one tetrahedron without any
   bool background_chunks = true;  ///< the command does not store chunks of files that hold only
                                   ///< background
 };
@@ -95,6 +98,10 @@ struct WarpOptions {
   int device = 0;             ///< CUDA device number
   int threads = 0;            ///< of the cpu back end, up to 1024; 0: all cores
   bool count_folded = false;  ///< fill Counts::folded, which takes a further pass over all voxels
+  /// Fill the seconds of stages in Timings on back end cuda, which delays every launch and copy by
+  /// two records of events; otherwise only `total` is measured there. Other back ends measure
+  /// always.
+  bool stage_times = false;
   SkipOptions skip = {};
 };
 

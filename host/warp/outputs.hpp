@@ -148,7 +148,7 @@ class WarpOutputs {
                           voxel_bytes_[place] * frame_.voxel_count(), slots_[now_].arrays[place]);
   }
 
-  /// One copy when the window has all rows of its slices, else one per slice.
+  /// One copy of the window's rows.
   void download(const Buffer<std::byte>& from,
                 std::int64_t per_voxel,
                 std::byte* to,
@@ -157,17 +157,14 @@ class WarpOutputs {
     for (int axis = 0; axis < 2; ++axis) {
       begin[axis] = std::max(window.begin[axis] * cell_edge, frame_.begin[axis + 1]);
       end[axis] = std::min(window.end[axis] * cell_edge, frame_.end[axis + 1]);
+      if (begin[axis] >= end[axis]) return;
     }
-    const bool is_whole = begin[0] == frame_.begin[1] && end[0] == frame_.end[1];
-    const int slices = is_whole ? end[1] - begin[1] : 1;
-    for (int k = begin[1]; k < end[1]; k += slices) {
-      const std::int64_t first = frame_.offset_of(frame_.begin[0], begin[0], k) * per_voxel;
-      const std::int64_t past =
-          frame_.offset_of(frame_.end[0], end[0] - 1, k + slices - 1) * per_voxel;
-      const View<const std::byte> all = from.const_view(frame_.voxel_count() * per_voxel);
-      exec_.download("warp/download", View<const std::byte>{all.data + first, past - first},
-                     to + first);
-    }
+    const std::int64_t first = frame_.offset_of(frame_.begin[0], begin[0], begin[1]) * per_voxel;
+    const auto size = [](std::int64_t count) { return static_cast<std::size_t>(count); };
+    exec_.download("warp/download", from.const_view(frame_.voxel_count() * per_voxel).data + first,
+                   to + first,
+                   {size((frame_.end[0] - frame_.begin[0]) * per_voxel), size(end[0] - begin[0]),
+                    size(frame_.end[1] - frame_.begin[1]), size(end[1] - begin[1])});
   }
 
   Exec& exec_;

@@ -1,6 +1,7 @@
 /// @file step_counters.hpp
 /// The counters of a step in the executor's memory, and the report made from them.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 #include <tetwarp/report.hpp>
@@ -20,13 +21,14 @@ struct MeshCounters {
   std::int64_t averaged;  ///< tetrahedra whose voxels are means of samples
 };
 
-/// Counters of the work of one step, set to zero at its start.
+/// Counters of the work of one step, set to zero at its start. From `moved` on they are sums of
+/// SpreadCounts.
 struct WorkCounters {
-  std::int64_t moved;           ///< tetrahedra that have moved; updates only
-  std::int64_t corners;         ///< coarse corners of the tetrahedra to cull
+  std::int64_t corners;         ///< coarse corners of the tetrahedra to cull; 0 on a device
   std::int64_t candidates;      ///< candidate pairs of these tetrahedra
+  std::int64_t merged_pairs;    ///< all pairs of the step
+  std::int64_t moved;           ///< tetrahedra that have moved
   std::int64_t pairs;           ///< of the candidates, not rejected
-  std::int64_t merged_pairs;    ///< all pairs after an update
   std::int64_t accepted;        ///< of `pairs`
   std::int64_t touched_cells;   ///< updates only
   std::int64_t constant_cells;  ///< cells that were filled
@@ -39,17 +41,85 @@ struct StepCounters {
   WorkCounters work;
 };
 
+/// Counters to which many threads add, each in several places; set to zero at a step's start.
+struct SpreadCounts {
+  static constexpr std::int64_t places = 64;
+
+  std::int64_t moved[places], pairs[places], accepted[places], touched_cells[places],
+      constant_cells[places], covered[places];
+  RasterCounts raster[places];
+};
+
+/// The counters in an executor's memory, in the order in which a step clears them: all but `mesh`,
+/// which updates adjust.
+struct CounterMemory {
+  MeshCounters mesh;
+  WorkCounters work;
+  SpreadCounts spread;
+};
+constexpr std::int64_t counter_words = sizeof(StepCounters) / sizeof(std::int64_t);
+constexpr std::int64_t kept_words = sizeof(MeshCounters) / sizeof(std::int64_t);
+constexpr std::int64_t memory_words = sizeof(CounterMemory) / sizeof(std::int64_t);
+
+/// Word k of the StepCounters that the counters in an executor's memory make.
+TETWARP_HD std::int64_t counter_word(const CounterMemory& memory, std::int64_t k) {
+  constexpr std::int64_t raster_words = sizeof(RasterCounts) / sizeof(std::int64_t);
+  constexpr std::int64_t single_words = 6;
+  constexpr std::int64_t first = counter_words - raster_words - single_words;
+  std::int64_t sum = reinterpret_cast<const std::int64_t*>(&memory)[k];
+  if (k < first) return sum;
+  const bool is_single = k < first + single_words;
+  const std::int64_t* const from =
+      reinterpret_cast<const std::int64_t*>(&memory.spread) +
+      (is_single ? (k - first) * SpreadCounts::places
+                 : single_words * SpreadCounts::places + (k - first - single_words));
+  const std::int64_t step = is_single ? 1 : raster_words;
+  for (std::int64_t p = 0; p < SpreadCounts::places; ++p) sum += from[p * step];
+  return sum;
+}
+
+/// One index = one word of the result.
+struct CounterTotalBody {
+  const CounterMemory* memory;
+  View<std::int64_t> totals;  ///< out, shape [counter_words]; may be page-locked memory of the host
+
+  TETWARP_HD void operator()(std::int64_t k) const { totals[k] = counter_word(*memory, k); }
+};
+
+/// The same after a sum over all cells: one index = the covered voxels of covered_cells cells.
+struct CoveredTotalBody {
+  static constexpr std::int64_t covered_cells = 256;
+  View<const std::uint16_t> cell_covered;
+  CounterTotalBody total;
+
+  TETWARP_HD std::int64_t operator()(std::int64_t part) const {
+    const std::int64_t end = min_of((part + 1) * covered_cells, cell_covered.size);
+    std::int64_t sum = 0;
+    for (std::int64_t cell = part * covered_cells; cell < end; ++cell) sum += cell_covered[cell];
+    return sum;
+  }
+  TETWARP_HD void finish(std::int64_t covered, int k) const {
+    if (k >= counter_words) return;
+    total(k);
+    if (k == covered_word) total.totals[k] = covered;
+  }
+  static constexpr std::int64_t covered_word =
+      static_cast<std::int64_t>(offsetof(StepCounters, work) + offsetof(WorkCounters, covered)) / 8;
+};
+
 /// Copies the totals of three scans to the counters, so that the host reads memory once. One index.
 struct TotalsBody {
   View<const std::int64_t> moved_offsets;  ///< size 0: not an update
   View<const std::int64_t> corner_offsets;
   View<const std::int64_t> pair_offsets;
-  View<WorkCounters> work;
+  CounterMemory* counters;
 
   TETWARP_HD void operator()(std::int64_t) const {
-    if (moved_offsets.size > 0) work[0].moved = moved_offsets[moved_offsets.size - 1];
-    work[0].corners = corner_offsets[corner_offsets.size - 1];
-    work[0].candidates = pair_offsets[pair_offsets.size - 1];
+    if (moved_offsets.size > 0) {
+      counters->spread.moved[0] = moved_offsets[moved_offsets.size - 1];
+    }
+    counters->work.corners = corner_offsets[corner_offsets.size - 1];
+    counters->work.candidates = pair_offsets[pair_offsets.size - 1];
   }
 };
 

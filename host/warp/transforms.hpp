@@ -38,7 +38,7 @@ class WarpTransforms {
     for (auto& [reorientation, buffer] : buffers_) {
       tet_transform(exec_, pairs.setups(), pairs.tets(), pairs.nodes(), pairs.rest(), pairs.moved(),
                     choice(reorientation), buffer.view(pairs.tet_count()),
-                    {&pairs.counters().data->mesh.averaged, is_first ? 1 : 0});
+                    {&pairs.counters()->mesh.averaged, is_first ? 1 : 0});
       is_first = false;
     }
   }

@@ -1,12 +1,13 @@
 /// @file warp_pipeline.hpp
 /// The warp as a list of stages, for any executor. Start at run(), which calls them in order.
 #pragma once
-#include <algorithm>
 #include <cstdint>
 #include <utility>
 
 #include "host/base/pixel_dispatch.hpp"
 #include "host/base/warp_backend.hpp"
+#include "host/warp/cell_raster_stage.hpp"
+#include "host/warp/counter_totals.hpp"
 #include "host/warp/fields.hpp"
 #include "host/warp/geometry.hpp"
 #include "host/warp/outputs.hpp"
@@ -14,11 +15,9 @@
 #include "host/warp/pairs.hpp"
 #include "host/warp/roundings.hpp"
 #include "host/warp/sources.hpp"
-#include "host/warp/step_counters.hpp"
 #include "host/warp/step_shares.hpp"
 #include "host/warp/totals.hpp"
 #include "host/warp/transforms.hpp"
-#include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/voxel_cells.hpp"
 #include "kernels/warp/voxel_count.hpp"
@@ -39,7 +38,8 @@ class WarpPipeline : public WarpBackend {
         fields_(exec_, plan_, geometry_),
         sources_(exec_, plan_),
         totals_(exec_, plan_, geometry_),
-        roundings_(exec_, plan_, geometry_) {
+        roundings_(exec_, plan_, geometry_),
+        counter_totals_(exec_, geometry_.frame.cell_count()) {
     cell_covered_.reserve(geometry_.frame.cell_count());
     cell_work_.reserve(geometry_.frame.cell_count());
   }
@@ -94,11 +94,13 @@ class WarpPipeline : public WarpBackend {
     Flight& flight = flights_[number];
     if (flight.target.memory == Memory::device || std::exchange(flight.is_delivered, true)) return;
     outputs_.download(flight.slot, flight.target, flight.window);
+    exec_.end_download();
   }
 
   StepReport finish(int number) override {
     [[maybe_unused]] const auto scope = exec_.enter(number);
-    StageTimes& times = exec_.times();  // waits for the download
+    exec_.wait_delivered();
+    StageTimes& times = exec_.times();
     outputs_.release(flights_[number].slot);
     StepReport report = flights_[number].report;
     add_stages(times, report.timings);
@@ -136,13 +138,14 @@ class WarpPipeline : public WarpBackend {
     exec_.begin_compute(flight.target.stream, flight.has_device_positions ||
                                                   flight.target.memory == Memory::device ||
                                                   sources_.are_on_device());
+    flight.counters.reserve(1);
     run(flight.positions, flight.target, flight.age, progress);
     ProgressPart{progress, 0, 1}.report(1.0);
-    flight.counters.reserve(1);
-    exec_.fetch(View<const StepCounters>(pairs_.counters()), flight.counters);
+    counter_totals_.run(pairs_.counters(), cell_covered_.const_view(stale_.size),
+                        flight.counters.view(1).data);
     if (totals_.are_requested()) totals_.fetch(flight.totals);
     if (roundings_.are_requested()) roundings_.fetch(flight.roundings);
-    exec_.end_compute();
+    exec_.end_compute(flight.target.memory == Memory::host);
   }
 
   /// All stages of a step, in order: tetrahedra, corners, cells, voxels.
@@ -165,10 +168,6 @@ class WarpPipeline : public WarpBackend {
                                     extra.owner != nullptr ? geometry_.frame.voxel_count() : 0};
     fields_.run(pairs_, owners, stale_, extra.fields);
     voxel_cells(exec_, pairs_.hexes(), geometry_.frame, stale_, owners);
-    if (stale_.size == 0) return;
-    const std::int64_t cells = geometry_.frame.cell_count();
-    exec_.for_each("warp/raster", (cells + CoveredSumBody::cells - 1) / CoveredSumBody::cells,
-                   CoveredSumBody{cell_covered_.const_view(cells), {&work_counters().covered, 1}});
   }
 
   /// In an update only touched cells are counted again, and their counts of the step before are
@@ -183,7 +182,7 @@ class WarpPipeline : public WarpBackend {
                                    list,
                                    touched,
                                    geometry_.frame,
-                                   {&pairs_.counters().data->mesh.folded, 1},
+                                   {&pairs_.counters()->mesh.folded, 1},
                                    weight});
     };
     if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
@@ -213,7 +212,8 @@ class WarpPipeline : public WarpBackend {
       // Mask, owners and counts are the same for all sources.
       job.mask = s == 0 ? extra.mask : nullptr;
       job.tet = s == 0 ? extra.owner : nullptr;
-      job.counts = s == 0 ? &work_counters().raster : nullptr;
+      job.counts = s == 0 ? pairs_.counters()->spread.raster : nullptr;
+      job.count_places = SpreadCounts::places;
       if (s == 0) job.cell_covered = cell_covered_.view(frame.cell_count());
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
       job.outside_transform = transforms_.outside();
@@ -222,7 +222,7 @@ class WarpPipeline : public WarpBackend {
       if (plan_.options.intensity == Intensity::conservative) {
         overlap(s, job, part);
       } else {
-        cell_raster(exec_, job, part);
+        cell_raster_.run(exec_, job, plan_.options.skip.interior_cells, part);
       }
       if (totals_.are_requested()) {
         totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);
@@ -234,6 +234,7 @@ class WarpPipeline : public WarpBackend {
   template <class T>
   void overlap(std::size_t s, RasterJob<T> job, const ProgressPart& progress) {
     VoxelOverlapBody body = {job.setups,
+                             job.tets,
                              job.transforms,
                              pairs_.list(),
                              job.cell_work,
@@ -260,11 +261,9 @@ class WarpPipeline : public WarpBackend {
     if (stale_.size == 0 && uniform.reach.size == 0) return;
     const std::int64_t cells = geometry_.frame.cell_count();
     cell_work(exec_, job, uniform, stale_, cell_work_.view(cells),
-              {&work_counters().constant_cells, s == 0 ? 1 : 0});
+              {pairs_.counters()->spread.constant_cells, s == 0 ? SpreadCounts::places : 0});
     job.cell_work = cell_work_.const_view(cells);
   }
-
-  WorkCounters& work_counters() const { return pairs_.counters().data->work; }
 
   /// Records a computed step for the next one. @returns its report without times
   StepReport complete(const WarpTarget& target, StepCounters counters) {
@@ -290,7 +289,8 @@ class WarpPipeline : public WarpBackend {
   WarpSources<Exec> sources_;
   WarpTotals<Exec> totals_;
   WarpRoundings<Exec> roundings_;
-
+  CounterTotals<Exec> counter_totals_;
+  CellRaster<Exec> cell_raster_;
   Flight flights_[2];
   Buffer<std::int64_t> cell_work_;
   Buffer<std::uint16_t> cell_covered_;  ///< covered voxels per cell; kept from step to step

@@ -15,4 +15,13 @@ TETWARP_HD void atomic_add(std::int64_t* counter, std::int64_t value) {
 #endif
 }
 
+/// Adds 1 and returns the value before: a number of its own for every caller, in no fixed order.
+TETWARP_HD std::uint32_t atomic_next(std::uint32_t* counter) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(counter, 1u);
+#else
+  return __atomic_fetch_add(counter, 1u, __ATOMIC_RELAXED);
+#endif
+}
+
 }  // namespace tetwarp

@@ -44,11 +44,13 @@ struct Schedule {
 /// Stricter than a GPU: a barrier or mask that includes a thread which has returned is a Fault.
 class Block {
  public:
-  /// The block of the calling OS thread.
+  /// The block that the calling OS thread runs.
   static Block& current() {
     static thread_local Block block;
-    return block;
+    return chosen() != nullptr ? *chosen() : block;
   }
+  /// Makes a block the current one of the calling OS thread; null: its own.
+  static void choose(Block* block) { chosen() = block; }
 
   /// Runs `kernel` once per thread.
   /// @param on_resume  called with the thread's number each time before it runs
@@ -58,6 +60,16 @@ class Block {
            const Schedule& schedule,
            const std::function<void()>& kernel,
            const std::function<void(unsigned)>& on_resume) {
+    start(thread_count, shared_bytes, schedule, kernel);
+    go_on(on_resume);
+    if (!is_done()) throw Fault("the grid of this launch cannot be synchronized");
+  }
+
+  /// The first part of run().
+  void start(unsigned thread_count,
+             std::size_t shared_bytes,
+             const Schedule& schedule,
+             const std::function<void()>& kernel) {
     while (threads_.size() < thread_count) threads_.push_back(std::make_unique<Thread>());
     thread_count_ = thread_count;
     order_ = schedule.order;
@@ -69,11 +81,23 @@ class Block {
       threads_[t]->state = State::ready;
       threads_[t]->fiber.start([this, t, &kernel] { run_thread(t, kernel); });
     }
-    const unsigned warp_count = (thread_count + warp_size - 1) / warp_size;
+  }
+  /// Runs all threads until they have returned or wait for the grid.
+  void go_on(const std::function<void(unsigned)>& on_resume) {
+    const unsigned warp_count = (thread_count_ + warp_size - 1) / warp_size;
     while (!is_done()) {
       for (const unsigned warp : ordered(warp_count)) run_warp(warp * warp_size, on_resume);
-      release_barrier();
+      if (release_barrier() == State::at_grid) return;
     }
+  }
+  /// Whether all threads have returned.
+  bool is_done() const {
+    return std::all_of(threads_.begin(), threads_.begin() + thread_count_,
+                       [](const auto& thread) { return thread->state == State::done; });
+  }
+  /// Lets the threads continue that wait for the grid.
+  void release_grid() {
+    for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
   }
 
   /// Dynamic shared memory, filled with 0xcd when the block starts.
@@ -81,6 +105,9 @@ class Block {
 
   /// __syncthreads() of the running thread, called in source line `line`.
   void wait_at_barrier(int line) { wait(State::at_barrier, line); }
+
+  /// A barrier of the whole grid, called in source line `line`.
+  void wait_for_grid(int line) { wait(State::at_grid, line); }
 
   /// Lane of the running thread.
   unsigned lane() const { return running_ % warp_size; }
@@ -107,7 +134,7 @@ class Block {
   }
 
  private:
-  enum class State { ready, at_barrier, at_exchange, done };
+  enum class State { ready, at_barrier, at_grid, at_exchange, done };
   using Value = std::array<std::byte, 16>;
 
   struct Thread {
@@ -200,10 +227,16 @@ class Block {
     return warp_size;
   }
 
-  /// Releases all threads from the barrier that they wait at.
+  static Block*& chosen() {
+    static thread_local Block* block = nullptr;
+    return block;
+  }
+
+  /// Releases all threads from the barrier that they wait at, unless it is that of the grid.
+  /// @return  what they waited for
   /// @throws Fault if some thread cannot reach it
-  void release_barrier() {
-    if (is_done()) return;
+  State release_barrier() {
+    if (is_done()) return State::done;
     const Thread& first = *threads_[0];
     for (unsigned t = 0; t < thread_count_; ++t) {
       const Thread& thread = *threads_[t];
@@ -214,11 +247,14 @@ class Block {
                     where(t - lane + missing));
       }
       if (thread.state != first.state ||
-          (thread.state == State::at_barrier && thread.line != first.line)) {
+          ((thread.state == State::at_barrier || thread.state == State::at_grid) &&
+           thread.line != first.line)) {
         throw Fault("barrier not reached by all threads: " + where(0) + ", " + where(t));
       }
     }
+    if (first.state == State::at_grid) return State::at_grid;
     for (unsigned t = 0; t < thread_count_; ++t) threads_[t]->state = State::ready;
+    return State::at_barrier;
   }
 
   std::string where(unsigned t) const {
@@ -226,11 +262,6 @@ class Block {
     const std::string name = "thread " + std::to_string(t);
     if (thread.state == State::done) return name + " has left the kernel";
     return name + " waits in line " + std::to_string(thread.line);
-  }
-
-  bool is_done() const {
-    return std::all_of(threads_.begin(), threads_.begin() + thread_count_,
-                       [](const auto& thread) { return thread->state == State::done; });
   }
 
   /// 0 to count - 1 in the schedule's order. @pre count <= 32

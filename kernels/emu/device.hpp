@@ -88,7 +88,14 @@ enum class ApiCall : char {
   copy_to_device = 'U',
   copy_to_host = 'D',
   copy_within = 'C',  ///< from device to device
-  fill = 'Z'
+  fill = 'Z',
+  record = 'R',  ///< of an event
+  graph = 'G'    ///< launch of a graph; each item of it is noted as a launch, too
+};
+
+/// Bytes that crossed between host and device.
+struct CopiedBytes {
+  std::size_t to_device = 0, to_host = 0;
 };
 
 /// The one emulated device: memory, streams and the record of calls.
@@ -108,6 +115,10 @@ class Device {
   int failing_allocation = none;
   /// The error that all calls return, as after an illegal access of a kernel.
   cudaError_t failure = cudaSuccess;
+  /// As on sm_90; blocks may use fewer multiprocessors.
+  int most_shared_bytes = 227 * 1024, multiprocessors = 4;
+  /// Whether a launch may synchronize its whole grid.
+  int is_cooperative = 1;
 
   static Device& only() {
     static Device device;
@@ -120,6 +131,16 @@ class Device {
     return std::exchange(calls_, {});
   }
   void note(ApiCall call) { calls_ += static_cast<char>(call); }
+  /// Returns the bytes copied since the last take_copied().
+  CopiedBytes take_copied() {
+    const std::lock_guard guard(lock);
+    return std::exchange(copied_, {});
+  }
+  void note_copy(ApiCall call, std::size_t size) {
+    note(call);
+    if (call == ApiCall::copy_to_device) copied_.to_device += size;
+    if (call == ApiCall::copy_to_host) copied_.to_host += size;
+  }
 
   /// @returns memory filled with 0xcd
   void* allocate(std::size_t size, bool is_pinned) {
@@ -200,19 +221,15 @@ class Device {
   Stream default_stream_;
   std::set<const void*> loaded_;
   std::string calls_;
+  CopiedBytes copied_;
 };
 
-/// Enqueues a kernel on a stream; with a null stream runs it immediately.
+/// Enqueues run(), which runs a kernel, on a stream; with a null stream runs it immediately.
 /// @throws Fault  the stream belongs to another than the current device, or is captured and the
 ///                kernel was not loaded before
-template <class Kernel, class... Args>
-void launch_on(cudaStream_t stream,
-               Kernel kernel,
-               dim3 grid,
-               dim3 block,
-               std::size_t shared_bytes,
-               const Args&... args) {
-  if (stream == nullptr) return launch(kernel, grid, block, shared_bytes, args...);
+template <class Kernel, class Run>
+void enqueue_kernel(cudaStream_t stream, Kernel kernel, const Run& run) {
+  if (stream == nullptr) return run();
   Device& device = Device::only();
   const std::lock_guard guard(device.lock);
   Stream& own = device.stream(stream);
@@ -225,8 +242,29 @@ void launch_on(cudaStream_t stream,
   }
   device.load(address);
   device.note(ApiCall::launch);
-  own.enqueue([=] { launch(kernel, grid, block, shared_bytes, args...); });
+  own.enqueue(run);
   device.run_eager();
+}
+
+template <class Kernel, class... Args>
+void launch_on(cudaStream_t stream,
+               Kernel kernel,
+               dim3 grid,
+               dim3 block,
+               std::size_t shared_bytes,
+               const Args&... args) {
+  enqueue_kernel(stream, kernel, [=] { launch(kernel, grid, block, shared_bytes, args...); });
+}
+
+template <class Kernel, class... Args>
+void launch_cooperative_on(cudaStream_t stream,
+                           Kernel kernel,
+                           dim3 grid,
+                           dim3 block,
+                           std::size_t shared_bytes,
+                           const Args&... args) {
+  enqueue_kernel(stream, kernel,
+                 [=] { launch_cooperative(kernel, grid, block, shared_bytes, args...); });
 }
 
 }  // namespace tetwarp::simt

@@ -21,11 +21,17 @@ using cudaEvent_t = tetwarp::simt::Event*;
 enum cudaMemcpyKind { cudaMemcpyHostToDevice, cudaMemcpyDeviceToHost, cudaMemcpyDeviceToDevice };
 constexpr unsigned cudaStreamNonBlocking = 1, cudaEventDisableTiming = 2;
 
-enum cudaMemoryType { cudaMemoryTypeUnregistered, cudaMemoryTypeHost, cudaMemoryTypeDevice };
+enum cudaMemoryType {
+  cudaMemoryTypeUnregistered,
+  cudaMemoryTypeHost,
+  cudaMemoryTypeDevice,
+  cudaMemoryTypeManaged
+};
 constexpr unsigned cudaHostRegisterPortable = 1;
 
 struct cudaPointerAttributes {
   cudaMemoryType type;
+  int device = 0;
 };
 struct cudaDeviceProp {
   char name[32];
@@ -116,6 +122,35 @@ inline cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, c
   });
 }
 
+enum cudaDeviceAttr {
+  cudaDevAttrMaxSharedMemoryPerBlockOptin,
+  cudaDevAttrMultiProcessorCount,
+  cudaDevAttrCooperativeLaunch
+};
+enum cudaFuncAttribute { cudaFuncAttributeMaxDynamicSharedMemorySize };
+
+inline cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int) {
+  return tetwarp::simt::call(true, [&](const auto& device) {
+    *value = attribute == cudaDevAttrMaxSharedMemoryPerBlockOptin ? device.most_shared_bytes
+             : attribute == cudaDevAttrMultiProcessorCount        ? device.multiprocessors
+                                                                  : device.is_cooperative;
+    return cudaSuccess;
+  });
+}
+template <class Kernel>
+cudaError_t cudaOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, Kernel, int, std::size_t) {
+  *blocks = 2;
+  return cudaSuccess;
+}
+inline cudaError_t cudaFuncSetAttribute(const void* kernel, cudaFuncAttribute, int bytes) {
+  return tetwarp::simt::call(true, [&](const auto& device) {
+    if (bytes > device.most_shared_bytes) return cudaErrorInvalidValue;
+    auto& limit = tetwarp::simt::shared_limits()[kernel];
+    limit = std::max(limit, static_cast<std::size_t>(bytes));
+    return cudaSuccess;
+  });
+}
+
 inline cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned) {
   return tetwarp::simt::call(false, [&](auto& device) {
     *stream = device.make_stream();
@@ -128,6 +163,11 @@ inline cudaError_t cudaStreamDestroy(cudaStream_t stream) {
   const std::lock_guard guard(device.lock);
   if (stream != nullptr) device.end_stream(static_cast<tetwarp::simt::Stream*>(stream));
   return device.failure;
+}
+inline cudaError_t cudaStreamQuery(cudaStream_t stream) {
+  return tetwarp::simt::call(true, [&](auto& device) {
+    return device.stream(stream).work.empty() ? cudaSuccess : cudaErrorNotReady;
+  });
 }
 inline cudaError_t cudaStreamSynchronize(cudaStream_t stream) {
   return tetwarp::simt::call(false, [&](auto& device) {
@@ -154,6 +194,7 @@ inline cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
     tetwarp::simt::Stream& own = device.stream(stream);
     if (own.device != tetwarp::simt::current_device) return cudaErrorInvalidResourceHandle;
     *event = {&own, own.queued};
+    device.note(tetwarp::simt::ApiCall::record);
     return cudaSuccess;
   });
 }
@@ -191,9 +232,10 @@ inline cudaError_t cudaMemcpyAsync(
     if (device.is_on_device(to, size) == to_host || device.is_on_device(from, size) == from_host) {
       return cudaErrorInvalidValue;
     }
-    device.note(to_host     ? ApiCall::copy_to_host
-                : from_host ? ApiCall::copy_to_device
-                            : ApiCall::copy_within);
+    device.note_copy(to_host     ? ApiCall::copy_to_host
+                     : from_host ? ApiCall::copy_to_device
+                                 : ApiCall::copy_within,
+                     size);
     if (from_host && !device.is_pinned(from, size)) {
       const auto* const bytes = static_cast<const std::byte*>(from);
       own.enqueue([to, staged = std::vector<std::byte>(bytes, bytes + size)] {
@@ -222,4 +264,5 @@ inline cudaError_t cudaMemsetAsync(void* data, int value, std::size_t size, cuda
 }
 // NOLINTEND(readability-identifier-naming)
 
-#include "kernels/emu/graph.hpp"  // IWYU pragma: export: uses the names above
+#include "kernels/emu/copy_3d.hpp"  // IWYU pragma: export: uses the names above
+#include "kernels/emu/graph.hpp"    // IWYU pragma: export: uses the names above

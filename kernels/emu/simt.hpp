@@ -12,8 +12,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <numeric>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "kernels/emu/block.hpp"
 
@@ -108,6 +113,10 @@ inline int __ffs(int bits) {
   return __builtin_ffs(bits);
 }
 
+inline void __threadfence() {
+  __atomic_thread_fence(__ATOMIC_SEQ_CST);
+}
+
 template <std::integral T>
 T atomicAdd(T* address, std::type_identity_t<T> value) {
   return __atomic_fetch_add(address, value, __ATOMIC_RELAXED);
@@ -153,15 +162,29 @@ void for_each_schedule(Check check) {
   schedule() = Schedule{};
 }
 
+/// Shared memory that cudaFuncSetAttribute() allowed to kernels [bytes].
+inline std::map<const void*, std::size_t>& shared_limits() {
+  static std::map<const void*, std::size_t> limits;
+  return limits;
+}
+inline std::size_t shared_limit(const void* kernel) {
+  const auto known = shared_limits().find(kernel);
+  return known == shared_limits().end() ? std::size_t{48} * 1024 : known->second;
+}
+
+/// @param most_shared  shared memory that the kernel may have
 /// @throws Fault if a launch exceeds limits that hold on every GPU by default
-inline void check_launch(dim3 grid, dim3 block, std::size_t shared_bytes) {
+inline void check_launch(dim3 grid,
+                         dim3 block,
+                         std::size_t shared_bytes,
+                         std::size_t most_shared = std::size_t{48} * 1024) {
   const std::uint64_t threads = std::uint64_t{block.x} * block.y * block.z;
   if (threads == 0 || threads > 1024 || block.z > 64) throw Fault("block size");
   if (grid.x == 0 || grid.y == 0 || grid.z == 0 || grid.x > 0x7fffffffu || grid.y > 65535 ||
       grid.z > 65535) {
     throw Fault("grid size");
   }
-  if (shared_bytes > std::size_t{48} * 1024) throw Fault("shared memory");
+  if (shared_bytes > most_shared) throw Fault("shared memory");
 }
 
 /// Grids of fewer blocks run on one OS thread: waking other threads would take longer.
@@ -171,7 +194,7 @@ constexpr std::int64_t fewest_parallel_blocks = 64;
 /// @throws Fault if a block has one
 template <class Kernel, class... Args>
 void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, const Args&... args) {
-  check_launch(grid, block, shared_bytes);
+  check_launch(grid, block, shared_bytes, shared_limit(reinterpret_cast<const void*>(kernel)));
   const std::int64_t slice = std::int64_t{grid.x} * grid.y;
   const std::int64_t block_count = slice * grid.z;
   const bool is_parallel = !has_address_sanitizer && block_count >= fewest_parallel_blocks;
@@ -196,6 +219,45 @@ void launch(Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, cons
     }
   }
   if (fault) std::rethrow_exception(fault);
+}
+
+/// Runs a kernel whose blocks are all resident and may wait for each other, on one OS thread, each
+/// block up to its next barrier of the grid. Such a kernel has dynamic shared memory only.
+/// @throws Fault if a block has one, or returns while others wait for it
+template <class Kernel, class... Args>
+void launch_cooperative(
+    Kernel kernel, dim3 grid, dim3 block, std::size_t shared_bytes, const Args&... args) {
+  check_launch(grid, block, shared_bytes, shared_limit(reinterpret_cast<const void*>(kernel)));
+  if (grid.y != 1 || grid.z != 1 || block.y != 1 || block.z != 1) throw Fault("grid of blocks");
+  const std::function<void()> run = [&] { kernel(args...); };
+  static thread_local std::vector<std::unique_ptr<Block>> blocks;
+  while (blocks.size() < grid.x) blocks.push_back(std::make_unique<Block>());
+  std::vector<unsigned> order(grid.x);
+  std::iota(order.begin(), order.end(), 0u);
+  if (schedule().order == ThreadOrder::reverse) std::reverse(order.begin(), order.end());
+  blockDim = block;
+  gridDim = grid;
+  for (const unsigned b : order) {
+    Schedule own = schedule();
+    own.seed += b;
+    blocks[b]->start(block.x, shared_bytes, own, run);
+  }
+  struct Chosen {
+    ~Chosen() { Block::choose(nullptr); }
+  } const chosen;
+  for (unsigned waiting = grid.x; waiting > 0;) {
+    waiting = 0;
+    for (const unsigned b : order) {
+      Block::choose(blocks[b].get());
+      blockIdx = {b, 0, 0};
+      blocks[b]->go_on([](unsigned t) { threadIdx = {t, 0, 0}; });
+      waiting += blocks[b]->is_done() ? 0 : 1;
+    }
+    if (waiting != 0 && waiting != grid.x) throw Fault("barrier of the grid not reached by all");
+    for (const unsigned b : order) {
+      if (waiting > 0) blocks[b]->release_grid();
+    }
+  }
 }
 
 }  // namespace tetwarp::simt

@@ -10,17 +10,33 @@ namespace tetwarp {
 constexpr int sum_threads = 128;
 constexpr int sum_warps = sum_threads / 32;
 
-/// The value `mine` of the lane `step` above. @pre all lanes of the warp call it
-template <class Sum>
-__device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
+/// Applies `exchange`, of one number of float64, to each word of a sum.
+/// @pre all lanes of the warp call it
+template <class Sum, class Exchange>
+__device__ __forceinline__ Sum exchanged(const Sum& mine, const Exchange& exchange) {
   constexpr int words = sizeof(Sum) / sizeof(double);
   static_assert(sizeof(Sum) == words * sizeof(double));
   double word[words];
   memcpy(word, &mine, sizeof(Sum));
-  for (int k = 0; k < words; ++k) word[k] = __shfl_down_sync(~0u, word[k], step);
+  for (int k = 0; k < words; ++k) word[k] = exchange(word[k]);
   Sum other;
   memcpy(&other, word, sizeof(Sum));
   return other;
+}
+
+/// Sum over the lanes of a warp by a fixed tree; valid in the first lane.
+template <class Sum>
+__device__ __forceinline__ Sum warp_sum(Sum mine) {
+  for (unsigned step = 16; step > 0; step /= 2) {
+    mine += exchanged(mine, [=](double word) { return __shfl_down_sync(~0u, word, step); });
+  }
+  return mine;
+}
+
+/// The value of the first lane.
+template <class Sum>
+__device__ __forceinline__ Sum shuffled_from_first(const Sum& mine) {
+  return exchanged(mine, [](double word) { return __shfl_sync(~0u, word, 0); });
 }
 
 /// Sum over the threads of a block by a fixed tree, returned to every thread.
@@ -29,7 +45,7 @@ __device__ __forceinline__ Sum shuffled_down(const Sum& mine, unsigned step) {
 template <class Sum>
 __device__ __forceinline__ Sum block_sum(Sum mine, Sum* of_warp) {
   const int thread = static_cast<int>(threadIdx.x);
-  for (unsigned step = 16; step > 0; step /= 2) mine += shuffled_down(mine, step);
+  mine = warp_sum(mine);
   __syncthreads();  // all threads have read the sums of the previous call
   if (thread % 32 == 0) of_warp[thread / 32] = mine;
   __syncthreads();

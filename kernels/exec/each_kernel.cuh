@@ -25,10 +25,18 @@ __global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
   if (i < count) body(i);
 }
 
+/// One index = one byte.
+struct ZeroBody {
+  View<std::uint8_t> bytes;
+
+  TETWARP_HD void operator()(std::int64_t i) const { bytes[i] = 0; }
+};
+
 /// Calls body(segment, index in the segment, item), the segment found by bisection of `offsets`.
-template <class Body>
-__global__ void __launch_bounds__(each_threads)
-    each_item_kernel(View<const std::int64_t> offsets, std::int64_t capacity, Body body) {
+/// @tparam Offsets  View<const std::int64_t> or GroupedSums
+template <class Offsets, class Body>
+__global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
+    each_item_kernel(Offsets offsets, std::int64_t capacity, Body body) {
   const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
   std::int64_t low = 0, high = offsets.size - 1;
   if (item >= min_of(offsets[high], capacity)) return;

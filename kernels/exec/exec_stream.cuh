@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/base/slice_bytes.hpp"
 #include "kernels/base/stage_times.hpp"
 #include "kernels/exec/exec_buffer.cuh"
 
@@ -82,12 +83,36 @@ class DeviceEvent {
   cudaEvent_t event_ = nullptr;
 };
 
+/// Copies parts of slices from the device to the host in one operation.
+inline void copy_slices(const std::byte* from,
+                        std::byte* to,
+                        const SliceBytes& part,
+                        cudaStream_t stream) {
+  if (part.slices == 1 || part.rows == part.pitch) {
+    check_cuda(cudaMemcpyAsync(to, from, part.row * part.rows * part.slices, cudaMemcpyDeviceToHost,
+                               stream),
+               "cudaMemcpyAsync to host");
+    return;
+  }
+  cudaMemcpy3DParms copy = {};
+  copy.srcPtr = make_cudaPitchedPtr(const_cast<std::byte*>(from), part.row, part.row, part.pitch);
+  copy.dstPtr = make_cudaPitchedPtr(to, part.row, part.row, part.pitch);
+  copy.extent = make_cudaExtent(part.row, part.rows, part.slices);
+  copy.kind = cudaMemcpyDeviceToHost;
+  check_cuda(cudaMemcpy3DAsync(&copy, stream), "cudaMemcpy3DAsync to host");
+}
+
 /// Events and stage times of one step in flight.
 class DeviceFlight {
  public:
-  DeviceEvent given;     ///< the default stream's work before the step
-  DeviceEvent uploaded;  ///< the step's input is on the device
-  DeviceEvent computed;  ///< the step's kernels have run
+  DeviceEvent given;          ///< the default stream's work before the step
+  DeviceEvent uploaded;       ///< the step's input is on the device
+  DeviceEvent computed;       ///< the step's kernels have run
+  DeviceEvent delivered;      ///< the step's results are in memory of the host
+  bool has_upload = false;    ///< `uploaded` was recorded for the step
+  bool is_recorded = false;   ///< `computed` was
+  bool is_awaited = false;    ///< the stream of downloads waits for `computed`
+  bool has_delivery = false;  ///< `delivered` was recorded
 
   /// Calls work(), which enqueues on `stream`, and adds its time on the device to that of `label`.
   template <class Work>

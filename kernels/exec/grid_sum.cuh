@@ -27,6 +27,27 @@ __global__ void __launch_bounds__(sum_threads, 4) sums_kernel(
   if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
 }
 
+/// Terms [begin, end) of a sum.
+struct SumRun {
+  std::int64_t begin, end;
+};
+
+/// sums[b] = sum of term over runs[b].
+/// Blocks: one per run. Threads: sum_threads. Shared: one sum per warp. Registers: up to 128.
+template <class Sum, class Term>
+__global__ void __launch_bounds__(sum_threads, 4)
+    run_sums_kernel(View<const SumRun> runs, Term term, View<Sum> sums) {
+  Sum* const of_warp = dynamic_shared<Sum>();
+  const SumRun run = runs[static_cast<std::int64_t>(blockIdx.x)];
+  Sum mine{};
+  for (std::int64_t i = run.begin + static_cast<std::int64_t>(threadIdx.x); i < run.end;
+       i += sum_threads) {
+    mine += term(i);
+  }
+  const Sum total = block_sum(mine, of_warp);
+  if (threadIdx.x == 0) sums[static_cast<std::int64_t>(blockIdx.x)] = total;
+}
+
 /// One index = one partial sum.
 template <class Sum>
 struct ReadySums {

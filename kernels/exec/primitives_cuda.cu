@@ -38,14 +38,6 @@ struct IsValid {
 };
 }  // namespace
 
-void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
-  std::size_t bytes = 0;
-  std::int64_t* const none = nullptr;
-  check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, none, none, item_count(count)),
-             "cub::DeviceScan::ExclusiveSum");
-  scratch.reserve(static_cast<std::int64_t>(bytes));
-}
-
 void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values) {

@@ -15,12 +15,12 @@ namespace tetwarp {
 constexpr int raster_threads = 128;
 
 /// Minimum blocks per multiprocessor: five leave 96 registers to a thread. The general kernel needs
-/// more on every architecture, float64 arithmetic on sm_120: with fewer blocks none spills.
+/// more on every architecture, the plain one on sm_120: with fewer blocks none spills.
 template <class T, bool is_general>
 constexpr int raster_blocks() {
   if (is_general) return 2;
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 1200
-  return sizeof(ArithmeticOf<T>) == 8 ? 4 : 5;
+  return 4;
 #else
   return 5;
 #endif
@@ -172,13 +172,15 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
     job.cell_covered[cell] = static_cast<std::uint16_t>(block_counts[0]);
   }
   if (job.counts != nullptr && thread < 4 && block_counts[thread] != 0) {
-    atomic_add(reinterpret_cast<std::int64_t*>(job.counts) + thread, block_counts[thread]);
+    RasterCounts* const counts = job.counts + cell % job.count_places;
+    atomic_add(reinterpret_cast<std::int64_t*>(counts) + thread, block_counts[thread]);
   }
 }
 
 /// Finds the owner of every voxel of a cell and stores its samples.
 ///
-/// Blocks: one per cell. Threads: raster_threads. Shared: one RasterChunk and four counters, about
+/// Blocks: one per cell of the job; where the job lists cells, those after the list end at once.
+/// Threads: raster_threads. Shared: one RasterChunk and four counters, about
 /// 2.1 KiB with float32, 2.9 KiB with float64 arithmetic.
 /// @tparam is_general  whether the job may have wide filters, transforms or hexahedra
 template <class T, bool is_general>
@@ -188,7 +190,11 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>()
   __shared__ int block_counts[4];
 
   const int thread = static_cast<int>(threadIdx.x);
-  const std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
+  std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
+  if (job.listed != nullptr) {
+    if (cell >= *job.listed_count) return;
+    cell = job.listed[cell];
+  }
   int corner[3];
   job.frame.set_corner(cell, corner);
   const int i = thread % cell_edge;

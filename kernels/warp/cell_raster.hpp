@@ -53,17 +53,20 @@ struct RasterGeometry {
   OutputFrame frame;
   OutsideMap outside;
   bool copy_whole_shifts;
-  std::uint8_t* mask;  ///< may be null
-  std::int32_t* tet;   ///< may be null
-  RasterCounts* counts;
+  std::uint8_t* mask;             ///< may be null
+  std::int32_t* tet;              ///< may be null
+  RasterCounts* counts;           ///< may be null; a device adds to that of a cell's number modulo
+  std::int64_t count_places = 1;  ///< this number
 
   /// Per cell: keep_cell, sample_cell, or the source voxel whose samples are stored in every
   /// covered voxel. Size 0: sample_cell for all.
   View<const std::int64_t> cell_work;
+  /// The cells that cell_raster_kernel() computes, the number of which is on the device; null: all.
+  const std::uint32_t* listed = nullptr;
+  const std::int32_t* listed_count = nullptr;
   /// Out, per cell that is not kept: number of covered voxels. Size 0: not stored.
   View<std::uint16_t> cell_covered;
-
-  /// Per tetrahedron: how its voxels are sampled, see voxel_transform.hpp. Size 0: all are plain.
+  /// Per tetrahedron, see voxel_transform.hpp. Size 0: all are plain.
   View<const VoxelTransform> transforms;
   VoxelTransform outside_transform;  ///< of voxels that no tetrahedron covers
 };

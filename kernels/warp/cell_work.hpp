@@ -74,7 +74,9 @@ struct CellWorkBody {
     }
     const std::int64_t voxel = uniform.reach.size > 0 ? value_of(cell) : -1;
     work[cell] = voxel < 0 ? sample_cell : voxel;
-    if (voxel >= 0 && constant_count.size > 0) atomic_add(&constant_count[0], 1);
+    if (voxel >= 0 && constant_count.size > 0) {
+      atomic_add(&constant_count[cell % constant_count.size], 1);
+    }
   }
 
   /// The source voxel whose samples fill all covered voxels of a cell, or -1.
@@ -105,7 +107,7 @@ struct CellWorkBody {
 ///                        no cell is filled
 /// @param touched         from cell_merge, shape [cell_count]; empty: all cells are touched
 /// @param work            out, shape [cell_count]
-/// @param constant_count  the number of filled cells is added to it, shape [1]; empty: not counted
+/// @param constant_count  the number of filled cells is added to its entries; empty: not counted
 ///
 /// Determinism: which cells are filled may differ between back ends by the rounding of a position;
 /// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.

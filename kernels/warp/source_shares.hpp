@@ -47,7 +47,7 @@ struct SourceFace {
   int count;
   double corner[max_face_corners][3];  ///< [source voxel]
   double normal[3];  ///< of the side from which the corners are counterclockwise, any length
-  double sign;       ///< 1 if that side is the outside of the body, otherwise -1
+  double weight;     ///< of the body; negative if that side is the inside of the body
 };
 
 /// Integrals over the faces of a body in a block of source voxels.
@@ -72,12 +72,12 @@ class SourceShares {
     const double* const normal = face.normal;
     const double x = fabs(normal[0]), y = fabs(normal[1]), z = fabs(normal[2]);
     if (x >= y && x >= z) {
-      if (x > 0) add_slabs<0>(face, face.sign, -normal[1] / normal[0]);
+      if (x > 0) add_slabs<0>(face, face.weight, -normal[1] / normal[0]);
     } else if (x > 0) {
       if (y > z) {
-        add_slabs<1>(face, -face.sign * normal[0] / normal[1], 0);
+        add_slabs<1>(face, -face.weight * normal[0] / normal[1], 0);
       } else {
-        add_slabs<2>(face, face.sign * normal[0] / normal[2], 0);
+        add_slabs<2>(face, face.weight * normal[0] / normal[2], 0);
       }
     }
   }

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "kernels/base/hd.hpp"
+#include "kernels/base/mul_add.hpp"
 #include "kernels/base/pixel.hpp"
 #include "kernels/base/view.hpp"
 
@@ -86,13 +87,14 @@ TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
   return map;
 }
 
-/// Local position x of voxel (i, j, k). Other code repeats this order of operations to get equal
-/// bits.
-template <class Real>
-TETWARP_HD void local_position(const SourceMap<Real>& map, int i, int j, int k, Real* x) {
+/// Local position x of voxel (i, j, k), whole numbers of any type. Other code repeats this order of
+/// operations to get equal bits.
+template <class Real, class Index>
+TETWARP_HD void local_position(const SourceMap<Real>& map, Index i, Index j, Index k, Real* x) {
   for (int row = 0; row < 3; ++row) {
-    const Real line = (map.base[row] + map.axis[1][row] * Real(j)) + map.axis[2][row] * Real(k);
-    x[row] = line + map.axis[0][row] * Real(i);
+    const Real line =
+        mul_add(map.axis[2][row], Real(k), mul_add(map.axis[1][row], Real(j), map.base[row]));
+    x[row] = mul_add(map.axis[0][row], Real(i), line);
   }
 }
 
@@ -141,7 +143,7 @@ TETWARP_HD Tap<Real> tap_of(const SourceView<T>& source,
 /// a + f (b - a); a if f is zero, so that a NaN in b does not spread.
 template <class Real>
 TETWARP_HD Real lerp_of(Real f, Real a, Real b) {
-  return f > Real(0) ? a + f * (b - a) : a;
+  return f > Real(0) ? mul_add(f, b - a, a) : a;
 }
 
 /// Linear interpolation of one component, not rounded.

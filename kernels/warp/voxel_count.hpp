@@ -1,5 +1,5 @@
 /// @file voxel_count.hpp
-/// Stage "raster" of the warp: counts folded and covered voxels.
+/// Stage "raster" of the warp: counts folded voxels.
 #pragma once
 #include <cstdint>
 
@@ -33,20 +33,6 @@ struct VoxelFoldBody {
       inside += is_inside_exact(tet, x[0], x[1], x[2], true);
     }
     if (inside == 2) atomic_add(&folded[0], weight);
-  }
-};
-
-/// One index = 1024 cells; any order. Sums their covered voxels.
-struct CoveredSumBody {
-  static constexpr std::int64_t cells = 1024;
-  View<const std::uint16_t> cell_covered;
-  View<std::int64_t> covered;
-
-  TETWARP_HD void operator()(std::int64_t part) const {
-    const std::int64_t end = min_of((part + 1) * cells, cell_covered.size);
-    std::int64_t sum = 0;
-    for (std::int64_t cell = part * cells; cell < end; ++cell) sum += cell_covered[cell];
-    atomic_add(&covered[0], sum);
   }
 };
 

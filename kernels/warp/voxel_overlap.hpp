@@ -7,7 +7,7 @@
 #include "kernels/base/any_number.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/convex_part.hpp"
-#include "kernels/warp/voxel_part.hpp"
+#include "kernels/warp/voxel_bodies.hpp"
 #include "kernels/warp/voxel_rounding.hpp"
 #include "kernels/warp/voxel_transform.hpp"
 
@@ -74,8 +74,9 @@ void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> m
 
 /// One index = one voxel of the output, counted from `first`; any order.
 struct VoxelOverlapBody {
-  static constexpr int resident_blocks = 1;  ///< allows all registers: no spills
+  static constexpr int resident_blocks = 2;  ///< leaves 128 registers per thread: no spills
   View<const TetSetup> setups;
+  View<const std::int32_t> tets;          ///< node indices, shape [4 * tet_count]
   View<const VoxelTransform> transforms;  ///< only their scale is used
   PairList list;                          ///< of widened boxes, none rejected
   View<const std::int64_t> cell_work;     ///< only keep_cell is used; size 0: no cell is kept
@@ -93,31 +94,40 @@ struct VoxelOverlapBody {
     const std::int64_t cell = frame.cell_of_voxel(x);
     if (cell_work.size > 0 && cell_work[cell] == keep_cell) return;
     double sums[max_transform_components] = {};
+    VoxelBodies bodies;
     const std::int64_t end = end_of_cell(list, cell);
     for (std::int64_t p = list.ranges[cell].begin; p < end; ++p) {
-      add_tet(tet_of(list.pairs[p]), x, sums);
+      if (set_body(tet_of(list.pairs[p]), x, bodies.next(), sums)) bodies.add();
+      if (!bodies.is_full()) continue;
+      add_bodies(bodies, sums);
+      bodies.clear();
     }
+    if (bodies.count() > 0) add_bodies(bodies, sums);
     output.store(voxel, x, sums);
   }
 
-  /// Adds the contribution of tetrahedron t to voxel x.
-  TETWARP_HD void add_tet(int t, const int* x, double* sums) const {
+  /// Sets the part of voxel x in tetrahedron t; adds its contents if they are constant.
+  /// @returns whether the part remains to be added
+  TETWARP_HD bool set_body(int t, const int* x, VoxelBody& body, double* sums) const {
     const TetSetup& tet = setups[t];
     for (int axis = 0; axis < 3; ++axis) {
-      if (x[axis] < tet.begin[axis] || x[axis] >= tet.end[axis]) return;
+      if (x[axis] < tet.begin[axis] || x[axis] >= tet.end[axis]) return false;
     }
     const double scale = transforms[t].scale;
-    if (!(scale > 0)) return;  // flat at rest
-    double height[4];
-    const BoxPlace place = place_of_box(tet, x, height);
-    if (place == BoxPlace::outside) return;
+    if (!(scale > 0)) return false;  // flat at rest
+    const BoxPlace place = place_of_box(tet, x, body.height);
+    if (place == BoxPlace::outside) return false;
     double start[3], linear[3][3];
     map_start(tet, x, start, linear);
-    const auto map = make_source_map<double>(start, linear);
+    body.map = make_source_map<double>(start, linear);
     const bool is_whole = place == BoxPlace::inside;
-    if (!add_constant(map, is_whole, scale, sums)) {
-      add_part(VoxelPart(tet, height, is_whole, map), map, scale, sums);
-    }
+    if (add_constant(body.map, is_whole, scale, sums)) return false;
+    const double volume = map_volume(body.map);
+    body.tet = t;
+    body.cuts = is_whole ? 0 : cuts_of(tet, body.height);
+    body.met = 0;
+    body.weight = scale / volume;
+    return volume != 0;
   }
 
  private:
@@ -137,15 +147,47 @@ struct VoxelOverlapBody {
     return is_added;
   }
 
+  /// Adds the contents of all bodies of a voxel, together if they are in few source voxels.
+  TETWARP_HD void add_bodies(VoxelBodies& bodies, double* sums) const {
+    VoxelRange range;
+    bodies.align(range);
+    bool is_small = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      is_small = is_small && range.last[axis] - range.first[axis] < SourceShares::edge;
+    }
+    if (is_small) return add_together(bodies, range, sums);
+    for (int b = 0; b < bodies.count(); ++b) add_part(bodies, b, sums);
+  }
+
+  /// Adds the contents of all bodies. @param range  around them, no longer than a block
+  TETWARP_HD_RARE void add_together(VoxelBodies& bodies,
+                                    const VoxelRange& range,
+                                    double* sums) const {
+    const SourceMap<double>& map = bodies.body(0).map;
+    int begin[3], size[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      begin[axis] = max_of(range.first[axis], -map.whole[axis]);
+      size[axis] = min_of(range.last[axis] + 1, dims[axis] - map.whole[axis]) - begin[axis];
+      if (size[axis] <= 0) return;
+    }
+    bodies.meet(setups.data, tets.data);
+    SourceShares shares;
+    shares.set_block(begin, size);
+    for (int b = 0; b < bodies.count(); ++b) {
+      const PartFaces faces = bodies.faces(b, setups.data);
+      for (int n = 0; n < max_part_faces; ++n) {
+        SourceFace face;
+        if (faces.set_face(n, face)) shares.add_face(face);
+      }
+    }
+    add_shares(shares, range.volume, map, sums);
+  }
+
   /// Adds the contents of a part of a voxel's box.
-  /// @param scale  factor on volumes of the output
-  TETWARP_HD_RARE void add_part(const VoxelPart& part,
-                                const SourceMap<double>& map,
-                                double scale,
-                                double* sums) const {
-    const double volume = fabs(map_volume(map));
-    if (volume == 0 || part.count() == 0) return;
-    const double per_volume = scale / volume;
+  TETWARP_HD_RARE void add_part(const VoxelBodies& bodies, int b, double* sums) const {
+    const VoxelPart part(bodies.all_faces(b, setups.data));
+    if (part.count() == 0) return;
+    const SourceMap<double>& map = bodies.body(b).map;
     const VoxelRange range = part.range();
     int begin[3], end[3];
     for (int axis = 0; axis < 3; ++axis) {
@@ -162,14 +204,23 @@ struct VoxelOverlapBody {
                                min_of(end[2] - k, edge)};
           shares.set_block(first_voxel, size);
           for (int f = 0; f < part.count(); ++f) shares.add_face(part.face(f));
-          with_numbers(source.data, source.kind, [&](const auto* samples) {
-            shares.for_voxels(least_share * range.volume, [&](int a, int b, int c, double share) {
-              add_sample(samples + place_of(map, a, b, c), share * per_volume, sums);
-            });
-          });
+          add_shares(shares, range.volume * fabs(bodies.body(b).weight), map, sums);
         }
       }
     }
+  }
+
+  /// Adds the samples of a block, weighted with their shares.
+  /// @param volume  around the bodies, weighted
+  TETWARP_HD_RARE void add_shares(const SourceShares& shares,
+                                  double volume,
+                                  const SourceMap<double>& map,
+                                  double* sums) const {
+    with_numbers(source.data, source.kind, [&](const auto* samples) {
+      shares.for_voxels(least_share * volume, [&](int i, int j, int k, double share) {
+        add_sample(samples + place_of(map, i, j, k), share, sums);
+      });
+    });
   }
 
   /// The sample that all source voxels of a range have in common. Null if they differ, if the range

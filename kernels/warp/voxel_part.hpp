@@ -39,29 +39,127 @@ TETWARP_HD VoxelRange range_of_box(const SourceMap<double>& map) {
   return range;
 }
 
-/// The faces of the part of a voxel's box within a tetrahedron.
+/// Most faces of a part: six sides of the box and four faces of the tetrahedron.
+constexpr int max_part_faces = 10;
+
+/// The faces of the part of a voxel's box within a tetrahedron, one by one. Positions are relative
+/// to map.whole.
+struct PartFaces {
+  const TetSetup& tet;
+  const double* height;          ///< from place_of_box()
+  const SourceMap<double>& map;  ///< of the tetrahedron; (0, 0, 0) is the voxel
+  double weight;                 ///< of the body; its sign is that of the volume of the map
+  int cuts;                      ///< bit f: the plane of face f cuts the box
+  int left_out = 0;              ///< bit f: the face in this plane is not one of them
+
+  /// Sets a face: one of the six sides of the box, or the plane of face n - 6.
+  /// @param n  0 to max_part_faces - 1
+  /// @returns false, and nothing of use is set, if the face is empty
+  TETWARP_HD bool set_face(int n, SourceFace& face) const {
+    return n < 6 ? set_box_side(n >> 1, n & 1, face)
+                 : ((cuts & ~left_out) >> (n - 6) & 1) != 0 && set_tet_face(n - 6, face);
+  }
+
+ private:
+  /// Positions origin + u side[0] + v side[1] in the source.
+  struct Plane {
+    double origin[3], side[2][3];
+  };
+
+  /// One of the two sides of the box that are normal to an axis of the output.
+  TETWARP_HD bool set_box_side(int axis, int upper, SourceFace& face) const {
+    const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+    const double from_centre = upper - 0.5;
+    CutSquare square;
+    square.set_whole();
+    for (int f = 0; f < 4; ++f) {
+      if ((cuts >> f & 1) == 0) continue;
+      if (!square.cut(
+              {height[f] + from_centre * tet.plane[axis][f], {tet.plane[u][f], tet.plane[v][f]}})) {
+        return false;
+      }
+    }
+    Plane side;
+    for (int row = 0; row < 3; ++row) {
+      side.side[0][row] = map.axis[u][row];
+      side.side[1][row] = map.axis[v][row];
+      side.origin[row] = (map.base[row] + 0.5) + from_centre * map.axis[axis][row];
+    }
+    set_polygon(square, side, upper != 0 ? weight : -weight, face);
+    return true;
+  }
+
+  /// The face of the part in a plane of the tetrahedron, by the two output coordinates along which
+  /// the plane extends most.
+  TETWARP_HD_RARE bool set_tet_face(int cut, SourceFace& face) const {
+    const auto& plane = tet.plane;
+    int axis = 0;
+    for (int a = 1; a < 3; ++a) {
+      if (fabs(plane[a][cut]) > fabs(plane[axis][cut])) axis = a;
+    }
+    const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
+    const double per_height = 1 / plane[axis][cut];
+    const HalfPlane across = {// the coordinate along `axis`
+                              -height[cut] * per_height,
+                              {-plane[u][cut] * per_height, -plane[v][cut] * per_height}};
+    CutSquare square;
+    square.set_whole();
+    if (!square.cut({0.5 + across.offset, {across.slope[0], across.slope[1]}})) return false;
+    if (!square.cut({0.5 - across.offset, {-across.slope[0], -across.slope[1]}})) return false;
+    for (int other = 0; other < 4; ++other) {
+      if (other == cut || (cuts >> other & 1) == 0) continue;
+      const double along = plane[axis][other];
+      if (!square.cut({height[other] + along * across.offset,
+                       {plane[u][other] + along * across.slope[0],
+                        plane[v][other] + along * across.slope[1]}})) {
+        return false;
+      }
+    }
+    Plane side;
+    for (int row = 0; row < 3; ++row) {
+      side.origin[row] = (map.base[row] + 0.5) + across.offset * map.axis[axis][row];
+      side.side[0][row] = map.axis[u][row] + across.slope[0] * map.axis[axis][row];
+      side.side[1][row] = map.axis[v][row] + across.slope[1] * map.axis[axis][row];
+    }
+    set_polygon(square, side, plane[axis][cut] > 0 ? -weight : weight, face);
+    return true;
+  }
+
+  TETWARP_HD static void set_polygon(const CutSquare& square,
+                                     const Plane& plane,
+                                     double weight,
+                                     SourceFace& face) {
+    face.count = square.count;
+    face.weight = weight;
+    set_cross(plane.side[0], plane.side[1], face.normal);
+    for (int c = 0; c < square.count; ++c) {
+      for (int row = 0; row < 3; ++row) {
+        face.corner[c][row] = plane.origin[row] + square.corner[c][0] * plane.side[0][row] +
+                              square.corner[c][1] * plane.side[1][row];
+      }
+    }
+  }
+};
+
+/// The faces whose planes cut a voxel's box, as bits.
+/// @param height  from place_of_box()
+TETWARP_HD int cuts_of(const TetSetup& tet, const double* height) {
+  int cuts = 0;
+  for (int face = 0; face < 4; ++face) {
+    if (height[face] - box_reach(tet, face) < 0) cuts |= 1 << face;
+  }
+  return cuts;
+}
+
+/// All faces of the part of a voxel's box within a tetrahedron, and the range around them.
 class VoxelPart {
  public:
-  /// Positions are relative to map.whole.
-  /// @param height    from place_of_box()
-  /// @param is_whole  whether the box is within the tetrahedron
-  /// @param map       of the tetrahedron; (0, 0, 0) is the voxel
-  TETWARP_HD VoxelPart(const TetSetup& tet,
-                       const double* height,
-                       bool is_whole,
-                       const SourceMap<double>& map)
-      : count_(0) {
-    int cuts = 0;
-    for (int face = 0; face < 4 && !is_whole; ++face) {
-      if (height[face] - box_reach(tet, face) < 0) cuts |= 1 << face;
+  TETWARP_HD explicit VoxelPart(const PartFaces& faces) : count_(0) {
+    for (int n = 0; n < max_part_faces; ++n) {
+      if (faces.set_face(n, faces_[count_])) ++count_;
     }
-    const Place place = {tet, height, map, map_volume(map) < 0 ? -1.0 : 1.0, cuts};
-    for (int axis = 0; axis < 3; ++axis) add_box_sides(place, axis);
-    for (int face = 0; face < 4; ++face) {
-      if ((cuts >> face & 1) != 0) add_tet_face(place, face);
-    }
-    if (cuts == 0) {
-      range_ = range_of_box(map);
+    if (faces.cuts == 0) {
+      range_ = range_of_box(faces.map);
     } else {
       for (int axis = 0; axis < 3; ++axis) set_range(axis);
     }
@@ -72,94 +170,6 @@ class VoxelPart {
   TETWARP_HD const VoxelRange& range() const { return range_; }
 
  private:
-  struct Place {
-    const TetSetup& tet;
-    const double* height;
-    const SourceMap<double>& map;
-    double sign;  ///< of the volume of the map
-    int cuts;     ///< bit f: the plane of face f cuts the box
-  };
-  /// Positions origin + u side[0] + v side[1] in the source.
-  struct Plane {
-    double origin[3], side[2][3];
-  };
-
-  /// The two sides of the box that are normal to an axis of the output.
-  TETWARP_HD void add_box_sides(const Place& place, int axis) {
-    const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    const auto& plane = place.tet.plane;
-    Plane side;
-    for (int row = 0; row < 3; ++row) {
-      side.side[0][row] = place.map.axis[u][row];
-      side.side[1][row] = place.map.axis[v][row];
-    }
-    for (int upper = 0; upper < 2; ++upper) {
-      const double from_centre = upper - 0.5;
-      CutSquare square;
-      square.set_whole();
-      bool is_empty = false;
-      for (int face = 0; face < 4 && !is_empty; ++face) {
-        if ((place.cuts >> face & 1) == 0) continue;
-        is_empty = !square.cut({place.height[face] + from_centre * plane[axis][face],
-                                {plane[u][face], plane[v][face]}});
-      }
-      if (is_empty) continue;
-      for (int row = 0; row < 3; ++row) {
-        side.origin[row] = (place.map.base[row] + 0.5) + from_centre * place.map.axis[axis][row];
-      }
-      add_face(square, side, upper != 0 ? place.sign : -place.sign);
-    }
-  }
-
-  /// The face of the part in a plane of the tetrahedron, by the two output coordinates along which
-  /// the plane extends most.
-  TETWARP_HD_RARE void add_tet_face(const Place& place, int face) {
-    const auto& plane = place.tet.plane;
-    int axis = 0;
-    for (int a = 1; a < 3; ++a) {
-      if (fabs(plane[a][face]) > fabs(plane[axis][face])) axis = a;
-    }
-    const int u = axis == 2 ? 0 : axis + 1, v = axis == 0 ? 2 : axis - 1;
-    const double per_height = 1 / plane[axis][face];
-    const HalfPlane across = {// the coordinate along `axis`
-                              -place.height[face] * per_height,
-                              {-plane[u][face] * per_height, -plane[v][face] * per_height}};
-    CutSquare square;
-    square.set_whole();
-    if (!square.cut({0.5 + across.offset, {across.slope[0], across.slope[1]}})) return;
-    if (!square.cut({0.5 - across.offset, {-across.slope[0], -across.slope[1]}})) return;
-    for (int other = 0; other < 4; ++other) {
-      if (other == face || (place.cuts >> other & 1) == 0) continue;
-      const double along = plane[axis][other];
-      if (!square.cut({place.height[other] + along * across.offset,
-                       {plane[u][other] + along * across.slope[0],
-                        plane[v][other] + along * across.slope[1]}})) {
-        return;
-      }
-    }
-    Plane side;
-    const auto& map = place.map;
-    for (int row = 0; row < 3; ++row) {
-      side.origin[row] = (map.base[row] + 0.5) + across.offset * map.axis[axis][row];
-      side.side[0][row] = map.axis[u][row] + across.slope[0] * map.axis[axis][row];
-      side.side[1][row] = map.axis[v][row] + across.slope[1] * map.axis[axis][row];
-    }
-    add_face(square, side, plane[axis][face] > 0 ? -place.sign : place.sign);
-  }
-
-  TETWARP_HD void add_face(const CutSquare& square, const Plane& plane, double sign) {
-    SourceFace& face = faces_[count_++];
-    face.count = square.count;
-    face.sign = sign;
-    set_cross(plane.side[0], plane.side[1], face.normal);
-    for (int c = 0; c < square.count; ++c) {
-      for (int row = 0; row < 3; ++row) {
-        face.corner[c][row] = plane.origin[row] + square.corner[c][0] * plane.side[0][row] +
-                              square.corner[c][1] * plane.side[1][row];
-      }
-    }
-  }
-
   TETWARP_HD void set_range(int axis) {
     double low = 0, high = 0;
     if (count_ > 0) low = high = faces_[0].corner[0][axis];
@@ -172,9 +182,8 @@ class VoxelPart {
     range_.set(axis, low, high);
   }
 
-  static constexpr int max_count = 10;  ///< six sides of the box and four faces of the tetrahedron
   int count_;
-  SourceFace faces_[max_count];
+  SourceFace faces_[max_part_faces];
   VoxelRange range_;
 };
 

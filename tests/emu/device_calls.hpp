@@ -21,6 +21,18 @@ class DeviceCalls {
     return std::count(calls_.begin(), calls_.end(), static_cast<char>(call));
   }
 
+  /// What the device has to do: launches (those within graphs one by one), copies, fills, records
+  /// of events.
+  std::int64_t operations() const {
+    std::int64_t sum = 0;
+    for (const DeviceCall call :
+         {DeviceCall::launch, DeviceCall::copy_to_device, DeviceCall::copy_to_host,
+          DeviceCall::copy_within, DeviceCall::fill, DeviceCall::record}) {
+      sum += count(call);
+    }
+    return sum;
+  }
+
   /// Position of the first such call; the number of all calls where there is none.
   std::int64_t first(DeviceCall call) const {
     return std::find(calls_.begin(), calls_.end(), static_cast<char>(call)) - calls_.begin();
@@ -45,6 +57,11 @@ class DeviceCalls {
 /// The calls since the last time this was called.
 inline DeviceCalls take_calls() {
   return DeviceCalls(simt::Device::only().take_calls());
+}
+
+/// The bytes that crossed between host and device since the last time this was called.
+inline simt::CopiedBytes take_copied() {
+  return simt::Device::only().take_copied();
 }
 
 }  // namespace tetwarp::test

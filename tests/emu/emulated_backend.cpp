@@ -31,7 +31,8 @@ void cuda_unlock_pages(void* data) {
 
 std::unique_ptr<WarpBackend> make_cuda_backend(const WarpPlan& plan) {
   const DeviceScope scope(plan.options.device);
-  return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device));
+  const StageClocks clocks = plan.options.stage_times ? StageClocks::on : StageClocks::off;
+  return std::make_unique<WarpPipeline<CudaExec>>(plan, CudaExec(plan.options.device, clocks));
 }
 
 }  // namespace tetwarp

@@ -26,10 +26,6 @@ void take_scratch(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
 }
 }  // namespace
 
-void cuda_reserve_scan(DeviceBuffer<std::byte>& scratch, std::int64_t count) {
-  take_scratch(scratch, count);
-}
-
 void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values) {

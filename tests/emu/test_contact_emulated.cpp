@@ -8,6 +8,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/sweeps/method_names.hpp"
 #include "tests/scenes/contact_methods.hpp"
 #include "tests/scenes/contact_scenes.hpp"
 #include "tests/scenes/elastic_block.hpp"
@@ -60,6 +61,46 @@ TEST(ContactEmulated, SmallIslandsTakeOneLaunchAndThreeReads) {
 
   EXPECT_EQ(short_solve, long_solve);  // for any number of sweeps
   EXPECT_LE(long_solve.count(DeviceCall::launch), 12);
+}
+
+/// Every method, by one launch on the whole device and stage by stage.
+TEST(ContactEmulated, LargeIslandsHaveTheSameBitsWithAndWithoutSynchronizedGrids) {
+  const ContactProblem problem =
+      scenes::random_local({.seed = 325, .contacts = 2049, .neighbors = 2});
+  const ContactProblem stack = scenes::box_stack({.boxes = 513});
+  for (const ContactMethod method : methods) {
+    for (const ContactProblem* const each : {&problem, &stack}) {
+      if (each == &stack && method != ContactMethod::automatic) continue;
+      ContactOptions options = {.method = method, .tolerance = 1e-3, .backend = Backend::cuda};
+      options.max_sweeps = 60;
+      options.max_newton = 0;
+      options.skip.converged_islands = false;
+      simt::Device::only().is_cooperative = 0;
+      ContactSolver by_stages(options);
+      simt::Device::only().is_cooperative = 1;
+      ContactSolver by_grid(options);
+      const ContactSolution wanted = by_stages.solve(*each), solution = by_grid.solve(*each);
+      EXPECT_EQ(solution.impulse, wanted.impulse) << report_name_of(method);
+      EXPECT_EQ(solution.body_velocity, wanted.body_velocity) << report_name_of(method);
+      EXPECT_EQ(solution.report.sweeps, wanted.report.sweeps) << report_name_of(method);
+      EXPECT_EQ(solution.report.residual_history, wanted.report.residual_history);
+    }
+  }
+}
+
+/// The number of launches and reads does not depend on the number of sweeps.
+TEST(ContactEmulated, LargeIslandsAreSolvedByOneLaunch) {
+  const ContactProblem problem =
+      scenes::random_local({.seed = 326, .contacts = 2049, .neighbors = 2});
+  ContactOptions options = {.tolerance = 1e-2, .backend = Backend::cuda};
+  options.skip.converged_islands = false;
+  ContactSolver few(options);
+  options.tolerance = 1e-6;
+  ContactSolver many(options);
+  calls_of(few, problem);
+  calls_of(many, problem);
+
+  EXPECT_EQ(calls_of(few, problem), calls_of(many, problem));
 }
 
 TEST(ContactEmulated, HasTheSameBitsInAnyOrderOfThreads) {

@@ -14,7 +14,7 @@
 #include "tests/scenes/contact_stages.hpp"
 #include "tests/scenes/contact_sweeps.hpp"
 
-#include "kernels/contact/contact_grid.cuh"
+#include "kernels/contact/contact_block.cuh"
 
 namespace tetwarp::test {
 namespace {
@@ -31,7 +31,11 @@ bool has_bits_of(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-enum class Place { shared, global };
+/// Where an island's arrays are, and which threads solve it.
+enum class Place { shared, partly_shared, global, shared_by_warps, global_by_warps };
+
+constexpr Place places[] = {Place::shared, Place::partly_shared, Place::global,
+                            Place::shared_by_warps, Place::global_by_warps};
 
 /// All islands of a scene, from small impulses.
 template <class T>
@@ -49,15 +53,36 @@ class IslandSolves {
     StateMemory<CpuContactExec, T> state = start();
     MethodMemory<CpuContactExec, T> work;
     std::vector<IslandTask> tasks;
-    for (const ContactIsland& island : islands()) tasks.push_back({island, criterion_});
+    const ContactIndices indices = scene_.structure.indices();
+    for (const ContactIsland& island : islands()) {
+      tasks.push_back({island, criterion_, island_arrays(indices, island)});
+    }
     results.assign(tasks.size(), {});
     logs.assign(tasks.size() * static_cast<std::size_t>(events), {-1, -1});
-    contact_solve_islands<T>(
-        nullptr,
-        {system_.numbers(scene_.structure.indices()), state.views(), work.reserve(slots()),
-         view_of(scene_.structure.color_start), switches, plan_, view_of(std::as_const(tasks)),
-         place == Place::shared ? shared_values_for<T>(view_of(std::as_const(tasks))) : 0,
-         view_of(results), view_of(logs), events});
+    IslandJob<T> job = {system_.numbers(indices),
+                        state.views(),
+                        work.reserve(slots()),
+                        view_of(scene_.structure.color_start),
+                        switches,
+                        plan_,
+                        view_of(std::as_const(tasks)),
+                        0,
+                        view_of(results),
+                        view_of(logs),
+                        events};
+    const std::int64_t most =
+        place == Place::partly_shared ? 4096 : simt::Device::only().most_shared_bytes;
+    if (place == Place::shared_by_warps || place == Place::global_by_warps) {
+      if (place == Place::shared_by_warps) {
+        job.shared_bytes = shared_bytes_for<T, 32>(job.tasks, indices.is_local, most);
+      }
+      contact_solve_islands<T, 32>(nullptr, job);
+    } else {
+      if (place != Place::global) {
+        job.shared_bytes = shared_bytes_for<T, island_threads>(job.tasks, indices.is_local, most);
+      }
+      contact_solve_islands<T>(nullptr, job);
+    }
     sums.assign(tasks.size(), {});
     contact_measure_islands<T>(nullptr,
                                {system_.numbers(scene_.structure.indices()),
@@ -139,7 +164,7 @@ void expect_equal_bits(const ContactProblem& problem,
     }
   };
   simt::for_each_schedule([&](const simt::Schedule&) { expect_host_bits(Place::shared); });
-  expect_host_bits(Place::global);
+  for (const Place place : places) expect_host_bits(place);
 }
 
 constexpr std::int64_t sizes[] = {1, 31, 32, 33, 100};
@@ -203,9 +228,10 @@ TEST(ContactIslandSimt, EveryMethodEndsWhereItDoesOnTheHost) {
     const SweepScene scene(problem, true);
     for (const ContactMethod method : methods) {
       IslandSolves<double> solves(scene, {method, 0, 5000}, {ContactMeasure::eta, 1e-9, 1e-9});
-      const std::vector<double> host = solves.by_host();
-      for (const Place place : {Place::shared, Place::global}) {
-        solves.by_blocks(place);
+      solves.by_host();
+      const std::vector<double> block = solves.by_blocks(Place::shared);
+      for (const Place place : places) {
+        EXPECT_TRUE(has_bits_of(solves.by_blocks(place), block)) << report_name_of(method);
         for (std::size_t i = 0; i < solves.results.size(); ++i) {
           const IslandResult& result = solves.results[i];
           EXPECT_EQ(result.end.reason, StopReason::converged) << report_name_of(method);
@@ -256,38 +282,6 @@ TEST(ContactIslandSimt, EventsAreThinnedOutEvenly) {
     EXPECT_EQ(solves.logs[static_cast<std::size_t>(k)].sweep,
               all[static_cast<std::size_t>(k) * stride].sweep);
   }
-}
-
-/// The sums of a whole device: its own fixed tree, for any order of threads.
-TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
-  const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
-  std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);
-  const ContactIsland& island = scene.structure.islands[0];
-  const HostSweeps<double> host =
-      sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
-  std::vector<double> velocity(impulse.size());
-  CpuContactExec cpu(1);
-  cpu.for_each("", island.contact_count(),
-               ContactVelocityBody<DelassusView<double>, double>{
-                   scene.system.numbers(scene.structure.indices()).delassus, impulse.data(),
-                   view_of(velocity)});
-  const ContactResidualBody<double> body = {view_of(scene.system.constants),
-                                            {},
-                                            view_of(std::as_const(impulse)),
-                                            view_of(std::as_const(velocity)),
-                                            view_of(scene.system.free_velocity)};
-  std::vector<double> first;
-  simt::for_each_schedule([&](const simt::Schedule&) {
-    CudaExec exec(0);
-    GridContactExec grid(exec);
-    const auto sums = grid.sum<ContactSums>("", 0, island.contact_count(), body);
-    if (first.empty()) first = {sums.eta};
-    EXPECT_EQ(sums.eta, first[0]);
-    EXPECT_NEAR(sums.eta, host.sums.eta, 1e-12 * host.sums.eta);
-    EXPECT_NEAR(sums.fclib, host.sums.fclib, 1e-12 * host.sums.fclib);
-    EXPECT_EQ(sums.deepest, host.sums.deepest);
-    EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
-  });
 }
 }  // namespace
 }  // namespace tetwarp::test

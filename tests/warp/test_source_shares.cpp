@@ -44,7 +44,8 @@ struct Case {
 
 /// Volumes in the source by SourceShares, in as many blocks as the body needs.
 Shares shares_of(const Case& input) {
-  const VoxelPart part(input.tet, input.height, input.planes == 0, input.map);
+  const VoxelPart part({input.tet, input.height, input.map, map_volume(input.map) < 0 ? -1.0 : 1.0,
+                        cuts_of(input.tet, input.height)});
   const VoxelRange& range = part.range();
   Shares found;
   if (part.count() == 0) return found;

@@ -1,0 +1,265 @@
+/// @file cell_list.hpp
+/// Stage "cull" of the warp on a device: the sorted pairs of every cell by counting. Pairs that are
+/// not rejected are counted per cell, the counts summed, the pairs placed in their cell's part of
+/// the list, and each part sorted by tetrahedron. The list is that of cell_pairs() and
+/// cell_merge().
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/atomic_add.hpp"
+#include "kernels/base/grouped_sums.hpp"
+#include "kernels/warp/cell_cull.hpp"
+#include "kernels/warp/cell_pairs.hpp"
+
+namespace tetwarp {
+
+/// A counter in several places, summed at the end of a step, so that few threads add to one
+/// address. Size 0: not counted.
+using SpreadCounter = View<std::int64_t>;
+
+TETWARP_HD void add_to(const SpreadCounter& counter, std::int64_t index, std::int64_t value) {
+  if (counter.size > 0) atomic_add(&counter[index % counter.size], value);
+}
+
+enum class CellVerdict { rejected, accepted, partial };
+
+/// Compares a cell with a tetrahedron. Along the normal of a face, one corner of the cell has the
+/// least and one the largest plane value: these two decide as all eight corners of corner_mask().
+/// @param corner  first voxel of the cell [frame]
+TETWARP_HD CellVerdict verdict_of(const TetSetup& tet, const std::int64_t* corner) {
+  double d[3], size = cell_edge * 3 + 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    d[axis] = static_cast<double>(corner[axis] - tet.anchor[axis]);
+    size += fabs(d[axis]);
+  }
+  bool is_inside = true;
+  for (int face = 0; face < 4; ++face) {
+    const double offset = tet.plane[3][face];
+    const double value =
+        tet.plane[0][face] * d[0] + tet.plane[1][face] * d[1] + tet.plane[2][face] * d[2] + offset;
+    double low = value, high = value;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double change = tet.plane[axis][face] * cell_edge;
+      low += min_of(change, 0.0);
+      high += max_of(change, 0.0);
+    }
+    // 1000 times the rounding error of the lines above, fused or not.
+    const double margin = (size + fabs(offset)) * 0x1p-40;
+    if (high < -margin || low > tet.height[face] + margin) return CellVerdict::rejected;
+    is_inside = is_inside && low > margin;
+  }
+  return is_inside ? CellVerdict::accepted : CellVerdict::partial;
+}
+
+/// One item = one candidate pair; any order. As CellCullBody, but from the planes instead of masks;
+/// counts the pairs of each cell.
+struct CellCountBody {
+  static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
+  View<const TetSetup> setups;
+  CullSwitches switches;
+  OutputFrame frame;
+  View<CellPair> pairs;             ///< out, `rejected_pair` where no voxel is inside
+  View<std::uint32_t> places;       ///< out, of the other pairs: their number in their cell
+  View<std::uint32_t> cell_counts;  ///< in and out
+
+  TETWARP_HD void operator()(std::int64_t t, std::int64_t local, std::int64_t item) const {
+    const TetSetup& tet = setups[t];
+    std::int64_t cells[3], box = 1, corner[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t first = first_cell(tet, axis), count = last_cell(tet, axis) - first + 1;
+      cells[axis] = first + local / box % count;
+      corner[axis] = cells[axis] * cell_edge;
+      box *= count;
+    }
+    // Small tetrahedra keep all their pairs, see fewest_masked_cells.
+    const CellVerdict verdict =
+        box < fewest_masked_cells ? CellVerdict::partial : verdict_of(tet, corner);
+    if (switches.reject && verdict == CellVerdict::rejected) {
+      pairs[item] = rejected_pair;
+      return;
+    }
+    const std::int64_t cell = frame.cell_index(
+        static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2]));
+    pairs[item] = make_pair(cell, t, switches.accept && verdict == CellVerdict::accepted);
+    places[item] = atomic_next(&cell_counts[cell]);
+  }
+};
+
+/// What an update keeps of the step before, per cell.
+struct StayingPairs {
+  PairList before;
+  View<const std::uint8_t> moved;  ///< per tetrahedron; size 0: not an update, nothing stays
+  View<std::uint32_t> counts;      ///< out of CellStayBody, twice the number of pairs that stay,
+                                   ///< plus 1 where one leaves; shape [cell_count]
+
+  TETWARP_HD bool is_update() const { return moved.size > 0; }
+  TETWARP_HD std::int64_t count(std::int64_t cell) const {
+    return is_update() ? counts[cell] / 2 : 0;
+  }
+  TETWARP_HD bool leaves_one(std::int64_t cell) const {
+    return is_update() && counts[cell] % 2 != 0;
+  }
+};
+
+/// One index = one cell; any order. Counts the pairs of the step before whose tetrahedron has not
+/// moved.
+struct CellStayBody {
+  StayingPairs staying;
+  View<std::uint32_t> cell_counts;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t cell) const {
+    const PairList& before = staying.before;
+    const std::int64_t begin = before.ranges[cell].begin, end = end_of_cell(before, cell);
+    std::uint32_t count = 0;
+    for (std::int64_t p = begin; p < end; ++p) {
+      count += staying.moved[tet_of(before.pairs[p])] == 0 ? 1u : 0u;
+    }
+    cell_counts[cell] = count;
+    staying.counts[cell] = 2 * count + (count < end - begin ? 1u : 0u);
+  }
+};
+
+/// One index = one cell; the count that is summed. The last thread stores the number of all pairs.
+struct CellSumBody {
+  View<const std::uint32_t> cell_counts;
+  View<std::int64_t> pair_count;
+
+  TETWARP_HD std::int64_t operator()(std::int64_t cell) const { return cell_counts[cell]; }
+  TETWARP_HD void finish(std::int64_t total, int k) const {
+    if (k == 0) pair_count[0] = total;
+  }
+};
+
+/// One index = one candidate pair, and one cell of an update; any order. Copies pairs to the part
+/// of their cell in `placed`: those that stay first.
+struct CellScatterBody {
+  GroupedSums candidate_sums;
+  View<const CellPair> candidates;
+  View<const std::uint32_t> places;
+  StayingPairs staying;
+  GroupedSums cells;
+  View<CellPair> placed;  ///< out; pairs beyond its size are dropped
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    if (i < min_of(candidate_sums.total(), candidates.size) && candidates[i] != rejected_pair) {
+      put(cells[cell_of(candidates[i])] + places[i], candidates[i]);
+    }
+    if (!staying.is_update() || i >= cells.size - 1) return;
+    const std::int64_t end = end_of_cell(staying.before, i);
+    std::int64_t at = cells[i];
+    for (std::int64_t p = staying.before.ranges[i].begin; p < end; ++p) {
+      const CellPair pair = staying.before.pairs[p];
+      if (staying.moved[tet_of(pair)] == 0) put(at++, pair);
+    }
+  }
+
+  TETWARP_HD void put(std::int64_t at, CellPair pair) const {
+    if (at < placed.size) placed[at] = pair;
+  }
+};
+
+/// One index = one pair, and one cell or one past the last; any order. Sorts the pairs of each cell
+/// by tetrahedron, as many steps per pair as its cell has pairs, and sets the cell's range.
+struct CellOrderBody {
+  GroupedSums cells;
+  View<const CellPair> placed;
+  StayingPairs staying;
+  View<CellPair> pairs;          ///< out
+  View<CellRange> ranges;        ///< out, shape [cell_count + 1]
+  View<std::uint8_t> touched;    ///< out in an update: 1 where a pair left or came
+  SpreadCounter pair_count;      ///< pairs that do not stay are added
+  SpreadCounter accepted_count;  ///< the accepted ones of these are added
+  SpreadCounter touched_count;   ///< touched cells are added
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    if (i < within(cells.total())) {
+      const CellPair pair = placed[i];
+      const std::int64_t begin = cells[cell_of(pair)], end = end_of(cell_of(pair));
+      pairs[begin + lower_count(begin, end, tet_of(pair))] = pair;
+    }
+    if (i < cells.size) set_range(i);
+  }
+
+  TETWARP_HD std::int64_t within(std::int64_t position) const {
+    return min_of(position, placed.size);
+  }
+  TETWARP_HD std::int64_t end_of(std::int64_t cell) const { return within(cells[cell + 1]); }
+
+  /// Pairs in [begin, end) of tetrahedra below `tet`.
+  TETWARP_HD std::int64_t lower_count(std::int64_t begin, std::int64_t end, int tet) const {
+    std::int64_t count = 0;
+    for (std::int64_t p = begin; p < end; ++p) count += tet_of(placed[p]) < tet ? 1 : 0;
+    return count;
+  }
+
+  TETWARP_HD void set_range(std::int64_t cell) const {
+    const bool is_cell = cell + 1 < cells.size;
+    const std::int64_t begin = within(cells[cell]), end = is_cell ? end_of(cell) : begin;
+    const std::int64_t stay = is_cell ? staying.count(cell) : 0;
+    std::int64_t accepted = 0, first = -1;  // lowest tetrahedron that holds the whole cell
+    for (std::int64_t p = begin; p < end; ++p) {
+      if (!is_accepted(placed[p])) continue;
+      accepted += p - begin >= stay ? 1 : 0;
+      if (first < 0 || tet_of(placed[p]) < first) first = tet_of(placed[p]);
+    }
+    const std::int64_t past =
+        first < 0 ? end : begin + lower_count(begin, end, static_cast<int>(first)) + 1;
+    ranges[cell] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(past)};
+    if (!is_cell) return;
+    const std::int64_t come = max_of(end - begin - stay, std::int64_t{0});
+    if (come > 0) add_to(pair_count, cell, come);
+    if (accepted > 0) add_to(accepted_count, cell, accepted);
+    if (!staying.is_update()) return;
+    const bool is_touched = come > 0 || staying.leaves_one(cell);
+    touched[cell] = is_touched;
+    if (is_touched) add_to(touched_count, cell, 1);
+  }
+};
+
+/// Buffers and results of cell_list().
+struct CellListMemory {
+  View<CellPair> candidates;        ///< one per candidate pair
+  View<std::uint32_t> places;       ///< as many
+  View<std::uint32_t> cell_counts;  ///< shape [cell_count]; zero unless it is an update
+  GroupedSums cells;                ///< of cell_count counts
+  View<CellPair> placed;            ///< as many as pairs
+};
+
+/// The sorted list of pairs and the range of every cell.
+///
+/// @param exec       where to run: a device
+/// @param candidate_sums  sums of the numbers of candidate pairs of each tetrahedron
+/// @param cull       all but `pairs`, `places` and `cell_counts`
+/// @param memory     scratch
+/// @param order      all but `cells` and `placed`
+/// @param list_size  out, number of pairs including those that found no room, shape [1]
+///
+/// Determinism: same bits for the same setups; places depend on the order of threads, the sorted
+/// list does not. Cost: five launches, four without an update; 40 bytes per pair.
+/// Source: counting sort; ours.
+template <class Exec>
+void cell_list(Exec& exec,
+               const GroupedSums& candidate_sums,
+               CellCountBody cull,
+               const CellListMemory& memory,
+               CellOrderBody order,
+               View<std::int64_t> list_size) {
+  const std::int64_t cells = memory.cells.size - 1;
+  if (order.staying.is_update()) {
+    exec.for_each("warp/cull", cells, CellStayBody{order.staying, memory.cell_counts});
+  }
+  cull.pairs = memory.candidates;
+  cull.places = memory.places;
+  cull.cell_counts = memory.cell_counts;
+  exec.for_each_item("warp/cull", candidate_sums, memory.candidates.size, cull);
+  exec.grouped_scan("warp/cull", cells, CellSumBody{memory.cell_counts, list_size}, memory.cells);
+  const std::int64_t stay_cells = order.staying.is_update() ? cells : 0;
+  exec.for_each("warp/cull", max_of(memory.candidates.size, stay_cells),
+                CellScatterBody{candidate_sums, memory.candidates, memory.places, order.staying,
+                                memory.cells, memory.placed});
+  order.cells = memory.cells;
+  order.placed = memory.placed;
+  exec.for_each("warp/cull", max_of(memory.placed.size, cells + 1), order);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,72 @@
+/// @file cell_tested.cuh
+/// Stage "raster" of the warp as a CUDA kernel, for cells of several tetrahedra whose samples all
+/// lie in the source: tests as in cell_raster.cuh, samples without clamps and switches.
+#pragma once
+#include "kernels/warp/cell_class.hpp"
+#include "kernels/warp/cell_raster.cuh"
+#include "kernels/warp/interior_sample.hpp"
+
+namespace tetwarp {
+
+static_assert(most_tested_pairs == raster_chunk);
+
+/// Computes the listed cells of class `tested`. Voxels that no tetrahedron covers are sampled by
+/// the map of the first one, which stays in the source too, and stored as background.
+///
+/// Blocks: at least one per listed cell; those after the list end at once. Threads: raster_threads.
+template <class T>
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, false>())
+    cell_tested_kernel(RasterJob<T> job, const std::uint32_t* cells, const CellListCounts* counts) {
+  __shared__ RasterChunk<float> chunk;
+  __shared__ const T* starts[raster_chunk];
+  __shared__ int block_counts[4];
+
+  if (static_cast<int>(blockIdx.x) >= counts->tested) return;
+  const std::int64_t cell = cells[blockIdx.x];
+  int corner[3];
+  job.frame.set_corner(cell, corner);
+  const int thread = static_cast<int>(threadIdx.x);
+  const int i = thread % cell_edge, j = thread / cell_edge % cell_edge;
+  const int k_first = thread / (cell_edge * cell_edge);
+  const CellRange range = job.ranges[cell];
+  const auto count = static_cast<int>(range.end - range.begin);
+  if (thread < 4) block_counts[thread] = 0;
+  load_chunk(job, range.begin, count, corner, chunk);
+  __syncthreads();
+  if (thread < count) {
+    const int* const whole = chunk.maps[thread].whole;
+    starts[thread] = job.source.data + voxel_of(job.source, whole[0], whole[1], whole[2]);
+  }
+  __syncthreads();
+
+  RasterCounts mine = {0, 0, 0, 0};
+  int slots[raster_depth];
+  for (int d = 0; d < raster_depth; ++d) {
+    slots[d] = find_owner(job, chunk, count, corner, i, j, k_first + 2 * d, mine);
+    mine.covered += slots[d] >= 0;
+  }
+  const SourceSteps steps(job.source.dims);
+  InteriorTap taps[raster_depth];
+  SampleCube<T> cubes[raster_depth];
+  for (int d = 0; d < raster_depth; ++d) {
+    const int slot = max_of(slots[d], 0);
+    float x[3];
+    local_position(chunk.maps[slot], i, j, k_first + 2 * d, x);
+    taps[d] = interior_tap(x);
+    cubes[d] = steps.cube(kept(starts[slot] + steps.offset_of(taps[d])));
+  }
+  const int slice =
+      (job.frame.end[0] - job.frame.begin[0]) * (job.frame.end[1] - job.frame.begin[1]);
+  const std::int64_t first = job.frame.offset_of(corner[0] + i, corner[1] + j, corner[2]);
+  T* const out = job.volume + first;
+  for (int d = 0; d < raster_depth; ++d) {
+    const int at = (k_first + 2 * d) * slice;
+    out[at] = slots[d] >= 0 ? interior_value(cubes[d], taps[d]) : job.background;
+    if (job.mask != nullptr) job.mask[first + at] = slots[d] >= 0;
+    if (job.tet != nullptr) job.tet[first + at] = slots[d] >= 0 ? chunk.tet[slots[d]] : -1;
+  }
+  __syncthreads();
+  add_counts(job, cell, mine, block_counts);
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,159 @@
+/// @file interior_sample.hpp
+/// Linear interpolation where every neighbor lies in the source: no clamps, and offsets of 32 bits
+/// from a uniform start. Same bits as tap_of() and sample() of volume_sample.hpp.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/hd.hpp"
+#include "kernels/base/pixel.hpp"
+#include "kernels/warp/volume_sample.hpp"
+
+namespace tetwarp {
+
+/// The value itself, which a device keeps in a register: the compiler can neither compute it again
+/// nor join its computation with what it is used for.
+TETWARP_HD std::uint32_t kept(std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  asm volatile("" : "+r"(value));
+#endif
+  return value;
+}
+
+/// The same for a pointer to global memory.
+template <class T>
+TETWARP_HD T* kept(T* pointer) {
+#if defined(__CUDA_ARCH__)
+  asm volatile("" : "+l"(pointer));
+  __builtin_assume(__isGlobal(pointer));
+#endif
+  return pointer;
+}
+
+/// Bits of the float 1.5 x 2^23, whose last place is one: adding it rounds to an integer.
+constexpr std::uint32_t integer_bits = 0x4b400000u;
+
+/// The largest integer not above x, for |x| < 2^22. On a device one addition that rounds down.
+/// @param lower  out, that integer
+/// @returns integer_bits plus it
+TETWARP_HD std::uint32_t floor_bits(float x, float& lower) {
+#if defined(__CUDA_ARCH__)
+  const std::uint32_t bits = kept(__float_as_uint(__fadd_rd(x, 0x1.8p23f)));
+  lower = __uint_as_float(bits) - 0x1.8p23f;
+  return bits;
+#else
+  lower = floor(x);
+  return integer_bits + static_cast<std::uint32_t>(static_cast<int>(lower));
+#endif
+}
+
+/// A position: its lower neighbor, and weights.
+struct InteriorTap {
+  std::uint32_t bits[3];  ///< integer_bits plus the voxel from which local positions count
+  float fraction[3];
+};
+
+/// The tap at local position x.
+TETWARP_HD InteriorTap interior_tap(const float* x) {
+  InteriorTap tap;
+  for (int axis = 0; axis < 3; ++axis) {
+    float lower;
+    tap.bits[axis] = floor_bits(x[axis], lower);
+    tap.fraction[axis] = x[axis] - lower;
+  }
+  return tap;
+}
+
+/// The eight samples around a tap, [z][y][x].
+template <class T>
+struct SampleCube {
+  T at[2][2][2];
+};
+
+/// Offsets between samples of one component, for a source that each voxel reads elsewhere.
+struct SourceSteps {
+  std::int32_t row;    ///< one voxel along j [sample]
+  std::int32_t slice;  ///< one voxel along k
+
+  TETWARP_HD explicit SourceSteps(const int* dims) : row(dims[0]), slice(dims[0] * dims[1]) {}
+
+  TETWARP_HD std::int32_t offset_of(const InteriorTap& tap) const {
+    const auto voxel = [&](int axis) {
+      return static_cast<std::int32_t>(tap.bits[axis] - integer_bits);
+    };
+    return voxel(2) * slice + voxel(1) * row + voxel(0);
+  }
+
+  /// @param at  the lower neighbor of all eight
+  template <class T>
+  TETWARP_HD SampleCube<T> cube(const T* at) const {
+    SampleCube<T> cube;
+    for (int z = 0; z < 2; ++z) {
+      for (int y = 0; y < 2; ++y) {
+        const T* const line = at + (y * row + z * slice);
+        cube.at[z][y][0] = line[0];
+        cube.at[z][y][1] = line[1];
+      }
+    }
+    return cube;
+  }
+};
+
+/// Samples of one component from voxel `whole` of a source on, at offsets of 32 bits.
+template <class T>
+struct InteriorSource {
+  const T* rows[2][2];  ///< voxel `whole`, one along j, one along k, one along both
+  std::uint32_t row;    ///< offset of one voxel along j [sample]
+  std::uint32_t slice;  ///< along k
+  std::uint32_t bias;   ///< what floor_bits() adds to an offset
+
+  /// @param lane  differs between threads. The rows begin so many samples later and offsets are as
+  ///              much smaller: a device adds an offset to an address of the thread by one
+  ///              instruction, to one that all threads share by two.
+  TETWARP_HD InteriorSource(const T* from, const int* dims, int lane)
+      : row(static_cast<std::uint32_t>(dims[0])),
+        slice(static_cast<std::uint32_t>(dims[0]) * static_cast<std::uint32_t>(dims[1])),
+        bias(integer_bits * (1 + row + slice) + static_cast<std::uint32_t>(lane)) {
+    for (int z = 0; z < 2; ++z) {
+      for (int y = 0; y < 2; ++y) {
+        rows[z][y] =
+            kept(from + lane + (std::int64_t{y} * dims[0] + std::int64_t{z} * dims[0] * dims[1]));
+      }
+    }
+  }
+
+  /// From the first sample of a row [sample].
+  TETWARP_HD std::int32_t offset_of(const InteriorTap& tap) const {
+    return static_cast<std::int32_t>(tap.bits[2] * slice +
+                                     (tap.bits[1] * row + (tap.bits[0] - bias)));
+  }
+
+  TETWARP_HD SampleCube<T> cube(const InteriorTap& tap) const {
+    const std::int32_t offset = offset_of(tap);
+    SampleCube<T> cube;
+    for (int z = 0; z < 2; ++z) {
+      for (int y = 0; y < 2; ++y) {
+        const T* const at = rows[z][y] + offset;
+        cube.at[z][y][0] = at[0];
+        cube.at[z][y][1] = at[1];
+      }
+    }
+    return cube;
+  }
+};
+
+/// Interpolated along y, then z, then x: the order of linear_value().
+template <class T>
+TETWARP_HD T interior_value(const SampleCube<T>& cube, const InteriorTap& tap) {
+  float column[2];
+  for (int x = 0; x < 2; ++x) {
+    float slice[2];
+    for (int z = 0; z < 2; ++z) {
+      slice[z] = lerp_of(tap.fraction[1], static_cast<float>(cube.at[z][0][x]),
+                         static_cast<float>(cube.at[z][1][x]));
+    }
+    column[x] = lerp_of(tap.fraction[2], slice[0], slice[1]);
+  }
+  return rounded_to<T>(lerp_of(tap.fraction[0], column[0], column[1]));
+}
+
+}  // namespace tetwarp
