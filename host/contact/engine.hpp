@@ -39,8 +39,12 @@ class ContactEngine {
   /// @throws ContactProblemError  A as a whole is not positive definite
   EngineResult solve(const ContactProblem& problem, SolveBudget& budget);
 
- private:
+  /// Makes the structure of a problem, unless it is the present one.
+  /// @pre check_problem(problem) has passed
   void set_structure(const ContactProblem& problem);
+  const ContactStructure& structure() const { return islands_.structure(); }
+
+ private:
   void reset_cache_if_changed(const ContactProblem& problem);
   void solve_coupled(const ContactProblem& problem, EngineResult& result);
   void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);

@@ -14,8 +14,14 @@
 
 namespace tetwarp {
 namespace {
-/// Limits of Newton's steps: before sweeps continue, and no other than the number of contacts sets.
-constexpr std::int64_t first_steps = 400;
+/// Newton steps that an island is expected to take, and those after which sweeps continue. Stacks
+/// and jams take some ten, packings with friction hundreds.
+struct NewtonTrial {
+  std::int64_t expected;
+  std::int64_t limit;
+};
+constexpr NewtonTrial newton_trials[] = {{40, 60}, {200, 400}};
+/// No other limit than the number of contacts sets.
 constexpr std::int64_t all_steps = std::numeric_limits<std::int64_t>::max();
 
 /// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
@@ -72,20 +78,29 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   const ContactProblem part =
       make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
   if (is_automatic) {
-    sweep_while_cheaper(island, part, run, outcome);
+    for (const NewtonTrial& trial : newton_trials) {
+      sweep_while_cheaper(island, part, run, outcome, trial.expected);
+      if (run.is_done(island, outcome.sums)) return;
+      polish(island, part, run, outcome, trial.limit);
+      if (run.is_done(island, outcome.sums)) return;
+    }
+  } else {
+    polish(island, part, run, outcome, all_steps);
     if (run.is_done(island, outcome.sums)) return;
   }
-  polish(island, part, run, outcome, is_automatic ? first_steps : all_steps);
-  if (run.is_done(island, outcome.sums)) return;
   if (clamp_contradicting(island, run, full, result)) return;
   if (find_contradiction(island, part, result)) return;
+  bool is_searched = false;
   if (is_automatic) {
-    run.sweep_on(island, options_.max_sweeps);
+    is_searched = searches_before_sweeps(part, outcome);
+    const bool is_unbounded = is_searched && find_unbounded(island, part, result);
+    if (is_unbounded) start_again(island, part, run, outcome);
+    if (!run.is_done(island, outcome.sums)) run.sweep_on(island, options_.max_sweeps);
     outcome.sums = run.measure(island);
     if (run.is_done(island, outcome.sums)) return;
     polish(island, part, run, outcome, all_steps);  // this better start may converge
   }
-  if (!run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
+  if (!is_searched && !run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
 }
 
 /// fall_back() for an island with bilateral or rolling blocks: no certificates, and no Newton's
@@ -101,7 +116,8 @@ void IslandSolver::continue_with_rows(std::int64_t island,
       make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
   for (const bool is_first : {true, false}) {
     if (has_newton) {
-      polish(island, part, run, outcome, is_automatic && is_first ? first_steps : all_steps);
+      polish(island, part, run, outcome,
+             is_automatic && is_first ? newton_trials[1].limit : all_steps);
     }
     if (!is_first || !is_automatic || run.is_done(island, outcome.sums)) return;
     run.sweep_on(island, options_.max_sweeps);
@@ -114,15 +130,15 @@ void IslandSolver::continue_with_rows(std::int64_t island,
 void IslandSolver::sweep_while_cheaper(std::int64_t island,
                                        const ContactProblem& part,
                                        ContactRun<double>& run,
-                                       IslandOutcome& outcome) {
-  constexpr std::int64_t usual_steps = 200;  // of Newton's method, on packings with friction
+                                       IslandOutcome& outcome,
+                                       std::int64_t newton_steps) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::int64_t contacts = part.contact_count();
   const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
   const NewtonCost cost = newton_cost(part, memory);
   double worth = infinity;
   if (cost.bytes <= memory && options_.max_newton > 0) {
-    const std::int64_t steps = std::min(usual_steps, max_newton_steps(contacts));
+    const std::int64_t steps = std::min(newton_steps, max_newton_steps(contacts));
     worth = static_cast<double>(steps) * sweeps_per_newton_step(cost, contacts);
   }
   while (outcome.sweeps < options_.max_sweeps && !(budget_ != nullptr && budget_->is_over())) {
@@ -162,14 +178,15 @@ bool IslandSolver::find_contradiction(std::int64_t i,
   return true;
 }
 
-void IslandSolver::find_unbounded(std::int64_t i,
+bool IslandSolver::find_unbounded(std::int64_t i,
                                   const ContactProblem& part,
                                   EngineResult& result) {
   const std::optional<ImpulseDirection> found =
       find_direction(part, options_, DirectionCone::friction, budget_);
-  if (!found) return;
+  if (!found) return false;
   result.unbounded_speed = found->speed;
   result.unbounded = contacts_of(*found, structure_, structure_.islands[index_of(i)]);
+  return true;
 }
 
 /// Newton's method from the current impulses; keeps its impulses unless their error is larger.

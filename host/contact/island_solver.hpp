@@ -67,13 +67,19 @@ class IslandSolver {
   void sweep_while_cheaper(std::int64_t island,
                            const ContactProblem& part,
                            ContactRun<double>& run,
-                           IslandOutcome& outcome);
+                           IslandOutcome& outcome,
+                           std::int64_t newton_steps);
   bool clamp_contradicting(std::int64_t island,
                            const ContactRun<double>& run,
                            ContradictionSearch search,
                            EngineResult& result);
   bool find_contradiction(std::int64_t island, const ContactProblem& part, EngineResult& result);
-  void find_unbounded(std::int64_t island, const ContactProblem& part, EngineResult& result);
+  bool find_unbounded(std::int64_t island, const ContactProblem& part, EngineResult& result);
+  bool searches_before_sweeps(const ContactProblem& part, const IslandOutcome& outcome) const;
+  void start_again(std::int64_t island,
+                   const ContactProblem& part,
+                   ContactRun<double>& run,
+                   IslandOutcome& outcome);
   void polish(std::int64_t island,
               const ContactProblem& part,
               ContactRun<double>& run,

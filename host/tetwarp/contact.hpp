@@ -26,6 +26,8 @@
 
 #include <tetwarp/backend.hpp>
 #include <tetwarp/choices.hpp>
+#include <tetwarp/contact_adhesion.hpp>
+#include <tetwarp/contact_arrays.hpp>
 #include <tetwarp/contact_problem.hpp>
 #include <tetwarp/export.hpp>
 
@@ -136,7 +138,8 @@ enum class ContactStatus {
                   ///< contradict each other were raised to 0
   unbounded  ///< not converged, and impulses can grow without bound: a direction of impulses in
              ///< the friction cones causes no velocity, and the contacts approach along it.
-             ///< The best iterate is returned
+             ///< No proof that there is no solution, since contacts that slide can release
+             ///< these impulses. The best iterate is returned
 };
 
 /// How far impulses and velocities are from a solution.
@@ -196,29 +199,6 @@ struct ContactSolution {
   bool converged() const { return report.status == ContactStatus::converged; }
 };
 
-/// Integration of the adhesion intensity over a step.
-enum class AdhesionIntegrator {
-  exact,          ///< the piecewise linear law in closed form
-  explicit_euler  ///< clamped to [0, 1]; for comparison
-};
-
-/// Options of evolve_adhesion(): the integrator, and when a contact with energy W > 0 and viscosity
-/// > 0 debonds, which sets its beta to 0.
-struct EvolutionOptions {
-  AdhesionIntegrator integrator = AdhesionIntegrator::exact;
-  double debond_gap_factor = 10;   ///< debonds where the gap exceeds this multiple of sqrt(W / C),
-                                   ///< >= 1
-  double debond_intensity = 1e-3;  ///< debonds in traction where beta falls below this, >= 0
-};
-
-/// Adhesion at the start of the next step.
-struct AdhesionStep {
-  std::vector<double> intensity;       ///< beta, [contacts]
-  std::vector<double> gap;             ///< [contacts][3], m; smaller where beta grew, so that new
-                                       ///< bonds form without tension
-  std::vector<std::uint8_t> debonded;  ///< 1 where the contact debonded in this step
-};
-
 /// The back end that a contact solve with this choice runs on, and the reason in one sentence.
 /// `automatic` means cpu: for contact, cuda is used only if requested, until it has been
 /// measured on a device.
@@ -246,6 +226,29 @@ class TETWARP_EXPORT ContactSolver {
   /// @throws ContactProblemError  the problem fails check_problem(), or a factorization of A shows
   ///                              that it is not positive definite
   ContactSolution solve(const ContactProblem& problem);
+
+  /// Makes islands and colors for the problems that solve(ContactArrays) gets from now on: those
+  /// with the index arrays of this one and zeros among the stored numbers of A in the same places.
+  /// @throws ContactProblemError    as solve()
+  /// @throws std::invalid_argument  the problem has second_friction, bilateral rows or rolling
+  ///                                friction
+  void set_structure(const ContactProblem& problem);
+
+  /// Solves the problem of set_structure() with new numbers; the results have the bits of the call
+  /// above with the same numbers in host memory.
+  ///
+  /// Arrays on a device stay there: counts and sums are copied, no array. Through the host go, with
+  /// all arrays copied in both directions: islands whose bodies A couples, problems with an island
+  /// that sweeps do not converge, normal springs with another gap than dt w_n, blocks of A of more
+  /// than 12 dofs, numbers that check_problem() may refuse, and solves with max_seconds or
+  /// progress. Returns when the results are written.
+  /// @return  the report; ContactResidual::balance is summed in another order
+  /// @throws std::invalid_argument  set_structure() was not called, a size differs from that of its
+  ///                                problem, device memory without back end cuda, an address that
+  ///                                is not in memory of the device
+  /// @throws ContactProblemError    as above; nothing was written
+  /// @throws CudaError              a call of the device failed
+  ContactReport solve(const ContactArrays& arrays, const ContactTarget& target);
 
   /// evolve_adhesion() on this solver's back end.
   AdhesionStep evolve(const ContactProblem& problem,

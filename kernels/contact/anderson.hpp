@@ -25,23 +25,54 @@ struct AndersonState {
   int depth = 0;                     ///< columns in use
   int newest = -1;                   ///< column of the next change; -1: no last iterate yet
   bool has_last = false;
+  bool is_solved = false;  ///< `factor` was found by the last decide()
   Action action = Action::keep;
 
   TETWARP_HD double square() const { return sums.value[2 * window]; }
 
   /// Sets the action after observe(): keep, reject, or combine the image with the columns.
   TETWARP_HD_RARE void decide() {
+    if (take_sums()) find_factors();
+    finish();
+  }
+
+  /// The first part of decide().
+  /// @return  whether to solve the least squares problem, which sets `factor`
+  TETWARP_HD bool take_sums() {
+    is_solved = false;
     if (has_last && square() > 4 * last_square) {
       action = Action::reject;  // the last iterate stays; the next one overwrites the rejected one
       restart();
-      return;
+      return false;
     }
     if (has_last) add_to_gram();
     now = 1 - now;
     has_last = true;
     last_square = square();
-    action = depth > 0 && find_factors() ? Action::combine : Action::keep;
+    action = Action::keep;
+    return depth > 0;
+  }
+  /// The last part of decide().
+  TETWARP_HD void finish() {
+    if (action == Action::reject) return;
+    if (is_solved) action = Action::combine;
     if (has_last) newest = (newest + 1) % window;
+  }
+  /// Entry of the matrix of the least squares problem, its columns scaled.
+  TETWARP_HD double scaled(int i, int j, double scale_i, double scale_j) const {
+    return scale_i * gram[i][j] * scale_j + (i == j ? 1e-12 : 0.0);
+  }
+  TETWARP_HD double scale_of(int i) const { return 1 / sqrt(max_of(gram[i][i], 1e-300)); }
+  /// Stores the solution, or restarts if it is not finite.
+  /// @param scaled_solution  [depth]
+  TETWARP_HD void set_factors(bool is_positive, const double* scaled_solution) {
+    bool is_finite = is_positive;
+    for (int k = 0; k < window; ++k) {
+      factor[k] = k < depth ? scaled_solution[k] : 0;
+      is_finite = is_finite && fabs(factor[k]) < 1e30;  // in float32, too
+    }
+    is_solved = is_finite;
+    if (!is_finite) restart();
   }
 
  private:
@@ -54,24 +85,24 @@ struct AndersonState {
     depth = min_of(depth + 1, window);
     for (int k = 0; k < depth; ++k) gram[k][newest] = gram[newest][k] = sums.value[k];
   }
-  /// Solves the least squares problem. False, after a restart, if the result is not finite.
-  TETWARP_HD bool find_factors() {
+  TETWARP_HD void find_factors() {
     // The changes differ in size by many orders of magnitude: scale first, then regularize.
-    double scaled[window][window], solution[window], scale[window];
+    double matrix[window][window], solution[window], scale[window];
     for (int i = 0; i < depth; ++i) {
-      scale[i] = 1 / sqrt(max_of(gram[i][i], 1e-300));
-      for (int j = 0; j < i; ++j) scaled[i][j] = scale[i] * gram[i][j] * scale[j];
-      scaled[i][i] = scale[i] * gram[i][i] * scale[i] + 1e-12;
+      scale[i] = scale_of(i);
+      for (int j = 0; j <= i; ++j) matrix[i][j] = scaled(i, j, scale[i], scale[j]);
       solution[i] = scale[i] * sums.value[window + i];
     }
-    bool is_finite = solve_small_spd(scaled, depth, solution);
-    for (int k = 0; k < window; ++k) {
-      factor[k] = k < depth ? scale[k] * solution[k] : 0;
-      is_finite = is_finite && fabs(factor[k]) < 1e30;  // in float32, too
-    }
-    if (!is_finite) restart();
-    return is_finite;
+    const bool is_positive = solve_small_spd(matrix, depth, solution);
+    for (int k = 0; k < depth; ++k) solution[k] *= scale[k];
+    set_factors(is_positive, solution);
   }
+};
+
+/// A single index: the action of the next step.
+struct AndersonDecideBody {
+  AndersonState* state;
+  TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
 };
 
 /// Anderson acceleration, type II, window 8 (Walker and Ni 2011), the least squares in a diagonal
@@ -155,11 +186,6 @@ class AndersonMixer {
     }
   };
 
-  struct DecideBody {
-    AndersonState* state;
-    TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
-  };
-
   struct AdvanceBody {
     const AndersonState* state;
     Columns columns;
@@ -201,7 +227,7 @@ class AndersonMixer {
   }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->sums.value[2 * window])); }
   TETWARP_ANY_EXEC bool advance(View<const T>, View<T> image) {
-    exec_.once("contact/mix", DecideBody{state_});
+    exec_.once("contact/mix", AndersonDecideBody{state_});
     exec_.for_runs("contact/mix", image.size, AdvanceBody{state_, columns_, image});
     // If the action is not read, the image counts as replaced, which is always correct.
     return exec_.load_without_sync(&state_->action, AndersonState::Action::combine) !=

@@ -1,169 +1,31 @@
 /// @file contact_block.cuh
-/// Solves an island with one block of a device: all sweeps, measurements and the acceleration in a
-/// single launch.
+/// Solves an island with one block of a device, or with one of its warps: all sweeps, measurements
+/// and the acceleration in a single launch.
 ///
-/// 128 threads share the indices of a stage; a barrier ends each stage. Impulses and body
-/// velocities are in shared memory if they fit, else in global memory. The order of updates is that
-/// of the host; sums have another tree.
+/// The threads share the indices of a stage; a barrier ends each stage. Impulses, velocities and
+/// constants are in shared memory as far as they fit, else in global memory. The order of updates
+/// is that of the host; sums have another tree, the same for blocks and warps.
 #pragma once
 #include <algorithm>
 #include <cstdint>
 
 #include "kernels/contact/contact_methods.hpp"
-#include "kernels/exec/block_sum.cuh"
-#include "kernels/exec/launch.hpp"
+#include "kernels/contact/island_cache.cuh"
+#include "kernels/contact/island_exec.cuh"
+#include "kernels/exec/exec_buffer.cuh"
 
 namespace tetwarp {
 
 constexpr int island_threads = sum_threads;
 constexpr int island_blocks = 2;               ///< resident per multiprocessor: 255 registers
 constexpr std::int64_t block_contacts = 2048;  ///< larger islands use the whole device
-
-/// The executor of the contact pipeline within one block. Every thread makes every call and
-/// receives the same results.
-class BlockContactExec {
- public:
-  using LargestSum = PlainSums<2 * anderson_window + 1>;
-  static constexpr std::size_t state_bytes = 1024;
-  static constexpr std::size_t shared_bytes = state_bytes + sum_warps * sizeof(LargestSum);
-
-  /// @param shared  [shared_bytes]
-  __device__ explicit BlockContactExec(void* shared) : shared_(shared) {}
-
-  template <class Body>
-  __device__ __forceinline__ void for_each(const char*,
-                                           std::int64_t count,
-                                           const Body& body) const {
-    for (std::int64_t i = first(); i < count; i += island_threads) body(i);
-    __syncthreads();
-  }
-  template <class Body>
-  __device__ __forceinline__ void for_runs(const char*,
-                                           std::int64_t count,
-                                           const Body& body) const {
-    for (std::int64_t i = first(); i < count; i += island_threads) body.template run<1>(i, i + 1);
-    __syncthreads();
-  }
-  template <class Body>
-  __device__ __forceinline__ void once(const char*, const Body& body) const {
-    if (threadIdx.x == 0) body(0);
-    __syncthreads();
-  }
-
-  /// Default-constructs a State in shared memory; replaces that of the previous call.
-  template <class State>
-  __device__ __forceinline__ State* state() const {
-    static_assert(sizeof(State) <= state_bytes && alignof(State) <= 16);
-    State* const state = static_cast<State*>(shared_);
-    if (threadIdx.x == 0) *state = State{};
-    __syncthreads();
-    return state;
-  }
-  template <class T>
-  __device__ __forceinline__ T load(const T* value) const {
-    return *value;
-  }
-  template <class T>
-  __device__ __forceinline__ T load_without_sync(const T* value, T) const {
-    return *value;
-  }
-  __device__ __forceinline__ bool is_sync_point(std::int64_t) const { return true; }
-
-  template <class T>
-  __device__ __forceinline__ void copy(const char*, View<const T> from, View<T> to) const {
-    for (std::int64_t i = first(); i < from.size; i += island_threads) to[i] = from[i];
-    __syncthreads();
-  }
-  template <class Sum, class Body>
-  __device__ __forceinline__ Sum
-  sum(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
-    static_assert(sizeof(Sum) <= sizeof(LargestSum));
-    Sum mine{};
-    for (std::int64_t i = begin + first(); i < end; i += island_threads) mine += body(i);
-    return block_sum(mine, sums<Sum>());
-  }
-  template <class Sum, class Body>
-  __device__ __forceinline__ Sum
-  sum_runs(const char*, std::int64_t begin, std::int64_t end, const Body& body) const {
-    static_assert(sizeof(Sum) <= sizeof(LargestSum));
-    Sum mine{};
-    for (std::int64_t i = begin + first(); i < end; i += island_threads) {
-      mine += body.template run<1>(i, i + 1);
-    }
-    return block_sum(mine, sums<Sum>());
-  }
-
-  template <class Sum, class Body>
-  __device__ __forceinline__ void sum_to(
-      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
-    const Sum total = sum<Sum>(stage, begin, end, body);
-    if (threadIdx.x == 0) *out = total;
-    __syncthreads();
-  }
-  template <class Sum, class Body>
-  __device__ __forceinline__ void sum_runs_to(
-      const char* stage, std::int64_t begin, std::int64_t end, const Body& body, Sum* out) const {
-    const Sum total = sum_runs<Sum>(stage, begin, end, body);
-    if (threadIdx.x == 0) *out = total;
-    __syncthreads();
-  }
-
- private:
-  template <class Sum>
-  __device__ Sum* sums() const {
-    return reinterpret_cast<Sum*>(static_cast<unsigned char*>(shared_) + state_bytes);
-  }
-  __device__ static std::int64_t first() { return static_cast<std::int64_t>(threadIdx.x); }
-
-  void* shared_;
-};
-
-/// Stores the last measured residual and an evenly spaced selection of those before it. One thread
-/// writes.
-class ThinnedEventLog {
- public:
-  /// @param events  room for two or more
-  /// @param writes  whether this thread is the one that writes
-  __device__ ThinnedEventLog(View<ContactEvent> events, bool writes)
-      : events_(events), writes_(writes) {}
-
-  __device__ void note(const ContactEvent& event) {
-    last_ = event;
-    is_last_kept_ = seen_++ % stride_ == 0;
-    if (!is_last_kept_) return;
-    if (count_ == events_.size) {
-      for (std::int64_t k = 1; 2 * k < count_ && writes_; ++k) events_[k] = events_[2 * k];
-      count_ = (count_ + 1) / 2;
-      stride_ *= 2;
-      is_last_kept_ = (seen_ - 1) % stride_ == 0;
-      if (!is_last_kept_) return;
-    }
-    if (writes_) events_[count_] = event;
-    ++count_;
-  }
-  /// A solve within one launch is not interrupted.
-  __device__ bool stops() const { return false; }
-  /// @return  how many residuals are kept
-  __device__ std::int64_t end() {
-    if (seen_ > 0 && !is_last_kept_) {
-      count_ = min_of(count_ + 1, events_.size);
-      if (writes_) events_[count_ - 1] = last_;
-    }
-    return count_;
-  }
-
- private:
-  View<ContactEvent> events_;
-  bool writes_;
-  std::int64_t count_ = 0, stride_ = 1, seen_ = 0;
-  ContactEvent last_ = {};
-  bool is_last_kept_ = true;
-};
+constexpr std::int64_t warp_contacts = 32;     ///< larger islands use a block
 
 /// An island to solve, and its stop criterion.
 struct IslandTask {
   ContactIsland island;
   StopCriterion criterion;
+  IslandArrays arrays = {};
 };
 
 /// How its solve ended.
@@ -172,7 +34,7 @@ struct IslandResult {
   std::int64_t events = 0;  ///< residuals kept in the log
 };
 
-/// All islands that are solved by one block each.
+/// Islands that are solved by one block each, or by one warp each.
 template <class T>
 struct IslandJob {
   ContactNumbers<T> numbers;
@@ -182,82 +44,86 @@ struct IslandJob {
   ContactSwitches switches;
   MethodPlan plan;
   View<const IslandTask> tasks;
-  std::int64_t shared_values;  ///< islands with more numbers stay in global memory
+  std::int64_t shared_bytes;   ///< for copies of the arrays of an island
   View<IslandResult> results;  ///< out, [tasks]
   View<ContactEvent> events;   ///< out, [tasks][events_per_island]
   std::int64_t events_per_island;
 };
 
-/// Moves a view so that index `first` is at `place`.
-template <class T>
-__device__ __forceinline__ void move_view(View<T>& view, std::int64_t first, T* place) {
-  view.data = place - first;
-}
-
-/// Blocks: one per island. Threads: island_threads. Shared: BlockContactExec::shared_bytes and
-/// job.shared_values numbers, dynamic. Registers: up to 255.
-template <class T>
+/// Blocks: one for island_threads / threads islands. Threads: island_threads. Shared: for each
+/// island IslandExec::shared_bytes and job.shared_bytes, dynamic. Registers: up to 255.
+/// @tparam threads  that solve an island: island_threads or 32
+template <class T, int threads>
 __global__ void __launch_bounds__(island_threads, island_blocks)
     contact_island_kernel(IslandJob<T> job) {
-  unsigned char* const shared = dynamic_shared<unsigned char>();
-  const auto which = static_cast<std::int64_t>(blockIdx.x);
-  const ContactIsland& island = job.tasks[which].island;
-  BlockContactExec exec(shared);
+  using Exec = IslandExec<threads>;
+  constexpr int islands = island_threads / threads;
+  const int own = static_cast<int>(threadIdx.x) / threads;
+  const std::int64_t which = std::int64_t{blockIdx.x} * islands + own;
+  if (which >= job.tasks.size) return;  // a whole warp
+  unsigned char* const shared =
+      dynamic_shared<unsigned char>() +
+      own * (static_cast<std::int64_t>(Exec::shared_bytes) + job.shared_bytes);
+  const IslandTask& task = job.tasks[which];
+  const ContactIsland& island = task.island;
+  Exec exec(shared);
+  ContactNumbers<T> numbers = job.numbers;
   ContactState<T> state = job.state;
-  const std::int64_t first = 3 * island.slot_begin, size = 3 * island.contact_count();
-  const View<T> global = {state.impulse.data + first, size};
-  const bool is_shared = island.value_count() <= job.shared_values;
-  if (is_shared) {
-    T* const place = reinterpret_cast<T*>(shared + BlockContactExec::shared_bytes);
-    exec.copy("contact/sweep", View<const T>(global), View<T>{place, size});
-    move_view(state.impulse, first, place);
-    if (!job.numbers.is_local) move_view(state.body_velocity, island.dof_begin, place + size);
-  }
-  ContactPipeline<BlockContactExec, T> pipeline(exec, job.numbers, job.color_start, island,
-                                                job.switches, state);
+  IslandCache<Exec>(exec, shared + Exec::shared_bytes, job.shared_bytes)
+      .take(island, task.arrays, numbers, state);
+  ContactPipeline<Exec, T> pipeline(exec, numbers, job.color_start, island, job.switches, state);
   ThinnedEventLog log({job.events.data + which * job.events_per_island, job.events_per_island},
-                      threadIdx.x == 0);
+                      Exec::first() == 0);
   IslandResult result;
-  result.end = solve_island(pipeline, job.tasks[which].criterion, job.plan, 0, job.work, log);
+  result.end = solve_island(pipeline, task.criterion, job.plan, 0, job.work, log);
   result.events = log.end();
-  if (is_shared) {
-    exec.copy("contact/sweep", View<const T>(pipeline.impulse()), global);
-    exec.copy("contact/sweep", View<const T>(pipeline.body_velocity()),
-              View<T>{job.state.body_velocity.data + island.dof_begin,
-                      island.dof_end - island.dof_begin});
-  }
-  if (threadIdx.x == 0) job.results[which] = result;
+  const auto put_back = [&](View<T> from, T* to) {
+    if (from.data != to) exec.copy("contact/sweep", View<const T>(from), View<T>{to, from.size});
+  };
+  put_back(pipeline.impulse(), job.state.impulse.data + 3 * island.slot_begin);
+  put_back(pipeline.body_velocity(), job.state.body_velocity.data + island.dof_begin);
+  if (Exec::first() == 0) job.results[which] = result;
 }
 
-/// Number of an island's values that fit in the 48 KiB of shared memory of a block.
-template <class T>
-constexpr std::int64_t shared_capacity = static_cast<std::int64_t>(
-    (std::size_t{48} * 1024 - BlockContactExec::shared_bytes) / sizeof(T));
+/// Shared memory of a block without being asked for more [bytes].
+constexpr std::int64_t common_shared_bytes = std::int64_t{48} * 1024;
 
-/// The largest number of values of the islands that fit in shared memory.
-/// @param tasks  in memory of the host
-template <class T>
-std::int64_t shared_values_for(View<const IslandTask> tasks) {
+/// Shared memory for the arrays of each island, so that the largest fits or a block has no more.
+/// @param tasks     in memory of the host
+/// @param most      shared memory that a block may have [bytes]
+template <class T, int threads>
+std::int64_t shared_bytes_for(View<const IslandTask> tasks, bool is_local, std::int64_t most) {
+  constexpr std::int64_t islands = island_threads / threads;
+  const std::int64_t room =
+      (most / islands - static_cast<std::int64_t>(IslandExec<threads>::shared_bytes)) / 16 * 16;
   std::int64_t largest = 0;
   for (std::int64_t i = 0; i < tasks.size; ++i) {
-    const std::int64_t count = tasks[i].island.value_count();
-    if (count <= shared_capacity<T>) largest = std::max(largest, count);
+    largest = std::max(largest, island_bytes<T>(tasks[i].island, tasks[i].arrays, is_local));
   }
-  return largest;
+  return std::min(largest, room);
 }
 
 /// Solves every island of the job.
 /// @param stream  where to run
 /// @pre  at least one task
 ///
-/// Determinism: same bits in every run; islands share no data, contacts of a color neither, sums
-/// are fixed trees. Cost: per stage one barrier, besides what the stages cost.
-template <class T>
+/// Determinism: same bits in every run and for any number of threads per island; islands share no
+/// data, contacts of a color neither, sums are fixed trees. Cost: per stage one barrier, besides
+/// what the stages cost.
+template <class T, int threads = island_threads>
 void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
-  launch(stream, contact_island_kernel<T>, dim3(static_cast<unsigned>(job.tasks.size)),
-         dim3(island_threads),
-         BlockContactExec::shared_bytes + static_cast<std::size_t>(job.shared_values) * sizeof(T),
-         job);
+  constexpr std::int64_t islands = island_threads / threads;
+  const std::int64_t bytes =
+      islands * (static_cast<std::int64_t>(IslandExec<threads>::shared_bytes) + job.shared_bytes);
+  if (bytes > common_shared_bytes) {
+    check_cuda(
+        cudaFuncSetAttribute(reinterpret_cast<const void*>(&contact_island_kernel<T, threads>),
+                             cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)),
+        "cudaFuncSetAttribute");
+  }
+  launch(stream, contact_island_kernel<T, threads>,
+         dim3(static_cast<unsigned>((job.tasks.size + islands - 1) / islands)),
+         dim3(island_threads), static_cast<std::size_t>(bytes), job);
 }
 
 /// Islands to measure.
@@ -271,13 +137,13 @@ struct MeasureJob {
   View<IslandSums> sums;  ///< out, [islands]
 };
 
-/// Blocks: one per island. Threads: island_threads. Shared: BlockContactExec::shared_bytes,
-/// dynamic. Registers: up to 128.
+/// Blocks: one per island. Threads: island_threads. Shared:
+/// IslandExec<island_threads>::shared_bytes, dynamic. Registers: up to 128.
 template <class T>
 __global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(MeasureJob<T> job) {
   const auto which = static_cast<std::int64_t>(blockIdx.x);
-  BlockContactExec exec(dynamic_shared<unsigned char>());
-  const IslandSums sums = measure_island(ContactPipeline<BlockContactExec, T>(
+  IslandExec<island_threads> exec(dynamic_shared<unsigned char>());
+  const IslandSums sums = measure_island(ContactPipeline<IslandExec<island_threads>, T>(
       exec, job.numbers, job.color_start, job.islands[which], job.switches, job.state));
   if (threadIdx.x == 0) job.sums[which] = sums;
 }
@@ -289,7 +155,7 @@ __global__ void __launch_bounds__(island_threads, 4) contact_measure_kernel(Meas
 template <class T>
 void contact_measure_islands(cudaStream_t stream, const MeasureJob<T>& job) {
   launch(stream, contact_measure_kernel<T>, dim3(static_cast<unsigned>(job.islands.size)),
-         dim3(island_threads), BlockContactExec::shared_bytes, job);
+         dim3(island_threads), IslandExec<island_threads>::shared_bytes, job);
 }
 
 }  // namespace tetwarp

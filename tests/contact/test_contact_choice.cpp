@@ -66,6 +66,17 @@ TEST(ContactChoice, LeavesSweepsTheEarlierTheSlowerTheyConverge) {
   EXPECT_FALSE(prefers_newton(infinity, 100000, infinity));
 }
 
+/// A stack needs some ten Newton steps, which cost less than the sweeps that would follow.
+TEST(ContactChoice, TriesNewtonOnStacksBeforeSweepsAreMany) {
+  const ContactSolution solution =
+      solve_by(scenes::box_stack({.boxes = 20}), ContactMethod::automatic, 1e-6);
+
+  EXPECT_TRUE(solution.converged()) << solution.report.status_reason;
+  EXPECT_LE(solution.report.sweeps, 1000);
+  EXPECT_GT(solution.report.newton_iterations, 0);
+  EXPECT_LE(solution.report.newton_iterations, 60);
+}
+
 /// The sweeps before Newton's method are in proportion to its cost, and it does not start with
 /// proximal points that lead nowhere.
 TEST(ContactChoice, TakesFewNewtonStepsOnJamsAndStacks) {

@@ -27,6 +27,38 @@ TEST(ContactTruth, ProblemsOfKnownSolvability) {
   }
 }
 
+/// In these problems impulses in the friction cones cancel while the contacts approach against
+/// them, yet they have a solution, with contacts that slide. Methods from a single start miss it.
+TEST(ContactTruth, DirectionsOfGrowthDoNotHideSolutions) {
+  struct Hidden {
+    unsigned seed;
+    Eigen::Index contacts;
+    FrictionLaw law;
+    double tolerance;
+  };
+  constexpr FrictionLaw cone = FrictionLaw::cone, pyramid = FrictionLaw::pyramid;
+  for (const Hidden& hidden : {Hidden{5123, 14, pyramid, 1e-8},
+                               {10156, 12, cone, 1e-8},
+                               {10749, 16, pyramid, 1e-6},
+                               {10808, 18, cone, 1e-6},
+                               {11711, 9, pyramid, 1e-8},
+                               {11727, 6, pyramid, 1e-6},
+                               {11733, 12, pyramid, 1e-6},
+                               {12061, 17, pyramid, 1e-4},
+                               {12321, 11, pyramid, 1e-6},
+                               {13493, 5, pyramid, 1e-8},
+                               {13859, 10, pyramid, 1e-8},
+                               {14277, 10, pyramid, 1e-6}}) {
+    const ContactProblem problem =
+        samples::make_solvability(Solvability::solvable, hidden.seed, hidden.contacts);
+    const ContactOptions options{.law = hidden.law, .tolerance = hidden.tolerance};
+    const ContactSolution solution = solve_contacts(problem, options);
+
+    EXPECT_TRUE(solution.converged()) << hidden.seed << ": " << solution.report.status_reason;
+    EXPECT_LE(reference_eta(problem, solution, options), 2 * hidden.tolerance) << hidden.seed;
+  }
+}
+
 /// Impulses along a direction d with W d = 0 up to rounding enlarge r . W r by rounding errors; the
 /// measure must not become small by them.
 TEST(ContactTruth, NullSpaceImpulsesDoNotInflateTheScale) {

@@ -4,7 +4,6 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,44 +11,27 @@
 #include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
+#include "host/contact/cuda/island_runs.cuh"
+#include "host/contact/cuda/resident.cuh"
 #include "host/contact/structure/indices.hpp"
 #include "host/contact/sweeps/run.hpp"
-#include "kernels/contact/contact_block.cuh"
 #include "kernels/contact/contact_components.hpp"
 #include "kernels/contact/contact_grid.cuh"
-#include "kernels/contact/contact_memory.hpp"
-#include "kernels/contact/contact_system.hpp"
 
 namespace tetwarp {
 
 class CudaContactDevice final : public ContactDevice {
  public:
   CudaContactDevice(int device, std::string name)
-      : exec_(device), grid_(exec_), name_(std::move(name)) {}
+      : exec_(device), grid_(exec_), runs_(exec_, grid_), name_(std::move(name)) {}
 
   ContactSavings set_problem(const ContactOptions& options,
                              const ContactStructure& structure,
                              const ContactInput& input) override {
     const DeviceScope scope(exec_.number());
-    if (serial_ != structure.serial) {
-      grid_.forget_sweeps();  // a new structure may move the arrays
-      indices_in_memory_.restart();
-      indices_ = make_indices(structure, [&](const auto& array) {
-        return indices_in_memory_.put(grid_, view_of(array));
-      });
-      serial_ = structure.serial;
-    }
-    structure_ = &structure;
-    float64_.system.resize(grid_, indices_);
-    const ContactSavings savings =
-        fill_numbers(grid_, input_on_device(grid_, input, input_in_memory_), indices_,
-                     choices_of(options), float64_.system.views());
-    float64_.numbers = float64_.system.numbers(indices_);
-    if (options.precision == ContactPrecision::float32) {
-      convert_system(grid_, indices_, float64_.system, float32_.system);
-      float32_.numbers = float32_.system.numbers(indices_);
-    }
-    return savings;
+    set_structure(structure);
+    return runs_.set_problem(options, structure, indices_,
+                             input_on_device(grid_, input, input_in_memory_));
   }
 
   std::int64_t solve_uncoupled(const ContactOptions& options,
@@ -57,35 +39,10 @@ class CudaContactDevice final : public ContactDevice {
                                std::vector<double>& body_velocity,
                                std::vector<IslandOutcome>& outcomes) override {
     const DeviceScope scope(exec_.number());
-    float64_.state.reset(grid_, float64_.numbers, freezes_contacts(options));
-    sort_islands();
-    measure(options, [&](std::size_t i, const IslandSums& sums) {
-      outcomes[i].free = sums.sums;
-      outcomes[i].free_square = sums.free_square;
-    });
-    const std::vector<StopCriterion> criteria = stop_criteria(options, *structure_, outcomes);
-    put(impulse, float64_.state.impulse);
-    std::int64_t skipped = 0;
-    if (options.precision == ContactPrecision::float64) {
-      skipped = solve(options, criteria, float64_, outcomes);
-    } else {
-      float32_.state.reset(grid_, float32_.numbers, freezes_contacts(options));
-      convert(grid_, View<const double>(view_of(float64_.state.impulse)),
-              view_of(float32_.state.impulse));
-      skipped = solve(options, criteria, float32_, outcomes);
-      convert(grid_, View<const float>(view_of(float32_.state.impulse)),
-              view_of(float64_.state.impulse));
-    }
-    measure(options, [&](std::size_t i, const IslandSums& sums) {
-      IslandOutcome& outcome = outcomes[i];
-      outcome.sums = sums.sums;
-      const bool is_done = criteria[i].excess_of(sums.sums) <= 1;
-      if (is_done != (outcome.reason == StopReason::converged)) {
-        outcome.reason = is_done ? StopReason::converged : StopReason::exhausted;
-      }
-    });
-    get(float64_.state.impulse, impulse);
-    get(float64_.state.body_velocity, body_velocity);
+    const std::int64_t skipped = runs_.solve(
+        options, [&] { put(impulse, runs_.impulse()); }, budget, outcomes);
+    get(runs_.impulse(), impulse);
+    get(runs_.body_velocity(), body_velocity);
     return skipped;
   }
 
@@ -100,11 +57,66 @@ class CudaContactDevice final : public ContactDevice {
     put(guess, guess_);
     const auto colors = view_of(structure_->color_start);
     const auto start = view_of(std::as_const(guess_));
-    const CoupledTask task{options,          island, colors,         float64_.numbers,
-                           float32_.numbers, start,  max_iterations, budget};
+    const CoupledTask task{options,           island, colors,         runs_.numbers(),
+                           runs_.numbers32(), start,  max_iterations, budget};
     const CoupledSolution best = solve_coupled_island(grid_, task, block_jacobi_memory_, outcome);
     grid_.get(best.impulse, impulse.data());
     grid_.get(best.body_velocity, body_velocity.data());
+  }
+
+  ResidentEnd solve_resident(const ContactOptions& options,
+                             const ContactStructure& structure,
+                             const ResidentProblem& problem,
+                             std::vector<IslandOutcome>& outcomes) override {
+    const DeviceScope scope(exec_.number());
+    const CallersStream stream(exec_, problem.stream);
+    set_structure(structure);
+    resident_.set_pattern(grid_, *problem.pattern, structure.serial);
+    ResidentEnd end;
+    ContactInput input = problem.input;
+    input.given_velocity = resident_.recovered(grid_, input, options.recovery_speed);
+    end.savings = runs_.set_problem(options, structure, indices_, input);
+    if (!resident_.is_plain(grid_, problem, indices_, runs_.numbers())) return end;
+    const auto start = [&] {
+      if (problem.guess.size == 0) return;
+      grid_.for_each(
+          "contact/setup", indices_.slots(),
+          GatherBody<3>{indices_.contact_of_slot, problem.guess, view_of(runs_.impulse())});
+    };
+    end.updates_skipped = runs_.solve(options, start, budget, outcomes);
+    const auto converged = [](const IslandOutcome& outcome) {
+      return outcome.reason == StopReason::converged;
+    };
+    if (!std::all_of(outcomes.begin(), outcomes.end(), converged)) return end;
+    const ResultSums sums =
+        resident_.write_results(grid_, problem, indices_, view_of(std::as_const(runs_.impulse())),
+                                view_of(std::as_const(runs_.body_velocity())));
+    end.is_solved = sums.bad() == 0;
+    end.balance = structure.is_local ? 0 : sums.balance();
+    return end;
+  }
+
+  bool is_device_memory(const void* data) const override {
+    const DeviceScope scope(exec_.number());
+    cudaPointerAttributes attributes;
+    check_cuda(cudaPointerGetAttributes(&attributes, data), "cudaPointerGetAttributes");
+    return (attributes.type == cudaMemoryTypeDevice && attributes.device == exec_.number()) ||
+           attributes.type == cudaMemoryTypeManaged;
+  }
+
+  void read(const double* device, std::int64_t size, double* host, void* stream) override {
+    const DeviceScope scope(exec_.number());
+    const CallersStream callers(exec_, stream);
+    grid_.get(View<const double>{device, size}, host);
+  }
+
+  void write(const double* host, std::int64_t size, double* device, void* stream) override {
+    const DeviceScope scope(exec_.number());
+    const CallersStream callers(exec_, stream);
+    check_cuda(cudaMemcpyAsync(device, host, index_of(size) * sizeof(double),
+                               cudaMemcpyHostToDevice, exec_.stream()),
+               "cudaMemcpyAsync to device");
+    check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize");
   }
 
   std::vector<std::int32_t> lowest_connected(const Lists& lists, std::int64_t item_count) override {
@@ -134,15 +146,28 @@ class CudaContactDevice final : public ContactDevice {
   std::string name() const override { return name_; }
 
  private:
-  static constexpr std::int64_t events_per_island = 32;
+  /// Runs kernels on the stream of a caller, or after the default stream, until it is destroyed.
+  class CallersStream {
+   public:
+    CallersStream(CudaExec& exec, void* stream) : exec_(exec) { exec.begin_compute(stream, true); }
+    CallersStream(const CallersStream&) = delete;
+    CallersStream& operator=(const CallersStream&) = delete;
+    ~CallersStream() { exec_.drain(); }
 
-  template <class T>
-  struct Problem {
-    SystemMemory<GridContactExec, T> system;
-    ContactNumbers<T> numbers;  ///< views of `system`
-    StateMemory<GridContactExec, T> state;
-    MethodMemory<GridContactExec, T> work;
+   private:
+    CudaExec& exec_;
   };
+
+  void set_structure(const ContactStructure& structure) {
+    structure_ = &structure;
+    if (serial_ == structure.serial) return;
+    grid_.forget_sweeps();  // a new structure may move the arrays
+    indices_in_memory_.restart();
+    indices_ = make_indices(structure, [&](const auto& array) {
+      return indices_in_memory_.put(grid_, view_of(array));
+    });
+    serial_ = structure.serial;
+  }
 
   template <class T>
   void put(const std::vector<T>& host, DeviceVector<T>& device) {
@@ -164,128 +189,19 @@ class CudaContactDevice final : public ContactDevice {
     return result;
   }
 
-  /// Divides the islands into those for one block each and those for the whole device. The small
-  /// ones are sorted by falling size, so that no long block starts last.
-  void sort_islands() {
-    small_.clear();
-    large_.clear();
-    for (std::int64_t i = 0; i < structure_->contact_islands; ++i) {
-      if (island(i).is_coupled) continue;
-      (island(i).contact_count() > block_contacts ? large_ : small_).push_back(i);
-    }
-    std::stable_sort(small_.begin(), small_.end(), [&](std::int64_t a, std::int64_t b) {
-      return island(a).contact_count() > island(b).contact_count();
-    });
-  }
-
-  /// Measures the current impulses in float64.
-  /// @param take  (std::size_t island, const IslandSums&), called once for each uncoupled island
-  template <class Take>
-  void measure(const ContactOptions& options, const Take& take) {
-    if (!small_.empty()) {
-      std::vector<ContactIsland> islands;
-      for (const std::int64_t i : small_) islands.push_back(island(i));
-      put(islands, islands_);
-      measured_.resize(static_cast<std::int64_t>(islands.size()));
-      contact_measure_islands<double>(
-          exec_.stream(),
-          {float64_.numbers, float64_.state.views(), indices_.color_start, switches_of(options),
-           view_of(std::as_const(islands_)), view_of(measured_)});
-      std::vector<IslandSums> sums;
-      get(measured_, sums);
-      for (std::size_t k = 0; k < sums.size(); ++k) {
-        take(static_cast<std::size_t>(small_[k]), sums[k]);
-      }
-    }
-    for (const std::int64_t i : large_) {
-      take(static_cast<std::size_t>(i), measure_island(pipeline_of(options, i, float64_)));
-    }
-  }
-
-  /// Solves all uncoupled islands.
-  /// @return  visits of frozen contacts that sweeps skipped
-  template <class T>
-  std::int64_t solve(const ContactOptions& options,
-                     const std::vector<StopCriterion>& criteria,
-                     Problem<T>& problem,
-                     std::vector<IslandOutcome>& outcomes) {
-    const MethodWork<T> work = problem.work.reserve(indices_.slots());
-    if (!small_.empty()) solve_small(options, criteria, problem, work, outcomes);
-    for (const std::int64_t i : large_) {
-      auto pipeline = pipeline_of(options, i, problem);
-      HostEventLog log{.events = {}, .budget = budget};
-      const auto k = static_cast<std::size_t>(i);
-      const IslandEnd end = solve_island(pipeline, criteria[k], plan_of(options), 0, work, log);
-      outcomes[k].add(end, options.method, island(i).contact_count());
-      outcomes[k].events = std::move(log.events);
-    }
-    std::vector<std::int32_t> skipped;
-    get(problem.state.skipped_visits, skipped);
-    return std::accumulate(skipped.begin(), skipped.end(), std::int64_t{0});
-  }
-
-  template <class T>
-  void solve_small(const ContactOptions& options,
-                   const std::vector<StopCriterion>& criteria,
-                   Problem<T>& problem,
-                   const MethodWork<T>& work,
-                   std::vector<IslandOutcome>& outcomes) {
-    std::vector<IslandTask> tasks;
-    for (const std::int64_t i : small_) {
-      tasks.push_back({island(i), criteria[static_cast<std::size_t>(i)]});
-    }
-    put(tasks, tasks_);
-    results_.resize(view_of(tasks_).size);
-    events_.resize(view_of(tasks_).size * events_per_island);
-    contact_solve_islands<T>(
-        exec_.stream(), {problem.numbers, problem.state.views(), work, indices_.color_start,
-                         switches_of(options), plan_of(options), view_of(std::as_const(tasks_)),
-                         shared_values_for<T>(view_of(std::as_const(tasks))), view_of(results_),
-                         view_of(events_), events_per_island});
-
-    std::vector<IslandResult> results;
-    std::vector<ContactEvent> events;
-    get(results_, results);
-    get(events_, events);
-    for (std::size_t k = 0; k < tasks.size(); ++k) {
-      IslandOutcome& outcome = outcomes[static_cast<std::size_t>(small_[k])];
-      outcome.add(results[k].end, options.method, tasks[k].island.contact_count());
-      const auto first = events.begin() + static_cast<std::ptrdiff_t>(k) * events_per_island;
-      outcome.events.assign(first, first + results[k].events);
-    }
-  }
-
-  template <class T>
-  ContactPipeline<GridContactExec, T> pipeline_of(const ContactOptions& options,
-                                                  std::int64_t i,
-                                                  Problem<T>& problem) {
-    return {grid_,     problem.numbers,      view_of(structure_->color_start),
-            island(i), switches_of(options), problem.state.views()};
-  }
-
-  const ContactIsland& island(std::int64_t i) const {
-    return structure_->islands[static_cast<std::size_t>(i)];
-  }
-
   CudaExec exec_;
   GridContactExec grid_;
+  IslandRuns runs_;
+  ResidentArrays resident_;
   std::string name_;
   const ContactStructure* structure_ = nullptr;
   std::int64_t serial_ = 0;  ///< of the structure that `indices_` were copied from
   DeviceArrays indices_in_memory_, input_in_memory_;
   ContactIndices indices_;  ///< views of indices_in_memory_
-  Problem<double> float64_;
-  Problem<float> float32_;  ///< set if options_.precision is float32
   BlockJacobiMemory<GridContactExec> block_jacobi_memory_;
   DeviceVector<double> guess_, next_intensity_, next_gap_;
   DeviceVector<std::int32_t> labels_;
   DeviceVector<std::uint8_t> debonded_;
-  std::vector<std::int64_t> small_, large_;  ///< islands; see sort_islands()
-  DeviceVector<ContactIsland> islands_;
-  DeviceVector<IslandSums> measured_;
-  DeviceVector<IslandTask> tasks_;
-  DeviceVector<IslandResult> results_;
-  DeviceVector<ContactEvent> events_;
 };
 
 }  // namespace tetwarp

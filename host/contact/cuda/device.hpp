@@ -17,6 +17,23 @@ namespace tetwarp {
 
 struct IslandOutcome;
 
+/// A problem whose arrays are in memory of the device, and where its results go.
+struct ResidentProblem {
+  const ContactProblem* pattern = nullptr;  ///< index arrays, in memory of the host
+  ContactInput input;
+  View<const double> guess;                       ///< [3 contacts], or empty
+  View<double> impulse, velocity, body_velocity;  ///< out; empty: not written
+  void* stream = nullptr;                         ///< cudaStream_t of the caller, or null
+};
+
+/// How the solve of such a problem ended.
+struct ResidentEnd {
+  bool is_solved = false;  ///< false: the host must solve it; nothing useful was written
+  ContactSavings savings;
+  std::int64_t updates_skipped = 0;
+  double balance = 0;  ///< ContactResidual::balance
+};
+
 /// A device that solves islands of contacts, with the methods of
 /// kernels/contact/contact_methods.hpp. All vectors are in memory of the host.
 class ContactDevice : public StructureStages {
@@ -62,6 +79,25 @@ class ContactDevice : public StructureStages {
   virtual void evolve(const ContactAdhesionBody& body) = 0;
 
   virtual std::string name() const = 0;
+
+  /// Solves a problem without coupled islands; copies counts and sums to the host, and the pattern
+  /// to the device if the structure has changed. Kernels run on the stream of the problem; with
+  /// null they wait for the default stream. Returns when the results are written.
+  /// @param outcomes  out, [islands with contacts]
+  /// @return  not solved: an island has not converged, the numbers fail a check or need more than
+  ///          sweeps (springs with other gaps than dt w_n)
+  virtual ResidentEnd solve_resident(const ContactOptions& options,
+                                     const ContactStructure& structure,
+                                     const ResidentProblem& problem,
+                                     std::vector<IslandOutcome>& outcomes) = 0;
+
+  /// Whether the address is in memory of this device, or managed.
+  virtual bool is_device_memory(const void* data) const = 0;
+
+  /// Copies between the host and arrays of the device that a caller owns, after the work on its
+  /// stream; returns when the copy is done.
+  virtual void read(const double* device, std::int64_t size, double* host, void* stream) = 0;
+  virtual void write(const double* host, std::int64_t size, double* device, void* stream) = 0;
 };
 
 /// The public evolve_adhesion() with a choice of where it runs.

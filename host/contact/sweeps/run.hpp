@@ -126,11 +126,13 @@ class ContactRun {
     });
   }
 
-  /// Continues one island with nonlinear conjugate gradients until it converges or has had
-  /// `sweep_end` sweeps in all; options.max_sweeps at most.
-  void sweep_on(std::int64_t i, std::int64_t sweep_end) {
+  /// Continues one island, with nonlinear conjugate gradients if no method is given, until it
+  /// converges or has had `sweep_end` sweeps in all; options.max_sweeps at most.
+  void sweep_on(std::int64_t i,
+                std::int64_t sweep_end,
+                ContactMethod method = ContactMethod::nonlinear_cg) {
     const int threads = island(i).contact_count() >= shared_from ? threads_ : 1;
-    go_on(i, threads, ContactMethod::nonlinear_cg, std::min(sweep_end, options_.max_sweeps));
+    go_on(i, threads, method, std::min(sweep_end, options_.max_sweeps));
   }
 
   ContactSums measure(std::int64_t i) {

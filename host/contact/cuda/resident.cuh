@@ -1,0 +1,171 @@
+/// @file resident.cuh
+/// A problem whose arrays are in memory of the device: its pattern there, checks, results.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host/contact/cuda/device.hpp"
+#include "host/contact/cuda/device_memory.cuh"
+#include "host/contact/problem/vectors.hpp"
+#include "kernels/contact/contact_grid.cuh"
+#include "kernels/contact/contact_numbers.hpp"
+#include "kernels/contact/resident_results.hpp"
+
+namespace tetwarp {
+
+class ResidentArrays {
+ public:
+  /// Copies the pattern to the device if the structure is another than at the last call.
+  void set_pattern(const GridContactExec& grid,
+                   const ContactProblem& problem,
+                   std::int64_t structure_serial) {
+    if (serial_ == structure_serial) return;
+    arrays_.restart();
+    const auto put = [&](const auto& values) { return arrays_.put(grid, view_of(values)); };
+    const auto rows_of = [&](const SparseMatrix& matrix) {
+      return RowsView{put(matrix.row_start), put(matrix.column)};
+    };
+    if (problem.is_local()) {
+      rows_ = rows_of(problem.delassus);
+    } else {
+      rows_ = rows_of(problem.jacobian);
+      system_rows_ = rows_of(problem.system);
+      std::vector<std::uint8_t> is_zero;
+      for (const double value : problem.system.value) is_zero.push_back(value == 0 ? 1 : 0);
+      is_zero_ = put(is_zero);
+      put_columns(problem.jacobian, problem.dof_count(), put);
+    }
+    serial_ = structure_serial;
+  }
+
+  /// The offsets w with normal ones of at least -speed, or q.
+  View<const double> recovered(GridContactExec& grid, const ContactInput& in, double speed) {
+    if (in.load.size == 0 || speed == INFINITY) return in.given_velocity;
+    recovered_.resize(in.given_velocity.size);
+    grid.for_each("contact/setup", in.friction.size,
+                  RecoveryBody{in.given_velocity, speed, view_of(recovered_)});
+    return view_of(std::as_const(recovered_));
+  }
+
+  /// Whether the checks of the host would pass, the pattern is still the same, and every normal
+  /// spring has the gap dt w_n. Reads one number.
+  /// @param numbers  of the problem, filled
+  bool is_plain(GridContactExec& grid,
+                const ResidentProblem& problem,
+                const ContactIndices& indices,
+                const ContactNumbers<double>& numbers) {
+    constexpr const char* label = "contact/setup";
+    constexpr double most = 0x1.fffffffffffffp1023;
+    const ContactInput& in = problem.input;
+    if (in.has_adhesion && !(in.time_step > 0 && in.time_step <= most)) return false;
+    const std::int64_t contacts = in.friction.size;
+    checks_.resize(check_count);
+    largest_.resize(1);
+    const View<BadCount> checks = view_of(checks_);
+    grid.resize(checks_, check_count);
+
+    RangeCheckBody range;
+    for (const View<const double> any :
+         {in.matrix, in.jacobian, in.load, in.given_velocity, in.gap, problem.guess}) {
+      range.add(any, -most, most);
+    }
+    for (const View<const double> positive :
+         {in.friction, in.area, in.stiffness, in.tangential_stiffness}) {
+      range.add(positive, 0, most);
+    }
+    range.add(in.intensity, 0, 1);
+    grid.sum_to(label, 0, range.total, range, &checks[0]);
+
+    const ContactScalesBody scales{in, rows_, indices.is_local};
+    grid.sum_to(label, 0, contacts, scales, &view_of(largest_)[0]);
+    const LargestOf<2>* const largest = view_of(largest_).data;
+    grid.sum_to(label, 0, contacts, ContactCheckBody{scales, largest}, &checks[1]);
+    if (indices.is_local) {
+      grid.sum_to(label, 0, 3 * contacts, SemidefiniteCheckBody{scales, largest}, &checks[2]);
+    } else {
+      grid.sum_to(label, 0, in.matrix.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
+      grid.sum_to(
+          label, 0, indices.blocks(),
+          BlockCheckBody{indices.pairs.dof_start, indices.diagonal_value, numbers.system.values},
+          &checks[3]);
+    }
+    const auto bad = grid.sum<BadCount>(label, 0, check_count,
+                                        ReadySums<BadCount>{View<const BadCount>(checks)});
+    return bad.value[0] == 0;
+  }
+
+  /// Writes impulses and velocities to the arrays of the caller.
+  /// @param impulse        [3 slots]
+  /// @param body_velocity  by places, [dofs]
+  /// @return  sums over them
+  ResultSums write_results(GridContactExec& grid,
+                           const ResidentProblem& problem,
+                           const ContactIndices& indices,
+                           View<const double> impulse,
+                           View<const double> body_velocity) {
+    constexpr const char* label = "contact/result";
+    const ContactInput& in = problem.input;
+    const auto target = [](View<double> given, std::int64_t size, DeviceVector<double>& own) {
+      if (given.size > 0) return given;
+      own.resize(size);
+      return view_of(own);
+    };
+    const View<double> r = target(problem.impulse, impulse.size, impulse_);
+    const View<double> u = target(problem.velocity, impulse.size, velocity_);
+    const View<double> v = target(problem.body_velocity, body_velocity.size, body_velocity_);
+    grid.for_each(label, indices.slots(), ScatterItemsBody<3>{indices.contact_of_slot, impulse, r});
+    grid.for_each(label, indices.dofs(),
+                  ScatterItemsBody<1>{indices.dof_of_place, body_velocity, v});
+    const View<const double> x = indices.is_local ? View<const double>(r) : View<const double>(v);
+    grid.for_each(label, r.size,
+                  RowVelocityBody{rows_, indices.is_local ? in.matrix : in.jacobian, x,
+                                  in.given_velocity, u});
+    sums_.resize(2);
+    const View<ResultSums> sums = view_of(sums_);
+    grid.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);
+    grid.sum_to(label, 0, indices.dofs(),
+                BalanceSumsBody{system_rows_, in.matrix, in.load, v, push_start_, push_number_,
+                                push_row_, in.jacobian, r},
+                &sums[1]);
+    return grid.sum<ResultSums>(label, 0, 2, ReadySums<ResultSums>{View<const ResultSums>(sums)});
+  }
+
+ private:
+  static constexpr std::int64_t check_count = 4;
+
+  /// Stored numbers of J by column, in the order of rows.
+  template <class Put>
+  void put_columns(const SparseMatrix& jacobian, std::int64_t columns, const Put& put) {
+    std::vector<std::int64_t> start(index_of(columns) + 1, 0), number(jacobian.column.size());
+    std::vector<std::int32_t> row(jacobian.column.size());
+    for (const std::int32_t column : jacobian.column) ++start[index_of(column) + 1];
+    for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+    std::vector<std::int64_t> next = start;
+    for (std::int64_t r = 0; r < jacobian.rows; ++r) {
+      for (std::int64_t e = jacobian.row_start[index_of(r)];
+           e < jacobian.row_start[index_of(r) + 1]; ++e) {
+        const std::int64_t place = next[index_of(jacobian.column[index_of(e)])]++;
+        number[index_of(place)] = e;
+        row[index_of(place)] = static_cast<std::int32_t>(r);
+      }
+    }
+    push_start_ = put(start);
+    push_number_ = put(number);
+    push_row_ = put(row);
+  }
+
+  std::int64_t serial_ = 0;  ///< of the structure that the pattern belongs to
+  DeviceArrays arrays_;
+  RowsView rows_, system_rows_;       ///< of J or W; of A
+  View<const std::uint8_t> is_zero_;  ///< [stored numbers of A]: 1 where it is zero
+  View<const std::int64_t> push_start_, push_number_;  ///< see BalanceSumsBody
+  View<const std::int32_t> push_row_;
+  DeviceVector<double> recovered_, impulse_, velocity_, body_velocity_;
+  DeviceVector<BadCount> checks_;
+  DeviceVector<LargestOf<2>> largest_;
+  DeviceVector<ResultSums> sums_;
+};
+
+}  // namespace tetwarp

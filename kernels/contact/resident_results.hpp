@@ -1,0 +1,105 @@
+/// @file resident_results.hpp
+/// Results of a problem in the order of its own arrays, and sums that check them. Products and sums
+/// are rounded one by one, so that velocities have the bits of the host.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/plain_sums.hpp"
+#include "kernels/base/view.hpp"
+#include "kernels/contact/resident_checks.hpp"
+
+namespace tetwarp {
+
+/// One index = one contact: a normal offset of at least -speed.
+struct RecoveryBody {
+  View<const double> given;
+  double speed;
+  View<double> out;
+
+  TETWARP_HD void operator()(std::int64_t c) const {
+    out[3 * c] = given[3 * c] < -speed ? -speed : given[3 * c];
+    out[3 * c + 1] = given[3 * c + 1];
+    out[3 * c + 2] = given[3 * c + 2];
+  }
+};
+
+/// One index = one place: copies its `width` numbers to those of its item.
+template <int width>
+struct ScatterItemsBody {
+  View<const std::int32_t> item;
+  View<const double> in;
+  View<double> out;
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    for (int k = 0; k < width; ++k) out[width * std::int64_t{item[i]} + k] = in[width * i + k];
+  }
+};
+
+/// One index = one row: out = offset + matrix x.
+struct RowVelocityBody {
+  RowsView rows;
+  View<const double> values, x, offset;
+  View<double> out;
+
+  TETWARP_HD void operator()(std::int64_t row) const {
+    double sum = offset[row];
+    for (std::int64_t e = rows.row_start[row]; e < rows.row_start[row + 1]; ++e) {
+      sum = add_rn(sum, mul_rn(values[e], x[rows.column[e]]));
+    }
+    out[row] = sum;
+  }
+};
+
+/// Sums over a result.
+struct ResultSums {
+  PlainSums<4> sums;  ///< numbers that are not finite; squares of A v - J^T r - b, J^T r, b
+
+  TETWARP_HD double bad() const { return sums.value[0]; }
+  /// |A v - J^T r - b| over the larger of |J^T r| and |b|; infinity where it is not finite.
+  double balance() const {
+    const double scale = sqrt(max_of(sums.value[2], sums.value[3]));
+    const double ratio = sqrt(sums.value[1]) / max_of(scale, 0x1p-1022);
+    return ratio < INFINITY && scale < INFINITY ? ratio : INFINITY;
+  }
+  TETWARP_HD ResultSums& operator+=(const ResultSums& other) {
+    sums += other.sums;
+    return *this;
+  }
+};
+
+TETWARP_HD double not_finite(double value) {
+  return fabs(value) < INFINITY ? 0.0 : 1.0;
+}
+
+/// One index = one row of contacts.
+struct ContactResultBody {
+  View<const double> impulse, velocity;
+
+  TETWARP_HD ResultSums operator()(std::int64_t row) const {
+    return {{{not_finite(impulse[row]) + not_finite(velocity[row]), 0, 0, 0}}};
+  }
+};
+
+/// One index = one dof of the problem.
+struct BalanceSumsBody {
+  RowsView system_rows;
+  View<const double> system, load, body_velocity;
+  View<const std::int64_t> push_start;   ///< [dofs + 1]: stored numbers of J by column
+  View<const std::int64_t> push_number;  ///< which number
+  View<const std::int32_t> push_row;     ///< its row
+  View<const double> jacobian, impulse;
+
+  TETWARP_HD ResultSums operator()(std::int64_t dof) const {
+    double product = 0, push = 0;
+    for (std::int64_t e = system_rows.row_start[dof]; e < system_rows.row_start[dof + 1]; ++e) {
+      product = add_rn(product, mul_rn(system[e], body_velocity[system_rows.column[e]]));
+    }
+    for (std::int64_t e = push_start[dof]; e < push_start[dof + 1]; ++e) {
+      push = add_rn(push, mul_rn(jacobian[push_number[e]], impulse[push_row[e]]));
+    }
+    const double left = product - push - load[dof];
+    return {{{not_finite(body_velocity[dof]), left * left, push * push, load[dof] * load[dof]}}};
+  }
+};
+
+}  // namespace tetwarp
