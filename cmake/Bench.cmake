@@ -60,12 +60,19 @@ if(NOT BUILD_SHARED_LIBS)
     bench/simulate/error_rows.cpp
     bench/simulate/main.cpp
     bench/simulate/rows.cpp
+    bench/simulate/touch_rows.cpp
     tests/simulate/body_measures.cpp
     tests/simulate/body_models.cpp)
   target_include_directories(tetwarp_bench_simulate PRIVATE
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
   target_link_libraries(tetwarp_bench_simulate PRIVATE
     tetwarp tetwarp_options benchmark::benchmark Eigen3::Eigen)
+
+  add_executable(tetwarp_step_traffic
+    bench/simulate/step_traffic.cpp
+    tests/simulate/body_models.cpp)
+  target_include_directories(tetwarp_step_traffic PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(tetwarp_step_traffic PRIVATE tetwarp tetwarp_options Eigen3::Eigen)
 
   add_executable(tetwarp_bench_collide
     bench/collide/main.cpp

@@ -49,10 +49,12 @@ set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cu
   host/simulate/scene_drive.cpp
   host/simulate/scene_loads.cpp
   host/simulate/scene_record.cpp
+  host/simulate/run/island_lists.cpp
+  host/simulate/run/island_sleep.cpp
   host/simulate/run/simulator.cpp
   host/simulate/run/simulator_impl.cpp
   host/simulate/run/simulator_step.cpp
-  host/simulate/run/step_sums.cpp
+  host/simulate/step_sums.cpp
   host/simulate/system_pattern.cpp)
 set(tetwarp_simulate_reference_sources  # host/reference/simulate
   host/reference/simulate/assemble.cpp
@@ -115,12 +117,16 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/touching_sweeps.cpp
   host/simulate/contact/triangle_tree.cpp
   host/simulate/contact/two_level_solver.cpp
-  host/simulate/contact/two_level_step.cpp)
+  host/simulate/contact/two_level_step.cpp
+  host/simulate/contact/two_level_sweeps.cpp)
 set(tetwarp_contact_step_sources  # host/simulate: the step with contact
   host/simulate/run/contact_step.cpp
   host/simulate/run/contact_step_end.cpp
+  host/simulate/run/contact_step_sleep.cpp
   host/simulate/run/simulator_checkpoint.cpp
   host/simulate/run/simulator_record.cpp
+  host/simulate/run/simulator_sleep.cpp
+  host/simulate/run/simulator_state.cpp
   host/simulate/run/step_groups.cpp)
 target_sources(tetwarp PRIVATE ${tetwarp_collide_sources} ${tetwarp_touch_sources}
   ${tetwarp_contact_step_sources})

@@ -27,6 +27,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_stepper_bodies.cpp
     tests/simulate/test_stepper_move.cpp
     tests/simulate/test_stepper_options.cpp
+    tests/simulate/test_vector_assembly.cpp
     tests/simulate/test_vector_stages.cpp
     tests/emu/emulated_stepper.cpp
     tests/emu/test_stepper_emulated.cpp
@@ -92,8 +93,11 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_two_level.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
+    tests/simulate/test_touch_capsules.cpp
     tests/simulate/test_touch_fall.cpp
     tests/simulate/test_touch_records.cpp
+    tests/simulate/test_touch_self.cpp
+    tests/simulate/test_touch_sleep.cpp
     tests/simulate/test_touch_state.cpp
     tests/simulate/test_touch_throw.cpp
     )
@@ -106,8 +110,15 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_law_soft.cpp
     tests/simulate/test_law_throws.cpp
     )
-  foreach(name scene model body reference_twin ccd detector surfaces pair_contact contact_system
-               touch contact_law)
+  set(tetwarp_emulated_simulator_tests  # the Simulator on emulated cuda, its detector and a Warper
+    tests/emu/emulated_backend.cpp
+    tests/emu/emulated_detector.cpp
+    tests/emu/emulated_primitives.cpp
+    tests/emu/emulated_stepper.cpp
+    tests/emu/test_simulator_emulated.cpp
+    tests/simulate/test_contact_cuda.cpp)
+  foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces
+               pair_contact contact_system touch contact_law)
     if(tetwarp_${name}_tests)
       tetwarp_add_tests(tetwarp_${name}_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json
         SOURCES ${tetwarp_${name}_tests})
@@ -118,6 +129,7 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_add_tests(tetwarp_device_simulate_tests SOURCES
       tests/simulate/body_measures.cpp
       tests/simulate/body_models.cpp
+      tests/simulate/test_contact_cuda.cpp
       tests/simulate/test_device.cpp
       tests/simulate/test_parity_cuda.cpp
       tests/simulate/test_stepper_parity.cpp
@@ -141,7 +153,8 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
     tests/simulate/test_contact_large.cpp
     tests/simulate/test_law_peel.cpp
-    tests/simulate/test_simulator_large.cpp)
+    tests/simulate/test_simulator_large.cpp
+    tests/simulate/test_touch_energy.cpp)
   tetwarp_discover(tetwarp_simulate_large_tests long)
   if(TETWARP_IO)
     tetwarp_add_tests(tetwarp_scene_file_tests UNITY 4

@@ -125,12 +125,12 @@ if(NOT BUILD_SHARED_LIBS)
     tests/make/test_render_volume.cpp
     tests/warp/test_convex_part.cpp
     tests/warp/test_source_shares.cpp
+    tests/warp/test_voxel_bodies.cpp
     tests/warp/test_face_sign.cpp
     tests/warp/test_hex_split.cpp
     tests/warp/test_output_edges.cpp
     tests/warp/test_row_vectors.cpp
     tests/warp/test_skip_constant.cpp
-    tests/warp/test_skip_far_memory.cpp
     tests/warp/test_skip_unchanged.cpp
     tests/warp/test_source_end.cpp
     tests/warp/test_volume_filter.cpp
@@ -207,10 +207,10 @@ if(NOT BUILD_SHARED_LIBS)
 
   # A separate program, because the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
-    tests/emu/test_affine_simt.cpp
-    tests/emu/test_simt.cpp
-    tests/emu/test_cell_raster_simt.cpp
-    tests/emu/test_contact_simt.cpp)
+    tests/emu/test_affine_simt.cpp tests/emu/test_anderson_simt.cpp
+    tests/emu/test_cell_interior_simt.cpp tests/emu/test_cell_raster_simt.cpp
+    tests/emu/test_contact_grid_simt.cpp tests/emu/test_contact_simt.cpp
+    tests/emu/test_grouped_scan_simt.cpp tests/emu/test_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
   # Every back end through the public calls, compiled once for two programs: in one of them back end
@@ -232,17 +232,18 @@ if(NOT BUILD_SHARED_LIBS)
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
   endif()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
-    tests/emu/emulated_backend.cpp
-    tests/emu/emulated_primitives.cpp
-    tests/emu/emulated_contact.cpp
-    tests/emu/test_contact_emulated.cpp
-    tests/emu/test_device_errors.cpp
-    tests/emu/test_warp_emulated.cpp
-    tests/emu/test_warp_emulated_overlap.cpp
+    tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp tests/emu/emulated_primitives.cpp
+    tests/emu/test_cell_list_emulated.cpp tests/emu/test_contact_arrays_emulated.cpp
+    tests/emu/test_contact_emulated.cpp tests/emu/test_device_errors.cpp
+    tests/emu/test_step_operations.cpp tests/emu/test_warp_emulated.cpp
+    tests/emu/test_warp_emulated_copies.cpp tests/emu/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
   tetwarp_discover(tetwarp_emulated_tests parity)
   if(tetwarp_device_tests)
-    tetwarp_add_tests(tetwarp_device_tests SOURCES $<TARGET_OBJECTS:tetwarp_backend_tests>)
+    tetwarp_add_tests(tetwarp_device_tests SOURCES
+      tests/device/test_contact_arrays_device.cu
+      $<TARGET_OBJECTS:tetwarp_backend_tests>)
+    target_link_libraries(tetwarp_device_tests PRIVATE CUDA::cudart_static)
     gtest_discover_tests(tetwarp_device_tests DISCOVERY_TIMEOUT 120 NO_PRETTY_TYPES
       NO_PRETTY_VALUES PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
   endif()
@@ -259,7 +260,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks choices contact contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers contact_io io mesh_import scene_io)
 endif()

@@ -22,8 +22,10 @@ int main(int argc, char** argv) {
   const BackendStatus cuda = available_backends().front();
   bench::add_simulate_rows(program.extent(), cuda.usable);
   bench::add_error_rows(program.extent());
+  bench::add_touch_rows(program.extent());
   program.describe(bench::processor_threads());
   benchmark::AddCustomContext("device", cuda.usable ? cuda.device : "none: " + cuda.reason);
   benchmark::AddCustomContext("vectors", vector_stages().name);
-  return program.run({"forces", "assembly", "linear", "iterations", "copy_share", "error"});
+  return program.run({"forces", "assembly", "linear", "iterations", "copy_share", "error",
+                      "detection", "contact", "contacts"});
 }

@@ -25,8 +25,11 @@ struct Subject {
   explicit Subject(const StepCase& row) {
     const scenes::Scene& scene = inputs().scene(row.workload);
     const VolumeView source = inputs().image(row.workload, row.type, row.image, row.components);
-    const WarpOptions options{
-        .filter = row.filter, .backend = row.backend, .threads = row.threads, .skip = row.skip};
+    const WarpOptions options{.filter = row.filter,
+                              .backend = row.backend,
+                              .threads = row.threads,
+                              .stage_times = true,
+                              .skip = row.skip};
     construct = seconds_of([&] { job.emplace(scene, source, options); });
     first_step = seconds_of([&] { job->step(); });
   }

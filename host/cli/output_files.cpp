@@ -10,6 +10,7 @@ WarpOptions warp_options(const WarpArguments& arguments,
                          const VolumePlan& volume) {
   WarpOptions options = arguments.warp;
   options.backend = plan.backend;
+  options.stage_times = !arguments.report.empty();
   options.output_grid = volume.output_grid;
   for (const ArrayHeader& array : volume.arrays) {
     options.quantities.push_back(arguments.quantity_of(array.name));

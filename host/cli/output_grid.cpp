@@ -124,10 +124,10 @@ Grid resolve_grid(const GridChoice& choice,
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
                   const Mesh& mesh,
-                  const std::vector<Point3>& positions) {
+                  const std::function<std::vector<Point3>()>& positions) {
   return resolve(choice, source, [&] {
     IndexBox box;
-    box.include(index_from_world(source), mesh, positions);
+    box.include(index_from_world(source), mesh, positions());
     return grid_of(source, box);
   });
 }

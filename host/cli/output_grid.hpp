@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,10 +33,11 @@ Grid resolve_grid(const GridChoice& choice,
                   const std::vector<std::int64_t>& steps);
 
 /// The same for one set of positions of the nodes of a mesh.
+/// @param positions  returns them; called if the choice depends on them
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,
                   const Mesh& mesh,
-                  const std::vector<Point3>& positions);
+                  const std::function<std::vector<Point3>()>& positions);
 
 /// Reads "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
 Region parse_region(const std::string& text);

@@ -61,7 +61,7 @@ WarpOptions BodyWarps::options_of(const Follower& follower) const {
 void BodyWarps::prepare(Follower& follower) const {
   const Mesh& mesh = simulator_.body(follower.body).mesh;
   const Grid grid = resolve_grid(arguments_.grid, follower.source->grid, mesh,
-                                 simulator_.node_positions(follower.body));
+                                 [&] { return simulator_.node_positions(follower.body); });
   if (follower.warper && is_equal(grid, follower.grid)) return;
   follower.grid = grid;
   follower.warper.emplace(*follower.source, mesh, options_of(follower));

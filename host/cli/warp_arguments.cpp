@@ -211,11 +211,12 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
       {"unchanged-steps", {&SkipOptions::unchanged_steps}},
       {"unchanged-tets", {&SkipOptions::unchanged_tets}},
       {"constant-cells", {&SkipOptions::constant_cells}},
+      {"interior-cells", {&SkipOptions::interior_cells}},
       {"background-chunks", {&SkipOptions::background_chunks}},
       {"all",
        {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells, &SkipOptions::copied_voxels,
         &SkipOptions::unchanged_steps, &SkipOptions::unchanged_tets, &SkipOptions::constant_cells,
-        &SkipOptions::background_chunks}}};
+        &SkipOptions::interior_cells, &SkipOptions::background_chunks}}};
   SkipOptions& skip = warp.skip;
   add_word_list(
       app, "--no-skip", skips,

@@ -55,11 +55,39 @@ void BodyPartners::unite(const CollideItems& items, const View<const RunBox>& ru
   }
 }
 
-void BodyPartners::find_bodies(const CollideItems& items) {
+/// Of very many bodies: the space of all is the partner of those that move and of those that reach
+/// one that moves.
+void BodyPartners::find_crowd(std::int32_t count, std::span<const std::uint8_t> is_still) {
+  const auto moves = [&](std::int32_t b) {
+    return is_still.empty() || is_still[static_cast<std::size_t>(b)] == 0;
+  };
+  bool has_movers = false;
+  Box movers{};
+  for (const std::int32_t b : order_) {
+    if (!moves(b)) continue;
+    const Box& box = boxes[static_cast<std::size_t>(b)];
+    if (has_movers) {
+      add_box(movers, box);
+    } else {
+      movers = box;
+    }
+    has_movers = true;
+  }
+  for (const std::int32_t b : order_) {
+    const bool is_near = has_movers && overlap(movers, boxes[static_cast<std::size_t>(b)]);
+    if (moves(b) || is_near) pairs_.push_back({b, count});
+  }
+}
+
+void BodyPartners::find_bodies(const CollideItems& items, std::span<const std::uint8_t> is_still) {
   const CollideView scene = view_of_bodies(items);
   const auto count = static_cast<std::int32_t>(items.bodies.size());
   const auto box_of = [&](std::int32_t b) -> const Box& {
     return boxes[static_cast<std::size_t>(b)];
+  };
+  const auto rest = [&](std::int32_t a, std::int32_t b) {
+    return !is_still.empty() && is_still[static_cast<std::size_t>(a)] != 0 &&
+           is_still[static_cast<std::size_t>(b)] != 0;
   };
   order_.clear();
   for (std::int32_t b = 0; b < count; ++b) {
@@ -67,18 +95,18 @@ void BodyPartners::find_bodies(const CollideItems& items) {
   }
   pairs_.clear();
   if (order_.size() > most_bodies) {
-    for (const std::int32_t b : order_) pairs_.push_back({b, count});
+    find_crowd(count, is_still);
   } else {
     std::sort(order_.begin(), order_.end(),
               [&](std::int32_t a, std::int32_t b) { return box_of(a).low[0] < box_of(b).low[0]; });
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const std::int32_t a = order_[i];
-      if (scene.may_touch(a, a)) pairs_.push_back({a, a});
+      if (scene.may_touch(a, a) && !rest(a, a)) pairs_.push_back({a, a});
       for (std::size_t j = i + 1; j < order_.size(); ++j) {
         const std::int32_t b = order_[j];
         if (box_of(b).low[0] > box_of(a).high[0]) break;
         if (!overlap(box_of(a), box_of(b))) continue;
-        if (!scene.may_touch(std::min(a, b), std::max(a, b))) continue;
+        if (!scene.may_touch(std::min(a, b), std::max(a, b)) || rest(a, b)) continue;
         pairs_.push_back({a, b});
         pairs_.push_back({b, a});
       }
@@ -104,7 +132,8 @@ void BodyPartners::find_bodies(const CollideItems& items) {
 void BodyPartners::find_planes(const CollisionSurfaces& surfaces,
                                const CollideItems& items,
                                const SurfaceMotion& motion,
-                               double distance) {
+                               double distance,
+                               std::span<const std::uint8_t> is_still) {
   const CollideView scene = view_of_bodies(items);
   plane_start.assign(items.bodies.size() + 1, 0);
   planes.clear();
@@ -112,6 +141,9 @@ void BodyPartners::find_planes(const CollisionSurfaces& surfaces,
     for (std::size_t p = 0; p < surfaces.plane_body.size() && has_box[b] != 0; ++p) {
       const auto own = static_cast<std::int32_t>(b);
       const std::int32_t other = surfaces.plane_body[p];
+      if (!is_still.empty() && is_still[b] != 0 && is_still[static_cast<std::size_t>(other)] != 0) {
+        continue;
+      }
       if (own == other || !scene.may_touch(std::min(own, other), std::max(own, other))) continue;
       if (follows_frame(motion, other) ||
           is_near(boxes[b], motion.start.planes[p], motion.end.planes[p], distance)) {

@@ -25,14 +25,18 @@ struct BodyPartners {
   void unite(const CollideItems& items, const View<const RunBox>& run_boxes);
   /// Finds the partners of all bodies. Of very many bodies each that overlaps the space of the
   /// others counts as a partner.
-  void find_bodies(const CollideItems& items);
+  /// @param is_still  [bodies] those that do not move are no partners of each other; or empty
+  void find_bodies(const CollideItems& items, std::span<const std::uint8_t> is_still);
   /// Finds the planes that lie within `distance` of a body's box at any time.
   void find_planes(const CollisionSurfaces& surfaces,
                    const CollideItems& items,
                    const SurfaceMotion& motion,
-                   double distance);
+                   double distance,
+                   std::span<const std::uint8_t> is_still);
 
  private:
+  void find_crowd(std::int32_t count, std::span<const std::uint8_t> is_still);
+
   std::vector<std::int32_t> order_;
   std::vector<std::array<std::int32_t, 2>> pairs_;
 };

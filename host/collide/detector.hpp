@@ -7,6 +7,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "host/collide/collision_surfaces.hpp"
@@ -54,6 +55,10 @@ class Detector {
 
   /// Starts a step: pairs of the broad phase of earlier motions are forgotten.
   virtual void begin_step() = 0;
+  /// Bodies that do not move until the next call: detect() and check() leave out pairs of two of
+  /// them, or report them as before where they lie near a third body.
+  /// @param is_still  [bodies], or empty: none
+  virtual void set_still(std::span<const std::uint8_t> is_still) = 0;
   /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
   /// sorted, each once. Valid until the next call.
   virtual const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) = 0;

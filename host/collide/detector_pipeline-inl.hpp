@@ -24,8 +24,8 @@ bool DetectorPipeline<Exec>::make_boxes(double distance,
 
 /// Pairs of items whose boxes of the search overlap.
 template <class Exec>
-void DetectorPipeline<Exec>::find_item_pairs() {
-  partners_.find_bodies(items_);
+void DetectorPipeline<Exec>::find_item_pairs(std::span<const std::uint8_t> is_still) {
+  partners_.find_bodies(items_, is_still);
   entries_.clear();
   pairs_.clear();
   if (!partners_.has_pairs) {
@@ -70,8 +70,10 @@ void DetectorPipeline<Exec>::find_item_pairs() {
 
 /// Pairs of features of the motion, from the pairs of items and from planes.
 template <class Exec>
-void DetectorPipeline<Exec>::find_features(const SurfaceMotion& motion, double distance) {
-  partners_.find_planes(surfaces_, items_, motion, distance);
+void DetectorPipeline<Exec>::find_features(const SurfaceMotion& motion,
+                                           double distance,
+                                           std::span<const std::uint8_t> is_still) {
+  partners_.find_planes(surfaces_, items_, motion, distance, is_still);
   exec_.put(partners_.plane_start.data(), size_of(partners_.plane_start), near_start_);
   exec_.put(partners_.planes.data(), size_of(partners_.planes), near_planes_);
   const std::int64_t vertices = partners_.has_planes ? size_of(surfaces_.vertex_body) : 0;
@@ -105,10 +107,10 @@ const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceM
     ++counts_.reused;
   } else {
     make_boxes(distance, true, found_thicknesses * surfaces_.thickness, found_fraction);
-    find_item_pairs();
+    find_item_pairs(is_still_);
     has_pairs_ = true;
   }
-  find_features(motion, distance);
+  find_features(motion, distance, is_still_);
   exec_.resize(results_, features_.size());
   exec_.for_each("collide/pair_touch", features_.size(),
                  PairTouchBody{scene(), motion_, limits, features_.view(), exec_.view(results_)});
@@ -157,8 +159,8 @@ ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places, double 
   for (double within = std::min(cap, 2 * surfaces_.thickness); within > 0;
        within = std::min(cap, 4 * within)) {
     make_boxes(within, true, within, 0);
-    find_item_pairs();
-    find_features(still_, within);
+    find_item_pairs({});
+    find_features(still_, within, {});
     if (features_.size() > 0) {
       const PairGap gap = nearest_of_features();
       if (gap.distance < within) {

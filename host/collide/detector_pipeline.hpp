@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,6 +41,10 @@ class DetectorPipeline {
   }
 
   void begin_step() { has_pairs_ = false; }
+  void set_still(std::span<const std::uint8_t> is_still) {
+    is_still_.assign(is_still.begin(), is_still.end());
+    has_pairs_ = false;
+  }
 
   const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) {
     const double h = surfaces_.thickness;
@@ -127,8 +132,10 @@ class DetectorPipeline {
   /// Computes the boxes of vertices and bodies; with `finds` those of a search, too.
   /// @returns whether all boxes lie within those found before
   bool make_boxes(double distance, bool finds, double found_distance, double fraction);
-  void find_item_pairs();
-  void find_features(const SurfaceMotion& motion, double distance);
+  void find_item_pairs(std::span<const std::uint8_t> is_still);
+  void find_features(const SurfaceMotion& motion,
+                     double distance,
+                     std::span<const std::uint8_t> is_still);
   PairGap nearest_of_features();
 
   Exec& exec_;
@@ -140,6 +147,7 @@ class DetectorPipeline {
   MotionView motion_;
   DetectionCounts counts_;
   bool has_pairs_ = false;
+  std::vector<std::uint8_t> is_still_;  ///< [bodies], or empty
 
   Vector<double> start_, end_, sagitta_, plane_start_, plane_end_;
   Vector<TurningFrame> frames_;

@@ -36,9 +36,13 @@ class BodyPipeline {
     put(numbers_of(state.rotation), now_.rotation);
     put(numbers_of(state.velocity), now_.velocity);
     put(numbers_of(state.angular_momentum), now_.angular_momentum);
-    const std::vector<double> nowhere(static_cast<std::size_t>(nodes),
-                                      std::numeric_limits<double>::quiet_NaN());
-    exec_.put(nowhere.data(), nodes, now_.previous);
+    exec_.resize(now_.previous, nodes);
+    forget_steps();
+  }
+  /// Makes the next step compute all rotations and blocks anew.
+  void forget_steps() {
+    exec_.for_each(forces_label, exec_.view(now_.previous).size,
+                   FillBody{std::numeric_limits<double>::quiet_NaN(), exec_.view(now_.previous)});
     assembled_time_step_ = 0;
   }
 
@@ -95,6 +99,8 @@ class BodyPipeline {
   const double* position_of(std::int32_t node) const {
     return exec_.view(now_.position).data + 3 * std::int64_t{node};
   }
+  const ConstantArrays<Exec>& constants() const { return constants_; }
+  StepArrays<Exec>& arrays() { return now_; }
 
  private:
   static constexpr const char* forces_label = "body/forces";
@@ -128,6 +134,10 @@ class BodyPipeline {
   void put(View<const double> host, Array& own) {
     exec_.put(host.data, host.size, own);
   }
+  template <class Array>
+  void renew(View<const double> host, Array& own) {
+    exec_.renew(host.data, host.size, own);
+  }
   template <class Array, class Numbers>
   void get(const Array& own, Numbers* to) const {
     exec_.get(exec_.view(own), reinterpret_cast<double*>(to));
@@ -145,11 +155,15 @@ class BodyPipeline {
     check("anchors", count_of(input.anchor), springs);
     check("velocities of anchors", count_of(input.anchor_velocity), springs);
     check("states of springs", count_of(input.is_active), springs);
-    put(numbers_of(input.prescribed_velocity), now_.prescribed);
-    put(numbers_of(input.block_force), now_.force);
-    put(numbers_of(input.anchor), now_.anchor);
-    put(numbers_of(input.anchor_velocity), now_.anchor_velocity);
-    exec_.put(input.is_active.data(), springs, now_.is_active);
+    renew(numbers_of(input.prescribed_velocity), now_.prescribed);
+    renew(numbers_of(input.block_force), now_.force);
+    renew(numbers_of(input.anchor), now_.anchor);
+    renew(numbers_of(input.anchor_velocity), now_.anchor_velocity);
+    exec_.renew(input.is_active.data(), springs, now_.is_active);
+    if (!input.is_asleep.empty()) {
+      check("flags of sleep", count_of(input.is_asleep), model_.block_count());
+    }
+    exec_.renew(input.is_asleep.data(), count_of(input.is_asleep), now_.is_asleep);
   }
 
   void forces(const StepInput& input) {
@@ -198,7 +212,8 @@ class BodyPipeline {
                             const_view(now_.velocity),
                             const_view(now_.angular_momentum),
                             constants_.node_mass,
-                            model_.node_count};
+                            model_.node_count,
+                            const_view(now_.is_asleep)};
     exec_.for_each(
         assembly_label, rows.count,
         RowLoadBody{rows, from, constants_.scalars, rigid, load, dt, exec_.view(now_.load)});

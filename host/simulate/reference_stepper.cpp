@@ -75,6 +75,11 @@ class ReferenceStepper final : public BodyStepper {
     drive_now_.after = reference::prescribed_at(system_, overrides(), input.end_time);
     linear_ = reference::assemble(system_, twin_, drive_now_);
     velocity_ = free_velocity_ = reference::solve_step(system_, twin_, drive_now_, linear_);
+    for_each_block([&](Eigen::Index own, std::size_t block) {
+      if (input.is_asleep.empty() || input.is_asleep[block] == 0) return;
+      velocity_.segment<3>(3 * own).setZero();
+    });
+    free_velocity_ = velocity_;
     outcome.seconds.linear = outcome.seconds.total = seconds_since(start);
     return outcome;
   }

@@ -98,6 +98,21 @@ void SceneDrive::fill_prescribed(const ModelState& state,
   }
 }
 
+void SceneDrive::add_places(StatePlaces& places) const {
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    const std::int32_t first = model_.body_node[b];
+    if (scene_.bodies[b].kind == BodyKind::scripted) {
+      for (std::int32_t n = first; n < model_.body_node[b + 1]; ++n) places.nodes.push_back(n);
+    }
+    for (const DrivenGroup& group : geometry_.bodies[b].driven) {
+      for (const std::int32_t n : group.nodes) places.nodes.push_back(first + n);
+    }
+  }
+  for (std::int32_t r = 0; r < model_.rigid_count; ++r) {
+    if (at(model_.prescribed, model_.node_count + 2 * r) != 0) places.rigid.push_back(r);
+  }
+}
+
 void SceneDrive::fill_anchors(double end_time, double dt, StepInput& input) {
   for (std::size_t h = 0; h < handles_.size(); ++h) next_handles_[h] = handle_at(h, end_time);
   const ModelSprings& springs = model_.springs;

@@ -10,6 +10,7 @@
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model.hpp"
 #include "host/simulate/motion.hpp"
+#include "host/simulate/resident_state.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -30,6 +31,8 @@ class SceneDrive {
   /// @param end_time   [s], at which paths are sampled
   /// @param time_step  [s] of this step, a part of the scene's where it is divided
   void fill(const ModelState& state, double end_time, double time_step, StepInput& input);
+  /// Adds the places that fill() reads of a state.
+  void add_places(StatePlaces& places) const;
   /// The step that fill() prepared has been made.
   void accept() { handles_ = next_handles_; }
   /// Bodies and obstacles that moved a part of a step only follow their paths later from now on.

@@ -72,6 +72,20 @@ void SceneLoads::add(const ModelPoint& point,
   }
 }
 
+void SceneLoads::add_places(StatePlaces& places) const {
+  for (const Place& place : places_) {
+    for (const ModelPoint& point : place.points) {
+      if (point.rigid >= 0) {
+        places.rigid.push_back(point.rigid);
+      } else if (!place.triangles.empty()) {
+        for (const std::int32_t n : point.node) {
+          if (n >= 0) places.nodes.push_back(n);
+        }
+      }
+    }
+  }
+}
+
 void SceneLoads::forces(const ModelState& state,
                         double end_time,
                         std::vector<Point3>& forces) const {

@@ -7,6 +7,7 @@
 
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model.hpp"
+#include "host/simulate/resident_state.hpp"
 
 namespace tetwarp {
 
@@ -19,6 +20,9 @@ class SceneLoads {
   /// `end_time` from the positions of `state`: pressure acts along minus the normals there.
   /// @param forces  out: [block_count]
   void forces(const ModelState& state, double end_time, std::vector<Point3>& forces) const;
+
+  /// Adds the places that forces() reads of a state.
+  void add_places(StatePlaces& places) const;
 
  private:
   struct Place {

@@ -28,7 +28,9 @@ struct StepInput {
   std::vector<Point3> anchor_velocity;  ///< [springs] of it over the step [m/s]; their damping acts
                                         ///< on the velocity relative to it
   std::vector<std::uint8_t> is_active;  ///< [springs] 0: lets go
-  double end_time = 0;                  ///< [s] at which paths and loads have been sampled
+  std::vector<std::uint8_t> is_asleep = {};  ///< [block_count] unknowns that stand still, coupled
+                                             ///< to no other unknowns; or empty: none
+  double end_time = 0;                       ///< [s] at which paths and loads have been sampled
 };
 
 /// What a step did.
@@ -59,6 +61,8 @@ struct StepSystem {
   View<const double> load;      ///< b, [rows][3]
   View<const double> velocity;  ///< v without contact, [rows][3]
 };
+
+class ResidentState;
 
 class BodyStepper {
  public:
@@ -93,6 +97,8 @@ class BodyStepper {
   virtual std::vector<Point3> support_impulses() const = 0;
   /// Positions of successive nodes, in memory of the back end, valid until the next step.
   virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;
+  /// What allows to take steps without get_state(); null where the state is in memory of the host.
+  virtual ResidentState* resident_state() { return nullptr; }
 };
 
 /// @param model  kept by the caller

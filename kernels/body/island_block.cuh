@@ -44,7 +44,11 @@ class BlockGradientExec {
     __syncthreads();  // before thread 0 writes the next value
     return copy;
   }
-  __device__ bool is_sync_point(std::int64_t) const { return true; }
+  __device__ std::int64_t iterations_at_once() const { return 1; }
+  template <class Iteration>
+  __device__ __forceinline__ void repeat(std::int64_t, const Iteration& iteration) const {
+    iteration.run(*this);
+  }
 
  private:
   __device__ static std::int64_t thread() { return static_cast<std::int64_t>(threadIdx.x); }

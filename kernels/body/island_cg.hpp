@@ -197,6 +197,23 @@ struct GradientMixBody {
   }
 };
 
+/// One iteration on rows [begin, end).
+template <class T>
+struct GradientIteration {
+  GradientArrays<T> a;
+  std::int64_t begin, end;
+  GradientScalars* scalars;  ///< in memory of the executor
+
+  template <class Exec>
+  TETWARP_ANY_EXEC void run(Exec& exec) const {
+    exec.sum_to(begin, end, GradientProductBody<T>{a}, &scalars->curvature);
+    exec.once(GradientLengthBody{scalars});
+    exec.sum_to(begin, end, GradientStepBody<T>{a, &scalars->step}, &scalars->next);
+    exec.once(GradientMixBody{scalars});
+    exec.for_each(begin, end, GradientTurnBody<T>{a, &scalars->turn});
+  }
+};
+
 /// @param exec     calls bodies for rows [begin, end); see CpuGradientExec for its functions
 /// @param scalars  in memory of the executor
 /// @param proceed  (std::int64_t iterations): whether to go on; called where the executor reads
@@ -238,21 +255,17 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
     const double target =
         max_of(0.5 * square_of(options.tolerance) * unit, square_of(run_target) * square);
     exec.once(GradientBeginBody{scalars});
-    for (std::int64_t i = 0; result.iterations < options.max_iterations; ++i) {
-      exec.sum_to(begin, end, GradientProductBody<T>{a}, &scalars->curvature);
-      exec.once(GradientLengthBody{scalars});
-      exec.sum_to(begin, end, GradientStepBody<T>{a, &scalars->step}, &scalars->next);
-      exec.once(GradientMixBody{scalars});
-      ++result.iterations;
-      if (exec.is_sync_point(i)) {
-        const GradientScalars now = exec.load(scalars);
-        if (!(now.square.value[0] > target) || now.step == 0) break;
-        if (!proceed(result.iterations)) {
-          result.is_stopped = true;
-          return result;
-        }
+    while (result.iterations < options.max_iterations) {
+      const std::int64_t count =
+          min_of(exec.iterations_at_once(), options.max_iterations - result.iterations);
+      exec.repeat(count, GradientIteration<T>{a, begin, end, scalars});
+      result.iterations += count;
+      const GradientScalars now = exec.load(scalars);
+      if (!(now.square.value[0] > target) || now.step == 0) break;
+      if (!proceed(result.iterations)) {
+        result.is_stopped = true;
+        return result;
       }
-      exec.for_each(begin, end, GradientTurnBody<T>{a, &scalars->turn});
     }
   }
   return result;

@@ -23,4 +23,12 @@ struct NodeMovedBody {
   }
 };
 
+/// One index = one number: sets it.
+struct FillBody {
+  double value;
+  View<double> to;
+
+  TETWARP_HD void operator()(std::int64_t i) const { to[i] = value; }
+};
+
 }  // namespace tetwarp

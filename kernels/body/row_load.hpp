@@ -17,6 +17,7 @@ struct LoadInput {
   View<const double> angular_momentum;  ///< [rigid][3]
   View<const double> node_mass;         ///< [nodes]
   std::int64_t node_count;
+  View<const std::uint8_t> is_asleep;  ///< [blocks] 1: stands still, its b is 0; or empty
 };
 
 /// One index = one row, prescribed ones included. Writes its own numbers; any order.
@@ -64,6 +65,10 @@ struct RowLoadBody {
   }
   TETWARP_HD void operator()(std::int64_t row) const {
     const std::int64_t block = rows.block_of[row];
+    if (input.is_asleep.size > 0 && input.is_asleep[block] != 0) {
+      for (int i = 0; i < 3; ++i) load[3 * row + i] = 0;
+      return;
+    }
     double b[3], mass = 0;
     for (int i = 0; i < 3; ++i) b[i] = time_step * input.force[3 * block + i];
     if (block < input.node_count) {

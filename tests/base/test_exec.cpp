@@ -164,9 +164,11 @@ TYPED_TEST(Executor, DeliversWhatWasWritten) {
 
   this->exec().zero("test", View<std::int64_t>{place, 33});
   this->exec().for_each("test", 33, SquareBody{{place, 33}});
-  this->exec().end_compute();
-  this->exec().download("test", View<const std::int64_t>{place, 33}, results.data());
-  this->exec().times();  // waits
+  this->exec().end_compute(true);
+  this->exec().download("test", reinterpret_cast<const std::byte*>(place),
+                        reinterpret_cast<std::byte*>(results.data()), {8, 33, 33, 1});
+  this->exec().end_download();
+  this->exec().wait_delivered();
 
   EXPECT_EQ(results, squares);
 }

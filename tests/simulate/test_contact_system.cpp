@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/base/point3.hpp"
+#include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/rotations.hpp"
 #include "tests/simulate/body_models.hpp"
 #include "tests/simulate/mixed_contacts.hpp"
@@ -197,6 +198,27 @@ TEST(ContactSystem, WithoutContactsNothingChanges) {
   EXPECT_TRUE(solved.outcome.converged);
   EXPECT_EQ(solved.velocity, solved.free);
   EXPECT_EQ(solved.outcome.islands, 0);
+}
+
+/// A contact is left out only where all blocks that it acts on are prescribed: the end check of a
+/// step watches every other pair, however small the share of its unknown blocks.
+TEST(ContactIslands, KeepContactsThatMoveUnknownsByASmallShare) {
+  Model model = empty_model();
+  add_block(model, {.cells = {1, 1, 1}, .edge = 0.1});
+  prescribe(model, 0);
+  const auto scaled = [](double share) {
+    return std::array<double, 9>{share, 0, 0, 0, share, 0, 0, 0, share};
+  };
+  ContactRows rows;
+  rows.start = {0, 2, 3, 5};
+  rows.block = {0, 1, 0, 0, 1};
+  rows.value = {scaled(0.9999), scaled(1e-4), scaled(1), scaled(1), scaled(1e-17)};
+
+  ContactIslands islands(model);
+  islands.join(rows);
+
+  EXPECT_EQ(islands.of_contact(), (std::vector<std::int32_t>{0, -1, -1}));
+  EXPECT_EQ(islands.contact_island_count(), 1);
 }
 
 }  // namespace

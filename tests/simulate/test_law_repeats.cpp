@@ -83,7 +83,8 @@ TEST(Contact, SkipsWorkWithTheSameBits) {
 }
 
 /// Islands without contacts that are solved with the others change results by the tolerance of
-/// contacts, 1e-4, and do not change themselves.
+/// contacts, 1e-4, and do not change themselves. Seven steps, which neither divides: parts of steps
+/// integrate free bodies more accurately.
 TEST(Contact, SkipsIslandsWithinTheTolerance) {
   Scene scene = mixed();
   scene.bodies[2] = elastic_box("free", {0.05, 0.05, 0.04}, {3, 3, 2});
@@ -93,14 +94,15 @@ TEST(Contact, SkipsIslandsWithinTheTolerance) {
   SimulateOptions options;
   options.skip.islands = false;
   Simulator complete(scene, options);
-  run(skipping, 8);
-  run(complete, 8);
+  run(skipping, 7);
+  run(complete, 7);
   EXPECT_GT(skipping.record().contacts, 4);
+  EXPECT_EQ(complete.record().substeps, 1);
   for (std::size_t body = 0; body < 3; ++body) {
     const auto a = skipping.surface_positions(body), b = complete.surface_positions(body);
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, distance_of(a[i], b[i]));
-    EXPECT_LT(largest, body == 2 ? 1e-6 : 5e-5) << body;
+    EXPECT_LT(largest, body == 2 ? 1e-7 : 2e-5) << body;
   }
 }
 

@@ -73,6 +73,39 @@ TEST(PairContacts, RoundBodiesTouchAtTheirSurfaces) {
   EXPECT_NEAR(gap_of(crossed[0]), 0.5 * h, 1e-14);
 }
 
+/// At both ends of what they share; crossed by a few degrees where they are nearest, too.
+TEST(PairContacts, CapsulesSideBySideTouchAtBothEndsOfTheirOverlap) {
+  const double r = 0.3, z = 2 * r + 1.5 * h;
+  PairScene parallel;
+  parallel.add_capsule({-1, 0, 0}, {1, 0, 0}, r, {});
+  parallel.add_capsule({3, 0, z}, {0.4, 0, z}, r, {});
+  const std::vector<ReportedContact> two = parallel.contacts();
+  ASSERT_EQ(two.size(), 2U);
+  EXPECT_NEAR(two[0].point_a_world[0], 0.4, 1e-14);
+  EXPECT_NEAR(two[1].point_a_world[0], 1, 1e-14);
+  for (const ReportedContact& contact : two) {
+    expect_near(contact.normal, {0, 0, -1}, 1e-14);
+    EXPECT_NEAR(gap_of(contact), 0.5 * h, 1e-14);
+    EXPECT_EQ(contact.area, 0);
+  }
+  EXPECT_NE(two[0].key, two[1].key);
+
+  PairScene crossed;
+  crossed.add_capsule({-1, 0, 0}, {1, 0, 0}, r, {});
+  crossed.add_capsule({-1, -0.1, z}, {1, 0.1, z}, r, {});
+  const std::vector<ReportedContact> three = crossed.contacts();
+  ASSERT_EQ(three.size(), 3U);
+  EXPECT_NEAR(gap_of(three[0]), 0.5 * h, 1e-14);  // where they are nearest
+  EXPECT_NEAR(three[0].point_a_world[0], 0, 1e-12);
+  EXPECT_GT(gap_of(three[1]), 5 * h);
+  EXPECT_GT(gap_of(three[2]), 5 * h);
+
+  PairScene in_line;  // no overlap
+  in_line.add_capsule({-1, 0, 0}, {0, 0, 0}, r, {});
+  in_line.add_capsule({z, 0, 0}, {2, 0, 0}, r, {});
+  EXPECT_EQ(in_line.contacts().size(), 1U);
+}
+
 TEST(PairContacts, EdgesTouchWhereTheyCross) {
   PairScene scene;
   const std::vector<std::array<std::int32_t, 3>> one = {{0, 1, 2}};

@@ -59,12 +59,17 @@ TEST(ReferenceRecovery, OfOneTetrahedronSucceedsFromAnyNodes) {
   }
 }
 
-TEST(ReferenceRecovery, OfABlockSucceedsFromNoiseOfAnEdge) {
+/// Blocks of 2^3 and 3^3 cells.
+class ReferenceRecoveryOf : public testing::TestWithParam<std::int64_t> {};
+INSTANTIATE_TEST_SUITE_P(Cells, ReferenceRecoveryOf, testing::Values(2, 3));
+
+TEST_P(ReferenceRecoveryOf, ABlockSucceedsFromNoiseOfAnEdge) {
+  const double edge = 0.3 / static_cast<double>(GetParam());
   for (std::uint64_t seed = 0; seed < 2; ++seed) {
-    const Recovery recovery = recover(cube_of(2), [&](std::vector<Point3>& positions) {
+    const Recovery recovery = recover(cube_of(GetParam()), [&](std::vector<Point3>& positions) {
       Noise noise(seed);
       for (Point3& x : positions) {
-        const Point3 shift = noise.point(0.15);
+        const Point3 shift = noise.point(edge);
         for (std::size_t d = 0; d < 3; ++d) x[d] += shift[d];
       }
     });
@@ -75,8 +80,8 @@ TEST(ReferenceRecovery, OfABlockSucceedsFromNoiseOfAnEdge) {
   }
 }
 
-TEST(ReferenceRecovery, OfAFlattenedBlockSucceeds) {
-  const Recovery recovery = recover(cube_of(2), [](std::vector<Point3>& positions) {
+TEST_P(ReferenceRecoveryOf, AFlattenedBlockSucceeds) {
+  const Recovery recovery = recover(cube_of(GetParam()), [](std::vector<Point3>& positions) {
     Noise noise(1);
     for (Point3& x : positions) x[2] = 1e-9 * noise();
   });
@@ -85,8 +90,8 @@ TEST(ReferenceRecovery, OfAFlattenedBlockSucceeds) {
   EXPECT_LT(recovery.energy, 1e-6);
 }
 
-TEST(ReferenceRecovery, OfABlockInOnePointComesAlmostBack) {
-  const Recovery recovery = recover(cube_of(2), [](std::vector<Point3>& positions) {
+TEST_P(ReferenceRecoveryOf, ABlockInOnePointComesAlmostBack) {
+  const Recovery recovery = recover(cube_of(GetParam()), [](std::vector<Point3>& positions) {
     Noise noise(2);
     for (Point3& x : positions) x = noise.point(1e-9);
   });

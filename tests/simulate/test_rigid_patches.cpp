@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
+#include "host/simulate/contact/patch_supports.hpp"
 #include "host/simulate/rotations.hpp"
 #include "tests/simulate/pair_scene.hpp"
 
@@ -32,6 +34,34 @@ std::array<double, 9> sums_of(const std::vector<ReportedContact>& contacts) {
     for (std::size_t k = 0; k < 9; ++k) sum[k] += c.area * term[k];
   }
   return sum;
+}
+
+/// Contacts along two parallel lines, in any direction and order: rounding hides none of the four
+/// ends.
+TEST(RigidPatches, SupportsOfTwoParallelLinesAreTheirEnds) {
+  for (int turn = 0; turn < 24; ++turn) {
+    const double angle = 0.2617993877991494 * turn, c = std::cos(angle), s = std::sin(angle);
+    std::vector<ReportedContact> contacts;
+    std::vector<std::size_t> patch;
+    for (int k = 0; k < 40; ++k) {
+      const double x = k % 2 == 0 ? -0.06 : 0.08, y = -0.04 + 0.08 * ((k / 2 * 7) % 20) / 19;
+      ReportedContact& contact = contacts.emplace_back();
+      contact.point_a_world = contact.point_b_world = {c * x - s * y, s * x + c * y, 0};
+      patch.push_back(static_cast<std::size_t>(k));
+    }
+    PatchSupports supports;
+    std::vector<std::size_t> chosen;
+    supports.choose(contacts, patch, h, chosen);
+    std::set<std::pair<double, double>> ends;
+    for (const std::size_t k : chosen) {
+      const Point3& at = contacts[k].point_a_world;
+      ends.emplace(std::round(1e6 * (c * at[0] + s * at[1])),
+                   std::round(1e6 * (c * at[1] - s * at[0])));
+    }
+    EXPECT_EQ(ends, (std::set<std::pair<double, double>>{
+                        {-6e4, -4e4}, {-6e4, 4e4}, {8e4, -4e4}, {8e4, 4e4}}))
+        << turn;
+  }
 }
 
 /// A box over a plane, tilted a little, in n x n cells: the gap is that of a plane.

@@ -86,6 +86,35 @@ TEST(TouchState, AnOlderCheckpointIsRefused) {
   }
 }
 
+/// What changes results changes what a checkpoint belongs to.
+TEST(TouchState, ACheckpointIsRefusedWhereContactIsSolvedOtherwise) {
+  const auto bytes = Simulator(pile()).checkpoint();
+  const std::vector<void (*)(Scene&)> changes{
+      [](Scene& s) { s.solver.max_passes = 3; },
+      [](Scene& s) { s.solver.max_substeps = 2; },
+      [](Scene& s) { s.solver.contact_tolerance = 1e-5; },
+      [](Scene& s) { s.solver.pyramid = true; },
+      [](Scene& s) { s.solver.restrictive = true; },
+      [](Scene& s) { s.solver.sleeping = true; },
+      [](Scene& s) { s.thickness = 3e-4; },
+      [](Scene& s) { s.contact.material.friction = 0.5; },
+      [](Scene& s) { s.bodies[0].contact->adhesion->energy = 0.2; },
+      [](Scene& s) { s.bodies[0].contact->adhesion->tangential_stiffness = 2e5; },
+      [](Scene& s) { s.bodies[0].self = true; },
+      [](Scene& s) { s.bodies[3].collide = false; },
+      [](Scene& s) { s.contact.pairs = {{.a = "soft", .b = "block", .friction = 0.1}}; },
+      [](Scene& s) { std::get<PlaneObstacle>(s.obstacles[0].geometry).point[2] = -0.01; },
+  };
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    Scene scene = pile();
+    changes[k](scene);
+    EXPECT_THROW(Simulator(scene).restore(bytes), std::invalid_argument) << "change " << k;
+  }
+  EXPECT_THROW(Simulator(pile(), {.float32_solve = true}).restore(bytes), std::invalid_argument);
+  EXPECT_THROW(Simulator(pile(), {.max_iterations = 7}).restore(bytes), std::invalid_argument);
+  EXPECT_NO_THROW(Simulator(pile(), {.threads = 2}).restore(bytes));
+}
+
 /// The order of bodies changes sums by rounding only.
 TEST(TouchState, AnotherOrderOfBodiesGivesTheSameMotion) {
   const auto scene_with = [](const std::vector<std::size_t>& order) {

@@ -9,11 +9,14 @@ namespace {
 
 struct Throw {
   double speed, youngs_modulus, time_step;
+  double lowest = 0.9;  ///< place of a point above the plate [thicknesses]
 };
 
-/// A soft ball against a plate of two triangles, at up to ten diameters a step.
+/// A soft ball against a plate of two triangles, at up to ten diameters a step. Points that come
+/// within half the thickness are contacts and end at the thickness; others may end between: of a
+/// very soft ball that a single step flattens some do.
 TEST(Throws, ASoftBallStaysAboveAPlate) {
-  for (const Throw& of : {Throw{20, 1e5, 0.01}, Throw{100, 1e5, 0.01}, Throw{100, 1e4, 0.01},
+  for (const Throw& of : {Throw{20, 1e5, 0.01}, Throw{100, 1e5, 0.01}, Throw{100, 1e4, 0.01, 0.5},
                           Throw{50, 1e6, 0.004}}) {
     Body ball = elastic_ball("ball", 0.05, {0.03, 0.01, 0.3});
     ball.material.youngs_modulus = of.youngs_modulus;
@@ -32,7 +35,7 @@ TEST(Throws, ASoftBallStaysAboveAPlate) {
       low = std::min(low, lowest(simulator.surface_positions(0)));
       clamped += simulator.record().clamped_islands;
     }
-    EXPECT_GE(low, 0.5 * 3e-4) << of.speed << " m/s, " << of.youngs_modulus << " Pa";
+    EXPECT_GE(low, of.lowest * 3e-4) << of.speed << " m/s, " << of.youngs_modulus << " Pa";
     EXPECT_LE(low, 0.02);
     EXPECT_EQ(clamped, 0);
     EXPECT_EQ(simulator.record().inverted, 0);

@@ -5,19 +5,10 @@
 #include <random>
 #include <vector>
 
-#include "host/simulate/cpu/vector_stages.hpp"
+#include "tests/simulate/usable_stages.hpp"
 
 namespace tetwarp::test {
 namespace {
-std::vector<const VectorStages*> usable_stages() {
-  std::vector<const VectorStages*> stages = {&vector_stages_base};
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) stages.push_back(&vector_stages_avx2);
-#endif
-  if (&vector_stages() != stages.back()) stages.push_back(&vector_stages());
-  return stages;
-}
-
 template <class T>
 View<T> view(std::vector<T>& values) {
   return {values.data(), static_cast<std::int64_t>(values.size())};

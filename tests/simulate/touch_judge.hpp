@@ -16,7 +16,8 @@ class Judge {
     const Scene& scene = simulator.scene();
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       triangles_.push_back(simulator.body(b).surface.triangles);
-      touches_itself_.push_back(scene.bodies[b].kind == BodyKind::cloth);
+      touches_itself_.push_back(
+          scene.bodies[b].self.value_or(scene.bodies[b].kind == BodyKind::cloth));
     }
     for (const Obstacle& obstacle : scene.obstacles) {
       const auto* surface = std::get_if<Surface>(&obstacle.geometry);

@@ -12,6 +12,7 @@ class CudaDetector final : public Detector {
       : exec_(options.device), pipeline_(exec_, surfaces, options.reuse_pairs) {}
 
   void begin_step() override { pipeline_.begin_step(); }
+  void set_still(std::span<const std::uint8_t> is_still) override { pipeline_.set_still(is_still); }
   const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
     const auto scope = exec_.enter();
     return pipeline_.detect(motion);

@@ -5,9 +5,8 @@
 
 namespace tetwarp {
 namespace {
-/// A contact next to a prescribed node moves the unknown ones by a small share only. Below this one
-/// it counts as one of prescribed bodies: impulses that move it would be a million times larger.
-constexpr double least_share = 1e-3;
+/// Weights below this one are rounding errors of zero: the point is one of prescribed blocks only.
+constexpr double least_share = 1e-12;
 
 std::size_t at(std::int64_t index) {
   return static_cast<std::size_t>(index);

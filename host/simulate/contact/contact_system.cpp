@@ -232,7 +232,8 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
                           s.soft_laws, velocity, change != nullptr ? *change : s.no_change);
     outcome.outer_iterations = solved.outer_iterations;
     outcome.sweeps = solved.sweeps;
-    if (solved.converged) {
+    if (solved.is_result) {
+      outcome.converged = solved.converged;
       outcome.residual = solved.residual;
       s.take_impulses(s.soft, s.two_level.impulse(), s.two_level.contact_velocity());
     } else {
@@ -247,7 +248,7 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
     s.part.scatter(solved.body_velocity, velocity);
     s.take_impulses(s.other, solved.impulse, solved.velocity);
     s.solution.report = solved.report;
-    outcome.converged = solved.converged();
+    outcome.converged = outcome.converged && solved.converged();
     outcome.residual = std::max(outcome.residual, solved.report.residual.eta);
     outcome.sweeps += solved.report.sweeps;
     outcome.outer_iterations += solved.report.outer_iterations;

@@ -137,7 +137,14 @@ bool crosses(
   // Ends on different sides of the plane, and the line on the same side of all three edges.
   const double start = tet_volume(from, a, b, c), end = tet_volume(to, a, b, c);
   if ((start > 0 && end > 0) || (start < 0 && end < 0)) return false;
-  if (start == 0 && end == 0) return false;
+  // Within rounding all lies in one plane, and the other signs mean nothing.
+  double extent = 0, largest = 0;
+  for (const Point3* x : {&from, &to, &b, &c}) {
+    extent = std::max(extent, norm(minus(*x, a)));
+    largest = std::max(largest, norm(*x));
+  }
+  const double rounding = 1e-14 * (largest + extent) * extent * extent;
+  if (std::abs(start) <= rounding && std::abs(end) <= rounding) return false;
   const double x = tet_volume(from, to, a, b), y = tet_volume(from, to, b, c),
                z = tet_volume(from, to, c, a);
   return (x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0);

@@ -23,7 +23,8 @@ NearPair near_pair(const TouchingPair& pair,
                    const SurfacePlaces& places);
 
 /// Whether a segment has a point in common with a triangle; exact but for rounding, which decides
-/// only where edges or corners touch.
+/// only where edges or corners touch. Not where both lie in one plane: then two of their features
+/// are at distance zero.
 bool crosses(
     const Point3& from, const Point3& to, const Point3& a, const Point3& b, const Point3& c);
 

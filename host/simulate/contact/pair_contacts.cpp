@@ -10,6 +10,7 @@
 
 namespace tetwarp {
 namespace {
+constexpr double same_gap = 0.1;  // thicknesses
 constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
 
 bool is_of_edges(const PairTouch& touch) {
@@ -21,7 +22,7 @@ bool is_of_edges(const PairTouch& touch) {
 bool comes_before(const PairTouch& p, const PairTouch& q) {
   const auto order = [](const PairTouch& touch) {
     return std::tuple(is_of_edges(touch), touch.a, touch.body_b, touch.time, touch.distance,
-                      touch.kind, touch.b);
+                      touch.kind, touch.b, touch.end);
   };
   return order(p) < order(q);
 }
@@ -153,6 +154,12 @@ const std::vector<ReportedContact>& PairContacts::find(const std::vector<Touchin
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const SurfaceMotion& motion = motions[static_cast<std::size_t>(pass[p])];
     const PairTouch touch = touch_of(pairs[p], scene_, motion, motions[0]);
+    if (const auto ends = end_touches_of(pairs[p], scene_, motion, motions[0])) {
+      touches_.insert(touches_.end(), ends->begin(), ends->end());
+      // Between ends that are as near a third contact would change nothing.
+      const double nearer = same_gap * scene_.surfaces.thickness;
+      if (std::min((*ends)[0].gap, (*ends)[1].gap) <= touch.gap + nearer) continue;
+    }
     const bool is_hit = pairs[p].time <= 1;
     if (!is_of_edges(touch) ||
         (touch.is_inside && (is_hit || is_nearest_of_edges(touch, motions[0].start.vertices)))) {
@@ -169,10 +176,11 @@ const std::vector<ReportedContact>& PairContacts::find(const std::vector<Touchin
     if (lowest > RigidPatches::first_feature) lowest_slot_ = std::min(lowest_slot_, lowest);
   }
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
+  const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());
   for (std::size_t first = 0; first < order_.size();) {
     const PairTouch& touch = touches_[order_[first]];
     if (is_of_edges(touch)) {
-      report(touch, touch.a + vertex_count, touch.b + vertex_count, 0);
+      report(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
       ++first;
       continue;
     }

@@ -30,6 +30,8 @@ namespace tetwarp {
 /// - Two edges touch where they cross. Where an end of one is nearest, its vertex touches already.
 ///   Edges that are near without a hit must be what is nearest of their surfaces: an edge within an
 ///   even face does not hold up what passes over it.
+/// - Two capsules touch where they are nearest; side by side, to 10 degrees, at both ends of their
+///   overlap, and between these where they are nearer there by a tenth of the thickness.
 /// - Contacts of two rigid bodies that touch with faces are reduced, see RigidPatches.
 ///
 /// Areas are those of the vertices that touch, seen along the normal, so that they add up to the
@@ -48,7 +50,8 @@ class PairContacts {
   /// @param records  of the tracker at the start of the step, sorted by key
   /// @returns sorted by key, as ContactTracker::begin_step() takes them; valid until the next call.
   ///          Bodies are indices of bodies, then obstacles. Features are vertices, edges numbered
-  ///          from the vertex count on, and below zero what a vertex touches: -1 the first such
+  ///          from the vertex count on (at the first and second end of an overlap plus the number
+  ///          of edges once and twice), and below zero what a vertex touches: -1 the first such
   ///          contact of the vertex and the body, -2 the second. Vertices of material points are
   ///          counted from the first of the body.
   const std::vector<ReportedContact>& find(const std::vector<TouchingPair>& pairs,

@@ -3,65 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
-#include "host/base/point3.hpp"
+#include "host/simulate/contact/side_point.hpp"
 #include "host/simulate/contact/turning_frame.hpp"
 #include "kernels/collide/pair_distance.hpp"
 
 namespace tetwarp {
 namespace {
 
-/// Up to three vertices of one side with weights.
-struct SidePoint {
-  std::array<std::int32_t, 3> vertex{-1, -1, -1};
-  std::array<double, 3> weight{0, 0, 0};
-  double radius = 0;
-};
-
-Point3 lerp(const Point3& a, const Point3& b, double s) {
-  return {a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2])};
-}
-
-Point3 mean_of(const SidePoint& side, const std::vector<Point3>& vertices) {
-  Point3 sum{0, 0, 0};
-  for (std::size_t k = 0; k < 3 && side.vertex[k] >= 0; ++k) {
-    sum = plus(sum, times(side.weight[k], at(vertices, side.vertex[k])));
-  }
-  return sum;
-}
-
-Point3 way_of(const SidePoint& side, const SurfaceMotion& motion) {
-  return minus(mean_of(side, motion.end.vertices), mean_of(side, motion.start.vertices));
-}
-
-MaterialPoint material_of(const SidePoint& side, const SceneSurfaces& scene, std::int32_t body) {
-  MaterialPoint point;
-  if (scene.is_rigid[static_cast<std::size_t>(body)] != 0) return point;
-  const std::int32_t first = at(scene.surfaces.bodies, body).first_vertex;
-  for (std::size_t k = 0; k < 3 && side.vertex[k] >= 0; ++k) {
-    point.vertex[k] = side.vertex[k] - first;
-    point.weight[k] = side.weight[k];
-  }
-  return point;
-}
-
-Point3 any_across(const Point3& direction) {
-  std::size_t axis = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (std::abs(direction[i]) < std::abs(direction[axis])) axis = i;
-  }
-  Point3 along{0, 0, 0};
-  along[axis] = 1;
-  return unit(cross(direction, cross(along, direction)));
-}
-
-/// The unit vector along `apart`; where it vanishes, along or against `otherwise`.
-/// @param start  apart at the start of the motion: decides the side
-Point3 normal_of(const Point3& apart, const Point3& otherwise, const Point3& start) {
-  if (norm(apart) > 0) return unit(apart);
-  const Point3 normal = norm(otherwise) > 0 ? unit(otherwise) : Point3{0, 0, 1};
-  return dot(normal, start) < 0 ? times(-1, normal) : normal;
-}
+constexpr double parallel_sine = 0.17364817766693033;  // of 10 degrees
 
 /// A pair of two sides of vertices at the time of its hit.
 class TouchMaker {
@@ -101,6 +52,43 @@ class TouchMaker {
         vertex_plane();
         return touch_;
     }
+    finish();
+    return touch_;
+  }
+
+  /// Of two capsules that overlap side by side.
+  std::optional<std::array<double, 2>> overlap() const {
+    if (touch_.kind != PairKind::edge_edge) return std::nullopt;
+    const auto &p = at(surfaces().edges, touch_.a), &q = at(surfaces().edges, touch_.b);
+    if (at(surfaces().edge_radius, touch_.a) == 0 || at(surfaces().edge_radius, touch_.b) == 0) {
+      return std::nullopt;
+    }
+    const Point3 along = minus(place(p[1]), place(p[0])), other = minus(place(q[1]), place(q[0]));
+    const double square = dot(along, along);
+    if (norm(cross(along, other)) > parallel_sine * std::sqrt(square) * norm(other)) {
+      return std::nullopt;
+    }
+    const double s0 = dot(along, minus(place(q[0]), place(p[0]))) / square;
+    const double s1 = dot(along, minus(place(q[1]), place(p[0]))) / square;
+    const std::array<double, 2> part{std::max(0.0, std::min(s0, s1)),
+                                     std::min(1.0, std::max(s0, s1))};
+    if (!(part[1] - part[0] > 1e-6)) return std::nullopt;
+    return part;
+  }
+  /// At a fraction s of axis a of two capsules.
+  PairTouch make_at(double s, std::int32_t end) {
+    touch_.end = end;
+    const auto &p = at(surfaces().edges, touch_.a), &q = at(surfaces().edges, touch_.b);
+    const Point3 x = lerp(place(p[0]), place(p[1]), s), q0 = place(q[0]), q1 = place(q[1]);
+    double t = 0;
+    vertex_edge_square(x.data(), q0.data(), q1.data(), &t);
+    set_edge(a_, touch_.a, s, touch_.body_a, hit_a_);
+    set_edge(b_, touch_.b, t, touch_.body_b, hit_b_);
+    apart_ = minus(hit_a_, hit_b_);
+    otherwise_ = any_across(minus(q1, q0));
+    touch_.distance =
+        norm(minus(mean_of(a_, motion_.start.vertices), mean_of(b_, motion_.start.vertices))) -
+        a_.radius - b_.radius;
     finish();
     return touch_;
   }
@@ -274,6 +262,17 @@ PairTouch touch_of(const TouchingPair& pair,
                    const SurfaceMotion& motion,
                    const SurfaceMotion& free) {
   return TouchMaker(pair, scene, motion, free).make();
+}
+
+std::optional<std::array<PairTouch, 2>> end_touches_of(const TouchingPair& pair,
+                                                       const SceneSurfaces& scene,
+                                                       const SurfaceMotion& motion,
+                                                       const SurfaceMotion& free) {
+  const TouchMaker maker(pair, scene, motion, free);
+  const auto part = maker.overlap();
+  if (!part) return std::nullopt;
+  TouchMaker first = maker, second = maker;
+  return std::array{first.make_at((*part)[0], 1), second.make_at((*part)[1], 2)};
 }
 
 }  // namespace tetwarp

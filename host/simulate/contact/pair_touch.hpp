@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <tetwarp/contact_tracker.hpp>
 
@@ -25,6 +26,7 @@ struct PairTouch {
   MaterialPoint material_a, material_b;  ///< on deformable bodies
   std::array<std::int32_t, 3> part_b{-1, -1, -1};     ///< vertices of the face, edge or vertex b
   std::array<std::int32_t, 3> nearest_b{-1, -1, -1};  ///< those of it that the nearest point is of
+  std::int32_t end = 0;   ///< 1, 2: at an end of the overlap of two capsules side by side
   bool is_inside = true;  ///< nearest point inside a face; of two edges: between all ends
 };
 
@@ -34,5 +36,13 @@ PairTouch touch_of(const TouchingPair& pair,
                    const SceneSurfaces& scene,
                    const SurfaceMotion& motion,
                    const SurfaceMotion& free);
+
+/// Capsules side by side touch along a line: the touches at both ends of their overlap, that at the
+/// start of axis a first. Nothing for other pairs, for axes that differ by 10 degrees or more, and
+/// where the axes do not overlap.
+std::optional<std::array<PairTouch, 2>> end_touches_of(const TouchingPair& pair,
+                                                       const SceneSurfaces& scene,
+                                                       const SurfaceMotion& motion,
+                                                       const SurfaceMotion& free);
 
 }  // namespace tetwarp

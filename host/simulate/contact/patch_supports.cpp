@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/patch_frame.hpp"
@@ -93,24 +94,45 @@ bool PatchSupports::is_flat(double tolerance) const {
   });
 }
 
-/// The convex hull, counter-clockwise, without points on its sides.
+/// The convex hull, counter-clockwise, without points on its sides. Points are visited by their
+/// angle about the middle of all, so that those of one side follow each other along it, whatever
+/// their rounding. Source: Graham 1972.
 void PatchSupports::make_hull() {
-  std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) {
-    return std::tie(p.x, p.y, p.contact) < std::tie(q.x, q.y, q.contact);
-  });
-  const double even = 1e-9 * size_ * size_;
+  double xx = 0, xy = 0, yy = 0;
+  for (const Place& place : places_) {
+    xx += place.x * place.x, xy += place.x * place.y, yy += place.y * place.y;
+  }
+  const Axes2 axes = axes_of(xx, xy, yy);
   hull_.clear();
-  const auto add = [&](const Place& place, std::size_t fixed) {
-    while (hull_.size() >= fixed + 2 &&
-           turn(hull_[hull_.size() - 2], hull_.back(), place) <= even) {
+  if (axes.small <= 1e-12 * axes.large) {  // all on a line
+    const double c = std::cos(axes.angle), s = std::sin(axes.angle);
+    const auto [first, last] =
+        std::minmax_element(places_.begin(), places_.end(), [&](const Place& p, const Place& q) {
+          return std::pair(c * p.x + s * p.y, p.contact) < std::pair(c * q.x + s * q.y, q.contact);
+        });
+    hull_ = {*first, *last};
+    return;
+  }
+  const auto far = [](const Place& place) { return place.x * place.x + place.y * place.y; };
+  std::sort(places_.begin(), places_.end(), [&](const Place& p, const Place& q) {
+    return std::tuple(std::atan2(p.y, p.x), far(p), p.contact) <
+           std::tuple(std::atan2(q.y, q.x), far(q), q.contact);
+  });
+  const auto farthest =
+      std::max_element(places_.begin(), places_.end(),
+                       [&](const Place& p, const Place& q) { return far(p) < far(q); });
+  std::rotate(places_.begin(), farthest, places_.end());
+  const double even = 1e-9 * size_ * size_;
+  const auto cut = [&](const Place& next) {
+    while (hull_.size() >= 2 && turn(hull_[hull_.size() - 2], hull_.back(), next) <= even) {
       hull_.pop_back();
     }
-    hull_.push_back(place);
   };
-  for (const Place& place : places_) add(place, 0);
-  const std::size_t lower = hull_.size();
-  for (std::size_t i = places_.size() - 1; i-- > 0;) add(places_[i], lower - 1);
-  hull_.pop_back();  // the first point again
+  for (const Place& place : places_) {
+    cut(place);
+    hull_.push_back(place);
+  }
+  cut(hull_.front());
 }
 
 /// Leaves `count` corners, one after the other the one whose triangle with its neighbours is

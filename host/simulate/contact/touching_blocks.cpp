@@ -40,7 +40,10 @@ void TouchingBlocks::set(const StepSystem& system,
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   set_responses(coarse, inverse, relaxation);
-  pack();
+  packed_start_.assign(constants_.size(), -1);
+  packed_size_.resize(constants_.size());
+  packed_.clear();
+  operations_ = 0;
 }
 
 void TouchingBlocks::set_laws(const ContactProblem& laws) {

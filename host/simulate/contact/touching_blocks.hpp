@@ -36,10 +36,21 @@ class TouchingBlocks {
 
   std::int64_t count() const { return static_cast<std::int64_t>(constants_.size()); }
 
-  /// One pass of projected Gauss-Seidel. @param y  in and out. @param impulse  in and out
-  void sweep(ContactSwitches switches, double* y, double* impulse);
-  /// y += M^-1 J^T (after - before), [3 contacts] each.
-  void push(const double* before, const double* after, double* y) const;
+  /// One pass of projected Gauss-Seidel over some contacts.
+  /// @param list     contacts, ascending
+  /// @param y        in and out
+  /// @param impulse  in and out, [3 list]
+  void sweep(ContactSwitches switches,
+             const std::vector<std::int32_t>& list,
+             double* y,
+             double* impulse);
+  /// Multiplications of all sweeps since set().
+  std::int64_t operations() const { return operations_; }
+  /// y += M^-1 J^T (after - before), [3 list] each.
+  void push(const std::vector<std::int32_t>& list,
+            const double* before,
+            const double* after,
+            double* y) const;
   /// Diagonal of the blocks J M^-1 J^T of the contacts, [3 contacts].
   const std::vector<double>& diagonal() const { return diagonal_; }
   /// u = J x + w of all contacts. @param x  [rows][3]. @param velocity  out [3 contacts]
@@ -48,7 +59,10 @@ class TouchingBlocks {
   TouchingSums measure(ContactSwitches switches,
                        const double* impulse,
                        const double* velocity,
-                       const double* free) const;
+                       const double* free);
+  /// Contacts that had an impulse or were off their law in the last measure(), ascending. Most
+  /// contacts of bodies that sink in without contact are neither: what holds the bodies up are few.
+  const std::vector<std::int32_t>& working() const { return working_; }
   /// force = load + J^T r in the rows that contacts touch.
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
 
@@ -65,7 +79,6 @@ class TouchingBlocks {
   };
 
   void set_laws(const ContactProblem& laws);
-  void pack();
   void add_rows(const StepSystem& system,
                 const CoarseSpace& coarse,
                 const ContactRows& rows,
@@ -74,6 +87,7 @@ class TouchingBlocks {
   void set_responses(const CoarseSpace& coarse,
                      const DiagonalInverse<double>& inverse,
                      double relaxation);
+  void pack(std::size_t contact);
   void gather(std::size_t contact, const double* y);
   void velocity_at(std::size_t contact, const double* x, double* velocity) const;
 
@@ -85,11 +99,12 @@ class TouchingBlocks {
   std::vector<std::int32_t> part_item_;  ///< [parts] row, or island in CoarseSpace::islands()
   std::vector<double> jacobian_, response_;
   std::vector<std::int32_t> touched_;       ///< rows, ascending
-  std::vector<std::int64_t> packed_start_;  ///< [contacts + 1] in packed_
+  std::vector<std::int64_t> packed_start_;  ///< [contacts] in packed_, -1: not there yet
   std::vector<std::int32_t> packed_size_;   ///< [contacts]
-  std::vector<double> packed_;              ///< of each contact three rows of J, three of responses
+  std::vector<double> packed_;              ///< of contacts three rows of J, three of responses
   std::vector<double> gathered_;            ///< velocities of one contact
-  std::int32_t most_packed_ = 0;
+  std::vector<std::int32_t> working_;
+  std::int64_t operations_ = 0;
   std::vector<std::int32_t> row_of_block_, slots_;
 };
 

@@ -14,36 +14,28 @@ std::size_t at(std::int64_t index) {
 
 }  // namespace
 
-/// Copies Jacobians and responses of each contact to three rows of one length, a multiple of four
-/// that zeros fill up.
-void TouchingBlocks::pack() {
-  packed_start_.assign(1, 0);
-  packed_size_.clear();
-  std::size_t total = 0;
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    std::int32_t size = 0;
-    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) size += parts_[at(p)].size;
-    size = (size + 3) / 4 * 4;
-    packed_size_.push_back(size);
-    most_packed_ = std::max(most_packed_, size);
-    total += 6 * at(size);
-    packed_start_.push_back(static_cast<std::int64_t>(total));
+/// Copies Jacobian and responses of a contact to three rows of one length each, a multiple of four
+/// that zeros fill up. Only contacts that are swept need it.
+void TouchingBlocks::pack(std::size_t contact) {
+  std::int32_t size = 0;
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    size += parts_[at(p)].size;
   }
-  packed_.assign(total, 0);
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    double* out = packed_.data() + packed_start_[c];
-    const std::int32_t size = packed_size_[c];
-    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
-      const Part& part = parts_[at(p)];
-      for (std::int32_t a = 0; a < 3; ++a) {
-        const std::int64_t from = part.value + a * part.size;
-        std::copy_n(jacobian_.data() + from, part.size, out + a * size);
-        std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
-      }
-      out += part.size;
+  size = (size + 3) / 4 * 4;
+  packed_size_[contact] = size;
+  packed_start_[contact] = static_cast<std::int64_t>(packed_.size());
+  packed_.resize(packed_.size() + 6 * at(size), 0.0);
+  if (gathered_.size() < at(size)) gathered_.resize(at(size));
+  double* out = packed_.data() + packed_start_[contact];
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    const Part& part = parts_[at(p)];
+    for (std::int32_t a = 0; a < 3; ++a) {
+      const std::int64_t from = part.value + a * part.size;
+      std::copy_n(jacobian_.data() + from, part.size, out + a * size);
+      std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
     }
+    out += part.size;
   }
-  gathered_.assign(at(most_packed_), 0);
 }
 
 namespace {
@@ -81,16 +73,24 @@ void TouchingBlocks::gather(std::size_t contact, const double* y) {
   std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
 }
 
-void TouchingBlocks::sweep(ContactSwitches switches, double* y, double* impulse) {
+void TouchingBlocks::sweep(ContactSwitches switches,
+                           const std::vector<std::int32_t>& list,
+                           double* y,
+                           double* impulse) {
+  for (const std::int32_t contact : list) {
+    if (packed_start_[at(contact)] < 0) pack(at(contact));
+    operations_ += 6 * std::int64_t{packed_size_[at(contact)]};
+  }
   double* const v = gathered_.data();
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
+  for (std::size_t place_in_list = 0; place_in_list < list.size(); ++place_in_list) {
+    const std::size_t c = at(list[place_in_list]);
     const std::int32_t size = packed_size_[c];
     const double* const jacobian = packed_.data() + packed_start_[c];
     const double* const response = jacobian + 3 * size;
     gather(c, y);
     double u[3] = {offset_[3 * c], offset_[3 * c + 1], offset_[3 * c + 2]};
     add_products(jacobian, size, v, u);
-    double* const r = impulse + 3 * c;
+    double* const r = impulse + 3 * place_in_list;
     const double before[3] = {r[0], r[1], r[2]};
     solve_contact(constants_[c], switches, u, r);
     const double change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
@@ -107,18 +107,22 @@ void TouchingBlocks::sweep(ContactSwitches switches, double* y, double* impulse)
   }
 }
 
-void TouchingBlocks::push(const double* before, const double* after, double* y) const {
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
-                         after[3 * c + 2] - before[3 * c + 2]};
+void TouchingBlocks::push(const std::vector<std::int32_t>& list,
+                          const double* before,
+                          const double* after,
+                          double* y) const {
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::size_t c = at(list[k]);
+    const double r[3] = {after[3 * k] - before[3 * k], after[3 * k + 1] - before[3 * k + 1],
+                         after[3 * k + 2] - before[3 * k + 2]};
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[at(p)];
       const double* const response = response_.data() + part.value;
       double* const v = y + part.first;
-      for (std::int32_t k = 0; k < part.size; ++k) {
-        v[k] += response[k] * r[0] + response[part.size + k] * r[1] +
-                response[2 * part.size + k] * r[2];
+      for (std::int32_t i = 0; i < part.size; ++i) {
+        v[i] += response[i] * r[0] + response[part.size + i] * r[1] +
+                response[2 * part.size + i] * r[2];
       }
     }
   }
@@ -145,12 +149,18 @@ void TouchingBlocks::velocities_of_rows(const double* x, double* velocity) const
 TouchingSums TouchingBlocks::measure(ContactSwitches switches,
                                      const double* impulse,
                                      const double* velocity,
-                                     const double* free) const {
+                                     const double* free) {
   TouchingSums sums;
+  working_.clear();
   for (std::size_t c = 0; c < constants_.size(); ++c) {
     const ContactConstants<double>& own = constants_[c];
-    sums.natural += natural_square(own, switches, normal_weight(own), tangent_weight(own),
-                                   impulse + 3 * c, velocity + 3 * c);
+    const double* const r = impulse + 3 * c;
+    const double square =
+        natural_square(own, switches, normal_weight(own), tangent_weight(own), r, velocity + 3 * c);
+    if (square != 0 || r[0] != 0 || r[1] != 0 || r[2] != 0) {
+      working_.push_back(static_cast<std::int32_t>(c));
+    }
+    sums.natural += square;
     for (std::size_t a = 3 * c; a < 3 * c + 3; ++a) {
       sums.work += impulse[a] * (velocity[a] - free[a]);
     }

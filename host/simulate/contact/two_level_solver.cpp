@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "host/base/parallel.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
@@ -10,9 +11,16 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::int64_t most_iterations = 300;
+constexpr std::int64_t most_iterations = 1000;
+// An iteration ends whose least residual has not shrunk to `least_progress` times in so many
+// iterations.
+constexpr std::int64_t patience = 150;
+constexpr double least_progress = 0.9;
+// Multiplications of all sweeps of a solve, after which it ends: about a second.
+constexpr std::int64_t most_operations = 1'000'000'000;
+// Up to these sizes the contact solver is quick where the iteration fails.
+constexpr std::int64_t small_contacts = 256, small_rows = 512;
 constexpr std::int32_t chunk_rows = 64;
-constexpr std::int64_t most_sweeps = 50;  // in an outer iteration
 constexpr double inner_share = 0.002;  // of the error before an outer iteration, left by its sweeps
 // The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors the
 // error was an upper bound of eta, by a factorization of A, on bodies of some hundred nodes with E
@@ -124,28 +132,25 @@ double TwoLevelSolver::find_error(double defect, double& work) {
                    square_of(law_factor) * sums.natural);
 }
 
-/// Sweeps with Anderson acceleration of the impulses, until a sweep changes them by at most
-/// `enough` in the norm of their energy. @returns the sweeps
-std::int64_t TwoLevelSolver::sweep(double enough) {
-  const auto rows = static_cast<std::int64_t>(impulse_.size());
-  if (rows == 0) return 0;
-  CpuContactExec exec(threads_);
-  using Mixer = AndersonMixer<CpuContactExec, double>;
-  mixed_impulses_.resize(at(Mixer::columns * rows));
-  Mixer mixer(exec, {blocks_.diagonal().data(), rows},
-              {mixed_impulses_.data(), Mixer::columns * rows});
-  const View<double> image{impulse_.data(), rows};
-  for (std::int64_t k = 1;; ++k) {
-    before_ = impulse_;
-    const View<const double> before{before_.data(), rows};
-    blocks_.sweep(switches_, y_.data(), impulse_.data());
-    mixer.observe(before, image);
-    if (mixer.defect() <= enough || k == most_sweeps) return k;
-    swept_ = impulse_;
-    if (mixer.advance(before, image)) {
-      blocks_.push(swept_.data(), impulse_.data(), y_.data());
-    }
+/// Copies the iterate with the least residual. @returns false if it no longer shrinks
+bool TwoLevelSolver::keep_best(const TwoLevelOutcome& now) {
+  if (now.residual < best_.residual) {
+    best_.residual = now.residual;
+    best_.x = x_;
+    best_.impulse = impulse_;
   }
+  if (now.outer_iterations == 0 || best_.residual <= least_progress * best_.mark) {
+    best_.mark = best_.residual;
+    best_.marked_at = now.outer_iterations;
+  }
+  return now.outer_iterations - best_.marked_at < patience;
+}
+
+void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
+  outcome.residual = best_.residual;
+  x_ = best_.x;
+  impulse_ = best_.impulse;
+  blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
 }
 
 TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
@@ -163,7 +168,7 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   change.assign(velocity.size(), Point3{0, 0, 0});
   TwoLevelOutcome outcome;
   if (chunks_.empty()) {
-    outcome.converged = true;
+    outcome.converged = outcome.is_result = true;
     return outcome;
   }
   const std::int64_t begin = 3 * std::int64_t{chunks_.front().row_begin};
@@ -175,18 +180,20 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
   const double alone = std::sqrt(
       blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural);
-  while (outcome.outer_iterations < most_iterations) {
+  best_.residual = std::numeric_limits<double>::infinity();
+  while (outcome.outer_iterations < most_iterations && blocks_.operations() < most_operations) {
     blocks_.add_impulses(system.load, impulse_.data(), force_.data());
     const double defect = step(system);
     double work = 0;
     const double error = find_error(defect, work);
     const double scale = std::max(alone + work, least_error_ / options_.tolerance);
     outcome.residual = error > 0 ? error / scale : 0;
-    if (!std::isfinite(error)) return outcome;
+    if (!std::isfinite(error)) break;
     if (error <= options_.tolerance * scale) {
       outcome.converged = true;
       break;
     }
+    if (!keep_best(outcome)) break;
     outcome.sweeps += sweep(inner_share * error);
     ++outcome.outer_iterations;
     if (options_.progress && !options_.progress({clock.seconds(), outcome.sweeps, 0})) {
@@ -199,7 +206,10 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     mixer.advance(before, image);
     std::copy_n(y_.data() + begin, size, x_.data() + begin);
   }
-  if (!outcome.converged) return outcome;
+  const bool is_small = blocks_.count() <= small_contacts && size <= 3 * small_rows;
+  outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_.residual));
+  if (!outcome.is_result) return outcome;
+  if (!outcome.converged) take_best(outcome);
   for (const Chunk& chunk : chunks_) {
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
       const std::size_t block = at(system.rows.block_of[row]);

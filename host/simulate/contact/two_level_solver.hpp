@@ -13,6 +13,8 @@ namespace tetwarp {
 
 struct TwoLevelOutcome {
   bool converged = false;
+  bool is_result = false;  ///< velocities and impulses are set: converged, or those of the iterate
+                           ///< with the least residual where another solver would take too long
   double residual = 0;
   std::int64_t outer_iterations = 0, sweeps = 0;
 };
@@ -29,6 +31,10 @@ struct TwoLevelOutcome {
 /// `tolerance` times the sum of the square root of the work of the impulses and of the natural map
 /// without impulses, or as small as the error of the velocities without contact.
 ///
+/// It ends, without having converged, after a number of operations, and where its residual no
+/// longer shrinks, as of bodies that are squeezed so that no velocities satisfy all contacts. The
+/// result then is the iterate with the least residual.
+///
 /// Determinism: same bits for any number of threads.
 class TwoLevelSolver {
  public:
@@ -37,7 +43,7 @@ class TwoLevelSolver {
   /// @param takes     [coupling islands] which are taken
   /// @param contacts  numbers of the contacts in `rows`; they act on these islands
   /// @param laws      friction, offsets, adhesion and guess of these contacts
-  /// @param velocity  in: without contact, [block_count]; out, if converged: with contact
+  /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
   /// @param change    in: how contacts changed the velocities in the step before, or empty; out: in
   ///                  this one
   TwoLevelOutcome solve(const StepSystem& system,
@@ -71,8 +77,22 @@ class TwoLevelSolver {
   void step_chunk(std::int64_t chunk);
   double find_error(double defect, double& work);
   std::int64_t sweep(double enough);
+  double sweep_working();
+  void sweep_listed(const std::vector<std::int32_t>& list, double enough, std::int64_t& sweeps);
+  void gather_impulses(const std::vector<std::int32_t>& list);
+  void scatter_impulses(const std::vector<std::int32_t>& list);
+  bool keep_best(const TwoLevelOutcome& now);
+  void take_best(TwoLevelOutcome& outcome);
   void find_coarse();
   void add_coarse();
+
+  /// The iterate with the least residual.
+  struct Best {
+    double residual = 0;
+    double mark = 0;  ///< residual at the iteration `marked_at`, when it had last shrunk enough
+    std::int64_t marked_at = 0;
+    std::vector<double> x, impulse;
+  };
 
   const Model& model_;
   ContactOptions options_;
@@ -93,7 +113,9 @@ class TwoLevelSolver {
   std::int64_t restricted_width_ = 0;
   double least_error_ = 0;                                 ///< of the velocities without contact
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
-  std::vector<double> before_, swept_, mixed_impulses_;    ///< of sweep()
+  std::vector<double> before_, swept_, unmixed_, listed_diagonal_, mixed_impulses_;  ///< of sweep()
+  std::vector<std::int32_t> pushing_;  ///< contacts with impulses
+  Best best_;
 };
 
 }  // namespace tetwarp

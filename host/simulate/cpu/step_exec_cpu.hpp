@@ -55,7 +55,13 @@ class CpuGradientExec {
   Value load(const Value* value) const {
     return *value;
   }
-  bool is_sync_point(std::int64_t) const { return true; }
+  /// Iterations between two looks at their sums.
+  std::int64_t iterations_at_once() const { return 1; }
+  /// Runs an iteration so often.
+  template <class Iteration>
+  void repeat(std::int64_t count, const Iteration& iteration) const {
+    for (std::int64_t i = 0; i < count; ++i) iteration.run(*this);
+  }
 
  private:
   template <int count, class Body>
@@ -92,6 +98,9 @@ class CpuStepExec {
 
   template <class T>
   using Vector = std::vector<T, HugePageAllocator<T>>;
+  /// An array that the host renews in every step.
+  template <class T>
+  using Input = Vector<T>;
 
   explicit CpuStepExec(int threads) : threads_(threads) {}
 
@@ -106,6 +115,11 @@ class CpuStepExec {
   template <class T>
   void put(const T* host, std::int64_t size, Vector<T>& values) const {
     values.assign(host, host + size);
+  }
+  /// As put(); an executor may leave out what has not changed since the last call.
+  template <class T>
+  void renew(const T* host, std::int64_t size, Input<T>& values) const {
+    put(host, size, values);
   }
   /// Copies from memory of the executor to the host.
   template <class T>

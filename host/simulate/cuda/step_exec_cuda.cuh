@@ -1,98 +1,19 @@
 /// @file step_exec_cuda.cuh
 /// CudaStepExec: the executor of BodyPipeline on a device; functions as those of CpuStepExec.
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
+#include "host/simulate/cuda/grid_gradients.cuh"
 #include "host/simulate/stepper.hpp"
 #include "kernels/body/block_assemble.hpp"
 #include "kernels/body/island_block.cuh"
 #include "kernels/body/tet_force.hpp"
-#include "kernels/exec/device_vector.cuh"
-#include "kernels/exec/exec_cuda.cuh"
-#include "kernels/exec/grid_sum.cuh"
 
 namespace tetwarp {
-
-/// Sums on a whole device, without allocation.
-class DeviceSums {
- public:
-  void reserve(std::int64_t terms) { runs_.resize((terms + sum_run - 1) / sum_run + 1); }
-
-  /// *out = sum of body(i) for i in [begin, end). @param out  in memory of the device
-  template <class Body, int count>
-  void sum_to(cudaStream_t stream,
-              std::int64_t begin,
-              std::int64_t end,
-              const Body& body,
-              PlainSums<count>* out) {
-    using Sum = PlainSums<count>;
-    const std::int64_t runs = (end - begin + sum_run - 1) / sum_run;
-    const View<Sum> sums = {reinterpret_cast<Sum*>(runs_.view().data), runs};
-    if (runs > 0) launch_sums(stream, begin, end, sum_run, body, sums);
-    launch_sums(stream, 0, runs, runs, ReadySums<Sum>{sums}, View<Sum>{out, 1});
-  }
-
- private:
-  template <class Sum, class Term>
-  static void launch_sums(cudaStream_t stream,
-                          std::int64_t begin,
-                          std::int64_t end,
-                          std::int64_t run,
-                          const Term& term,
-                          View<Sum> sums) {
-    launch(stream, sums_kernel<Sum, Term>, dim3(static_cast<unsigned>(sums.size)),
-           dim3(sum_threads), sum_warps * sizeof(Sum), begin, end, run, term, sums);
-  }
-
-  DeviceVector<PlainSums<2>> runs_;
-};
-
-/// One index = index begin + i of the other body.
-template <class Body>
-struct ShiftedBody {
-  std::int64_t begin;
-  Body body;
-  TETWARP_HD void operator()(std::int64_t i) const { body(begin + i); }
-};
-
-/// Runs island_cg() on a whole device; the host reads sums at every eighth iteration.
-class GridGradientExec {
- public:
-  GridGradientExec(CudaExec& exec, DeviceSums& sums, PinnedBuffer<GradientScalars>& pinned)
-      : exec_(exec), sums_(sums), pinned_(pinned) {}
-
-  template <class Body>
-  void for_each(std::int64_t begin, std::int64_t end, const Body& body) const {
-    const ShiftedBody<Body> shifted{begin, body};
-    const std::int64_t count = end - begin;
-    launch(exec_.stream(), each_kernel<ShiftedBody<Body>>,
-           dim3(static_cast<unsigned>((count + each_threads - 1) / each_threads)),
-           dim3(each_threads), 0, count, shifted);
-  }
-  template <class Body>
-  void once(const Body& body) const {
-    for_each(0, 1, body);
-  }
-  template <class Body, int count>
-  void sum_to(std::int64_t begin, std::int64_t end, const Body& body, PlainSums<count>* out) {
-    sums_.sum_to(exec_.stream(), begin, end, body, out);
-  }
-  template <class Value>
-  Value load(const Value* value) const {
-    static_assert(sizeof(Value) <= sizeof(GradientScalars));
-    auto* const pinned = reinterpret_cast<Value*>(pinned_.view(1).data);
-    exec_.read(View<const Value>{value, 1}, pinned);
-    return *pinned;
-  }
-  bool is_sync_point(std::int64_t iteration) const { return iteration % 8 == 0; }
-
- private:
-  CudaExec& exec_;
-  DeviceSums& sums_;
-  PinnedBuffer<GradientScalars>& pinned_;
-};
 
 /// One index = one flag.
 struct FlagSumBody {
@@ -108,14 +29,19 @@ class CudaStepExec {
 
   template <class T>
   using Vector = DeviceVector<T>;
+  /// An array that the host renews in every step, and what it sent last.
+  template <class T>
+  struct Input : DeviceVector<T> {
+    std::vector<T> sent;
+  };
 
   explicit CudaStepExec(int device) : exec_(device) {
     scalars_.resize(1);
     pinned_.reserve(1);
   }
 
-  /// Makes the device current on this thread.
-  void enter() { exec_.use_stream(nullptr); }
+  /// @returns  an object during whose life the device is the current one of this thread
+  DeviceScope enter() { return exec_.enter(0); }
 
   template <class T>
   void resize(Vector<T>& values, std::int64_t size) {
@@ -135,6 +61,39 @@ class CudaStepExec {
                                cudaMemcpyHostToDevice, exec_.stream()),
                "cudaMemcpyAsync to device");
   }
+  /// Copies the part between the first and the last number that changed since the last call.
+  template <class T>
+  void renew(const T* host, std::int64_t size, Input<T>& values) {
+    if (static_cast<std::int64_t>(values.sent.size()) != size) {
+      values.sent.assign(host, host + size);
+      return put(host, size, static_cast<Vector<T>&>(values));
+    }
+    const auto differs = [&](std::int64_t i) {
+      return std::memcmp(&host[i], &values.sent[static_cast<std::size_t>(i)], sizeof(T)) != 0;
+    };
+    std::int64_t begin = 0, end = size;
+    while (begin < end && !differs(begin)) ++begin;
+    while (begin < end && !differs(end - 1)) --end;
+    if (begin == end) return;
+    std::copy(host + begin, host + end, values.sent.begin() + begin);
+    check_cuda(cudaMemcpyAsync(values.view().data + begin, host + begin,
+                               static_cast<std::size_t>(end - begin) * sizeof(T),
+                               cudaMemcpyHostToDevice, exec_.stream()),
+               "cudaMemcpyAsync to device");
+  }
+  /// Copies an array within memory of the device.
+  template <class T>
+  void copy(const Vector<T>& from, Vector<T>& to) {
+    to.resize(from.view().size);
+    if (from.view().size == 0) return;
+    check_cuda(cudaMemcpyAsync(to.view().data, from.view().data,
+                               static_cast<std::size_t>(from.view().size) * sizeof(T),
+                               cudaMemcpyDeviceToDevice, exec_.stream()),
+               "cudaMemcpyAsync on the device");
+  }
+  cudaStream_t stream() const { return exec_.stream(); }
+  /// Waits for all that has been enqueued.
+  void wait() { check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize"); }
   template <class T>
   void get(View<const T> values, T* host) {
     if (values.size > 0) exec_.read(values, host);
@@ -178,6 +137,7 @@ class CudaStepExec {
     ends_.resize(small_.view().size);
     host_ends_.reserve(small_.view().size);
     sums_.reserve(island_start.back());
+    graphs_ = std::vector<IterationGraph>(large_.size());
   }
 
   template <class T, class Proceed, class Take>
@@ -202,8 +162,9 @@ class CudaStepExec {
         exec_.read(static_cast<const Vector<GradientEnd>&>(ends_).view(), ends.data);
         for (std::int64_t i = 0; i < small; ++i) take(ends[i]);
       }
-      GridGradientExec grid(exec_, sums_, pinned_);
-      for (const IslandRows& rows : large_) {
+      for (std::size_t i = 0; i < large_.size(); ++i) {
+        const IslandRows& rows = large_[i];
+        GridGradientExec grid(exec_, sums_, pinned_, graphs_[i]);
         const GradientEnd end =
             island_cg(grid, arrays, rows.begin, rows.end, options, scalars_.view().data, proceed);
         take(end);
@@ -233,6 +194,7 @@ class CudaStepExec {
   DeviceVector<GradientEnd> ends_;
   PinnedBuffer<GradientEnd> host_ends_;
   std::vector<IslandRows> large_;
+  std::vector<IterationGraph> graphs_;  ///< of them
 };
 
 }  // namespace tetwarp

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cuda/resident_state_cuda.cuh"
 #include "host/simulate/cuda/step_exec_cuda.cuh"
 
 namespace tetwarp {
@@ -13,54 +14,62 @@ template <class T>
 class CudaStepper final : public BodyStepper {
  public:
   CudaStepper(const Model& model, const StepperOptions& options, std::string name)
-      : exec_(options.device), pipeline_(exec_, model, options), name_(std::move(name)) {}
+      : exec_(options.device),
+        pipeline_(exec_, model, options),
+        resident_(exec_, model, pipeline_),
+        name_(std::move(name)) {}
 
   std::string device() const override { return name_; }
   void set_state(const ModelState& state) override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     pipeline_.set_state(state);
   }
   void get_state(ModelState& state) const override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     pipeline_.get_state(state);
   }
   StepOutcome solve(const StepInput& input) override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     return pipeline_.solve(input);
   }
   StepSystem system() override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     return pipeline_.system();
   }
   void get_velocities(std::vector<Point3>& velocity) const override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     pipeline_.get_velocities(velocity);
   }
   void set_velocities(const std::vector<Point3>& velocity) override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     pipeline_.set_velocities(velocity);
   }
   double move(double time_step, std::span<const double> fraction) override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     return pipeline_.move(time_step, fraction);
   }
   std::vector<Point3> support_impulses() const override {
-    exec_.enter();
+    const DeviceScope scope = exec_.enter();
     return pipeline_.support_impulses();
   }
   PositionsView positions(std::int32_t first_node, std::int32_t count) const override {
+    const DeviceScope scope = exec_.enter();
+    exec_.wait();  // whoever reads them does so on a stream of its own
     return {pipeline_.position_of(first_node), count, Memory::device};
   }
+  ResidentState* resident_state() override { return &resident_; }
 
  private:
   mutable CudaStepExec exec_;  ///< reads need its stream
   BodyPipeline<CudaStepExec, T> pipeline_;
+  CudaResidentState<T> resident_;
   std::string name_;
 };
 
 inline std::unique_ptr<BodyStepper> make_stepper_on_device(const Model& model,
                                                            const StepperOptions& options,
                                                            const std::string& name) {
+  const DeviceScope scope(options.device);
   if (options.float32_solve) return std::make_unique<CudaStepper<float>>(model, options, name);
   return std::make_unique<CudaStepper<double>>(model, options, name);
 }

@@ -14,7 +14,9 @@
 #include <vector>
 
 #include <tetwarp/scene.hpp>
+#include <tetwarp/simulate.hpp>
 
+#include "host/simulate/contact/scene_surfaces.hpp"
 #include "host/simulate/model.hpp"
 
 namespace tetwarp {
@@ -118,7 +120,12 @@ class CheckpointReader {
   std::span<const std::byte> bytes_;
 };
 
-/// A hash of all numbers of the model and of what drives it, equal for equal scenes.
-std::uint64_t fingerprint_of(const Scene& scene, const Model& model);
+/// A hash of all that the results of a simulation depend on: the numbers of the model, of surfaces
+/// and contact materials, of what drives them, and of how steps are solved. Equal for equal scenes
+/// and options; threads, the device and work that is skipped are not part of it.
+std::uint64_t fingerprint_of(const Scene& scene,
+                             const SimulateOptions& options,
+                             const Model& model,
+                             const SceneSurfaces& surfaces);
 
 }  // namespace tetwarp

@@ -199,9 +199,10 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
       const Clock clock(part.detection_seconds);
       move_surfaces({}, motions_[pass]);
       final_ = &motions_[pass];
-      const std::size_t added =
-          add_pairs(detector_->detect(motions_[pass]), static_cast<std::int32_t>(pass));
+      const std::size_t added = add_pairs(awake_pairs(detector_->detect(motions_[pass])),
+                                          static_cast<std::int32_t>(pass));
       ++part.passes;
+      if (!woken_.empty()) return;
       is_new = added > 0 || (pass == 0 && !tracker_.records().empty());
       if (!is_new) return;
       report(is_first);
@@ -239,7 +240,7 @@ std::int64_t ContactStep::stalled_scripts() const {
 void ContactStep::keep_apart(ContactPart& part) {
   const Clock clock(part.detection_seconds);
   static const std::vector<TrackedContact> none;
-  groups_.begin(contacts_ == nullptr ? none : *contacts_);
+  groups_.begin(contacts_ == nullptr ? none : *contacts_, sleeping_links());
   part.islands = groups_.island_count();
   // A motion without pairs has passed a detection at a larger distance already.
   if (pairs_.empty()) return;
@@ -269,7 +270,8 @@ ContactPart ContactStep::advance(const ModelState& start,
   pass_of_.clear();
   block_impulses_.assign(static_cast<std::size_t>(model_.block_count()), {0, 0, 0});
   body_impulses_.assign(surfaces_.surfaces.bodies.size(), {0, 0, 0});
-  groups_.begin({});
+  groups_.begin({}, {});
+  woken_.clear();
   stepper.get_velocities(free_velocity_);
   if (are_finite(free_velocity_)) {
     {
@@ -278,7 +280,8 @@ ContactPart ContactStep::advance(const ModelState& start,
       detector_->begin_step();
     }
     find_velocities(is_first, stepper, part);
-    if (!part.is_completed) return part;
+    part.woken = woken_;
+    if (!part.is_completed || !woken_.empty()) return part;
     if (are_finite(velocity_)) keep_apart(part);
     if (contacts_ == nullptr || contacts_->empty()) {
       change_.clear();
@@ -288,6 +291,7 @@ ContactPart ContactStep::advance(const ModelState& start,
       sum_impulses();
     }
   }
+  add_sleeping(start, time_step, part);
   seconds.update += stepper.move(
       time_step, groups_.all_move() ? std::span<const double>{} : std::span(fractions()));
   return part;

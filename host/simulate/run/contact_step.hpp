@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>
@@ -19,6 +20,8 @@
 #include "host/simulate/contact/contact_system.hpp"
 #include "host/simulate/contact/pair_contacts.hpp"
 #include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/simulate/run/contact_memory.hpp"
+#include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/run/step_groups.hpp"
 #include "host/simulate/stepper.hpp"
 
@@ -29,12 +32,15 @@ struct ContactStepOptions {
   int threads = 1;
   int device = 0;
   SimulateSkipOptions skip = {};
+  bool sleeps = false;                  ///< bodies may sleep
   std::function<bool()> progress = {};  ///< false ends the step
 };
 
 /// What contact did in a step or a part of one.
 struct ContactPart {
-  bool is_completed = true;  ///< false: `progress` ended it
+  bool is_completed = true;         ///< false: `progress` ended it
+  std::vector<std::int32_t> woken;  ///< bodies that sleep and are reached by something that moves;
+                                    ///< then nothing has moved
   bool converged = true;
   double residual = 0;  ///< eta, the largest
   std::int64_t contacts = 0, islands = 0;
@@ -45,12 +51,6 @@ struct ContactPart {
 };
 /// Adds counts and seconds of a later part; contacts and islands are those of the last part.
 void add_part(const ContactPart& part, ContactPart& sum);
-
-/// What goes on from step to step.
-struct ContactMemory {
-  std::vector<ContactRecord> records;
-  std::vector<Point3> change;  ///< of velocities by contacts in the last step, or empty
-};
 
 class ContactStep {
  public:
@@ -94,8 +94,23 @@ class ContactStep {
   void remember(ContactMemory& memory) const {
     memory.records = tracker_.records();
     memory.change = change_;
+    memory.sleeping = sleeping_;
   }
   void restore(const ContactMemory& memory);
+
+  /// For the next parts: bodies and obstacles that do not move, [bodies, then obstacles] or empty.
+  /// A sleeping body among them must be woken where ContactPart::woken names it.
+  void set_still(std::span<const std::uint8_t> is_still);
+  /// After bodies have woken or begun to move: their contacts are solved again. Includes
+  /// set_still().
+  void thaw(std::span<const std::uint8_t> is_still);
+  /// After end(), where bodies have fallen asleep: contacts between bodies that stand still are
+  /// kept as they are. Includes set_still().
+  void freeze(std::span<const std::uint8_t> is_still);
+  /// The bodies of the contacts that are kept.
+  const std::vector<BodyLink>& sleeping_links() const { return sleeping_links_; }
+  /// Of the last part, with `sleeps`.
+  const ContactRest& rest() const { return rest_; }
 
   /// Fills the adhesion's energy and area, and the smallest distance, in a state.
   void record(const ModelState& state, StepRecord& record);
@@ -114,6 +129,14 @@ class ContactStep {
   void sum_impulses();
   ContactPlace place_of(std::size_t body, const MaterialPoint& point) const;
   void set_points();
+  bool both_still(const BodyLink& bodies) const;
+  const std::vector<TouchingPair>& awake_pairs(const std::vector<TouchingPair>& found);
+  std::vector<ContactRecord> all_records() const;
+  void add_sleeping(const ModelState& state, double time_step, ContactPart& part);
+  void set_sleeping(std::vector<SleepingContact> contacts);
+  void set_sleeping_forces(const ModelState& state);
+  void merge_points();
+  void note_rest(const std::vector<double>& before);
 
   const Scene& scene_;
   const Model& model_;
@@ -145,7 +168,16 @@ class ContactStep {
   std::vector<ReportedContact> reports_;
   const std::vector<TrackedContact>* contacts_ = nullptr;  ///< null: nothing touches
   std::vector<Point3> block_impulses_, body_impulses_;
-  std::vector<ContactPoint> points_;
+  std::vector<ContactPoint> points_, own_points_;  ///< own_points_: without those that sleep
+
+  std::vector<SleepingContact> sleeping_;                         ///< sorted by key
+  std::vector<BodyLink> sleeping_links_;                          ///< their bodies
+  std::vector<std::pair<std::int32_t, Point3>> sleeping_forces_;  ///< on prescribed blocks [N, N m]
+  bool has_sleeping_forces_ = false;                              ///< of the present list
+  std::vector<std::uint8_t> still_;                               ///< see set_still()
+  std::vector<std::int32_t> woken_;
+  std::vector<TouchingPair> awake_pairs_;
+  ContactRest rest_;
 };
 
 }  // namespace tetwarp

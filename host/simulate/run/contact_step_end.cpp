@@ -97,10 +97,10 @@ ContactPlace ContactStep::place_of(std::size_t body, const MaterialPoint& point)
 }
 
 void ContactStep::set_points() {
-  points_.resize(contacts_->size());
-  if (points_.empty()) return;
+  own_points_.resize(contacts_->size());
+  if (own_points_.empty()) return;
   const double* impulse = system_.solution().impulse.data();
-  for (std::size_t c = 0; c < points_.size(); ++c) {
+  for (std::size_t c = 0; c < own_points_.size(); ++c) {
     const TrackedContact& contact = (*contacts_)[c];
     const auto a = static_cast<std::size_t>(contact.key.body_a);
     const auto b = static_cast<std::size_t>(contact.key.body_b);
@@ -108,7 +108,7 @@ void ContactStep::set_points() {
         way_of(contact.point_a_world, contact.material_a, start_places_[a], end_places_[a]);
     const Point3 way_b =
         way_of(contact.point_b_world, contact.material_b, start_places_[b], end_places_[b]);
-    ContactPoint& point = points_[c];
+    ContactPoint& point = own_points_[c];
     point.body_a = a;
     point.body_b = b;
     point.normal = contact.axes[0];
@@ -123,16 +123,26 @@ void ContactStep::set_points() {
 }
 
 void ContactStep::end(const ModelState& after, ContactPart& part) {
-  points_.clear();
-  if (contacts_ == nullptr) return;
+  own_points_.clear();
+  if (contacts_ == nullptr) {
+    if (options_.sleeps) note_rest({});
+    merge_points();
+    return;
+  }
   const auto start = std::chrono::steady_clock::now();
   surface_places(surfaces_, model_, after, options_.threads, end_surfaces_);
   set_places(after, end_surfaces_, end_places_);
   static const ContactSolution nothing;
   set_points();
+  std::vector<double> before;
+  for (const ContactRecord& record : tracker_.records()) before.push_back(record.intensity);
   const AdhesionStep adhesion =
       tracker_.end_step(contacts_->empty() ? nothing : system_.solution(), end_places_);
-  for (std::size_t c = 0; c < points_.size(); ++c) points_[c].intensity = adhesion.intensity[c];
+  for (std::size_t c = 0; c < own_points_.size(); ++c) {
+    own_points_[c].intensity = adhesion.intensity[c];
+  }
+  merge_points();
+  if (options_.sleeps) note_rest(before);
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
   part.contact_seconds += passed.count();
 }
@@ -140,13 +150,14 @@ void ContactStep::end(const ModelState& after, ContactPart& part) {
 void ContactStep::restore(const ContactMemory& memory) {
   tracker_ = ContactTracker(tracker_options_, memory.records);
   change_ = memory.change;
+  set_sleeping(memory.sleeping);
 }
 
 void ContactStep::record(const ModelState& state, StepRecord& record) {
   surface_places(surfaces_, model_, state, options_.threads, end_surfaces_);
   const double cap = 100 * surfaces_.surfaces.thickness;
   record.smallest_distance = detector_->closest(end_surfaces_, cap).distance;
-  ContactTracker now(tracker_options_, tracker_.records());
+  ContactTracker now(tracker_options_, all_records());
   set_places(state, end_surfaces_, end_places_);
   // Without reports the contacts are those that adhere, between their anchors.
   const std::vector<TrackedContact>& bonds = now.begin_step({}, end_places_, scene_.time_step);

@@ -51,6 +51,21 @@ class Hash {
     add(wave.envelope);
   }
   void add(const std::monostate&) { add(0); }
+  void add(const ContactMaterial& material) {
+    add(material.friction);
+    add(material.stiffness);
+    add(material.tangential_stiffness.value_or(-1));
+    add(material.energy);
+    add(material.viscosity);
+    add(material.bonding_rate);
+    add(material.saturation_pressure);
+    add(material.initial_intensity);
+    add(material.restitution);
+  }
+  void add(const PairMaterial& pair) {
+    add(pair.bodies);
+    add(pair.material);
+  }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -61,7 +76,12 @@ void add_scene(const Scene& scene, Hash& hash) {
   hash.add(scene.time_step);
   hash.add(scene.gravity);
   hash.add(scene.solver.linear_tolerance);
+  hash.add(scene.solver.contact_tolerance);
   hash.add(scene.solver.max_substeps);
+  hash.add(scene.solver.max_passes);
+  hash.add(scene.solver.pyramid);
+  hash.add(scene.solver.restrictive);
+  hash.add(scene.solver.sleeping);
   for (const Body& body : scene.bodies) {
     hash.add(static_cast<int>(body.kind));
     hash.add(body.motion.index());
@@ -78,11 +98,48 @@ void add_scene(const Scene& scene, Hash& hash) {
   }
 }
 
+void add_options(const SimulateOptions& options, Hash& hash) {
+  hash.add(options.float32_solve);
+  hash.add(options.max_iterations);
+  hash.add(options.untangle);
+}
+
+void add_surfaces(const SceneSurfaces& scene, Hash& hash) {
+  const CollisionSurfaces& surfaces = scene.surfaces;
+  hash.add(surfaces.thickness);
+  for (const CollisionBody& body : surfaces.bodies) {
+    hash.add(body.vertex_end);
+    hash.add(body.edge_end);
+    hash.add(body.triangle_end);
+    hash.add(body.plane_end);
+    hash.add(body.touches_itself);
+  }
+  hash.add(surfaces.vertex_radius);
+  hash.add(surfaces.vertex_area);
+  hash.add(surfaces.edge_radius);
+  hash.add(surfaces.triangles);
+  hash.add(surfaces.forbidden);
+  hash.add(scene.vertex_point);
+  for (const PlanePlace& plane : scene.plane_local) {
+    hash.add(plane.point);
+    hash.add(plane.normal);
+  }
+  hash.add(scene.materials);
+  hash.add(scene.contact_class);
+  hash.add(scene.class_material);
+  hash.add(scene.pair_materials);
+}
+
 }  // namespace
 
-std::uint64_t fingerprint_of(const Scene& scene, const Model& model) {
+std::uint64_t fingerprint_of(const Scene& scene,
+                             const SimulateOptions& options,
+                             const Model& model,
+                             const SceneSurfaces& surfaces) {
   Hash hash;
   add_scene(scene, hash);
+  add_options(options, hash);
+  add_surfaces(surfaces, hash);
   hash.add(model.body_node);
   hash.add(model.body_rigid);
   hash.add(model.prescribed);
@@ -112,6 +169,8 @@ std::uint64_t fingerprint_of(const Scene& scene, const Model& model) {
   hash.add(model.rigid.centre);
   hash.add(model.start.position);
   hash.add(model.start.velocity);
+  hash.add(model.start.rotation);
+  hash.add(model.start.angular_momentum);
   return hash.value();
 }
 

@@ -52,7 +52,7 @@ std::vector<Point3> Simulator::node_positions(std::size_t index) const {
 }
 std::vector<Point3> Simulator::node_velocities(std::size_t index) const {
   impl_->check_body(index);
-  const auto first = impl_->state.velocity.begin() + impl_->model.body_node[index];
+  const auto first = impl_->state().velocity.begin() + impl_->model.body_node[index];
   return {first, first + (impl_->model.body_node[index + 1] - impl_->model.body_node[index])};
 }
 std::vector<Point3> Simulator::surface_positions(std::size_t index) const {

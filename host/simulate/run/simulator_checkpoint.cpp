@@ -8,7 +8,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
-constexpr std::uint64_t checkpoint_version = checkpoint_kind + 2;
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 3;
 
 // Each of these functions writes with a CheckpointWriter and reads with a CheckpointReader.
 
@@ -50,6 +50,22 @@ void pass_point(Stream& stream, Point& point) {
   stream(point.place_a.weight);
   stream(point.place_b.point);
   stream(point.place_b.weight);
+}
+
+template <class Stream, class Contact>
+void pass_sleeping(Stream& stream, Contact& sleeping) {
+  pass_record(stream, sleeping.record);
+  pass_point(stream, sleeping.point);
+  stream(sleeping.time_step);
+  auto& contact = sleeping.contact;
+  stream(contact.point_a_world);
+  stream(contact.point_b_world);
+  for (auto* point : {&contact.material_a, &contact.material_b}) {
+    stream(point->local);
+    stream(point->vertex);
+    stream(point->weight);
+  }
+  stream(contact.axes);
 }
 
 template <class Stream, class Part>
@@ -95,6 +111,7 @@ struct Simulator::Impl::Saved {
   DriveOverrides overrides;
   std::vector<double> delays;
   ContactMemory memory;
+  SleepState sleep;
   std::vector<ContactPoint> points;
 
   template <class Stream, class Self>
@@ -116,6 +133,11 @@ struct Simulator::Impl::Saved {
     stream(saved.delays);
     stream.pass_list(saved.memory.records, [](auto& of, auto& record) { pass_record(of, record); });
     stream.pass_list(saved.memory.change, [](auto& of, auto& change) { of(change); });
+    stream.pass_list(saved.memory.sleeping,
+                     [](auto& of, auto& contact) { pass_sleeping(of, contact); });
+    stream(saved.sleep.is_asleep);
+    stream(saved.sleep.calm_time);
+    stream(saved.sleep.inputs);
     stream.pass_list(saved.points, [](auto& of, auto& point) { pass_point(of, point); });
   }
 };
@@ -129,12 +151,13 @@ Simulator::Impl::Saved Simulator::Impl::saved() const {
   now.undivided_steps = undivided_steps_;
   now.outcome = outcome_;
   now.contact = contact_of_step_;
-  now.state = state;
+  now.state = state();
   now.sums = sums_;
   now.handles = drive.handles();
   now.overrides = drive.overrides();
   now.delays = drive.delays();
   if (contact_) contact_->remember(now.memory);
+  now.sleep = sleep_.state();
   now.points = contact_points;
   return now;
 }
@@ -142,7 +165,7 @@ Simulator::Impl::Saved Simulator::Impl::saved() const {
 std::vector<std::byte> Simulator::Impl::checkpoint() const {
   CheckpointWriter writer;
   writer.add(checkpoint_version);
-  writer.add(fingerprint_of(scene, model));
+  writer.add(fingerprint_of(scene, options, model, contact_surfaces));
   const Saved now = saved();
   Saved::pass(writer, now);
   return writer.take();
@@ -160,7 +183,7 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
             : "checkpoint: not a checkpoint of this version of tetwarp on this kind of machine");
   }
   reader.read(fingerprint);
-  if (fingerprint != fingerprint_of(scene, model)) {
+  if (fingerprint != fingerprint_of(scene, options, model, contact_surfaces)) {
     throw std::invalid_argument(
         "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
   }
@@ -173,10 +196,9 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
   if (!is_finite_state(read.state)) {
     throw std::invalid_argument("checkpoint: damaged, a position or velocity is not a number");
   }
-  if (!read.memory.change.empty() && read.memory.change.size() != state.velocity.size()) {
+  if (!read.memory.change.empty() && read.memory.change.size() != state_.velocity.size()) {
     throw std::invalid_argument("checkpoint: damaged, changes of velocities have another length");
   }
-  if (contact_) contact_->restore(read.memory);
   step_index = read.steps;
   work_ = read.work;
   substeps_ = read.substeps;
@@ -185,14 +207,17 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
   inverted_ = -1;
   outcome_ = read.outcome;
   contact_of_step_ = read.contact;
-  state = std::move(read.state);
   sums_ = std::move(read.sums);
   drive.handles() = std::move(read.handles);
   drive.overrides() = std::move(read.overrides);
   drive.delays() = std::move(read.delays);
+  for (SleepingContact& contact : read.memory.sleeping) contact.contact.key = contact.record.key;
+  if (contact_) contact_->restore(read.memory);
+  sleep_.set_state(std::move(read.sleep));
+  sleeping_ = sleep_.is_on() ? sleep_.group_count(sleeping_links()) : 0;
   contact_points = std::move(read.points);
   record_.reset();
-  stepper->set_state(state);
+  set_state(read.state);
 }
 
 }  // namespace tetwarp

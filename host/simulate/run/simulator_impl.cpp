@@ -33,8 +33,9 @@ Simulator::Impl::Impl(Scene scene_of_caller, const SimulateOptions& options_of_c
       geometry(make_scene_geometry(scene)),
       model(make_model(scene, geometry)),
       drive(scene, geometry, model),
-      state(model.start),
-      loads_(scene, geometry, model) {
+      state_(model.start),
+      loads_(scene, geometry, model),
+      sleep_(scene, geometry, model) {
   if (options.max_iterations < 1) {
     throw std::invalid_argument("max_iterations: expected 1 or more, got " +
                                 std::to_string(options.max_iterations));
@@ -46,6 +47,18 @@ Simulator::Impl::Impl(Scene scene_of_caller, const SimulateOptions& options_of_c
   backend = options.backend == Backend::automatic ? Backend::cpu : options.backend;
   make_contact();
   stepper = make_stepper();
+  largest_spin_ = largest_spin();
+  // Contacts are found and solved on the host, which also decides what sleeps.
+  resident_ = contact_ || sleep_.is_on() ? nullptr : stepper->resident_state();
+  if (resident_ == nullptr) return;
+  StatePlaces places;
+  drive.add_places(places);
+  loads_.add_places(places);
+  for (auto* list : {&places.nodes, &places.rigid}) {
+    std::sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  resident_->watch(places);
 }
 
 std::unique_ptr<BodyStepper> Simulator::Impl::make_stepper() {
@@ -77,6 +90,7 @@ void Simulator::Impl::make_contact() {
   of.threads = thread_count(options.threads);
   of.device = options.device;
   of.skip = options.skip;
+  of.sleeps = sleep_.is_on();
   if (options.progress) {
     of.progress = [this] {
       const double start = time_of(static_cast<double>(step_index));
@@ -86,7 +100,7 @@ void Simulator::Impl::make_contact() {
   contact_ = std::make_unique<ContactStep>(scene, model, contact_surfaces, of);
   const StartParts parts{scene, geometry, contact_surfaces, contact_->detector(), of.threads};
   growth_ = prepare_start(parts, options.untangle, model);
-  state = model.start;
+  state_ = model.start;
   if (backend == Backend::reference && !growth_.empty()) {
     throw std::invalid_argument(
         "untangle: backend reference cannot let bodies grow; use backend cpu");
@@ -122,7 +136,7 @@ std::vector<Point3> Simulator::Impl::node_positions(std::size_t index) const {
   if (scene.bodies[index].kind == BodyKind::scripted && drive.delays()[index] == 0) {
     return drive.scripted_positions(index, time_of(static_cast<double>(step_index)));
   }
-  const auto first = state.position.begin() + model.body_node[index];
+  const auto first = state().position.begin() + model.body_node[index];
   return {first, first + (model.body_node[index + 1] - model.body_node[index])};
 }
 
@@ -146,7 +160,7 @@ std::vector<Point3> Simulator::Impl::surface_positions(std::size_t index) {
   positions.reserve(surface.size());
   if (scene.bodies[index].kind != BodyKind::scripted) {
     for (const ModelPoint& p : surface) {
-      positions.push_back(position_of(p, state, model.node_count));
+      positions.push_back(position_of(p, state(), model.node_count));
     }
     return positions;
   }
@@ -155,7 +169,7 @@ std::vector<Point3> Simulator::Impl::surface_positions(std::size_t index) {
   const std::vector<Point3> nodes = node_positions(index);
   scripted.position.insert(scripted.position.end(), nodes.begin(), nodes.end());
   for (const ModelPoint& p : surface) {
-    positions.push_back(p.rigid >= 0 ? position_of(p, state, model.node_count)
+    positions.push_back(p.rigid >= 0 ? position_of(p, state(), model.node_count)
                                      : position_of(p, scripted, model.node_count));
   }
   return positions;

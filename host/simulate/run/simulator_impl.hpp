@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <tetwarp/simulate.hpp>
@@ -14,9 +15,10 @@
 #include "host/simulate/contact/scene_surfaces.hpp"
 #include "host/simulate/model.hpp"
 #include "host/simulate/run/contact_step.hpp"
-#include "host/simulate/run/step_sums.hpp"
+#include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/scene_drive.hpp"
 #include "host/simulate/scene_loads.hpp"
+#include "host/simulate/step_sums.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -48,7 +50,8 @@ class Simulator::Impl {
   SceneSurfaces contact_surfaces;
   std::vector<ContactPoint> contact_points;  ///< at the end of the last step
   std::int64_t step_index = 0;
-  ModelState state;  ///< after the last step
+  /// The state after the last step in memory of the host, copied there if it is not yet.
+  const ModelState& state() const;
 
  private:
   /// How a division of a step into parts went.
@@ -63,9 +66,18 @@ class Simulator::Impl {
   bool advance(int part, double time_step, Attempt& result);
   bool is_good(const Attempt& result, const ContactPart& part, double time_step);
   void end_part(double time_step);
+  std::vector<BodyLink> sleeping_links() const;
+  void begin_sleep();
+  void wake(std::span<const std::int32_t> bodies);
+  void fall_asleep(const Attempt& made);
   void accept(const Attempt& made, int parts, const StepSeconds& seconds);
   int parts_for_spin() const;
-  bool turns_too_far(const ModelState& of, double time_step) const;
+  bool turns_too_far(double time_step) const;
+  double largest_spin() const;
+  void set_state(const ModelState& next);
+  void keep_state();
+  void return_to_kept_state();
+  bool take_state();
   bool take_steps();
   struct Saved;
   Saved saved() const;
@@ -73,6 +85,11 @@ class Simulator::Impl {
   void make_contact();
   BodyMesh mesh_of(std::size_t body) const;
 
+  mutable ModelState state_;  ///< after the last step, or where a device has that: watched places
+  mutable bool is_state_here_ = true;  ///< whether all of state_ is that of the last step
+  ResidentState* resident_ = nullptr;  ///< null: every step copies the state to the host
+  double largest_spin_ = 0;            ///< of a rigid body after the last step [rad/s]
+  double kept_spin_ = 0;               ///< largest_spin_ of the kept state
   SceneLoads loads_;
   ModelState step_start_, part_start_;  ///< kept, so that steps do not allocate them
   StepInput input_;
@@ -80,11 +97,14 @@ class Simulator::Impl {
   double work_ = 0;
   std::unique_ptr<ContactStep> contact_;  ///< null: no two surfaces may touch
   RestGrowth growth_;                     ///< of bodies that started smaller
-  ContactMemory contact_start_;           ///< of the running step
-  ContactPart contact_of_step_;           ///< of the last step
-  std::int64_t inverted_ = -1;            ///< tetrahedra in `state`; -1: not counted
-  std::int64_t held_steps_ = 0;           ///< successive ones whose bodies hardly moved
-  std::int64_t undivided_steps_ = 0;      ///< to come, which contact does not divide
+  IslandSleep sleep_;
+  SleepState sleep_start_;            ///< of the running step
+  std::int64_t sleeping_ = 0;         ///< contact islands that sleep
+  ContactMemory contact_start_;       ///< of the running step
+  ContactPart contact_of_step_;       ///< of the last step
+  std::int64_t inverted_ = -1;        ///< tetrahedra in `state`; -1: not counted
+  std::int64_t held_steps_ = 0;       ///< successive ones whose bodies hardly moved
+  std::int64_t undivided_steps_ = 0;  ///< to come, which contact does not divide
   std::int64_t substeps_ = 0;
   std::int64_t iterations_before_ = 0;  ///< of the parts of the running step that are done
   StepOutcome outcome_;

@@ -12,10 +12,11 @@ const StepRecord& Simulator::Impl::record() {
   record.bodies.resize(scene.bodies.size());
   record.obstacle_forces.assign(scene.obstacles.size(), {0, 0, 0});
   record.coupling_forces.assign(scene.couplings.size(), {0, 0, 0});
-  record_state(model, state, scene.gravity, drive.handles(), thread_count(options.threads), record);
+  record_state(model, state(), scene.gravity, drive.handles(), thread_count(options.threads),
+               record);
   record.energy.work = work_;
   record.smallest_distance = 100 * contact_surfaces.surfaces.thickness;
-  if (contact_) contact_->record(state, record);
+  if (contact_) contact_->record(state(), record);
   if (step_index == 0) {
     record.inverted = 0;
     return record;
@@ -35,6 +36,7 @@ const StepRecord& Simulator::Impl::record() {
     record.coupling_forces[c] = force(sums_.on_a[c]);
   }
   record.islands = contact_ ? contact_of_step_.islands : model.island_count;
+  record.sleeping = sleeping_;
   record.substeps = substeps_;
   record.linear_iterations = outcome_.linear_iterations;
   record.linear_residual = outcome_.linear_residual;

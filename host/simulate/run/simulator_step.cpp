@@ -3,14 +3,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/simulate/rotations.hpp"
 #include "host/simulate/run/simulator_impl.hpp"
 #include "host/simulate/scene_record.hpp"
 
 namespace tetwarp {
 namespace {
 
-constexpr double largest_turn = 0.5;    // of a rigid body in a step [rad]
 constexpr double held_fraction = 0.05;  // of a step: bodies that move less are held up
 constexpr int most_held_steps = 2;      // successive ones, before a step is divided
 // After a step that the smallest parts did not help, so many steps are not divided for contact:
@@ -34,18 +32,9 @@ void add_seconds(const StepSeconds& part, StepSeconds& sum) {
 
 }  // namespace
 
-bool Simulator::Impl::turns_too_far(const ModelState& of, double time_step) const {
-  for (std::int32_t r = 0; r < model.rigid_count; ++r) {
-    if (at(model.rigid.mass, r) == 0) continue;
-    const Point3 spin = angular_velocity_of(model, of, r);
-    if (norm(spin) * time_step > largest_turn) return true;
-  }
-  return false;
-}
-
 int Simulator::Impl::parts_for_spin() const {
   int parts = 1;
-  while (2 * parts <= scene.solver.max_substeps && turns_too_far(state, scene.time_step / parts)) {
+  while (2 * parts <= scene.solver.max_substeps && turns_too_far(scene.time_step / parts)) {
     parts *= 2;
   }
   return parts;
@@ -53,7 +42,7 @@ int Simulator::Impl::parts_for_spin() const {
 
 bool Simulator::Impl::is_good(const Attempt& result, const ContactPart& part, double time_step) {
   if (!result.is_finite || !result.outcome.converged) return false;
-  if (turns_too_far(state, time_step)) return false;
+  if (turns_too_far(time_step)) return false;
   if (undivided_steps_ > 0) {
     inverted_ = -1;
     return true;
@@ -65,11 +54,15 @@ bool Simulator::Impl::is_good(const Attempt& result, const ContactPart& part, do
     return true;
   }
   const std::int64_t before = inverted_ >= 0 ? inverted_ : inverted_count(model, part_start_);
-  inverted_ = inverted_count(model, state);
+  inverted_ = inverted_count(model, state());
   return inverted_ <= before;
 }
 
 void Simulator::Impl::end_part(double time_step) {
+  if (resident_ != nullptr) {
+    resident_->add_sums(input_, sums_);
+    return drive.accept();
+  }
   std::vector<Point3> supports = stepper->support_impulses();
   if (contact_) {
     const std::vector<Point3>& of_contacts = contact_->block_impulses();
@@ -80,7 +73,7 @@ void Simulator::Impl::end_part(double time_step) {
     }
     sums_.add_contacts(contact_->body_impulses());
   }
-  add_step(model, part_start_, state, input_, supports, sums_);
+  add_step(model, part_start_, state_, input_, supports, sums_);
   drive.accept();
   if (contact_) drive.delay(contact_->fractions(), time_step);
 }
@@ -96,15 +89,18 @@ bool Simulator::Impl::advance(int part, double time_step, Attempt& result) {
   ContactPart contact;
   if (contact_) {
     const bool is_first = step_index == 0 && part == 0;
-    contact = contact_->advance(state, time_step, is_first, *stepper, result.outcome.seconds);
+    contact = contact_->advance(state_, time_step, is_first, *stepper, result.outcome.seconds);
     if (!contact.is_completed) return false;
+    if (!contact.woken.empty()) {
+      add_part(contact, result.contact);
+      wake(contact.woken);
+      return advance(part, time_step, result);
+    }
   } else {
     result.outcome.seconds.update += stepper->move(time_step, {});
   }
-  part_start_ = state;
-  stepper->get_state(state);
-  result.is_finite = is_finite_state(state);
-  if (contact_ && result.is_finite) contact_->end(state, contact);
+  result.is_finite = take_state();
+  if (contact_ && result.is_finite) contact_->end(state_, contact);
   add_part(contact, result.contact);
   result.is_good = is_good(result, contact, time_step);
   return true;
@@ -118,9 +114,11 @@ Simulator::Impl::Attempt Simulator::Impl::attempt(int parts) {
   for (int part = 0; part < parts; ++part) {
     const bool is_last = part + 1 == parts;
     const double end = time_of(is_last ? index + 1 : index + static_cast<double>(part + 1) / parts);
-    drive.fill(state, end, dt, input_);
-    loads_.forces(state, end, input_.block_force);
-    growth_.apply(model, state, input_);
+    if (!is_state_here_) resident_->read_watched(state_);
+    drive.fill(state_, end, dt, input_);
+    loads_.forces(state_, end, input_.block_force);
+    growth_.apply(model, state_, input_);
+    if (sleep_.is_on()) begin_sleep();
     result.is_completed = advance(part, dt, result);
     if (!result.is_completed) return result;
     if (!result.is_good && 2 * parts <= scene.solver.max_substeps) return result;
@@ -142,24 +140,26 @@ void Simulator::Impl::accept(const Attempt& made, int parts, const StepSeconds& 
   } else if (undivided_steps_ > 0) {
     --undivided_steps_;
   }
+  if (sleep_.is_on()) fall_asleep(made);
   contact_points.clear();
   if (contact_) contact_points = contact_->points();
 }
 
 bool Simulator::Impl::take_steps() {
   const auto start = std::chrono::steady_clock::now();
-  step_start_ = state;
+  keep_state();
   const auto handles = drive.handles();
   const auto delays = drive.delays();
   const StepSums sums = sums_;
   if (contact_) contact_->remember(contact_start_);
+  sleep_start_ = sleep_.state();
   const auto go_back = [&] {
-    state = step_start_;
-    stepper->set_state(state);
+    return_to_kept_state();
     drive.handles() = handles;
     drive.delays() = delays;
     inverted_ = -1;
     if (contact_) contact_->restore(contact_start_);
+    sleep_.set_state(sleep_start_);
   };
   StepSeconds seconds;
   iterations_before_ = 0;

@@ -71,7 +71,8 @@ bool StepGroups::join(std::int32_t a, std::int32_t b) {
   return a != b;
 }
 
-void StepGroups::begin(const std::vector<TrackedContact>& contacts) {
+void StepGroups::begin(const std::vector<TrackedContact>& contacts,
+                       std::span<const BodyLink> sleeping) {
   parent_ = island_start_;
   std::fill(fraction_.begin(), fraction_.end(), 1);
   rounds_ = 0;
@@ -79,11 +80,11 @@ void StepGroups::begin(const std::vector<TrackedContact>& contacts) {
     const auto b = static_cast<std::size_t>(body);
     return b < model_.body_island.size() && model_.body_island[b] >= 0;
   };
-  for (const TrackedContact& contact : contacts) {
-    if (is_free(contact.key.body_a) && is_free(contact.key.body_b)) {
-      join(contact.key.body_a, contact.key.body_b);
-    }
-  }
+  const auto tie = [&](std::int32_t a, std::int32_t b) {
+    if (is_free(a) && is_free(b)) join(a, b);
+  };
+  for (const TrackedContact& contact : contacts) tie(contact.key.body_a, contact.key.body_b);
+  for (const auto& [a, b] : sleeping) tie(a, b);
 }
 
 void StepGroups::note_what_moves(const SurfaceMotion& motion) {

@@ -4,12 +4,14 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>
 
 #include "host/collide/detector.hpp"
 #include "host/simulate/model.hpp"
+#include "host/simulate/run/island_sleep.hpp"
 
 namespace tetwarp {
 
@@ -22,7 +24,8 @@ class StepGroups {
   StepGroups(const Model& model, const CollisionSurfaces& surfaces);
 
   /// Starts a step: coupling islands, joined where contacts tie two of them; all fractions are 1.
-  void begin(const std::vector<TrackedContact>& contacts);
+  /// @param sleeping  bodies of contacts that are not solved
+  void begin(const std::vector<TrackedContact>& contacts, std::span<const BodyLink> sleeping);
 
   /// Shortens the ways of groups with pairs that come too near, and joins the two groups of each.
   /// Call it until it returns false, each time with the hits of the motion of fractions().

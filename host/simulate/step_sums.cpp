@@ -1,4 +1,4 @@
-#include "host/simulate/run/step_sums.hpp"
+#include "host/simulate/step_sums.hpp"
 
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/rotations.hpp"

@@ -1,0 +1,107 @@
+/// @file two_level_sweeps.cpp
+/// The sweeps of an outer iteration of TwoLevelSolver.
+#include <algorithm>
+#include <cmath>
+
+#include "host/exec/contact_exec_cpu.hpp"
+#include "host/simulate/contact/two_level_solver.hpp"
+
+namespace tetwarp {
+namespace {
+
+constexpr std::int64_t most_sweeps = 50;  // in an outer iteration
+
+std::size_t at(std::int64_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+}  // namespace
+
+/// Copies the impulses of `list`.
+void TwoLevelSolver::gather_impulses(const std::vector<std::int32_t>& list) {
+  swept_.clear();
+  for (const std::int32_t contact : list) {
+    const auto begin = impulse_.begin() + 3 * std::ptrdiff_t{contact};
+    swept_.insert(swept_.end(), begin, begin + 3);
+  }
+}
+
+void TwoLevelSolver::scatter_impulses(const std::vector<std::int32_t>& list) {
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    std::copy_n(swept_.begin() + 3 * static_cast<std::ptrdiff_t>(k), 3,
+                impulse_.begin() + 3 * std::ptrdiff_t{list[k]});
+  }
+}
+
+/// One sweep over the contacts that work. @returns the norm of the change in its energy
+double TwoLevelSolver::sweep_working() {
+  const std::vector<std::int32_t>& list = blocks_.working();
+  gather_impulses(list);
+  before_ = swept_;
+  blocks_.sweep(switches_, list, y_.data(), swept_.data());
+  double square = 0;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      square += blocks_.diagonal()[3 * at(list[k]) + a] *
+                square_of(swept_[3 * k + a] - before_[3 * k + a]);
+    }
+  }
+  scatter_impulses(list);
+  return std::sqrt(square);
+}
+
+/// Sweeps over `list` with Anderson acceleration of its impulses, until a sweep changes them by at
+/// most `enough` or `sweeps` is at its limit.
+void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
+                                  double enough,
+                                  std::int64_t& sweeps) {
+  const auto size = static_cast<std::int64_t>(3 * list.size());
+  CpuContactExec exec(threads_);
+  using Mixer = AndersonMixer<CpuContactExec, double>;
+  mixed_impulses_.resize(at(Mixer::columns * size));
+  listed_diagonal_.clear();
+  for (const std::int32_t contact : list) {
+    const auto begin = blocks_.diagonal().begin() + 3 * std::ptrdiff_t{contact};
+    listed_diagonal_.insert(listed_diagonal_.end(), begin, begin + 3);
+  }
+  Mixer mixer(exec, {listed_diagonal_.data(), size},
+              {mixed_impulses_.data(), Mixer::columns * size});
+  gather_impulses(list);
+  const View<double> image{swept_.data(), size};
+  while (sweeps < most_sweeps) {
+    before_ = swept_;
+    const View<const double> before{before_.data(), size};
+    blocks_.sweep(switches_, list, y_.data(), swept_.data());
+    ++sweeps;
+    mixer.observe(before, image);
+    if (mixer.defect() <= enough || sweeps == most_sweeps) break;
+    unmixed_ = swept_;
+    if (mixer.advance(before, image)) {
+      blocks_.push(list, unmixed_.data(), swept_.data(), y_.data());
+    }
+  }
+  scatter_impulses(list);
+}
+
+/// Sweeps until one over all contacts that work changes their impulses by at most `enough` in the
+/// norm of their energy. Between these, sweeps over those with impulses only: a contact that is
+/// open stays so in most of them. @returns the sweeps
+std::int64_t TwoLevelSolver::sweep(double enough) {
+  std::int64_t sweeps = 0;
+  const std::vector<std::int32_t>& working = blocks_.working();
+  while (!working.empty() && sweeps < most_sweeps) {
+    ++sweeps;
+    if (sweep_working() <= enough) break;
+    pushing_.clear();
+    for (const std::int32_t contact : working) {
+      const double* const r = impulse_.data() + 3 * std::ptrdiff_t{contact};
+      if (r[0] != 0 || r[1] != 0 || r[2] != 0) pushing_.push_back(contact);
+    }
+    const bool are_most = 4 * pushing_.size() > 3 * working.size();
+    sweep_listed(are_most ? working : pushing_, enough, sweeps);
+    if (are_most) break;
+  }
+  return sweeps;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,196 @@
+// Contacts between bodies that stand still: kept as they are while their bodies sleep.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "host/base/point3.hpp"
+#include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/run/contact_step.hpp"
+
+namespace tetwarp {
+namespace {
+
+constexpr double calm_bond_rate = 1e-6;  // of the intensity [1/s]
+constexpr double calm_slip = 0.1;        // of the speed at which a body counts as at rest
+
+bool key_is_less(const ContactRecord& a, const ContactRecord& b) {
+  return a.key < b.key;
+}
+
+BodyLink bodies_of(const ContactKey& key) {
+  return {key.body_a, key.body_b};
+}
+
+}  // namespace
+
+void ContactStep::set_still(std::span<const std::uint8_t> is_still) {
+  if (is_still.empty() && still_.empty()) return;
+  still_.assign(is_still.begin(), is_still.end());
+  detector_->set_still(still_);
+}
+
+bool ContactStep::both_still(const BodyLink& bodies) const {
+  return still_[static_cast<std::size_t>(bodies[0])] != 0 &&
+         still_[static_cast<std::size_t>(bodies[1])] != 0;
+}
+
+/// Leaves out pairs of bodies that stand still, and notes those that something reaches.
+const std::vector<TouchingPair>& ContactStep::awake_pairs(const std::vector<TouchingPair>& found) {
+  if (still_.empty()) return found;
+  awake_pairs_.clear();
+  for (const TouchingPair& pair : found) {
+    const BodyLink bodies = tetwarp::bodies_of(pair, surfaces_.surfaces);
+    if (both_still(bodies)) continue;
+    awake_pairs_.push_back(pair);
+    for (const std::int32_t body : bodies) {
+      const bool is_free = surfaces_.surfaces.bodies[static_cast<std::size_t>(body)].has_unknowns;
+      if (is_free && still_[static_cast<std::size_t>(body)] != 0) woken_.push_back(body);
+    }
+  }
+  return awake_pairs_;
+}
+
+std::vector<ContactRecord> ContactStep::all_records() const {
+  std::vector<ContactRecord> sleeping, all;
+  for (const SleepingContact& contact : sleeping_) sleeping.push_back(contact.record);
+  const std::vector<ContactRecord>& awake = tracker_.start_records();
+  std::merge(awake.begin(), awake.end(), sleeping.begin(), sleeping.end(), std::back_inserter(all),
+             key_is_less);
+  return all;
+}
+
+void ContactStep::thaw(std::span<const std::uint8_t> is_still) {
+  set_still(is_still);
+  if (sleeping_.empty()) return;
+  std::vector<SleepingContact> still;
+  std::vector<ContactRecord> woken, all;
+  for (SleepingContact& contact : sleeping_) {
+    if (!still_.empty() && both_still(bodies_of(contact.record.key))) {
+      still.push_back(std::move(contact));
+    } else {
+      woken.push_back(contact.record);
+    }
+  }
+  const std::vector<ContactRecord>& awake = tracker_.start_records();
+  std::merge(awake.begin(), awake.end(), woken.begin(), woken.end(), std::back_inserter(all),
+             key_is_less);
+  tracker_ = ContactTracker(tracker_options_, std::move(all));
+  set_sleeping(std::move(still));
+}
+
+void ContactStep::freeze(std::span<const std::uint8_t> is_still) {
+  set_still(is_still);
+  if (still_.empty() || contacts_ == nullptr) return;
+  const std::vector<ContactRecord>& records = tracker_.records();
+  std::vector<ContactRecord> awake;
+  std::vector<SleepingContact> asleep;
+  std::size_t c = 0;
+  for (const ContactRecord& record : records) {
+    while (c < contacts_->size() && (*contacts_)[c].key < record.key) ++c;
+    const bool has_contact = c < contacts_->size() && (*contacts_)[c].key == record.key;
+    if (has_contact && both_still(bodies_of(record.key))) {
+      asleep.push_back({record, (*contacts_)[c], own_points_[c], time_step_});
+    } else {
+      awake.push_back(record);
+    }
+  }
+  std::vector<SleepingContact> all;
+  std::merge(sleeping_.begin(), sleeping_.end(), asleep.begin(), asleep.end(),
+             std::back_inserter(all), [](const SleepingContact& a, const SleepingContact& b) {
+               return a.record.key < b.record.key;
+             });
+  set_sleeping(std::move(all));
+  tracker_ = ContactTracker(tracker_options_, std::move(awake));
+  contacts_ = nullptr;
+}
+
+void ContactStep::set_sleeping(std::vector<SleepingContact> contacts) {
+  sleeping_ = std::move(contacts);
+  sleeping_links_.clear();
+  for (const SleepingContact& contact : sleeping_) {
+    sleeping_links_.push_back(bodies_of(contact.record.key));
+  }
+  has_sleeping_forces_ = false;
+}
+
+/// Adds what contacts between bodies that stand still do in a part of a step.
+void ContactStep::add_sleeping(const ModelState& state, double time_step, ContactPart& part) {
+  if (sleeping_.empty()) return;
+  if (!has_sleeping_forces_) set_sleeping_forces(state);
+  part.contacts += static_cast<std::int64_t>(sleeping_.size());
+  for (const SleepingContact& contact : sleeping_) {
+    const Point3 on_a = times(time_step / contact.time_step, contact.point.impulse);
+    Point3& a = body_impulses_[contact.point.body_a];
+    Point3& b = body_impulses_[contact.point.body_b];
+    a = plus(a, on_a);
+    b = minus(b, on_a);
+  }
+  for (const auto& [block, force] : sleeping_forces_) {
+    Point3& of_block = block_impulses_[static_cast<std::size_t>(block)];
+    of_block = plus(of_block, times(time_step, force));
+  }
+}
+
+void ContactStep::set_sleeping_forces(const ModelState& state) {
+  std::vector<TrackedContact> contacts;
+  for (const SleepingContact& contact : sleeping_) contacts.push_back(contact.contact);
+  ContactRows rows;
+  set_contact_rows(surfaces_, model_, frames_of_bodies(surfaces_, model_), state, contacts, rows);
+  sleeping_forces_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const SleepingContact& of = sleeping_[c];
+    for (auto k = static_cast<std::size_t>(rows.start[c]);
+         k < static_cast<std::size_t>(rows.start[c + 1]); ++k) {
+      if (model_.prescribed[static_cast<std::size_t>(rows.block[k])] == 0) continue;
+      Point3 force{0, 0, 0};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double along = dot(of.point.impulse, of.contact.axes[axis]) / of.time_step;
+        for (std::size_t i = 0; i < 3; ++i) force[i] += along * rows.value[k][3 * axis + i];
+      }
+      sleeping_forces_.emplace_back(rows.block[k], force);
+    }
+  }
+  has_sleeping_forces_ = true;
+}
+
+/// Points of all contacts, those between bodies that stand still included, in the order of keys.
+void ContactStep::merge_points() {
+  points_.clear();
+  std::size_t s = 0;
+  const auto add_sleeping = [&] { points_.push_back(sleeping_[s++].point); };
+  for (std::size_t c = 0; c < own_points_.size(); ++c) {
+    const ContactKey& key = (*contacts_)[c].key;
+    while (s < sleeping_.size() && sleeping_[s].record.key < key) add_sleeping();
+    points_.push_back(own_points_[c]);
+  }
+  while (s < sleeping_.size()) add_sleeping();
+}
+
+/// @param before  intensities of the contacts at the start of the part
+void ContactStep::note_rest(const std::vector<double>& before) {
+  rest_.links.clear();
+  rest_.is_restless.assign(surfaces_.surfaces.bodies.size(), 0);
+  for (std::size_t b = 0; b < fractions().size(); ++b) rest_.is_restless[b] = fractions()[b] < 1;
+  for (std::size_t c = 0; c < own_points_.size(); ++c) {
+    const TrackedContact& contact = (*contacts_)[c];
+    const BodyLink bodies = bodies_of(contact.key);
+    rest_.links.push_back(bodies);
+    const double* const impulse = system_.solution().impulse.data() + 3 * c;
+    const double* const velocity = system_.solution().velocity.data() + 3 * c;
+    const auto a = static_cast<std::size_t>(bodies[0]), b = static_cast<std::size_t>(bodies[1]);
+    const auto material = static_cast<std::size_t>(surfaces_.material_of(bodies[0], bodies[1]));
+    const double friction = surfaces_.materials[material].friction;
+    const bool is_at_limit =
+        std::hypot(impulse[1], impulse[2]) >= (1 - 1e-6) * friction * impulse[0];
+    const double size = std::min(surfaces_.body_size[a], surfaces_.body_size[b]);
+    const double slip = calm_slip * IslandSleep::rest_speed * size;
+    const bool slides = is_at_limit && std::hypot(velocity[1], velocity[2]) > slip;
+    const double bonding = std::abs(own_points_[c].intensity - before[c]);
+    if (slides || bonding > calm_bond_rate * time_step_) {
+      rest_.is_restless[a] = rest_.is_restless[b] = 1;
+    }
+  }
+}
+
+}  // namespace tetwarp

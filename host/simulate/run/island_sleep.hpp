@@ -1,0 +1,112 @@
+/// @file island_sleep.hpp
+/// IslandSleep: which coupling islands are at rest and are left out of steps until something
+/// reaches them.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "host/scene/scene_geometry.hpp"
+#include "host/simulate/model.hpp"
+#include "host/simulate/stepper.hpp"
+
+namespace tetwarp {
+
+/// Two bodies or obstacles with a contact; numbered as ModelPoint::body.
+using BodyLink = std::array<std::int32_t, 2>;
+
+/// What contacts say about rest.
+struct ContactRest {
+  std::vector<BodyLink> links;            ///< of all contacts of the step
+  std::vector<std::uint8_t> is_restless;  ///< [bodies, then obstacles] slides, or is held up, or
+                                          ///< has a bond that changes; or empty: none
+};
+
+/// What goes on from step to step; [islands].
+struct SleepState {
+  std::vector<std::uint8_t> is_asleep;
+  std::vector<double> calm_time;      ///< [s] for which the island has been at rest
+  std::vector<std::uint64_t> inputs;  ///< hash of the loads and anchors of the last step
+};
+
+/// A coupling island sleeps when, for 0.5 s, its points have moved by less than a thousandth of the
+/// size of its smallest body per second, loads, anchors and supports have not changed, and the same
+/// holds for all islands that it touches, with contacts that stick. It then stands still, without
+/// velocity. It wakes, with all that touches it, when its loads, anchors or supports change, and
+/// when something that moves reaches it.
+class IslandSleep {
+ public:
+  static constexpr double rest_time = 0.5;    ///< [s]
+  static constexpr double rest_speed = 1e-3;  ///< [body sizes / s]
+
+  /// @param model  kept by the caller
+  IslandSleep(const Scene& scene, const SceneGeometry& geometry, const Model& model);
+
+  /// Whether the scene asks for it; if not, nothing ever sleeps.
+  bool is_on() const { return is_on_; }
+  bool any_asleep() const;
+  const SleepState& state() const { return now_; }
+  /// Whether bodies are asleep or do not move in the step; [bodies, then obstacles], empty where
+  /// nothing sleeps. Valid from begin() on.
+  const std::vector<std::uint8_t>& still() const { return still_; }
+  /// Islands that sleep, those with a contact between them counted as one.
+  std::int64_t group_count(std::span<const BodyLink> links) const;
+  /// [bodies]
+  bool is_asleep(std::int32_t body) const;
+
+  void set_state(SleepState state) { now_ = std::move(state); }
+
+  /// Before the solve of a step or part of one: wakes the islands whose inputs have changed, and
+  /// fills StepInput::is_asleep.
+  /// @param links  of contacts between bodies that sleep or are still
+  /// @returns whether an island has woken
+  bool begin(const ModelState& state, std::span<const BodyLink> links, StepInput& input);
+  /// Wakes the islands of the bodies and all that are linked to them; as begin().
+  void wake(std::span<const std::int32_t> bodies,
+            std::span<const BodyLink> links,
+            StepInput& input);
+  /// After a step: lets islands fall asleep.
+  /// @param input  of its last part
+  /// @param state  after it; velocities of islands that fall asleep are set to zero
+  /// @returns whether one has fallen asleep
+  bool end(const StepInput& input, const ContactRest& rest, double time_step, ModelState& state);
+  /// Forgets for how long islands have been at rest.
+  void interrupt();
+
+ private:
+  struct Island {
+    std::vector<std::int32_t> bodies;
+    std::vector<std::int32_t> blocks;   ///< unknowns
+    std::vector<std::int32_t> driven;   ///< prescribed blocks of its bodies and of what it is
+                                        ///< coupled to
+    std::vector<std::int32_t> springs;  ///< of handles
+    double size = 0;                    ///< of its smallest body [m]
+  };
+
+  std::int32_t island_of(std::int32_t body) const;
+  bool moves(std::int32_t block, const ModelState& state, const StepInput& input) const;
+  void note_what_moves(const ModelState& state, const StepInput& input);
+  void set_still();
+  void fill(StepInput& input) const;
+  void join(std::span<const BodyLink> links) const;
+  std::uint64_t hash_of(const Island& island, const StepInput& input) const;
+  double speed_of(const Island& island, const ModelState& state) const;
+  bool is_calm(std::size_t island, const ContactRest& rest, const ModelState& state) const;
+  void add_driven(const ModelPoint& point, Island& island) const;
+
+  const Model& model_;
+  bool is_on_ = false;
+  SleepState now_;
+  std::vector<Island> islands_;
+  std::vector<std::vector<std::int32_t>> body_driven_;  ///< [bodies, then obstacles] prescribed
+                                                        ///< blocks
+  std::vector<std::int32_t> block_body_;                ///< [blocks] body or obstacle
+  std::vector<double> body_size_;                       ///< [bodies, then obstacles] [m]
+  std::vector<std::uint8_t> is_driven_;  ///< [bodies, then obstacles] a prescribed block moves
+  std::vector<std::uint8_t> still_;
+  mutable std::vector<std::int32_t> parent_;  ///< [islands] of join()
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,89 @@
+/// @file test_contact_cuda.cpp
+/// Steps with contact on back end cuda against those on cpu, on a device where there is one, and on
+/// the emulated one: stepper and detector are those of the device, contacts are solved on the host.
+#include <memory>
+
+#include <tetwarp/error.hpp>
+
+#include "tests/simulate/touch_run.hpp"
+
+namespace tetwarp::test {
+namespace {
+Scene on_floor(std::vector<Body> bodies) {
+  Scene scene = scene_of(std::move(bodies), 0.004);
+  scene.obstacles = {plane_at(0)};
+  scene.thickness = 2e-4;
+  scene.contact.material.friction = 0.4;
+  scene.solver.contact_tolerance = 1e-11;
+  return scene;
+}
+
+/// A box, a ball and a capsule that fall onto each other.
+Scene rigid_pile() {
+  Body low = rigid_box("low", {0.06, 0.06, 0.03}, {0, 0, 0.032});
+  Body ball = rigid_ball("ball", 0.03, {0.01, 0.005, 0.1});
+  Body high = rigid_capsule("high", 0.015, 0.06, {-0.02, 0, 0.185});
+  ball.velocity = {0, 0, -1};
+  high.velocity = {0, 0, -1};
+  return on_floor({low, ball, high});
+}
+
+Scene soft_on_plane() {
+  Body soft = elastic_box("soft", {0.05, 0.05, 0.05}, {3, 3, 3});
+  soft.pose.position = {0, 0, 0.055};
+  soft.velocity = {0.3, 0, -0.5};
+  return on_floor({soft});
+}
+
+Scene cloth_on_ball() {
+  Body cloth = sheet_body("cloth", {0.2, 0.2}, {8, 8});
+  cloth.pose.position = {-0.09, -0.11, 0.103};
+  cloth.velocity = {0, 0, -0.5};
+  return on_floor({rigid_ball("ball", 0.05, {0, 0, 0.0503}), cloth});
+}
+
+void expect_parity(const Scene& scene, int steps, double tolerance) {
+  std::unique_ptr<Simulator> cuda;
+  try {
+    cuda = std::make_unique<Simulator>(scene, SimulateOptions{.backend = Backend::cuda});
+  } catch (const CudaError& error) {
+    GTEST_SKIP() << error.what();
+  }
+  Simulator cpu(scene, {.backend = Backend::cpu, .threads = 1});
+  std::int64_t most_contacts = 0;
+  for (int n = 0; n < steps && !testing::Test::HasFailure(); ++n) {
+    SCOPED_TRACE("step " + std::to_string(n));
+    cpu.step();
+    cuda->step();
+
+    const StepRecord &a = cuda->record(), &b = cpu.record();
+    EXPECT_EQ(a.contacts, b.contacts);
+    EXPECT_EQ(a.contact_passes, b.contact_passes);
+    EXPECT_EQ(a.islands, b.islands);
+    EXPECT_TRUE(a.converged && b.converged);
+    EXPECT_NEAR(a.smallest_distance, b.smallest_distance, tolerance);
+    const std::vector<Point3> places = places_of(*cuda), expected = places_of(cpu);
+    double farthest = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      farthest = std::max(farthest, distance_of(places[i], expected[i]));
+    }
+    EXPECT_LE(farthest, tolerance);
+    most_contacts = std::max(most_contacts, b.contacts);
+  }
+  EXPECT_GT(most_contacts, 2);
+}
+
+TEST(ContactCuda, ARigidPileFallsAsOnTheCpu) {
+  expect_parity(rigid_pile(), 40, 1e-6);
+}
+
+TEST(ContactCuda, ASoftBoxSlidesOnAPlaneAsOnTheCpu) {
+  expect_parity(soft_on_plane(), 25, 1e-6);
+}
+
+TEST(ContactCuda, ClothLandsOnABallAsOnTheCpu) {
+  expect_parity(cloth_on_ball(), 25, 1e-6);
+}
+
+}  // namespace
+}  // namespace tetwarp::test
