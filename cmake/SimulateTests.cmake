@@ -29,7 +29,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_stepper_options.cpp
     tests/simulate/test_vector_assembly.cpp
     tests/simulate/test_vector_stages.cpp
-    tests/emu/emulated_stepper.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_stepper_emulated.cpp
     tests/simulate/test_parity_cuda.cpp
     tests/simulate/test_stepper_parity.cpp
@@ -62,8 +62,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/test_detector_pairs.cpp
     tests/collide/test_detector_steps.cpp
     tests/collide/test_detector_turns.cpp
-    tests/emu/emulated_detector.cpp
-    tests/emu/emulated_primitives.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_detector>
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     tests/emu/test_detector_emulated.cpp)
   # Replaces the allocation functions of the program: not to be inlined into other files.
   set_source_files_properties(tests/collide/counted_memory.cpp PROPERTIES
@@ -111,10 +111,10 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_law_throws.cpp
     )
   set(tetwarp_emulated_simulator_tests  # the Simulator on emulated cuda, its detector and a Warper
-    tests/emu/emulated_backend.cpp
-    tests/emu/emulated_detector.cpp
-    tests/emu/emulated_primitives.cpp
-    tests/emu/emulated_stepper.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_backend>
+    $<TARGET_OBJECTS:tetwarp_emulated_detector>
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives>
+    $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_simulator_emulated.cpp
     tests/simulate/test_contact_cuda.cpp)
   foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces

@@ -192,10 +192,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_skip.cpp
     tests/contact/test_contact_solver.cpp
     tests/contact/test_contact_sweep.cpp
-    tests/contact/test_contact_analysis.cpp
-    tests/contact/test_contact_bilateral.cpp
-    tests/contact/test_contact_ellipse.cpp
-    tests/contact/test_contact_rolling.cpp)
+    tests/contact/test_contact_analysis.cpp tests/contact/test_contact_bilateral.cpp
+    tests/contact/test_contact_ellipse.cpp tests/contact/test_contact_rolling.cpp)
   tetwarp_discover(tetwarp_contact_tests unit)
 
   tetwarp_add_tests(tetwarp_contact_stress_tests SOURCES
@@ -217,22 +215,23 @@ if(NOT BUILD_SHARED_LIBS)
   # cuda is the emulated device, in the other a real one.
   add_library(tetwarp_backend_tests OBJECT
     tests/contact/test_contact_cuda.cpp
-    tests/warp/test_blocks.cpp
-    tests/warp/test_parity.cpp
-    tests/warp/test_warp_antialias.cpp
-    tests/warp/test_warp_fields.cpp
+    tests/warp/test_blocks.cpp tests/warp/test_parity.cpp
+    tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
     tests/warp/test_warp_hexahedra.cpp
-    tests/warp/test_warp_in_flight.cpp
-    tests/warp/test_warp_intensity.cpp
-    tests/warp/test_warp_rounding.cpp
-    tests/warp/test_warp_quantities.cpp)
+    tests/warp/test_warp_in_flight.cpp tests/warp/test_warp_intensity.cpp
+    tests/warp/test_warp_quantities.cpp tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
   if(TETWARP_FUSED_EMULATION)
     set_source_files_properties(tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
   endif()
+  foreach(part backend detector primitives stepper)  # compiled once for several programs
+    add_library(tetwarp_emulated_${part} OBJECT tests/emu/emulated_${part}.cpp)
+    tetwarp_test_target(tetwarp_emulated_${part})
+  endforeach()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
-    tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp tests/emu/emulated_primitives.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_primitives>
+    tests/emu/emulated_contact.cpp
     tests/emu/test_cell_list_emulated.cpp tests/emu/test_contact_arrays_emulated.cpp
     tests/emu/test_contact_emulated.cpp tests/emu/test_device_errors.cpp
     tests/emu/test_step_operations.cpp tests/emu/test_warp_emulated.cpp
@@ -260,7 +259,9 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 # ---- every public header compiles alone, without CUDA ------------------------------------------
-set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate tetwarp version volume warp)
+set(tetwarp_public_headers backend blocks choices contact contact_adhesion contact_arrays
+  contact_problem contact_tracker error make mesh names page_lock report scene scene_parts simulate
+  tetwarp version volume warp)
 if(TETWARP_IO)
   list(APPEND tetwarp_public_headers contact_io io mesh_import scene_io)
 endif()
