@@ -19,7 +19,7 @@ constexpr double least_progress = 0.9;
 // Multiplications of all sweeps of a solve, after which it ends: about a second.
 constexpr std::int64_t most_operations = 1'000'000'000;
 // Up to these sizes the contact solver is quick where the iteration fails.
-constexpr std::int64_t small_contacts = 256, small_rows = 512;
+constexpr std::int64_t small_contacts = 256, small_rows = 128;
 constexpr std::int32_t chunk_rows = 64;
 constexpr double inner_share = 0.002;  // of the error before an outer iteration, left by its sweeps
 // The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors the
