@@ -24,8 +24,8 @@ run_bench() {
   unset OMP_WAIT_POLICY  # threads may spin: nothing else should run meanwhile
   [[ -x $python ]] || python=python3
   results=$folder/results/$(date +%F)-$(machine_name)
-  configure "$folder" -DCMAKE_CUDA_ARCHITECTURES="$(cuda_architecture)" \
-    -DTETWARP_BENCH=ON -DTETWARP_TESTS=OFF
+  find_cuda_options
+  configure "$folder" "${cuda_options[@]}" -DTETWARP_BENCH=ON -DTETWARP_TESTS=OFF
   cmake --build "$folder" --target tetwarp_bench tetwarp_bench_contact
   mkdir -p "$folder/results"
   rm -f "$results".json "$results"-{contact,beside}.json "$folder/results.md"

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include <tetwarp/export.hpp>
+
 namespace tetwarp {
 
 /// Most threads that a loop uses.
@@ -13,7 +15,7 @@ inline constexpr int max_threads = 1024;
 /// Number of threads for an option.
 /// @param requested  0: one per processor that this process may use, at most max_threads
 /// @throws std::invalid_argument  it is not from 0 to max_threads
-int thread_count(int requested);
+TETWARP_EXPORT int thread_count(int requested);
 
 /// Calls call(context, i) once for every i in [0, count). Internal to parallel_tasks().
 void run_parallel_tasks(int threads,

@@ -108,7 +108,7 @@ TEST(ContactStress, BodiesBetweenClosingWallsAreNotCrushed) {
         {.name = "lid", .geometry = PlaneObstacle{{0, 0, -1}, {0, 0, 0.055}}, .path = down},
         {.name = "floor", .geometry = PlaneObstacle{{0, 0, 1}, {0, 0, -0.055}}, .path = up}};
     Simulator simulator(scene);
-    const Watch watch = watch_steps(simulator, 60);
+    const Watch watch = watch_steps(simulator, 46);
     SCOPED_TRACE(testing::Message() << is_rigid << ": " << watch);
     expect_sound(watch);
     EXPECT_GT(watch.stalled, 0);

@@ -36,7 +36,7 @@ SelfTouch run_judged(const Scene& scene, int steps) {
 
 /// A strip of cloth that stands on the floor, leans a little and folds onto itself.
 TEST(SelfContact, AStandingStripOfClothFoldsOntoItself) {
-  Body cloth = sheet_body("cloth", {0.3, 0.04}, {36, 4});
+  Body cloth = sheet_body("cloth", {0.3, 0.04}, {24, 3});
   auto& sheet = std::get<Sheet>(cloth.geometry);
   sheet.axes = {Point3{std::sin(0.1), 0, std::cos(0.1)}, Point3{0, 1, 0}};
   sheet.origin = {0, -0.02, 0.002};
@@ -91,7 +91,7 @@ Scene ring(bool touches_itself) {
 }
 
 TEST(SelfContact, ASoftRingClosesOnItself) {
-  const SelfTouch touch = run_judged(ring(true), 100);
+  const SelfTouch touch = run_judged(ring(true), 75);
   EXPECT_GT(touch.most, 2U);
   EXPECT_GT(touch.steps, 20);
   EXPECT_GT(touch.impulse, 0);

@@ -28,7 +28,7 @@ BackendStatus cuda_status(int device) {
 
 /// No kernel has a larger stack per thread; `./dev check cuda` compares. The first launch of a
 /// kernel reserves its stack for as many threads as the device can hold.
-constexpr double stack_bytes = 8192;
+constexpr double stack_bytes = 9216;
 
 double free_device_memory(int device) {
   std::size_t free = 0, all = 0;
