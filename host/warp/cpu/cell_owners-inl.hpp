@@ -93,24 +93,42 @@ inline bool find_inside(const RasterGeometry& job,
     begin[axis] = std::max(tet.begin[axis] - box.corner[axis], box.begin[axis]);
     end[axis] = std::min(tet.end[axis] - box.corner[axis], box.end[axis]);
   }
-  const SliceBits rows = rows_between(begin[1], end[1], 0xff);
+  const SliceTag d;
+  const hn::RebindToSigned<SliceTag> di;
+  const auto rows = hn::Set(d, rows_between(begin[1], end[1], 0xff));
+  const auto below = hn::Set(di, begin[2] - 1), above = hn::Set(di, end[2]);
   CellBits tested;
-  for (int k = 0; k < cell_edge; ++k) {
-    tested.slice[k] = k >= begin[2] && k < end[2] ? open.slice[k] & rows : 0;
-  }
-  if (!any_of(tested)) return false;
+  auto some = hn::Zero(d);
+  for_slices([&](std::size_t k) {
+    const auto slice = hn::Iota(di, static_cast<std::int64_t>(k));
+    const auto is_in = hn::And(hn::Gt(slice, below), hn::Gt(above, slice));
+    const auto bits = hn::And(hn::Load(d, open.slice + k), rows);
+    const auto kept = hn::IfThenElseZero(hn::RebindMask(d, is_in), bits);
+    hn::Store(kept, d, tested.slice + k);
+    some = hn::Or(some, kept);
+  });
+  if (hn::AllTrue(d, hn::Eq(some, hn::Zero(d)))) return false;
   counts.inside_tests += count_of(tested);
   CellPlanes planes;
   set_cell_planes(tet, box.corner, planes);
   CellBits inside = {}, possible = {};
   cell_sides(planes, {begin[1], end[1], begin[2], end[2]}, inside, possible);
   CellBits unsure;
-  for (int k = 0; k < cell_edge; ++k) {
-    mine.slice[k] = inside.slice[k] & tested.slice[k];
-    unsure.slice[k] = possible.slice[k] & ~inside.slice[k] & tested.slice[k];
+  auto some_mine = hn::Zero(d), some_unsure = hn::Zero(d);
+  for_slices([&](std::size_t k) {
+    const auto bits = hn::Load(d, tested.slice + k), sure = hn::Load(d, inside.slice + k);
+    const auto is_mine = hn::And(sure, bits);
+    const auto is_unsure = hn::AndNot(sure, hn::And(hn::Load(d, possible.slice + k), bits));
+    hn::Store(is_mine, d, mine.slice + k);
+    hn::Store(is_unsure, d, unsure.slice + k);
+    some_mine = hn::Or(some_mine, is_mine);
+    some_unsure = hn::Or(some_unsure, is_unsure);
+  });
+  if (!hn::AllTrue(d, hn::Eq(some_unsure, hn::Zero(d)))) {
+    test_each(job, box, t, planes, unsure, mine, counts);
+    return any_of(mine);
   }
-  if (any_of(unsure)) test_each(job, box, t, planes, unsure, mine, counts);
-  return any_of(mine);
+  return !hn::AllTrue(d, hn::Eq(some_mine, hn::Zero(d)));
 }
 
 /// Assigns every voxel of a cell to the tetrahedron of the lowest number that contains it.
@@ -137,8 +155,14 @@ inline void find_owners(const RasterGeometry& job,
     CellBits mine;
     if (!find_inside(job, box, tet_of(job.pairs[p]), open, mine, counts)) continue;
     own(p, mine);
-    for (int k = 0; k < cell_edge; ++k) open.slice[k] &= ~mine.slice[k];
-    if (!any_of(open)) return;
+    const SliceTag d;
+    auto some = hn::Zero(d);
+    for_slices([&](std::size_t k) {
+      const auto left = hn::AndNot(hn::Load(d, mine.slice + k), hn::Load(d, open.slice + k));
+      hn::Store(left, d, open.slice + k);
+      some = hn::Or(some, left);
+    });
+    if (hn::AllTrue(d, hn::Eq(some, hn::Zero(d)))) return;
   }
 }
 

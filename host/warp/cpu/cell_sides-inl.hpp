@@ -44,6 +44,14 @@ inline int count_of(const CellBits& bits) {
   return count;
 }
 
+using SliceTag = hn::CappedTag<SliceBits, cell_edge>;  ///< one lane per slice
+
+/// Calls body(lane) for the first slice of each vector of slices.
+template <class Body>
+HWY_INLINE void for_slices(const Body& body) {
+  for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(SliceTag())) body(lane);
+}
+
 /// Bit 8 k + j: row (j, k) has a voxel.
 inline std::uint64_t rows_of(const CellBits& bits) {
   const hn::CappedTag<std::uint8_t, sizeof(CellBits)> d;
@@ -123,7 +131,7 @@ struct RowBox {
   int j_begin, j_end, k_begin, k_end;
 };
 
-using SideTag = hn::CappedTag<float, cell_edge>;  ///< one lane per row
+using SideTag = hn::CappedTag<float, 2 * cell_edge>;  ///< one lane per row
 using SideIntTag = hn::RebindToSigned<SideTag>;
 using SideByteTag = hn::Rebind<std::uint8_t, SideTag>;
 
@@ -135,10 +143,14 @@ HWY_INLINE hn::Vec<SideTag> voxel_from(hn::Vec<SideTag> x) {
 
 /// Bits [begin, past) of each row.
 HWY_INLINE hn::Vec<SideByteTag> row_bits(hn::Vec<SideTag> begin, hn::Vec<SideTag> past) {
+  const SideTag d;
   const SideIntTag di;
   const auto all = hn::Set(di, -1);
-  const auto bits =
-      hn::AndNot(hn::Shl(all, hn::ConvertTo(di, past)), hn::Shl(all, hn::ConvertTo(di, begin)));
+  // Above 2^23 the low bits of a float32 are those of the number.
+  const auto shift_by = [&](hn::Vec<SideTag> x) {
+    return hn::And(hn::BitCast(di, hn::Add(x, hn::Set(d, 0x1p23f))), hn::Set(di, 15));
+  };
+  const auto bits = hn::AndNot(hn::Shl(all, shift_by(past)), hn::Shl(all, shift_by(begin)));
   return hn::TruncateTo(SideByteTag(), hn::BitCast(hn::RebindToUnsigned<SideIntTag>(), bits));
 }
 
@@ -146,6 +158,10 @@ HWY_INLINE hn::Vec<SideByteTag> row_bits(hn::Vec<SideTag> begin, hn::Vec<SideTag
 template <int slice_rows>
 HWY_INLINE void store_rows(hn::Vec<SideByteTag> rows, int j, int k, CellBits& bits) {
   constexpr int lanes = static_cast<int>(hn::MaxLanes(SideTag()));
+  if constexpr (slice_rows == cell_edge || lanes <= slice_rows) {
+    hn::StoreU(rows, SideByteTag(), reinterpret_cast<std::uint8_t*>(&bits.slice[k]) + j);
+    return;
+  }
   std::uint8_t part[lanes];
   hn::StoreU(rows, SideByteTag(), part);
   for (int slice = 0; slice < std::max(lanes / slice_rows, 1); ++slice) {
@@ -190,25 +206,29 @@ inline void packed_sides(const CellPlanes& planes,
   constexpr int slice_bits = slice_rows == 8 ? 3 : 2;
   const RowCrossings rows(planes);
   const auto width = hn::Set(d, rows.width);
-  const auto never = hn::Set(d, std::numeric_limits<float>::infinity());
   const auto lane = hn::Iota(di, 0);
   const auto lane_k = hn::ConvertTo(d, hn::ShiftRight<slice_bits>(lane));
   const auto lane_j = hn::ConvertTo(d, hn::And(lane, hn::Set(di, slice_rows - 1)));
   for (int j_part = 0; j_part < slice_rows; j_part += lanes) {
     const auto j = hn::Add(lane_j, hn::Set(d, static_cast<float>(j_first + j_part)));
-    const int k_first = box.k_begin - box.k_begin % slices;
-    hn::Vec<decltype(d)> at[4];
+    const int steps = (box.k_end - box.k_begin + slices - 1) / slices;
+    const int k_first = std::min(box.k_begin, cell_edge - slices * steps);
+    hn::Vec<decltype(d)> entering[4], leaving[4], step[4];
     for (int face = 0; face < 4; ++face) {
       const float slice = rows.at[face] + rows.per_slice[face] * static_cast<float>(k_first);
-      at[face] = hn::Add(hn::Set(d, slice), hn::Mul(j, hn::Set(d, rows.per_row[face])));
-      at[face] = hn::Add(at[face], hn::Mul(lane_k, hn::Set(d, rows.per_slice[face])));
+      auto at = hn::Add(hn::Set(d, slice), hn::Mul(j, hn::Set(d, rows.per_row[face])));
+      at = hn::Add(at, hn::Mul(lane_k, hn::Set(d, rows.per_slice[face])));
+      entering[face] = hn::Add(at, hn::Set(d, rows.if_entering[face]));
+      leaving[face] = hn::Add(at, hn::Set(d, rows.if_leaving[face]));
+      step[face] = hn::Set(d, slices * rows.per_slice[face]);
     }
     for (int k = k_first; k < box.k_end; k += slices) {
-      auto enter = hn::Neg(never), leave = never;
+      const auto enter =
+          hn::Max(hn::Max(entering[0], entering[1]), hn::Max(entering[2], entering[3]));
+      const auto leave = hn::Min(hn::Min(leaving[0], leaving[1]), hn::Min(leaving[2], leaving[3]));
       for (int face = 0; face < 4; ++face) {
-        enter = hn::Max(enter, hn::Add(at[face], hn::Set(d, rows.if_entering[face])));
-        leave = hn::Min(leave, hn::Add(at[face], hn::Set(d, rows.if_leaving[face])));
-        at[face] = hn::Add(at[face], hn::Set(d, slices * rows.per_slice[face]));
+        entering[face] = hn::Add(entering[face], step[face]);
+        leaving[face] = hn::Add(leaving[face], step[face]);
       }
       const auto begin = voxel_from(hn::Add(enter, width));
       const auto begin_early = voxel_from(hn::Sub(enter, width));

@@ -173,10 +173,11 @@ inline bool LineOwners::has_one_value(std::int64_t from, std::int64_t other) con
 /// Adds the runs of the last element of sources_ in a cell.
 inline void LineOwners::add_runs(const CellBits& bits, int cell) {
   const auto source = static_cast<std::int32_t>(sources_.size() - 1);
+  const RowKind kind = sources_.back().kind();
   const auto* rows = reinterpret_cast<const std::uint8_t*>(bits.slice);
   for (std::uint64_t left = rows_of(bits); left != 0; left &= left - 1) {
     const int row = std::countr_zero(left), j = row % cell_edge, k = row / cell_edge;
-    runs(j, k)[run_counts_[k][j]++] = {source, static_cast<std::uint16_t>(cell), rows[row]};
+    runs(j, k)[run_counts_[k][j]++] = {source, static_cast<std::uint16_t>(cell), rows[row], kind};
   }
 }
 

@@ -131,8 +131,7 @@ class LabelWriter {
       for (int i = begin; i < end; ++i) place_[wide_.count + i - begin] = cell_edge * run.cell + i;
       add_centres(shape_, map, false, begin, end, wide_);
       const T* samples = job_.source.data + wide_.offset[wide_.count - 1];
-      hwy::Prefetch(samples + source.ahead());  // as add_unit() does
-      hwy::Prefetch(samples + source.ahead_too());
+      fetch_next_rows(source, samples);
     }
   }
 

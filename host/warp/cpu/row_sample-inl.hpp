@@ -42,10 +42,10 @@ class RowSampler {
     if (job_.transforms.size > 0) count = write_transformed(sources, runs, count, j, k);
     if (is_wide(job_.filter)) return write_filtered(sources, runs, count, j, k);
     for (int r = 0; r < count;) {
-      int past = r;
-      RowKind kind = RowKind::inner;
+      int past = r + 1;
+      RowKind kind = runs[r].kind;
       for (; past < count && runs[past].cell == runs[r].cell; ++past) {
-        kind = std::max(kind, sources[runs[past].source].kind());
+        kind = std::max(kind, runs[past].kind);
       }
       if (kind >= RowKind::alone) {
         write_mixed(sources, runs + r, past - r, j, k);
@@ -133,8 +133,10 @@ class RowSampler {
     if constexpr (sizeof(ArithmeticOf<T>) == 4) {
       if (taps.count == 0) return;
       const int components = job_.source.components;
-      if (components == 1) {
-        sample_units(job_.source, nearest_, taps, values_);
+      if (components == 1 && gathers_) {
+        sample_units<true>(job_.source, nearest_, taps, values_);
+      } else if (components == 1) {
+        sample_units<false>(job_.source, nearest_, taps, values_);
       } else {
         sample_components(job_.source, nearest_, taps, values_);
       }
@@ -160,6 +162,7 @@ class RowSampler {
   const RasterJob<T>& job_;
   const SourceShape& shape_;
   bool nearest_;
+  bool gathers_ = has_fast_gathers();
   RunCopier<T> copier_;
   RowTaps<false> inner_;
   RowTaps<true> rim_;

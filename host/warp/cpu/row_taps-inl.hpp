@@ -65,7 +65,7 @@ inline unsigned bits_of(hn::Mask<RowTag> mask, std::size_t lane) {
 template <bool is_rim>
 struct RowPositions {
   hn::Vec<RowTag> local[3];
-  hn::Vec<RowIntTag> whole[is_rim ? 3 : 1];  ///< per axis; without is_rim RowSource::origin()
+  hn::Vec<RowIntTag> whole[is_rim ? 3 : 1];  ///< per axis; without is_rim RowSource::tap_origin()
 };
 
 /// Local positions at the start of row (j, k), the first sums of local_position().
@@ -93,13 +93,14 @@ inline RowPositions<is_rim> row_positions(const RowSource& source,
     if constexpr (is_rim) positions.whole[axis] = hn::Set(RowIntTag(), source.whole[axis]);
   }
   if constexpr (!is_rim) {
-    positions.whole[0] = hn::Set(RowIntTag(), static_cast<std::int32_t>(source.origin()));
+    positions.whole[0] = hn::Set(RowIntTag(), source.tap_origin());
   }
   return positions;
 }
 
 /// Positions of the voxels of row (j, k) of a cell from `lane` on, each by the map of its own run.
 /// Voxels of no run use the map of the first: their taps are readable, their values not used.
+/// @param bits  the voxels of all runs but the first are added
 template <bool is_rim>
 HWY_INLINE RowPositions<is_rim> unit_positions(const RowSource* sources,
                                                const RowRun* runs,
@@ -107,11 +108,13 @@ HWY_INLINE RowPositions<is_rim> unit_positions(const RowSource* sources,
                                                const RowStart& first_start,
                                                int j,
                                                int k,
-                                               std::size_t lane) {
+                                               std::size_t lane,
+                                               unsigned& bits) {
   RowPositions<is_rim> x = row_positions<is_rim>(sources[runs[0].source], first_start, lane);
   for (int r = 1; r < run_count; ++r) {
     const RowSource& source = sources[runs[r].source];
     const RowPositions<is_rim> more = row_positions<is_rim>(source, RowStart(source, j, k), lane);
+    bits |= runs[r].bits;
     const auto mine = lanes_of(runs[r].bits, lane);
     const auto mine_int = hn::RebindMask(RowIntTag(), mine);
     for (int axis = 0; axis < 3; ++axis) {
@@ -126,7 +129,8 @@ HWY_INLINE RowPositions<is_rim> unit_positions(const RowSource* sources,
 
 /// Neighbours of a vector of voxels along one axis.
 struct AxisTaps {
-  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without is_rim less the whole part
+  hn::Vec<RowIntTag> voxel;    ///< lower neighbour; without is_rim bits of its number without the
+                               ///< whole part, plus whole_shift
   hn::Vec<RowTag> fraction;    ///< from it to the upper one
   hn::Vec<RowIntTag> step;     ///< to the upper one in memory [voxel]; is_rim only
   hn::Mask<RowTag> in_source;  ///< is_rim only
@@ -142,9 +146,10 @@ axis_taps(const RowPositions<is_rim>& x, hn::Vec<RowTag> near, int axis, int dim
   AxisTaps taps;
   const auto floor = hn::Floor(near);
   taps.fraction = hn::Sub(near, floor);
-  taps.voxel = hn::ConvertTo(di, floor);
-  if constexpr (is_rim) {
-    taps.voxel = hn::Add(taps.voxel, x.whole[axis]);
+  if constexpr (!is_rim) {
+    taps.voxel = hn::BitCast(di, hn::Add(floor, hn::Set(d, whole_shift)));
+  } else {
+    taps.voxel = hn::Add(hn::ConvertTo(di, floor), x.whole[axis]);
     const int last = dim - 1;
     const auto whole = hn::ConvertTo(d, x.whole[axis]);
     const auto low = hn::Sub(hn::Sub(hn::Set(d, -0.5f), whole), hn::Set(d, rim_slack));
@@ -179,9 +184,10 @@ HWY_INLINE hn::Mask<RowTag> store_taps(const SourceShape& source,
     if constexpr (is_rim) in_source = hn::And(in_source, along[axis].in_source);
     hn::Store(along[axis].fraction, d, taps.fraction[axis] + to);
   }
-  const auto row = hn::Add(hn::Mul(along[2].voxel, hn::Set(di, source.dims[1])), along[1].voxel);
-  auto offset = hn::Add(hn::Mul(row, hn::Set(di, source.dims[0])), along[0].voxel);
+  auto offset = along[0].voxel;
   if constexpr (!is_rim) offset = hn::Add(offset, x.whole[0]);
+  offset = hn::Add(offset, hn::Mul(along[1].voxel, hn::Set(di, stride[1])));
+  offset = hn::Add(offset, hn::Mul(along[2].voxel, hn::Set(di, stride[2])));
   hn::Store(offset, di, taps.offset[0] + to);
   if constexpr (is_rim) {
     const auto above = hn::Add(offset, along[2].step);
@@ -203,20 +209,17 @@ inline void add_unit(const SourceShape& source,
                      int k,
                      RowTaps<is_rim>& taps) {
   const auto at = static_cast<std::size_t>(cell_edge * taps.count);
-  unsigned bits = 0, inside = is_rim ? 0 : 0xff;
-  for (int r = 0; r < run_count; ++r) bits |= runs[r].bits;
+  unsigned bits = runs[0].bits, inside = is_rim ? 0 : 0xff;
   const RowSource& first = sources[runs[0].source];
   const RowStart first_start(first, j, k);
   for (std::size_t lane = 0; lane < cell_edge; lane += hn::Lanes(RowTag())) {
-    const auto x = unit_positions<is_rim>(sources, runs, run_count, first_start, j, k, lane);
+    const auto x = unit_positions<is_rim>(sources, runs, run_count, first_start, j, k, lane, bits);
     const auto in_source = store_taps(source, nearest, x, at + lane, taps);
     if constexpr (is_rim) inside |= bits_of(in_source, lane);
   }
   // The processor does not prefetch across the distance to the next rows.
   for (const std::size_t voxel : {0, cell_edge / 2}) {
-    const std::int64_t from = std::int64_t{taps.offset[0][at + voxel]} * source.components;
-    hwy::Prefetch(source.data + source.sample_bytes * (from + first.ahead()));
-    hwy::Prefetch(source.data + source.sample_bytes * (from + first.ahead_too()));
+    fetch_next_rows(first, source.data + source.voxel_bytes * taps.offset[0][at + voxel]);
   }
   taps.unit[taps.count++] = {runs[0].cell, static_cast<std::uint8_t>(bits),
                              static_cast<std::uint8_t>(bits & inside)};

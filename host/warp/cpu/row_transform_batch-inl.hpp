@@ -136,11 +136,10 @@ class TransformBatch {
     }
   }
 
-  /// Prefetches what the next rows read near a sample, as add_unit() does.
+  /// Prefetches what the next rows read near a sample of `taps_`.
   void fetch_ahead(const RowSource& source, int sample) const {
-    const T* at = job_.source.data + std::int64_t{taps_.offset[sample]} * shape_.components;
-    hwy::Prefetch(at + source.ahead());
-    hwy::Prefetch(at + source.ahead_too());
+    fetch_next_rows(source,
+                    job_.source.data + std::int64_t{taps_.offset[sample]} * shape_.components);
   }
 
   /// Reads the samples of `taps_`.

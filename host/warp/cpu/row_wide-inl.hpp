@@ -90,10 +90,7 @@ inline void sample_wide(const RasterJob<T>& job,
     }
     const T* samples =
         view.data + taps.voxel[0] * components + taps.voxel[1] * up + taps.voxel[2] * far;
-    if (n % (cell_edge / 2) == 0) {  // prefetch, as add_unit() does
-      hwy::Prefetch(samples + source.ahead());
-      hwy::Prefetch(samples + source.ahead_too());
-    }
+    if (n % (cell_edge / 2) == 0) fetch_next_rows(source, samples);
     if (nearest) {
       std::copy_n(samples, components, out);
       continue;
