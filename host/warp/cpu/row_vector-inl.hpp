@@ -43,7 +43,7 @@ HWY_INLINE hn::Vec<hn::Simd<std::uint64_t, count, 0>> load_words(const T* sample
 }
 
 /// Whether a gather instruction takes less time than loads and shuffles: where it reads eight
-/// pairs, on processors of Intel, with 8 % of a step. Those of AMD split it into many operations.
+/// pairs, on processors of Intel, with 8 % of a step. Others were not measured.
 inline bool has_fast_gathers() {
 #if HWY_ARCH_X86
   return hn::MaxLanes(PairTag()) == cell_edge && __builtin_cpu_is("intel") != 0;
