@@ -45,6 +45,7 @@ add_executable(tetwarp_command
   host/cli/step_selection.cpp
   host/cli/volume_run.cpp
   host/cli/volume_run_queue.cpp
+  host/cli/volume_run_parts.cpp
   host/cli/volume_run_step.cpp
   host/cli/warnings.cpp
   host/cli/warp_arguments.cpp

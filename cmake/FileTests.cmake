@@ -87,8 +87,10 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_arrays.cpp
   tests/cli/test_cli_mesh.cpp
   tests/cli/test_cli_axes.cpp
+  tests/cli/test_cli_bad_formats.cpp
   tests/cli/test_cli_bad_images.cpp
   tests/cli/test_cli_bad_input.cpp
+  tests/cli/test_cli_bad_layouts.cpp
   tests/cli/test_cli_batch.cpp
   tests/cli/test_cli_contact.cpp
   tests/cli/test_cli_contact_usage.cpp

@@ -22,12 +22,13 @@ ImportedMesh read_mesh_in_child(const std::string& path,
 template <class Message, class Value>
 requires std::is_same_v<std::remove_const_t<Value>, MeshArray>
 void exchange_members(Message& message, Value& value) {
-  auto& [name, is_of_cells, type, components, data] = value;
+  auto& [name, is_of_cells, type, components, data, value_names] = value;
   message(name);
   message(is_of_cells);
   message(type);
   message(components);
   message(data);
+  message(value_names);
 }
 
 /// Sends or reads all members of a mesh.

@@ -4,12 +4,14 @@
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <numeric>
 #include <tetwarp/error.hpp>
 #include <unordered_map>
 
 #include "io/gmsh_library.hpp"
 #include "io/mesh_import.hpp"
+#include "io/value_names.hpp"
 
 namespace tetwarp {
 namespace {
@@ -115,12 +117,22 @@ void add_group(const GmshLibrary& gmsh,
   }
 }
 
-/// Adds the array `group` where the file has physical groups of volumes. Their names are not kept.
+/// Adds names of values to the last array, unless a file cannot hold them.
+void add_names(std::map<std::int64_t, std::string> names, ImportedMesh& into) {
+  if (text_of_names(names).size() <= max_value_names) {
+    into.arrays.back().value_names = std::move(names);
+  } else {
+    into.left_out.push_back("names of " + std::to_string(names.size()) + " groups");
+  }
+}
+
+/// Adds the array `group`, with the groups' names, where the file has physical groups of volumes.
 void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMesh& into) {
   GmshArray<int> physical(gmsh);  // pairs of dimension and tag
   gmsh.call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &physical.data,
                                                   &physical.size, 3);
   std::unordered_map<std::size_t, std::int64_t> groups;
+  std::map<std::int64_t, std::string> names;
   for (std::size_t at = 0; at + 1 < physical.size; at += 2) {
     const int group = physical[at + 1];
     GmshArray<int> entities(gmsh);
@@ -130,8 +142,7 @@ void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMes
     GmshArray<char> name(gmsh);
     gmsh.call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", 3, group, &name.data);
     if (name.data != nullptr && *name.data != '\0') {
-      into.left_out.push_back("name '" + std::string(name.data) + "' of group " +
-                              std::to_string(group));
+      names[group] = name.data;
     }
   }
   std::vector<std::int64_t> rows;
@@ -139,7 +150,9 @@ void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMes
     const auto found = groups.find(static_cast<std::size_t>(number));
     rows.push_back(found == groups.end() ? 0 : found->second);
   }
-  if (!groups.empty()) add_numbers("group", true, rows, into);
+  if (groups.empty()) return;
+  add_numbers("group", true, rows, into);
+  add_names(std::move(names), into);
 }
 
 /// Adds one step of node data, which every node must have.

@@ -70,6 +70,10 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   mesh.rest_positions = file->read_points(options.rest_step);
   header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
   header.has_displacement = file->has_displacement();
+  header.group_names = file->group_names();
+  for (std::size_t step = 0; step < input.times.size(); ++step) {
+    header.has_moving_points |= file->parts_of(static_cast<std::int64_t>(step)) != parts;
+  }
 }
 
 void MeshReader::State::import(const MeshReadOptions& options) {
@@ -82,6 +86,11 @@ void MeshReader::State::import(const MeshReadOptions& options) {
   mesh = std::move(whole.mesh);
   imported.displacements = std::move(whole.displacements);
   header.has_displacement = !imported.displacements.empty();
+  for (MeshArray& array : whole.arrays) {
+    if (array.is_of_cells && array.name == "group") {
+      header.group_names = std::move(array.value_names);
+    }
+  }
   header.times = header.has_displacement ? std::move(whole.times) : std::vector<double>{0.0};
   if (!header.has_displacement) imported.points = mesh.rest_positions;
 }

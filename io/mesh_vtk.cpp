@@ -15,6 +15,9 @@
 #include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <tetwarp/error.hpp>
 
@@ -136,6 +139,28 @@ void add_step(const std::string& path,
   into.times.push_back(time);
 }
 
+/// VTK reads as many numbers as a file before version 5 declares, and beyond them where a cell goes
+/// on behind the last one.
+void check_declared(const std::string& path, vtkUnstructuredGrid& grid) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  std::getline(file, line);
+  const std::string version = "Version ";
+  const std::size_t at = line.find(version);
+  if (at == std::string::npos || std::atof(line.c_str() + at + version.size()) >= 5) return;
+  while (!line.starts_with("CELLS ") && std::getline(file, line)) {
+  }
+  long long cells = 0, numbers = 0;
+  const bool is_found = std::sscanf(line.c_str(), "CELLS %lld %lld", &cells, &numbers) == 2;
+  if (!is_found || grid.GetCells() == nullptr) return;
+  const vtkIdType nodes = grid.GetCells()->GetNumberOfConnectivityIds();
+  if (grid.GetNumberOfCells() == cells && nodes == numbers - cells) return;
+  throw IoError(path, "",
+                "has " + std::to_string(grid.GetNumberOfCells()) + " cells of " +
+                    std::to_string(nodes) + " nodes, but declares 'CELLS " + std::to_string(cells) +
+                    " " + std::to_string(numbers) + "': damaged, write it again");
+}
+
 ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkUnstructuredGridReader> reader;
   const ErrorNotes notes(*reader);
@@ -145,6 +170,7 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
   if (reader->IsFileUnstructuredGrid() != 0) reader->Update();
   const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
   check_grid(path, is_good ? reader->GetOutput() : nullptr);
+  check_declared(path, *reader->GetOutput());
   ImportedMesh mesh;
   add_step(path, *reader->GetOutput(), 0, options, mesh);
   return mesh;

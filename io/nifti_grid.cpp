@@ -71,6 +71,16 @@ void check_sizes(const std::string& path, const NiftiFields& fields) {
   }
 }
 
+/// Checks that the quaternion is of length 1, of which the three stored numbers are a part.
+void check_quaternion(const std::string& path, const NiftiFields& fields) {
+  const double b = fields.quatern[0], c = fields.quatern[1], d = fields.quatern[2];
+  const double square = b * b + c * c + d * d;
+  if (!(square > 1 + 1e-3)) return;  // the rest: rounding of other programs
+  throw IoError(path, "qform",
+                "has a quaternion of length " + std::to_string(std::sqrt(square)) +
+                    ", expected at most 1; correct the header");
+}
+
 /// True when voxel sizes alone give the grid: no form is needed.
 bool is_plain(const Grid& grid) {
   return grid.origin == Point3{0, 0, 0} && grid.direction == Grid{}.direction;
@@ -123,6 +133,7 @@ Grid grid_of(const std::string& path, const NiftiFields& fields) {
   if (!is_finite(map)) {
     throw IoError(path, form, "holds a number that is not finite; correct the header");
   }
+  if (!has_sform && has_qform) check_quaternion(path, fields);
   Grid grid;
   grid.dims = {fields.dim[1], fields.dim[2], fields.dim[3]};
   for (std::size_t axis = 0; axis < 3; ++axis) {

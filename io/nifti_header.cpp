@@ -64,6 +64,7 @@ void check_dims(const std::string& path, NiftiFields& fields) {
                     "is " + std::to_string(dim[axis]) + problem);
     };
     if (dim[axis] < 1) refuse(", expected 1 or more; correct the header");
+    if (axis < 4 && dim[axis] > 1 << 30) refuse(" voxels, expected at most 2^30");
     if (axis == 4 && dim[axis] > 0x7fffffff) refuse(" steps, expected at most 2147483647");
     if (axis == 5 && dim[axis] > 9) refuse(" components, expected 1 to 9");
     if (axis > 5 && dim[axis] != 1) {
@@ -91,12 +92,26 @@ PixelType checked_type(const std::string& path, const NiftiFields& fields) {
   return found->second;
 }
 
-/// Vectors and tensors have their components along axis 5; a series has none of these intents.
+/// Vectors and tensors have as many components as their intent says, along axis 5; a series has
+/// none of these intents.
 void check_intent(const std::string& path, const NiftiFields& fields) {
   const bool has_components = fields.intent_code == NIFTI_INTENT_SYMMATRIX ||
                               fields.intent_code == NIFTI_INTENT_DISPVECT ||
                               fields.intent_code == NIFTI_INTENT_VECTOR;
-  if (!has_components || fields.dim[4] == 1 || fields.dim[5] > 1) return;
+  if (!has_components) return;
+  const std::int64_t components = fields.dim[5];
+  const bool is_tensor = fields.intent_code == NIFTI_INTENT_SYMMATRIX;
+  const bool has_intent = is_tensor ? components == 1 || components == 3 || components == 6
+                                    : fields.intent_code == NIFTI_INTENT_VECTOR || components < 4;
+  if (!has_intent) {
+    throw IoError(path, "dim[5]",
+                  "is " + std::to_string(components) + " components, but intent_code " +
+                      std::to_string(fields.intent_code) +
+                      (is_tensor ? ", symmetric matrices, has 6 (3 of 2 x 2, 1 of 1 x 1)"
+                                 : ", displacements, has 3") +
+                      "; correct the header");
+  }
+  if (fields.dim[4] == 1 || components > 1) return;
   throw IoError(path, "intent_code",
                 "is " + std::to_string(fields.intent_code) +
                     ", vectors or tensors, whose components lie along dim[5], but dim[5] is 1 and "
@@ -195,8 +210,13 @@ NiftiHeader read_nifti_header(const std::string& path) {
   header.is_swapped = start.is_swapped;
   header.facts = facts_of(fields, header.grid);
   if (std::isfinite(fields.scl_slope) && fields.scl_slope != 0) {
+    if (!std::isfinite(fields.scl_inter)) {
+      throw IoError(path, "scl_inter",
+                    "is " + std::to_string(fields.scl_inter) +
+                        ", expected a finite number beside the scl_slope; correct the header");
+    }
     header.slope = fields.scl_slope;
-    header.intercept = std::isfinite(fields.scl_inter) ? fields.scl_inter : 0;
+    header.intercept = fields.scl_inter;
   }
   header.samples = fields.is_pair ? sample_path(header_path) : path;
   header.is_gzip = is_gzip(header.samples);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -107,13 +108,15 @@ void with_type(PixelType type, const Body& body) {
 }
 
 /// Stores slope * sample + intercept, or its negative, in every `stride`-th value.
+/// @returns false when finite samples become infinite
 template <class Value>
-void scale(const NiftiHeader& header,
+bool scale(const NiftiHeader& header,
            bool is_negated,
            const std::byte* samples,
            std::size_t count,
            std::byte* out,
            std::size_t stride) {
+  bool all_fit = true;
   with_type(header.type, [&]<class T>(T) {
     for (std::size_t v = 0; v < count; ++v) {
       T sample;
@@ -121,9 +124,11 @@ void scale(const NiftiHeader& header,
       double scaled = header.slope * static_cast<double>(sample) + header.intercept;
       if (is_negated) scaled = 0 - scaled;
       const auto value = static_cast<Value>(scaled);
+      all_fit &= std::isfinite(value) || !std::isfinite(static_cast<double>(sample));
       std::memcpy(out + v * stride * sizeof value, &value, sizeof value);
     }
   });
+  return all_fit;
 }
 }  // namespace
 
@@ -274,11 +279,16 @@ void NiftiSamples::convert(std::byte* part,
   if (!header_.is_scaled()) {
     if (is_negated) negate_samples(header_.type, {part, count * size});
     copy_strided(part, 1, to, components, size, count);
-  } else if (header_.value_type() == PixelType::float64) {
-    scale<double>(header_, is_negated, part, count, to, components);
-  } else {
-    scale<float>(header_, is_negated, part, count, to, components);
+    return;
   }
+  const bool is_double = header_.value_type() == PixelType::float64;
+  if (is_double ? scale<double>(header_, is_negated, part, count, to, components)
+                : scale<float>(header_, is_negated, part, count, to, components)) {
+    return;
+  }
+  throw IoError(path_, "scl_slope",
+                std::string("and scl_inter make samples larger than ") +
+                    (is_double ? "float64" : "float32") + " holds; correct the header");
 }
 
 }  // namespace tetwarp

@@ -1,6 +1,7 @@
 #include "io/vtkhdf_input.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tetwarp/io.hpp>
 
 namespace tetwarp {
@@ -28,6 +29,20 @@ void read_steps(VtkhdfInput& file) {
   }
   file.times = h5::read_reals(values);
   file.times.resize(static_cast<std::size_t>(count));
+  for (std::size_t step = 0; step < file.times.size(); ++step) {
+    if (std::isfinite(file.times[step])) continue;
+    values.fail("the time of step " + std::to_string(step) + " is " +
+                std::to_string(file.times[step]) + ", expected a finite number; correct it");
+  }
+}
+
+/// Files of a later major version may mean something else by the same names.
+void check_version(const h5::Object& root) {
+  if (!h5::has_attribute(root, "Version")) return;
+  const std::vector<std::int64_t> version = h5::read_integer_attribute(root, "Version", 2);
+  if (version[0] <= 2) return;
+  root.fail("Version is [" + std::to_string(version[0]) + "," + std::to_string(version[1]) +
+            "], expected [1,x] or [2,x]; write the file in one of these versions");
 }
 }  // namespace
 
@@ -48,6 +63,7 @@ VtkhdfInput open_vtkhdf(const std::string& path, const std::string& type) {
   }
   const std::string found = h5::read_text_attribute(file.root, "Type");
   if (found != type) file.root.fail(wrong_type(found, type));
+  check_version(file.root);
   if (h5::has_child(file.root, "Steps")) read_steps(file);
   return file;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "io/value_names.hpp"
+
 namespace tetwarp {
 namespace {
 /// VTK's own names of its cell types.
@@ -97,6 +99,13 @@ MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "Unstructu
   if (h5::has_child(point_data, "displacement")) {
     displacement_ = open_vectors(point_data, "displacement");
   }
+}
+
+std::map<std::int64_t, std::string> MeshFile::group_names() const {
+  if (!h5::is_group(file_.root, "CellData")) return {};
+  const h5::Object cell_data = h5::open_group(file_.root, "CellData");
+  if (!h5::has_child(cell_data, "group")) return {};
+  return read_value_names(h5::open_dataset(cell_data, "group"));
 }
 
 std::int64_t MeshFile::offset_of(const std::vector<std::int64_t>& offsets,

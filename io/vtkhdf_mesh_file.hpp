@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ class MeshFile {
 
   /// Parts of a step, in the file's order; static files have step 0.
   std::vector<MeshPart> parts_of(std::int64_t step) const;
+
+  /// Names of the values of the cell array `group`; empty where the file has none.
+  std::map<std::int64_t, std::string> group_names() const;
 
   std::vector<Point3> read_points(std::int64_t step) const;
   std::vector<Point3> read_displacement(std::int64_t step) const;

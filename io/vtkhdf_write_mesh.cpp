@@ -8,6 +8,7 @@
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 
+#include "io/value_names.hpp"
 #include "io/vtkhdf_cells.hpp"
 #include "io/vtkhdf_mesh_file.hpp"
 #include "io/vtkhdf_output.hpp"
@@ -102,6 +103,7 @@ void write_array(const VtkhdfOutput& output, const h5::Object& group, const Mesh
   const hsize_t dims[2] = {array.data.size() / (components * size_of(array.type)), components};
   h5::write_dataset(group, array.name, h5::file_type_of(array.type), h5::memory_type_of(array.type),
                     {dims, components > 1 ? std::size_t{2} : std::size_t{1}}, array.data.data());
+  write_value_names(h5::open_dataset(group, array.name), array.value_names);
   output.check_disk(group);
 }
 

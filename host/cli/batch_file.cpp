@@ -52,6 +52,16 @@ Words value_texts(const std::string& key, const Json& value) {
   return texts;
 }
 
+/// Names of files, which are texts.
+Words file_names(const std::string& key, const Json& value) {
+  for (const Json& one : value.is_array() ? value : Json::array({value})) {
+    if (one.is_string()) continue;
+    throw std::invalid_argument(
+        fmt::format("'{}' holds {}, expected the name of a file", key, one.dump()));
+  }
+  return value_texts(key, value);
+}
+
 class JobReader {
  public:
   JobReader(fs::path folder, const CLI::App& defaults)
@@ -63,7 +73,7 @@ class JobReader {
     Words options;
     for (const std::string key : {"volume", "mesh"}) {
       if (!job.contains(key)) throw std::invalid_argument("has no '" + key + "'");
-      for (const std::string& path : value_texts(key, job[key])) files.push_back(located(path));
+      for (const std::string& name : file_names(key, job[key])) files.push_back(located(name));
     }
     for (const auto& [key, value] : job.items()) {
       if (key == "volume" || key == "mesh") continue;
@@ -100,7 +110,8 @@ class JobReader {
   Words words_of_key(const std::string& key, const Json& value) const {
     const CLI::Option* option = defaults_.get_option_no_throw("--" + key);
     if (option == nullptr || is_one_of(key, batch_options)) {
-      throw std::invalid_argument("unknown key '" + key + "'");
+      throw std::invalid_argument("unknown key '" + key +
+                                  "'; keys are volume, mesh and the options of tetwarp warp");
     }
     if (option->get_items_expected_max() == 0) {
       if (!value.is_boolean()) {
@@ -109,7 +120,7 @@ class JobReader {
       }
       return value.get<bool>() ? Words{"--" + key} : Words{};
     }
-    Words texts = value_texts(key, value);
+    Words texts = key == "output" ? file_names(key, value) : value_texts(key, value);
     const bool is_path = key == "output" || key == "report" || key == "rest" ||
                          (key == "grid" && !is_one_of(texts.front(), {"same", "bounds"}));
     if (is_path) texts.front() = located(texts.front());
@@ -158,6 +169,7 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
   }
   const JobReader reader(fs::path(path).parent_path(), defaults);
   std::vector<BatchJob> jobs;
+  const std::string name = path + ": ";
   for (const Json& job : batch["jobs"]) {
     BatchJob& parsed = jobs.emplace_back();
     reader.name_files(job, parsed);
@@ -165,9 +177,9 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
       parsed.arguments = parse_warp_arguments(reader.words_of(job));
       parsed.arguments.makes_folder = true;
     } catch (const CLI::ParseError& error) {
-      parsed.error = one_line(error.what());
+      parsed.error = name + one_line(error.what());
     } catch (const std::invalid_argument& error) {
-      parsed.error = one_line(error.what());
+      parsed.error = name + one_line(error.what());
     }
   }
   return jobs;

@@ -85,6 +85,11 @@ void add_deform_command(CLI::App& app, Run& run) {
     if (!std::isfinite(arguments->deform.amount)) {
       throw CLI::ValidationError("--amount", "expected a finite number");
     }
+    for (const double offset : arguments->deform.offset) {
+      if (!std::isfinite(offset)) {
+        throw CLI::ValidationError("--offset", "expected finite numbers");
+      }
+    }
     run = [arguments] { return run_deform(*arguments); };
   });
 }

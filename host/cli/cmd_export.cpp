@@ -48,7 +48,7 @@ int run_export(const ExportArguments& arguments) {
   BlockVolumeWriter writer(arguments.output, volume.grid, {array}, {}, is_series, ChunkShape::rows);
   const Region whole{{0, 0, 0}, volume.grid.dims};
   if (is_series) {
-    if (const std::string warning = uneven_times(arguments.output, times); !warning.empty()) {
+    if (const std::string warning = times_warning(arguments.output, times); !warning.empty()) {
       print_warnings({warning}, "");
     }
     writer.begin_step(times.front());

@@ -88,9 +88,10 @@ Json mesh_json(const InfoArguments& arguments) {
   Json json{{"kind", "mesh"}, {"nodes", header.node_count}, {"tetrahedra", header.tet_count}};
   if (header.hex_count > 0) json["hexahedra"] = header.hex_count;
   json.update(times_json(header.times));
-  json["deformation"] = header.has_displacement   ? "array displacement"
-                        : header.times.size() > 1 ? "points that move"
-                                                  : "none";
+  json["deformation"] = header.has_displacement    ? "array displacement"
+                        : header.has_moving_points ? "points that move"
+                                                   : "none";
+  for (const auto& [group, name] : header.group_names) json["groups"][std::to_string(group)] = name;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Point3 low{infinity, infinity, infinity};
   Point3 high{-infinity, -infinity, -infinity};

@@ -145,6 +145,7 @@ void add_mesh_command(CLI::App& app, Run& run) {
   command
       ->add_option("--threshold", arguments->lattice.threshold,
                    "voxels above this value are foreground [every voxel]")
+      ->check(finite_number())
       ->type_name("V");
   command->add_flag("--hexahedra", arguments->lattice.hexahedra,
                     "keep the cubes as trilinear hexahedra, instead of five tetrahedra each");

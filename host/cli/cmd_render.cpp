@@ -69,8 +69,10 @@ void add_render_command(CLI::App& app, Run& run) {
       ->check(at_least(0))
       ->type_name("N");
   command->add_option("--low", arguments->render.low, "value drawn black [1st percentile]")
+      ->check(finite_number())
       ->type_name("V");
   command->add_option("--high", arguments->render.high, "value drawn white [99.5th percentile]")
+      ->check(finite_number())
       ->type_name("V");
   command->add_option("--height", arguments->render.height, "height of a panel, in pixels [360]")
       ->check(between(16, 4096))

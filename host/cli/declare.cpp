@@ -4,6 +4,7 @@
 
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <system_error>
 
@@ -94,6 +95,26 @@ CLI::Validator above_zero() {
     double number = 0;
     if (CLI::detail::lexical_cast(text, number) && number > 0) return {};
     return "'" + text + "' is not a number above 0";
+  };
+  return {check, ""};
+}
+
+CLI::Validator finite_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    double number = 0;
+    if (CLI::detail::lexical_cast(text, number) && std::isfinite(number)) return {};
+    return "'" + text + "' is not a finite number";
+  };
+  return {check, ""};
+}
+
+CLI::Validator representable_number() {
+  const auto check = [](const std::string& text) -> std::string {
+    double number = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, number);
+    const bool is_word = text.find_first_of("iI") != std::string::npos;
+    if (is_number && (is_word || !std::isinf(number))) return {};
+    return "'" + text + (is_number ? "' is beyond the numbers of float64" : "' is not a number");
   };
   return {check, ""};
 }

@@ -37,6 +37,11 @@ CLI::Validator at_least(std::int64_t low, std::int64_t high = std::numeric_limit
 /// Validator of a number above 0 that adds nothing to the help; accepts infinity.
 CLI::Validator above_zero();
 
+/// Validators of numbers that add nothing to the help. The second one accepts the words of infinity
+/// and NaN, but no number that a float64 cannot hold.
+CLI::Validator finite_number();
+CLI::Validator representable_number();
+
 /// Words and their values, in the order in which help shows them.
 template <class T>
 using Choices = std::vector<std::pair<std::string, T>>;

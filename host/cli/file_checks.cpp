@@ -68,6 +68,51 @@ void check_volume_name(const std::string& output) {
 }
 
 namespace {
+/// A format that is not read, by the end of a file's name.
+struct ForeignFormat {
+  const char* extension;
+  const char* noun;
+  const char* remedy;
+};
+
+constexpr const char* to_nifti = "convert it to NIfTI, for example by SimpleITK or 3D Slicer";
+constexpr const char* to_vtu =
+    "convert it to .vtu, .vtk or .msh, for example by ParaView or meshio";
+constexpr ForeignFormat foreign_formats[] = {
+    {".nrrd", "NRRD image", to_nifti},
+    {".nhdr", "NRRD image", to_nifti},
+    {".mha", "MetaImage", to_nifti},
+    {".mhd", "MetaImage", to_nifti},
+    {".dcm", "DICOM image", to_nifti},
+    {".mgz", "FreeSurfer image", to_nifti},
+    {".mgh", "FreeSurfer image", to_nifti},
+    {".vti", "VTK image", to_nifti},
+    {".tif", "TIFF image", to_nifti},
+    {".tiff", "TIFF image", to_nifti},
+    {".pvtu", "mesh in several files", to_vtu},
+    {".pvd", "list of VTK files", "name one of its .vtu files"},
+    {".inp", "Abaqus mesh", to_vtu},
+    {".med", "MED mesh", to_vtu},
+    {".xdmf", "XDMF mesh", to_vtu},
+    {".mesh", "Medit mesh", to_vtu},
+    {".stl", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".ply", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".obj", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".vtp", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"}};
+
+/// Throws IoError for a file that is known not to be readable: of another format, or empty.
+void refuse_foreign(const std::string& path, const std::string& expected) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error) && fs::file_size(path, error) == 0) {
+    throw IoError(path, "", "is empty, expected a " + expected + "; copy it again");
+  }
+  for (const ForeignFormat& format : foreign_formats) {
+    if (!path.ends_with(format.extension)) continue;
+    throw IoError(path, "",
+                  std::string("is a ") + format.noun + ", which is not read; " + format.remedy);
+  }
+}
+
 /// What a file is, in words for a message.
 std::string noun_of(const std::string& path, FileKind kind) {
   if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
@@ -81,6 +126,7 @@ std::string noun_of(const std::string& path, FileKind kind) {
                               FileKind kind,
                               const std::string& expected,
                               const std::string& remedy) {
+  if (kind == FileKind::unknown) refuse_foreign(path, expected);
   const bool is_analyze = kind == FileKind::analyze;
   throw IoError(
       path, "",

@@ -192,13 +192,13 @@ VolumePlan plan_volume(const std::string& path,
     const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
     plan.files.insert(plan.files.end(), files.begin(), files.end());
   }
-  if (arguments.temporal && has_nifti_name(output.string())) {
+  if (arguments.temporal) {
     std::vector<double> times;
     times.reserve(steps.size());
     for (const std::int64_t step : steps) {
       times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
     }
-    const std::string warning = uneven_times(output.string(), times);
+    const std::string warning = times_warning(output.string(), times);
     if (!warning.empty()) plan.warnings.push_back(warning);
   }
   return plan;

@@ -47,6 +47,10 @@ struct JobPlan {
   std::vector<std::string> outputs() const;
 };
 
+/// True when the steps of a series are written to files of their own before they are joined, so
+/// that --resume can keep them.
+bool may_resume_within(const VolumePlan& volume, const WarpArguments& arguments);
+
 /// Reads all file headers and checks all arguments. Throws std::invalid_argument, IoError,
 /// CudaError.
 JobPlan plan_job(const WarpArguments& arguments);

@@ -34,7 +34,8 @@ bool plan_memory(VolumePlan& plan,
                  const std::vector<std::int64_t>& steps);
 
 /// Space on the disk that temporary files take while the output has its own [byte]: the unpacked
-/// source, and NIfTI outputs that are not written from their beginning to their end.
+/// source, steps of a series that can be resumed, and NIfTI outputs that are not written from their
+/// beginning to their end.
 /// @param blocks  of the output; 0: it is computed as a whole
 double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks);
 

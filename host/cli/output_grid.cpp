@@ -102,7 +102,12 @@ Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds)
   grid.origin = choice.origin.value_or(grid.origin);
   grid.spacing = choice.spacing.value_or(grid.spacing);
   grid.direction = choice.direction.value_or(grid.direction);
-  check_grid(grid, "output grid");
+  try {
+    check_grid(grid, "output grid");
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string(error.what()) +
+                                "; correct --grid, --dims, --origin, --spacing or --direction");
+  }
   return grid;
 }
 }  // namespace

@@ -15,6 +15,7 @@
 #include "host/cli/output_files.hpp"
 #include "host/cli/source_scan.hpp"
 #include "host/cli/stopwatch.hpp"
+#include "io/leftover_files.hpp"
 #include "io/memory.hpp"
 
 namespace tetwarp::cli {
@@ -175,6 +176,8 @@ void VolumeRun::run_temporal() {
     bar_.skip_steps(plan_.steps.size());
     return;
   }
+  const bool is_alone = ranks_.count() == 1;
+  if (is_alone && may_resume_within(volume_, arguments_)) return run_in_parts(fingerprint);
   begin_file(output, fingerprint, true);
   for (const std::int64_t number : plan_.steps) {
     take_sources(arguments_.source_step_of(number));
@@ -214,7 +217,10 @@ bool VolumeRun::may_keep(const std::string& output, const Fingerprint& fingerpri
   const bool may =
       ranks_.shared(ranks_.is_root() &&
                     is_up_to_date(arguments_, files_of_output(output, outputs_), fingerprint));
-  if (may && ranks_.is_root()) result_.skipped += files_per_output();
+  if (may && ranks_.is_root()) {
+    result_.skipped += files_per_output();
+    remove_leftovers_once(output.substr(0, output.rfind('/') + 1));
+  }
   return may;
 }
 

@@ -106,6 +106,10 @@ class VolumeRun {
   BlockPlan plan_step(const std::vector<Point3>& positions);
   void check_limit(const std::vector<Point3>& positions, const BlockLimits& limits);
 
+  // volume_run_parts.cpp: a series that can be resumed.
+  void run_in_parts(const Fingerprint& fingerprint);
+  void copy_part(const std::string& part);
+
   // volume_run_step.cpp: the blocks of a step are read and computed.
   void run_step(const std::shared_ptr<Step>& step);
   bool equals_last_step(const Step& step) const;

@@ -34,8 +34,9 @@ Warnings array_warnings(const std::string& volume,
 /// give none.
 Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps);
 
-/// Times of the steps of a NIfTI series that are not equally spaced; empty when they are.
-std::string uneven_times(const std::string& output, const std::vector<double>& times);
+/// Times of the steps of a series that its format or its readers do not keep: in NIfTI those that
+/// are not equally spaced, in VTKHDF those that do not increase. Empty when there are none.
+std::string times_warning(const std::string& output, const std::vector<double>& times);
 
 /// For --strict: throws std::runtime_error with the first warning, if there is one.
 void refuse_warnings(const Warnings& warnings);

@@ -127,7 +127,9 @@ void declare_sampling_options(CLI::App& app, WarpOptions& warp) {
 void declare_outside_options(CLI::App& app, WarpOptions& warp) {
   add_choice(app, "--outside", warp.outside, choices_of<Outside>(),
              "voxels outside the mesh: --background, or the source [background]");
-  app.add_option("--background", warp.background, "value of uncovered voxels [0]")->type_name("V");
+  app.add_option("--background", warp.background, "value of uncovered voxels [0]")
+      ->check(representable_number())
+      ->type_name("V");
 }
 
 namespace {
@@ -254,6 +256,10 @@ void check_sampling(const WarpOptions& warp) {
   }
   if (warp.intensity == Intensity::conservative && warp.filter != Filter::linear) {
     throw CLI::ValidationError("--filter", "--intensity conservative uses none; leave it out");
+  }
+  if (warp.intensity == Intensity::conservative && warp.outside == Outside::identity) {
+    throw CLI::ValidationError(
+        "--outside", "--intensity conservative keeps the total of the mesh alone; leave it out");
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <tetwarp/error.hpp>
 #include <tetwarp/version.hpp>
 
 #include "host/cli/interrupt.hpp"
@@ -46,6 +48,18 @@ std::string plan_text(const StepPlan& plan) {
                             plan.blocks, plan.largest_block, plan.largest_window,
                             bytes_text(plan.bytes_read));
 }
+
+/// Names the mesh in errors about its positions, which a Warper finds.
+template <class Function>
+void with_mesh_named(const std::string& mesh, const Function& function) {
+  try {
+    function();
+  } catch (const std::invalid_argument& error) {
+    const std::string problem = error.what();
+    if (!problem.starts_with("mesh: ") && !problem.starts_with("deformed positions: ")) throw;
+    throw IoError(mesh, "", problem + "; correct the positions, or check units and axes");
+  }
+}
 }  // namespace
 
 JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context) {
@@ -81,12 +95,14 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
                     progress_work(arguments, plan, ranks));
     std::size_t task = 0;
     for (const VolumePlan& volume : plan.volumes) {
-      if (!arguments.dry_run) {
-        run_volume(arguments, plan, volume, ranks, task, bar, result);
-      } else if (ranks.is_root()) {
-        plan_only(arguments, plan, volume, bar, result);
-        if (result.refusal.empty()) result.refusal = volume.refusal;
-      }
+      with_mesh_named(arguments.mesh_file(), [&] {
+        if (!arguments.dry_run) {
+          run_volume(arguments, plan, volume, ranks, task, bar, result);
+        } else if (ranks.is_root()) {
+          plan_only(arguments, plan, volume, bar, result);
+          if (result.refusal.empty()) result.refusal = volume.refusal;
+        }
+      });
       task += volume.outputs.size();
     }
   }

@@ -10,6 +10,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -113,8 +114,11 @@ struct MeshHeader {
   std::int64_t node_count = 0;
   std::int64_t tet_count = 0;
   std::int64_t hex_count = 0;
-  std::vector<double> times;      ///< one per step; a static file has one step at time 0
-  bool has_displacement = false;  ///< deformed = rest + displacement; false: the points move
+  std::vector<double> times;       ///< one per step; a static file has one step at time 0
+  bool has_displacement = false;   ///< deformed = rest + displacement; false: the step's points
+  bool has_moving_points = false;  ///< steps have points of their own, which may differ
+  /// Names of the values of the cell array `group`; see MeshArray::value_names.
+  std::map<std::int64_t, std::string> group_names = {};
 };
 
 /// Choices of MeshReader.

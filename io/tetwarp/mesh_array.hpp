@@ -2,6 +2,8 @@
 /// Arrays of mesh files beside the displacement.
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,8 @@ struct MeshArray {
   PixelType type = PixelType::float64;
   int components = 1;
   std::vector<std::byte> data;  ///< [row][component]
+  /// Names of values, of integer arrays of one component: of `group` those of physical groups.
+  std::map<std::int64_t, std::string> value_names = {};
 };
 
 }  // namespace tetwarp

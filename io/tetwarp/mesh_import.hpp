@@ -38,7 +38,7 @@ struct ImportedMesh {
   std::map<std::string, std::int64_t> skipped;
   /// Other arrays of nodes and cells, of the first step. `original_cell` holds the number of each
   /// cell in the file: in VTK's from 0, in Gmsh's its tag; of Gmsh `original_node` holds the tags
-  /// of nodes, `group` the physical group of each cell (0: none).
+  /// of nodes, `group` the physical group of each cell (0: none) and the names of groups.
   std::vector<MeshArray> arrays = {};
   std::vector<std::string> left_out = {};  ///< other content of the file, by kind and name
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions

@@ -14,25 +14,13 @@
 #include "tests/scenes/cli_scene.hpp"
 #include "tests/scenes/foreign_meshes.hpp"
 #include "tests/scenes/nifti_files.hpp"
+#include "tests/scenes/refused_line.hpp"
 
 namespace tetwarp::test {
 namespace {
 using Names = std::vector<std::string>;
 constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
-
-/// A command line that must fail and what its line must hold.
-void expect_line(const Scene& scene,
-                 const Names& words,
-                 const std::string& phrase,
-                 const RunOptions& options = {}) {
-  const Names before = scene.names();
-  const CommandResult result = run_command(scene, words, options);
-  EXPECT_EQ(result.exit_code, 1) << phrase << ": " << result.err;
-  EXPECT_TRUE(result.has_one_line_error()) << result.err;
-  EXPECT_NE(result.err.find(phrase), std::string::npos) << phrase << ": " << result.err;
-  EXPECT_EQ(scene.names(), before) << phrase;
-}
 
 /// The header of a 4 x 3 x 2 float32 image, changed.
 struct BadHeader {
@@ -85,6 +73,24 @@ TEST(BadImages, HeadersThatContradictThemselves) {
       {[](auto& h) { h.vox_offset = 0; }, "from byte 0.000000 on, but the file is too small"},
       {[](auto& h) { h.vox_offset = not_a_number; }, "too small: truncated or damaged"},
       {[](auto& h) { h.vox_offset = 1e9F; }, "from byte 1000000000.000000 on, but the file"},
+      {[](auto& h) { h.scl_slope = 2, h.scl_inter = infinite; },
+       "scl_inter: is inf, expected a fi"},
+      {[](auto& h) { h.scl_slope = h.scl_inter = 3e38F; }, "scl_slope: and scl_inter make samples"},
+      {[](auto& h) { h.qform_code = 1, h.quatern_b = h.quatern_c = 1; },
+       "qform: has a quaternion of length 1.414214, expected at most 1; correct the header"},
+      {[](auto& h) { h.dim[5] = 5, h.intent_code = NIFTI_INTENT_SYMMATRIX; },
+       "dim[5]: is 5 components, but intent_code 1005, symmetric matrices, has 6"},
+      {[](auto& h) { h.dim[5] = 4, h.intent_code = NIFTI_INTENT_DISPVECT; },
+       "dim[5]: is 4 components, but intent_code 1006, displacements, has 3; correct the header"},
+      {[](auto& h) { h.vox_offset = 348; }, "from byte 348.000000 on, but the file is too small"},
+      {[](auto& h) { h.dim[0] = 7, h.dim[7] = 2; }, "dim[7]: is 2, expected 1: only volumes"},
+      {[](auto& h) { h.datatype = 1536; }, "datatype: is 1536 (FLOAT128), expected integers or"},
+      {[](auto& h) { h.datatype = 1; }, "datatype: is 1 (BINARY), expected integers or floats"},
+      {[&](auto& h) {
+         set_sform(h, {1, 1, 1});
+         h.srow_x[1] = 1, h.srow_y[1] = 0;
+       },
+       "sform: grid: direction is singular, expected three independent axes; correct the header"},
       {[&](auto& h) { set_series(h, 3), h.intent_code = NIFTI_INTENT_VECTOR; },
        "intent_code: is 1007, vectors or tensors, whose components lie along dim[5]"},
       {[&](auto& h) { set_series(h, 6), h.intent_code = NIFTI_INTENT_SYMMATRIX; },
@@ -101,7 +107,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
     std::string bytes = text_of(scene / "bad.nii");
     std::memcpy(bytes.data(), &header, sizeof header);
     write_text(scene / "bad.nii", bytes);
-    expect_line(scene, {"warp", "bad.nii", "mesh.vtkhdf", "-o", "out.nii.gz"}, bad.phrase);
+    expect_refused_line(scene, {"warp", "bad.nii", "mesh.vtkhdf", "-o", "out.nii.gz"}, bad.phrase);
   }
 }
 
@@ -134,7 +140,7 @@ TEST(BadImages, FilesThatEndEarlyOrAreSomethingElse) {
            {"d.nii.gz", changed(gzip, gzip.size() - 6, "????"),
             "d.nii.gz: is a file without a NIfTI header (damaged"},
            {"e.nii", "a letter to a friend", "e.nii: is a file without a NIfTI header (damaged"},
-           {"f.nii.gz", "", "f.nii.gz: is a file without a NIfTI header (damaged"},
+           {"f.nii.gz", "", "f.nii.gz: is empty, expected a volume; copy it again"},
            {"g.hdr", changed(plain, 344, std::string(4, '\0')), "Analyze images have no orient"},
            {"h.hdr", pair, "h.hdr: has no file of samples beside it; copy 'h.img', too"},
            {"i.nii", second.substr(0, 400), "i.nii: is a file without a NIfTI header (damaged"},
@@ -142,11 +148,13 @@ TEST(BadImages, FilesThatEndEarlyOrAreSomethingElse) {
            {"k.nii", plain + "", "k.nii: is also an input; name another output"}}) {
     write_text(scene / bad.name, bad.bytes);
     const std::string output = bad.name == "k.nii" ? "k.nii" : "out.nii";
-    expect_line(scene, {"warp", bad.name, "mesh.vtkhdf", "-o", output, "--steps", "0"}, bad.phrase);
+    expect_refused_line(scene, {"warp", bad.name, "mesh.vtkhdf", "-o", output, "--steps", "0"},
+                        bad.phrase);
   }
   write_text(scene / "h.img", "too short");
-  expect_line(scene, {"render", "h.hdr", "-o", "out.png"}, "but 'h.img' is too small: truncated");
-  expect_line(scene, {"info", "h.img"}, "h.img: the header declares 3.8 KiB of samples");
+  expect_refused_line(scene, {"render", "h.hdr", "-o", "out.png"},
+                      "but 'h.img' is too small: truncated");
+  expect_refused_line(scene, {"info", "h.img"}, "h.img: the header declares 3.8 KiB of samples");
 }
 
 TEST(BadImages, MeshesThatCannotBe) {
@@ -186,7 +194,7 @@ TEST(BadImages, MeshesThatCannotBe) {
            {"j.msh", "Exit;", "j.msh: "},
            {"k.msh", msh(box_mesh()).substr(0, 300), "k.msh: "}}) {
     write_text(scene / bad.name, bad.text);
-    expect_line(scene, {"warp", "head.nii", bad.name, "-o", "out.nii"}, bad.phrase);
+    expect_refused_line(scene, {"warp", "head.nii", bad.name, "-o", "out.nii"}, bad.phrase);
   }
   Mesh small = box_mesh();
   small.rest_positions.resize(7);
@@ -207,12 +215,12 @@ TEST(BadImages, MeshesThatCannotBe) {
     Names words{"warp", "head.nii"};
     words.insert(words.end(), bad.words.begin(), bad.words.end());
     words.insert(words.end(), {"-o", "out.nii"});
-    expect_line(scene, words, bad.phrase);
+    expect_refused_line(scene, words, bad.phrase);
   }
-  expect_line(scene, {"warp", "good.vtk", "mesh.vtkhdf", "-o", "out.nii"},
-              "good.vtk: is a mesh, expected a volume; the order is");
-  expect_line(scene, {"deform", "mesh.vtkhdf", "--axes", "lps", "-o", "out.vtkhdf"},
-              "mesh.vtkhdf: is a VTKHDF mesh, which is not turned; leave out --axes");
+  expect_refused_line(scene, {"warp", "good.vtk", "mesh.vtkhdf", "-o", "out.nii"},
+                      "good.vtk: is a mesh, expected a volume; the order is");
+  expect_refused_line(scene, {"deform", "mesh.vtkhdf", "--axes", "lps", "-o", "out.vtkhdf"},
+                      "mesh.vtkhdf: is a VTKHDF mesh, which is not turned; leave out --axes");
 }
 
 TEST(BadImages, OutputsThatCannotBe) {
@@ -256,12 +264,13 @@ TEST(BadImages, OutputsThatCannotBe) {
             "has no step 2, its steps are"},
            {{"mesh", "series.nii", "-o", "out.nii"}, "the name of a VTKHDF file ends in .vtkhdf"},
            {{"mesh", "series.nii", "--step", "7", "-o", "out.h5"}, "series.nii: has no step 7"}}) {
-    expect_line(scene, bad.words, bad.phrase);
+    expect_refused_line(scene, bad.words, bad.phrase);
   }
   if (geteuid() == 0) return;  // root can write to any folder
   fs::create_directory(scene / "locked");
   fs::permissions(scene / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  expect_line(scene, warp("head.nii.gz", {"locked/out.nii.gz", "--steps", "0"}), "no permission");
+  expect_refused_line(scene, warp("head.nii.gz", {"locked/out.nii.gz", "--steps", "0"}),
+                      "no permission");
 }
 
 /// A full disk, while an image is written whole and while a gzip image is unpacked for blocks.
@@ -276,11 +285,11 @@ TEST(BadImages, AFullDiskLeavesNothing) {
   full.file_size_limit = 1 << 20;
   const Names warp{"warp", "large.nii.gz", "mesh.vtkhdf", "-o", "out.nii", "--steps", "3"};
 
-  expect_line(scene, warp, "out.nii: cannot be written", full);
+  expect_refused_line(scene, warp, "out.nii: cannot be written", full);
 
   Names blocks = warp;
   blocks.insert(blocks.end(), {"--memory", "58M", "--threads", "2"});
-  expect_line(scene, blocks, "large.nii.gz: cannot be unpacked beside the output", full);
+  expect_refused_line(scene, blocks, "large.nii.gz: cannot be unpacked beside the output", full);
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -87,11 +87,14 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(exists("jobs/good.vtkhdf"));
   EXPECT_NE(result.err.find("tetwarp: job 1: "), std::string::npos) << result.err;
-  EXPECT_NE(result.err.find("tetwarp: job 2: unknown key 'filtre'\n"), std::string::npos)
+  EXPECT_NE(result.err.find("tetwarp: job 2: jobs/jobs.json: unknown key 'filtre'; keys are"),
+            std::string::npos)
       << result.err;
-  EXPECT_NE(result.err.find("tetwarp: job 3: --filter: 'cubical'"), std::string::npos);
-  EXPECT_NE(result.err.find("tetwarp: job 4: has no 'mesh'\n"), std::string::npos);
-  EXPECT_NE(result.err.find("tetwarp: job 5: is not a JSON object\n"), std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 3: jobs/jobs.json: --filter: 'cubical'"),
+            std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 4: jobs/jobs.json: has no 'mesh'\n"), std::string::npos);
+  EXPECT_NE(result.err.find("tetwarp: job 5: jobs/jobs.json: is not a JSON object\n"),
+            std::string::npos);
   EXPECT_TRUE(result.out.ends_with("1 done, 5 failed, 0 skipped\n")) << result.out;
   const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
   EXPECT_EQ(report["status"], "failed");
@@ -101,7 +104,9 @@ TEST_F(Batch, ReportsAFailingJobAndRunsTheOthers) {
   const auto& jobs = report["jobs"];
   ASSERT_EQ(jobs.size(), 6u);
   EXPECT_EQ(jobs[1]["status"], "failed");
-  EXPECT_EQ(jobs[1]["error"], "unknown key 'filtre'");
+  EXPECT_EQ(jobs[1]["error"],
+            "jobs/jobs.json: unknown key 'filtre'; keys are volume, mesh and the options of "
+            "tetwarp warp");
   EXPECT_EQ(jobs[1]["volumes"], Names{"jobs/../volume.vtkhdf"});
   EXPECT_EQ(jobs[1]["mesh"], "jobs/../mesh.vtkhdf");
   EXPECT_EQ(jobs[1]["output"], "jobs/b.vtkhdf");

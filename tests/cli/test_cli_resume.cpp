@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -110,6 +112,68 @@ TEST(Temporal, ResumesOnlyWhenEveryStepIsTheSame) {
   write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0, 1, 1, 4}), {0, 0.5, 1, 1.5});
   EXPECT_EQ(scene.warp(words).exit_code, 0);
   EXPECT_NE(fs::last_write_time(scene / "out.vtkhdf"), long_ago);
+}
+
+/// An interrupted run leaves complete steps, here 0 and 1 of 0 to 3. Of two equal steps the second
+/// one is not stored again.
+TEST(Temporal, GoesOnAfterTheStepsThatAreComplete) {
+  const Scene scene;
+  const Names more{"--outputs", "mask", "--report", "report.json"};
+  const auto with = [&](Names words) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  EXPECT_EQ(scene.warp(with({"-o", "step.vtkhdf"})).exit_code, 0);
+  EXPECT_EQ(scene.warp(with({"-o", "direct.vtkhdf", "--temporal"})).exit_code, 0);
+  for (const std::string output : {"out.vtkhdf", "out.nii.gz"}) {
+    const fs::path folder = scene / (output + ".steps");
+    fs::create_directory(folder);
+    for (const std::string step : {"0000", "0001"}) {
+      fs::copy_file(scene / ("step_" + step + ".vtkhdf"), folder / ("step_" + step + ".vtkhdf"));
+    }
+
+    const CommandResult result = scene.warp(with({"-o", output, "--temporal", "--resume"}));
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_FALSE(fs::exists(folder));
+    const auto report = nlohmann::json::parse(text_of(scene / "report.json"));
+    EXPECT_EQ(report["counts"]["voxels"], 2 * 960);
+    EXPECT_EQ(report["outputs_skipped"], 0);
+    for (const std::int64_t step : {0, 1, 2, 3}) {
+      const std::string array = output == "out.vtkhdf" ? "density" : "";
+      EXPECT_EQ(read_volume(scene / output, array, step).data,
+                read_volume(scene / "direct.vtkhdf", "density", step).data);
+    }
+  }
+  EXPECT_LT(fs::file_size(scene / "out.vtkhdf"),
+            1.1 * static_cast<double>(fs::file_size(scene / "direct.vtkhdf")));
+}
+
+/// With little memory the steps are copied brick by brick.
+TEST(Temporal, IsTheSameInBlocksWhenItCanBeResumed) {
+  const Scene scene;
+  const Names words{"--temporal", "--memory", "60M", "--outputs", "displacement"};
+  Volume volume = make_volume(ramp_volume<float>().grid, PixelType::float32, 1, "density");
+  volume.grid.dims = {120, 110, 100};
+  volume.grid.spacing = {0.2, 2.0 / 11, 0.16};
+  volume.data.resize(volume.byte_count());
+  for (std::size_t v = 0; v < volume.samples<float>().size(); ++v) {
+    volume.samples<float>()[v] = static_cast<float>(v % 977);
+  }
+  write_volumes(scene / "volume.vtkhdf", {&volume});
+  for (const std::string output : {"direct.vtkhdf", "resumed.vtkhdf"}) {
+    Names all{"-o", output};
+    all.insert(all.end(), words.begin(), words.end());
+    if (output == "resumed.vtkhdf") all.push_back("--resume");
+
+    const CommandResult result = scene.warp(all);
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+  for (const std::string array : {"density", "tetwarp_displacement"}) {
+    EXPECT_EQ(read_volume(scene / "resumed.vtkhdf", array, 3).data,
+              read_volume(scene / "direct.vtkhdf", array, 3).data);
+  }
 }
 
 TEST(FullDisk, IsOneLineAndLeavesNothing) {

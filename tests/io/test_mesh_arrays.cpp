@@ -83,7 +83,11 @@ TEST(MeshArrays, OfGmshFilesHoldTagsAndGroups) {
   EXPECT_EQ(array_of(*mesh, "original_node", false), (std::vector<double>{10, 20, 30, 40, 50}));
   EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{7, 8}));
   EXPECT_EQ(array_of(*mesh, "group", true), (std::vector<double>{3, 5}));
-  EXPECT_EQ(mesh->left_out, std::vector<std::string>{"name 'bone' of group 3"});
+  EXPECT_TRUE(mesh->left_out.empty());
+  write_mesh(folder / "a.vtkhdf", mesh->mesh, {}, {}, mesh->arrays);
+  const std::map<std::int64_t, std::string> names{{3, "bone"}};
+  EXPECT_EQ(MeshReader(folder / "a.vtkhdf").header().group_names, names);
+  EXPECT_EQ(MeshReader(folder / "a.msh").header().group_names, names);
 }
 
 /// HDF5 must not use what it has freed: freed memory is overwritten here.
@@ -94,6 +98,23 @@ TEST(MeshArrays, AFileIsClosedWhileItsDriverExists) {
   mallopt(M_PERTURB, 0);
 
   EXPECT_EQ(MeshReader(folder / "m.vtkhdf").mesh().tets, two_tets().tets);
+}
+
+/// What does not fit into an attribute of HDF5 is refused; line breaks would make other names.
+TEST(MeshArrays, NamesOfValuesAreChecked) {
+  const ScratchFolder folder;
+  MeshArray group{"group", true, PixelType::int64, 1, std::vector<std::byte>(16)};
+  const auto write = [&](const std::string& name) {
+    group.value_names = {{-5, name}, {7, "soft tissue"}};
+    return io_error([&] { write_mesh(folder / "m.vtkhdf", two_tets(), {}, {}, {group}); });
+  };
+
+  EXPECT_NE(write(std::string(60000, 'a')).find("group: the names of its values take 600"),
+            std::string::npos);
+  EXPECT_EQ(folder.entry_count(), 0);
+  EXPECT_EQ(write("a\nb"), "");
+  EXPECT_EQ(MeshReader(folder / "m.vtkhdf").header().group_names,
+            (std::map<std::int64_t, std::string>{{-5, "a b"}, {7, "soft tissue"}}));
 }
 
 TEST(MeshArrays, AreWrittenBesideTheStepsAndCheckedBefore) {
