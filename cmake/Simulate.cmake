@@ -96,6 +96,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
   host/simulate/contact/edge_side.cpp
+  host/simulate/contact/elastic_space.cpp
   host/simulate/contact/medial_node.cpp
   host/simulate/contact/near_pair.cpp
   host/simulate/contact/pair_contacts.cpp
@@ -104,6 +105,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/patch_moments.cpp
   host/simulate/contact/patch_supports.cpp
   host/simulate/contact/prepare_start.cpp
+  host/simulate/contact/rest_factor.cpp
   host/simulate/contact/rest_growth.cpp
   host/simulate/contact/rigid_patches.cpp
   host/simulate/contact/round_shape.cpp

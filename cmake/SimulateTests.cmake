@@ -88,6 +88,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
+    tests/simulate/test_contact_bonds.cpp
     tests/simulate/test_contact_system.cpp
     tests/simulate/test_contact_system_blocks.cpp
     tests/simulate/test_two_level.cpp

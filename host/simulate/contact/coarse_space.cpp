@@ -86,8 +86,9 @@ void CoarseSpace::set(const StepSystem& system,
                       const ModelState& state,
                       const ContactIslands& islands,
                       const std::vector<std::uint8_t>& takes,
+                      const ElasticSpace& elastic,
                       int threads) {
-  list_islands(system.rows, islands, takes);
+  list_islands(system.rows, islands, takes, elastic);
   rows_.resize(at(system.rows.unknown_count));
   mode_count_ = 0;
   std::int64_t numbers = 0;
@@ -105,7 +106,8 @@ void CoarseSpace::set(const StepSystem& system,
 
 void CoarseSpace::list_islands(const SystemRows& rows,
                                const ContactIslands& islands,
-                               const std::vector<std::uint8_t>& takes) {
+                               const std::vector<std::uint8_t>& takes,
+                               const ElasticSpace& elastic) {
   islands_.clear();
   island_of_row_.assign(at(rows.unknown_count), -1);
   std::int32_t last = -1;
@@ -116,6 +118,7 @@ void CoarseSpace::list_islands(const SystemRows& rows,
       islands_.emplace_back();
       islands_.back().row_begin = row;
       islands_.back().is_coupled = islands.is_coupled(island);
+      islands_.back().elastic = elastic.body_of_row(row);
       last = island;
     }
     islands_.back().row_end = row + 1;
@@ -128,7 +131,7 @@ void CoarseSpace::set_rows(const SystemRows& rows, const ModelState& state, Coar
   std::vector<AffineBasis> bases;
   std::vector<std::int32_t> bodies;
   for (std::int32_t row = island.row_begin; row < island.row_end; ++row) rows_[at(row)] = {};
-  if (!island.is_coupled) return;
+  if (!island.is_coupled || island.elastic >= 0) return;
   const auto each = [&](const auto& use) {
     for (std::int32_t row = island.row_begin; row < island.row_end; ++row) {
       const std::int32_t block = rows.block_of[row];

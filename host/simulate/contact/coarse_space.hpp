@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/simulate/contact/contact_islands.hpp"
+#include "host/simulate/contact/elastic_space.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -17,6 +18,7 @@ struct CoarseIsland {
   std::int32_t mode_begin = 0, mode_count = 0;  ///< 0: without coarse unknowns
   std::int64_t inverse_begin = 0;               ///< of its matrix in CoarseSpace::inverse()
   bool is_coupled = true;                       ///< false: a single rigid body
+  std::int32_t elastic = -1;                    ///< place in ElasticSpace::bodies(), or -1
 };
 
 /// What a row is of its island's modes: v = sum over k of factor[k] c[first + 3 k ... + 3].
@@ -27,7 +29,7 @@ struct CoarseRow {
 
 /// Modes of an island: twelve of each deformable body (four polynomials of degree 0 and 1 that are
 /// orthonormal over the nodes with unknowns, in three directions), six of each rigid one. An island
-/// of a single rigid body has none, nor has one with more than `most_modes`.
+/// of a single rigid body has none, nor has one with more than `most_modes` or one of ElasticSpace.
 class CoarseSpace {
  public:
   static constexpr std::int32_t most_modes = 192;
@@ -39,6 +41,7 @@ class CoarseSpace {
            const ModelState& state,
            const ContactIslands& islands,
            const std::vector<std::uint8_t>& takes,
+           const ElasticSpace& elastic,
            int threads);
 
   const std::vector<CoarseIsland>& islands() const { return islands_; }
@@ -53,7 +56,8 @@ class CoarseSpace {
  private:
   void list_islands(const SystemRows& rows,
                     const ContactIslands& islands,
-                    const std::vector<std::uint8_t>& takes);
+                    const std::vector<std::uint8_t>& takes,
+                    const ElasticSpace& elastic);
   void set_rows(const SystemRows& rows, const ModelState& state, CoarseIsland& island);
   void set_inverse(const StepSystem& system, const CoarseIsland& island);
 

@@ -1,6 +1,7 @@
 #include "host/simulate/contact/contact_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
@@ -85,6 +86,7 @@ struct ContactSystem::State {
   void set_laws(const ContactTracker& tracker,
                 const std::vector<TrackedContact>& contacts,
                 const std::vector<Point3>& velocity);
+  void set_bond(const TrackedContact& contact, std::size_t c);
   void divide();
   void take_impulses(const Share& share,
                      const std::vector<double>& impulse,
@@ -105,7 +107,8 @@ struct ContactSystem::State {
   StepProblem part;
   ContactSolver solver;
   std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
-  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery
+  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
+                                   ///< because only a bond is left
   ContactSolution solution;
   std::vector<Point3> impulses, no_change;  ///< [block_count]
 };
@@ -121,6 +124,14 @@ bool ContactSystem::State::iterates_two_levels() const {
 double ContactSystem::State::recovery_speed(const ContactKey& key) const {
   return options.recovery_fraction *
          std::min(scene.body_size[at(key.body_a)], scene.body_size[at(key.body_b)]);
+}
+
+/// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
+/// apart sideways, these pass each other without pushing.
+void ContactSystem::State::set_bond(const TrackedContact& contact, std::size_t c) {
+  const double sideways = std::hypot(contact.gap[1], contact.gap[2]);
+  recovered[c] = std::max(recovered[c], sideways / laws.adhesion.time_step);
+  if (contact.gap[0] <= 0) laws.adhesion.stiffness[c] = 0;
 }
 
 /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and limits
@@ -150,6 +161,7 @@ void ContactSystem::State::set_laws(const ContactTracker& tracker,
           contact.rebound_speed > 0 ? std::min(limit, -contact.rebound_speed) : limit;
       recovered[c] = std::max(slowest - closing, 0.0);
     }
+    if (!contact.is_reported) set_bond(contact, c);
     laws.velocity_offset[3 * c] += recovered[c];
     for (std::size_t k = 0; k < 3; ++k) {
       laws.velocity_offset[3 * c + k] += prescribed[3 * c + k];

@@ -20,12 +20,14 @@ View<const T> view_of(const std::vector<T>& own) {
 
 void TouchingBlocks::set(const StepSystem& system,
                          const CoarseSpace& coarse,
+                         const ElasticSpace& elastic,
                          const ContactRows& rows,
                          const std::vector<std::int32_t>& contacts,
                          const ContactProblem& laws,
                          const DiagonalInverse<double>& inverse,
                          double relaxation) {
   set_laws(laws);
+  elastic_ = &elastic;
   row_of_block_.assign(at(system.rows.block_of.size), -1);
   for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
     if (coarse.island_of_row(row) >= 0) row_of_block_[at(system.rows.block_of[row])] = row;
@@ -39,10 +41,14 @@ void TouchingBlocks::set(const StepSystem& system,
   for (const std::int32_t contact : contacts) add_rows(system, coarse, rows, contact);
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-  set_responses(coarse, inverse, relaxation);
+  set_responses(coarse, elastic, inverse, relaxation);
   packed_start_.assign(constants_.size(), -1);
   packed_size_.resize(constants_.size());
   packed_.clear();
+  elastic_start_.assign(constants_.size(), 0);
+  elastic_end_.assign(constants_.size(), 0);
+  elastic_parts_.clear();
+  elastic_response_.clear();
   operations_ = 0;
 }
 
@@ -84,7 +90,12 @@ void TouchingBlocks::add_rows(const StepSystem& system,
     if (row < 0) continue;
     const bool is_rigid = system.rows.pair[row] == 1;
     const std::int32_t size = is_rigid ? 6 : 3;
-    parts_.push_back({3 * std::int64_t{row}, static_cast<std::int64_t>(jacobian_.size()), size});
+    const std::int64_t first = 3 * std::int64_t{row};
+    const std::int32_t body = elastic_->body_of_row(row);
+    const std::int64_t place = body < 0 ? first
+                                        : elastic_->bodies()[at(body)].first +
+                                              3 * std::int64_t{elastic_->slot_of_row(row)};
+    parts_.push_back({first, place, static_cast<std::int64_t>(jacobian_.size()), size});
     part_item_.push_back(row);
     touched_.push_back(row);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -116,7 +127,7 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
     std::size_t place = last;
     while (place < parts_.size() && part_item_[place] != own) ++place;
     if (place == parts_.size()) {
-      parts_.push_back({coarse_begin + island.mode_begin,
+      parts_.push_back({coarse_begin + island.mode_begin, coarse_begin + island.mode_begin,
                         static_cast<std::int64_t>(jacobian_.size()), island.mode_count});
       part_item_.push_back(own);
       jacobian_.resize(jacobian_.size() + 3 * at(island.mode_count), 0);
@@ -138,11 +149,52 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
   }
 }
 
+/// Turns J of a row of an elastic body, and adds its products with the rows of the same body before
+/// it, and with itself, to the block of the contact.
+void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
+                                       std::size_t contact,
+                                       std::int32_t part) {
+  const std::int32_t row = part_item_[at(part)], body = elastic.body_of_row(row);
+  const ElasticBody& own = elastic.bodies()[at(body)];
+  const auto& r = own.rotation;
+  const double* const j = jacobian_.data() + parts_[at(part)].value;
+  double* const turned = turned_.data() + parts_[at(part)].value;
+  for (std::size_t e = 0; e < 9; ++e) {
+    const double* const from = j + e / 3 * 3;
+    turned[e] = from[0] * r[e % 3] + from[1] * r[3 + e % 3] + from[2] * r[6 + e % 3];
+  }
+  double* const block = constants_[contact].block;
+  for (std::int32_t q = part_start_[contact]; q <= part; ++q) {
+    const std::int32_t other = part_item_[at(q)];
+    if (elastic.body_of_row(other) != body) continue;
+    const double* const second = turned_.data() + parts_[at(q)].value;
+    const double* const g = own.compliance.data() +
+                            3 * at(elastic.slot_of_row(other)) * at(own.size) +
+                            3 * at(elastic.slot_of_row(row));
+    for (std::size_t b = 0; b < 3; ++b) {
+      double moved[3] = {};  // of the row for a unit impulse along axis b
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          moved[i] += g[k * at(own.size) + i] * second[3 * b + k];
+        }
+      }
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double value =
+            turned[3 * a] * moved[0] + turned[3 * a + 1] * moved[1] + turned[3 * a + 2] * moved[2];
+        block[3 * a + b] += value;
+        if (q != part) block[3 * b + a] += value;
+      }
+    }
+  }
+}
+
 /// Velocities for unit impulses, and the block of each contact.
 void TouchingBlocks::set_responses(const CoarseSpace& coarse,
+                                   const ElasticSpace& elastic,
                                    const DiagonalInverse<double>& inverse,
                                    double relaxation) {
-  response_.resize(jacobian_.size());
+  response_.assign(jacobian_.size(), 0);
+  turned_.resize(jacobian_.size());
   diagonal_.resize(3 * constants_.size());
   for (std::size_t c = 0; c < constants_.size(); ++c) {
     double* const block = constants_[c].block;
@@ -150,6 +202,10 @@ void TouchingBlocks::set_responses(const CoarseSpace& coarse,
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[at(p)];
       const bool is_coarse = p >= coarse_start_[c];
+      if (!is_coarse && elastic.body_of_row(part_item_[at(p)]) >= 0) {
+        add_elastic_block(elastic, c, p);
+        continue;
+      }
       const CoarseIsland& island = coarse.islands()[at(
           is_coarse ? part_item_[at(p)] : coarse.island_of_row(part_item_[at(p)]))];
       const double* const m = is_coarse ? coarse.inverse().data() + island.inverse_begin

@@ -19,8 +19,10 @@ struct TouchingSums {
   double work = 0;     ///< r . (u - free)
 };
 
-/// Vectors y hold velocities of all rows of the system [rows][3], then the coarse unknowns. With
-/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T a contact sees u = J y_rows + (J Z) y_coarse + w.
+/// Vectors y hold velocities of all rows of the system [rows][3], then the coarse unknowns, then
+/// velocities of the nodes of elastic bodies that contacts touch, in the frames of these bodies at
+/// rest. With M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T a contact sees u = J y_rows + (J Z) y_coarse +
+/// w; of elastic bodies, whose M^-1 = R A_0^-1 R^T, u = J R y_touched + w.
 class TouchingBlocks {
  public:
   /// @param laws        friction, offsets, adhesion of the contacts, and their guess
@@ -28,6 +30,7 @@ class TouchingBlocks {
   /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
   void set(const StepSystem& system,
            const CoarseSpace& coarse,
+           const ElasticSpace& elastic,
            const ContactRows& rows,
            const std::vector<std::int32_t>& contacts,
            const ContactProblem& laws,
@@ -65,6 +68,8 @@ class TouchingBlocks {
   const std::vector<std::int32_t>& working() const { return working_; }
   /// force = load + J^T r in the rows that contacts touch.
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
+  /// force = J^T (after - before) in the rows that contacts touch.
+  void set_changes(const double* before, const double* after, double* force) const;
 
   /// Springs whose gap is not dt w_n push by this at u_n = 0: impulses of the laws here are those
   /// of the contacts plus it, [contacts].
@@ -73,9 +78,17 @@ class TouchingBlocks {
  private:
   /// Numbers of y that a contact moves.
   struct Part {
-    std::int64_t first = 0;  ///< in y
+    std::int64_t first = 0;  ///< in vectors of rows
+    std::int64_t place = 0;  ///< in y
     std::int64_t value = 0;  ///< in jacobian_ and response_, both 3 x size
     std::int32_t size = 0;   ///< a multiple of 3
+  };
+
+  /// What a contact moves of an elastic body: all its touched nodes.
+  struct ElasticPart {
+    std::int64_t place = 0;  ///< in y
+    std::int64_t value = 0;  ///< in elastic_response_, 3 x size
+    std::int64_t size = 0;
   };
 
   void set_laws(const ContactProblem& laws);
@@ -85,10 +98,15 @@ class TouchingBlocks {
                 std::int32_t contact);
   void add_modes(const CoarseSpace& coarse, std::int64_t coarse_begin, std::size_t first_part);
   void set_responses(const CoarseSpace& coarse,
+                     const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
                      double relaxation);
+  void add_elastic_block(const ElasticSpace& elastic, std::size_t contact, std::int32_t part);
   void pack(std::size_t contact);
+  void pack_elastic(std::size_t contact);
+  void add_elastic(std::size_t contact, const double* change, double* y) const;
   void gather(std::size_t contact, const double* y);
+  void add_push(std::size_t contact, const double* r, double* force) const;
   void velocity_at(std::size_t contact, const double* x, double* velocity) const;
 
   std::vector<ContactConstants<double>> constants_;
@@ -103,6 +121,11 @@ class TouchingBlocks {
   std::vector<std::int32_t> packed_size_;   ///< [contacts]
   std::vector<double> packed_;              ///< of contacts three rows of J, three of responses
   std::vector<double> gathered_;            ///< velocities of one contact
+  std::vector<double> turned_;              ///< J of rows of elastic bodies, in their frames
+  std::vector<ElasticPart> elastic_parts_;
+  std::vector<std::int32_t> elastic_start_, elastic_end_;  ///< [contacts] in elastic_parts_
+  std::vector<double> elastic_response_;                   ///< [parts][3][size]
+  const ElasticSpace* elastic_ = nullptr;
   std::vector<std::int32_t> working_;
   std::int64_t operations_ = 0;
   std::vector<std::int32_t> row_of_block_, slots_;

@@ -31,10 +31,52 @@ void TouchingBlocks::pack(std::size_t contact) {
     const Part& part = parts_[at(p)];
     for (std::int32_t a = 0; a < 3; ++a) {
       const std::int64_t from = part.value + a * part.size;
-      std::copy_n(jacobian_.data() + from, part.size, out + a * size);
+      const bool is_elastic = part.place != part.first;
+      std::copy_n((is_elastic ? turned_ : jacobian_).data() + from, part.size, out + a * size);
       std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
     }
     out += part.size;
+  }
+  pack_elastic(contact);
+}
+
+/// Velocities of all touched nodes of elastic bodies for unit impulses.
+void TouchingBlocks::pack_elastic(std::size_t contact) {
+  elastic_start_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
+  std::int32_t last = -1;
+  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
+    const std::int32_t row = part_item_[at(p)], body = elastic_->body_of_row(row);
+    if (body < 0) continue;
+    const ElasticBody& own = elastic_->bodies()[at(body)];
+    if (body != last) {
+      elastic_parts_.push_back(
+          {own.first, static_cast<std::int64_t>(elastic_response_.size()), own.size});
+      elastic_response_.resize(elastic_response_.size() + 3 * at(own.size), 0.0);
+    }
+    last = body;
+    const double* const j = turned_.data() + parts_[at(p)].value;
+    const double* const g =
+        own.compliance.data() + 3 * at(elastic_->slot_of_row(row)) * at(own.size);
+    for (std::int64_t a = 0; a < 3; ++a) {
+      double* const out = elastic_response_.data() + elastic_parts_.back().value + a * own.size;
+      const double x = j[3 * a], y = j[3 * a + 1], z = j[3 * a + 2];
+      for (std::int64_t k = 0; k < own.size; ++k) {
+        out[k] += g[k] * x + g[own.size + k] * y + g[2 * own.size + k] * z;
+      }
+    }
+  }
+  elastic_end_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
+}
+
+void TouchingBlocks::add_elastic(std::size_t contact, const double* change, double* y) const {
+  const double a = change[0], b = change[1], c = change[2];
+  for (std::int32_t p = elastic_start_[contact]; p < elastic_end_[contact]; ++p) {
+    const ElasticPart& part = elastic_parts_[at(p)];
+    const double* const response = elastic_response_.data() + part.value;
+    double* const v = y + part.place;
+    for (std::int64_t k = 0; k < part.size; ++k) {
+      v[k] += response[k] * a + response[part.size + k] * b + response[2 * part.size + k] * c;
+    }
   }
 }
 
@@ -67,7 +109,7 @@ void add_products(const double* jacobian, std::int32_t size, const double* v, do
 void TouchingBlocks::gather(std::size_t contact, const double* y) {
   double* out = gathered_.data();
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
-    copy_threes(y + parts_[at(p)].first, parts_[at(p)].size, out);
+    copy_threes(y + parts_[at(p)].place, parts_[at(p)].size, out);
     out += parts_[at(p)].size;
   }
   std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
@@ -80,6 +122,9 @@ void TouchingBlocks::sweep(ContactSwitches switches,
   for (const std::int32_t contact : list) {
     if (packed_start_[at(contact)] < 0) pack(at(contact));
     operations_ += 6 * std::int64_t{packed_size_[at(contact)]};
+    for (std::int32_t p = elastic_start_[at(contact)]; p < elastic_end_[at(contact)]; ++p) {
+      operations_ += 3 * elastic_parts_[at(p)].size;
+    }
   }
   double* const v = gathered_.data();
   for (std::size_t place_in_list = 0; place_in_list < list.size(); ++place_in_list) {
@@ -102,8 +147,9 @@ void TouchingBlocks::sweep(ContactSwitches switches,
     std::int32_t place = 0;
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1];
          place += parts_[at(p)].size, ++p) {
-      copy_threes(v + place, parts_[at(p)].size, y + parts_[at(p)].first);
+      copy_threes(v + place, parts_[at(p)].size, y + parts_[at(p)].place);
     }
+    add_elastic(c, change, y);
   }
 }
 
@@ -119,12 +165,13 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[at(p)];
       const double* const response = response_.data() + part.value;
-      double* const v = y + part.first;
+      double* const v = y + part.place;
       for (std::int32_t i = 0; i < part.size; ++i) {
         v[i] += response[i] * r[0] + response[part.size + i] * r[1] +
                 response[2 * part.size + i] * r[2];
       }
     }
+    add_elastic(c, r, y);
   }
 }
 
@@ -168,6 +215,27 @@ TouchingSums TouchingBlocks::measure(ContactSwitches switches,
   return sums;
 }
 
+/// force += J^T r of one contact.
+void TouchingBlocks::add_push(std::size_t contact, const double* r, double* force) const {
+  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
+    const Part& part = parts_[at(p)];
+    const double* const j = jacobian_.data() + part.value;
+    for (std::int32_t k = 0; k < part.size; ++k) {
+      force[part.first + k] += j[k] * r[0] + j[part.size + k] * r[1] + j[2 * part.size + k] * r[2];
+    }
+  }
+}
+
+void TouchingBlocks::set_changes(const double* before, const double* after, double* force) const {
+  for (const std::int32_t row : touched_) std::fill_n(force + 3 * std::int64_t{row}, 3, 0.0);
+  for (std::size_t c = 0; c < constants_.size(); ++c) {
+    const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
+                         after[3 * c + 2] - before[3 * c + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+    add_push(c, r, force);
+  }
+}
+
 void TouchingBlocks::add_impulses(View<const double> load,
                                   const double* impulse,
                                   double* force) const {
@@ -178,14 +246,7 @@ void TouchingBlocks::add_impulses(View<const double> load,
   }
   for (std::size_t c = 0; c < constants_.size(); ++c) {
     const double r[3] = {impulse[3 * c] - preload_[c], impulse[3 * c + 1], impulse[3 * c + 2]};
-    for (std::int32_t p = part_start_[c]; p < coarse_start_[c]; ++p) {
-      const Part& part = parts_[at(p)];
-      const double* const j = jacobian_.data() + part.value;
-      for (std::int32_t k = 0; k < part.size; ++k) {
-        force[part.first + k] +=
-            j[k] * r[0] + j[part.size + k] * r[1] + j[2 * part.size + k] * r[2];
-      }
-    }
+    add_push(c, r, force);
   }
 }
 

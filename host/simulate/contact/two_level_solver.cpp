@@ -50,7 +50,8 @@ TwoLevelSolver::TwoLevelSolver(const Model& model, const ContactOptions& options
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
       relaxation_(1.3 * options.relaxation),
-      coarse_(model) {}
+      coarse_(model),
+      elastic_(model) {}
 
 /// Parts of islands that one task takes; both rows of a rigid body are in one.
 void TwoLevelSolver::list_chunks(const SystemRows& rows) {
@@ -86,8 +87,10 @@ void TwoLevelSolver::prepare(const StepSystem& system,
                all.unknown_count,
                model_.node_count,
                {inverse_.data(), static_cast<std::int64_t>(inverse_.size())}};
-  for (auto* values : {&x_, &product_, &force_, &weights_}) values->resize(at(numbers));
-  y_.resize(at(numbers + coarse_.mode_count()));
+  for (auto* values : {&x_, &product_, &force_, &weights_, &pull_, &moved_}) {
+    values->resize(at(numbers));
+  }
+  y_.resize(at(numbers + coarse_.mode_count() + elastic_.size()));
   coarse_defect_.resize(at(coarse_.mode_count()));
   const RowInvertBody<double> invert{all, system.values, diagonal_};
   std::fill(weights_.begin(), weights_.end(), 0.0);
@@ -105,7 +108,7 @@ void TwoLevelSolver::prepare(const StepSystem& system,
       force_[3 * at(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
     }
   }
-  blocks_.set(system, coarse_, rows, contacts, laws, diagonal_, relaxation_);
+  blocks_.set(system, coarse_, elastic_, rows, contacts, laws, diagonal_, relaxation_);
   std::copy(x_.begin(), x_.end(), y_.begin());
   impulse_ = laws.impulse_guess;
   for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] += blocks_.preload()[c];
@@ -163,7 +166,10 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
                                       std::vector<Point3>& velocity,
                                       std::vector<Point3>& change) {
   const Clock clock;
-  coarse_.set(system, state, islands, takes, threads_);
+  elastic_.choose(system.rows, islands, takes, rows, contacts);
+  coarse_.set(system, state, islands, takes, elastic_, threads_);
+  elastic_.set(state, laws.adhesion.time_step,
+               3 * std::int64_t{system.rows.count} + coarse_.mode_count(), threads_);
   prepare(system, contacts, rows, laws, velocity, change);
   change.assign(velocity.size(), Point3{0, 0, 0});
   TwoLevelOutcome outcome;
@@ -194,12 +200,14 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
       break;
     }
     if (!keep_best(outcome)) break;
+    stepped_ = impulse_;
     outcome.sweeps += sweep(inner_share * error);
     ++outcome.outer_iterations;
     if (options_.progress && !options_.progress({clock.seconds(), outcome.sweeps, 0})) {
       return outcome;
     }
     add_coarse();
+    add_elastic();
     const View<const double> before{x_.data() + begin, size};
     const View<double> image{y_.data() + begin, size};
     mixer.observe(before, image);

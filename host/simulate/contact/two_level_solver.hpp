@@ -20,7 +20,8 @@ struct TwoLevelOutcome {
 };
 
 /// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
-/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T, D the diagonal blocks of A and Z the coarse space,
+/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T, D the diagonal blocks of A and Z the coarse space, or
+/// R A_0^-1 R^T for single elastic bodies (ElasticSpace),
 ///
 ///     v_f = v + M^-1 (b + J^T r - A v)
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
@@ -85,6 +86,8 @@ class TwoLevelSolver {
   void take_best(TwoLevelOutcome& outcome);
   void find_coarse();
   void add_coarse();
+  double step_elastic();
+  void add_elastic();
 
   /// The iterate with the least residual.
   struct Best {
@@ -100,6 +103,7 @@ class TwoLevelSolver {
   int threads_;
   double relaxation_;  ///< omega
   CoarseSpace coarse_;
+  ElasticSpace elastic_;
   TouchingBlocks blocks_;
   std::vector<Chunk> chunks_;
   std::vector<double> inverse_;
@@ -107,6 +111,9 @@ class TwoLevelSolver {
   std::vector<double> x_, product_, force_;  ///< [rows][3]
   std::vector<double> y_;                    ///< as TouchingBlocks
   std::vector<double> weights_, mixed_;
+  std::vector<double> pull_, moved_;  ///< [rows][3] of elastic bodies
+  std::vector<double> stepped_;       ///< [3 contacts] impulses of the last step()
+  std::vector<double> elastic_squares_;
   std::vector<double> restricted_;  ///< [chunks][most modes of an island] parts of Z^T d
   std::vector<double> squares_;     ///< [chunks] parts of d . omega D^-1 d
   std::vector<double> coarse_defect_;

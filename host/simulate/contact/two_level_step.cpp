@@ -27,11 +27,45 @@ double TwoLevelSolver::step(const StepSystem& system) {
     step_chunk(c);
   });
   find_coarse();
-  double square = 0;
+  double square = step_elastic();
   for (const double own : squares_) square += own;
   const double* const c = y_.data() + x_.size();
   for (std::size_t k = 0; k < coarse_defect_.size(); ++k) square += coarse_defect_[k] * c[k];
   return square;
+}
+
+/// y of elastic bodies. @returns d . M^-1 d of these
+double TwoLevelSolver::step_elastic() {
+  elastic_squares_.resize(elastic_.bodies().size());
+  parallel_tasks(threads_, static_cast<std::int64_t>(elastic_squares_.size()), [&](std::int64_t b) {
+    const ElasticBody& own = elastic_.bodies()[at(b)];
+    const std::size_t begin = 3 * at(own.row_begin), end = 3 * at(own.row_end);
+    elastic_.solve(at(b), product_.data() + begin, moved_.data() + begin);
+    double square = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      y_[i] = x_[i] + moved_[i];
+      square += product_[i] * moved_[i];
+    }
+    elastic_squares_[at(b)] = square;
+    elastic_.gather(at(b), y_.data(), y_.data());
+  });
+  double square = 0;
+  for (const double own : elastic_squares_) square += own;
+  return square;
+}
+
+/// Adds what the sweeps changed to the rows of elastic bodies.
+void TwoLevelSolver::add_elastic() {
+  if (elastic_.bodies().empty()) return;
+  std::fill(pull_.begin(), pull_.end(), 0.0);
+  blocks_.set_changes(stepped_.data(), impulse_.data(), pull_.data());
+  parallel_tasks(threads_, static_cast<std::int64_t>(elastic_.bodies().size()),
+                 [&](std::int64_t b) {
+                   const ElasticBody& own = elastic_.bodies()[at(b)];
+                   const std::size_t begin = 3 * at(own.row_begin), end = 3 * at(own.row_end);
+                   elastic_.solve(at(b), pull_.data() + begin, moved_.data() + begin);
+                   for (std::size_t i = begin; i < end; ++i) y_[i] += moved_[i];
+                 });
 }
 
 /// The rows of a chunk: y, and parts of d . omega D^-1 d and Z^T d.
@@ -46,6 +80,8 @@ void TwoLevelSolver::step_chunk(std::int64_t c) {
   double* const restricted = restricted_.data() + c * restricted_width_;
   std::fill(restricted, restricted + island.mode_count, 0.0);
   double square = 0;
+  squares_[at(c)] = 0;
+  if (island.elastic >= 0) return;
   for (std::int64_t row = chunk.row_begin; row < chunk.row_end; ++row) {
     double z[6];
     const int count = diagonal_.multiply(row, d + 3 * row, z);

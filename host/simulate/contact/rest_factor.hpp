@@ -1,0 +1,48 @@
+/// @file rest_factor.hpp
+/// A factor of the system matrix of one elastic body at rest. Turned by the mean rotation of the
+/// body it is near the matrix of a step, as long as the body bends little.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host/simulate/model.hpp"
+
+namespace tetwarp {
+
+/// L L^T = A_0, the mass, stiffness, damping and springs of a body in the frame of its rest shape.
+/// Blocks are of nodes with unknowns, in the order of the model. Numbers of L are rounded to
+/// float32: what it solves is a symmetric positive definite matrix near A_0, always the same.
+class RestFactor {
+ public:
+  /// Whether a body is one of tetrahedra alone and has a factor of moderate size.
+  static bool is_possible(const Model& model, std::int32_t body);
+
+  RestFactor(const Model& model, std::int32_t body, double time_step);
+
+  std::int32_t node_count() const { return static_cast<std::int32_t>(order_.size()); }
+  /// x = A_0^-1 x, [nodes][3].
+  void solve(double* x);
+  /// The columns of A_0^-1 of a node, [3][nodes][3]; kept once found.
+  const double* columns(std::int32_t node);
+  /// The rotation of the mean of the deformation gradients, rows first.
+  std::array<double, 9> mean_rotation(const ModelState& state) const;
+
+ private:
+  struct Entry {
+    std::int32_t row;  ///< below the diagonal
+    float block[9];    ///< rows first
+  };
+
+  const Model& model_;
+  std::vector<std::int32_t> tets_;
+  std::vector<std::int32_t> order_;  ///< [nodes] place in L
+  std::vector<std::int32_t> start_;  ///< [nodes + 1] entries of the columns of L
+  std::vector<Entry> entries_;
+  std::vector<std::array<float, 6>> diagonal_;  ///< inverses of the lower triangles L_jj
+  std::vector<std::int32_t> column_of_;         ///< [nodes] place in columns_, or -1
+  std::vector<double> columns_;                 ///< [found][3][nodes][3]
+  std::vector<double> work_;
+};
+
+}  // namespace tetwarp
