@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "host/scene/lattice_search.hpp"
-#include "host/scene/scalar_rows.hpp"
 #include "host/scene/scene_checks.hpp"
+#include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 
 namespace tetwarp {
@@ -22,7 +22,7 @@ double step_length(const Grid& grid, std::size_t axis) {
 std::vector<std::uint8_t> foreground_of(const ImageGeometry& image, const Region& region) {
   std::vector<std::uint8_t> flags;
   flags.reserve(static_cast<std::size_t>(region.voxel_count()));
-  ScalarRows rows(image.volume);
+  VolumeRows rows(image.volume);
   for (std::int64_t k = region.begin[2]; k < region.end[2]; ++k) {
     for (std::int64_t j = region.begin[1]; j < region.end[1]; ++j) {
       const auto& row = rows.row(j, k);
@@ -99,7 +99,7 @@ Region foreground_box(const std::string& place, const ImageGeometry& image) {
   const auto& dims = image.volume.grid.dims;
   Region box{dims, {0, 0, 0}};
   double largest = -std::numeric_limits<double>::infinity();
-  ScalarRows rows(image.volume);
+  VolumeRows rows(image.volume);
   for (std::int64_t k = 0; k < dims[2]; ++k) {
     for (std::int64_t j = 0; j < dims[1]; ++j) {
       const auto& row = rows.row(j, k);

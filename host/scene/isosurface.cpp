@@ -9,7 +9,7 @@
 
 #include "host/scene/image_lattice.hpp"
 #include "host/scene/marching_tets.hpp"
-#include "host/scene/scalar_rows.hpp"
+#include "host/scene/volume_rows.hpp"
 
 namespace tetwarp {
 namespace {
@@ -42,7 +42,7 @@ class ImageLevel {
       high_[d] = static_cast<double>(box_.end[d]) - 0.5;
     }
     levels_.reserve(static_cast<std::size_t>(box_.voxel_count()));
-    ScalarRows rows(image.volume);
+    VolumeRows rows(image.volume);
     for (std::int64_t k = box_.begin[2]; k < box_.end[2]; ++k) {
       for (std::int64_t j = box_.begin[1]; j < box_.end[1]; ++j) {
         const auto& row = rows.row(j, k);

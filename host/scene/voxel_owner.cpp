@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <tetwarp/warp.hpp>
 
-#include "host/scene/scalar_rows.hpp"
+#include "host/scene/volume_rows.hpp"
 
 namespace tetwarp {
 
@@ -32,7 +32,7 @@ std::vector<std::int32_t> owners_of_value(const Volume& volume,
   const Region whole{{0, 0, 0}, volume.grid.dims};
   const auto owners = voxel_owners(volume, whole, {geometry.nodes, geometry.tets});
   std::vector<std::uint8_t> owns(geometry.tets.size());
-  ScalarRows rows(volume);
+  VolumeRows rows(volume);
   std::size_t voxel = 0;
   for (std::int64_t k = 0; k < volume.grid.dims[2]; ++k) {
     for (std::int64_t j = 0; j < volume.grid.dims[1]; ++j) {

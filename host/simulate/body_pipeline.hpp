@@ -41,8 +41,9 @@ class BodyPipeline {
   }
   /// Makes the next step compute all rotations and blocks anew.
   void forget_steps() {
-    exec_.for_each(forces_label, exec_.view(now_.previous).size,
-                   FillBody{std::numeric_limits<double>::quiet_NaN(), exec_.view(now_.previous)});
+    exec_.for_each(
+        forces_label, exec_.view(now_.previous).size,
+        FillNumbersBody{std::numeric_limits<double>::quiet_NaN(), exec_.view(now_.previous)});
     assembled_time_step_ = 0;
   }
 

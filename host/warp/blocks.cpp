@@ -38,15 +38,15 @@ std::string too_large(const WarpBlock& block, const BlockLimits& limits) {
          " are left, allow more or choose a finer output grid";
 }
 
-std::int64_t voxels_of(const Box& box) {
+std::int64_t voxels_of(const VoxelBox& box) {
   return (box.end[0] - box.begin[0]) * (box.end[1] - box.begin[1]) * (box.end[2] - box.begin[2]);
 }
 
 /// A box divided at the step nearest to its middle.
-std::pair<Box, Box> halves(const Box& box, int axis, const BlockLimits& limits) {
+std::pair<VoxelBox, VoxelBox> halves(const VoxelBox& box, int axis, const BlockLimits& limits) {
   const std::int64_t step = limits.step[static_cast<std::size_t>(axis)];
   const std::int64_t steps = (box.end[axis] - box.begin[axis] + step - 1) / step;
-  Box low = box, high = box;
+  VoxelBox low = box, high = box;
   low.end[axis] = high.begin[axis] = box.begin[axis] + steps / 2 * step;
   return {low, high};
 }
@@ -81,20 +81,20 @@ struct BlockPlanner::State {
   void merge_hexahedra();
   /// Divides a box into blocks and appends them to a plan.
   /// @param cells  that may own voxels of the box
-  void cut(const Box& box,
+  void cut(const VoxelBox& box,
            std::vector<std::int32_t> cells,
            const BlockLimits& limits,
            BlockPlan& plan) const;
-  WarpBlock make_block(const Box& box,
+  WarpBlock make_block(const VoxelBox& box,
                        const std::vector<std::int32_t>& cells,
                        const BlockLimits& limits) const;
   /// The axis along which the halves of a box read the fewest source voxels; of equal ones the
   /// longest; -1: the box is one step long along all axes.
-  int best_axis(const Box& box,
+  int best_axis(const VoxelBox& box,
                 const std::vector<std::int32_t>& cells,
                 const BlockLimits& limits) const;
   /// The voxels of the source that the voxels of a box are computed from.
-  Box source_of(const Box& box, const std::vector<std::int32_t>& cells) const;
+  VoxelBox source_of(const VoxelBox& box, const std::vector<std::int32_t>& cells) const;
 };
 
 BlockPlanner::BlockPlanner(const Grid& source, const Mesh& mesh, const WarpOptions& options)
@@ -168,15 +168,16 @@ void BlockPlanner::State::merge_hexahedra() {
   footprints.resize(static_cast<std::size_t>(lone + hex_count));
 }
 
-Box BlockPlanner::State::source_of(const Box& box, const std::vector<std::int32_t>& cells) const {
-  Box all;
+VoxelBox BlockPlanner::State::source_of(const VoxelBox& box,
+                                        const std::vector<std::int32_t>& cells) const {
+  VoxelBox all;
   for (int axis = 0; axis < 3; ++axis) {
     all.begin[axis] = source.dims[static_cast<std::size_t>(axis)];
     all.end[axis] = 0;
   }
   if (options.outside == Outside::identity) {
     const OutsideMap& map = geometry.outside;
-    Box in_grid = box;
+    VoxelBox in_grid = box;
     for (int axis = 0; axis < 3; ++axis) {
       in_grid.begin[axis] += geometry.frame.origin[axis];
       in_grid.end[axis] += geometry.frame.origin[axis];
@@ -201,11 +202,11 @@ Box BlockPlanner::State::source_of(const Box& box, const std::vector<std::int32_
   return all;
 }
 
-WarpBlock BlockPlanner::State::make_block(const Box& box,
+WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
                                           const std::vector<std::int32_t>& cells,
                                           const BlockLimits& limits) const {
   WarpBlock block;
-  const Box from = source_of(box, cells);
+  const VoxelBox from = source_of(box, cells);
   double output_voxels = 1, source_voxels = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     block.output.begin[axis] = box.begin[axis] + geometry.frame.origin[axis];
@@ -234,7 +235,7 @@ WarpBlock BlockPlanner::State::make_block(const Box& box,
   return block;
 }
 
-int BlockPlanner::State::best_axis(const Box& box,
+int BlockPlanner::State::best_axis(const VoxelBox& box,
                                    const std::vector<std::int32_t>& cells,
                                    const BlockLimits& limits) const {
   int best = -1;
@@ -252,7 +253,7 @@ int BlockPlanner::State::best_axis(const Box& box,
   return best;
 }
 
-void BlockPlanner::State::cut(const Box& box,
+void BlockPlanner::State::cut(const VoxelBox& box,
                               std::vector<std::int32_t> cells,
                               const BlockLimits& limits,
                               BlockPlan& plan) const {
@@ -276,7 +277,7 @@ void BlockPlanner::State::cut(const Box& box,
 BlockPlan BlockPlanner::plan(const PositionsView& deformed, const BlockLimits& limits) {
   BlockPlan plan;
   state_->set_footprints(deformed, plan);
-  Box all;
+  VoxelBox all;
   for (int axis = 0; axis < 3; ++axis) {
     all.begin[axis] = state_->geometry.frame.begin[axis];
     all.end[axis] = state_->geometry.frame.end[axis];

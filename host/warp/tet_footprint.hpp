@@ -25,14 +25,14 @@ struct Footprint {
 };
 
 /// A box of voxels: empty unless begin < end along every axis.
-struct Box {
+struct VoxelBox {
   std::int64_t begin[3], end[3];
 
   bool is_empty() const { return begin[0] >= end[0] || begin[1] >= end[1] || begin[2] >= end[2]; }
 };
 
-inline Box common(const Box& a, const Box& b) {
-  Box box;
+inline VoxelBox common(const VoxelBox& a, const VoxelBox& b) {
+  VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {
     box.begin[axis] = std::max(a.begin[axis], b.begin[axis]);
     box.end[axis] = std::min(a.end[axis], b.end[axis]);
@@ -41,7 +41,7 @@ inline Box common(const Box& a, const Box& b) {
 }
 
 /// Extends `box` to contain `other`.
-inline void enclose(Box& box, const Box& other) {
+inline void enclose(VoxelBox& box, const VoxelBox& other) {
   if (other.is_empty()) return;
   for (int axis = 0; axis < 3; ++axis) {
     box.begin[axis] = std::min(box.begin[axis], other.begin[axis]);
@@ -52,8 +52,8 @@ inline void enclose(Box& box, const Box& other) {
 /// The voxels around the image of the voxels of `box` under start + linear (i, j, k). One voxel
 /// more on each side than exact arithmetic needs, for rounding.
 template <class Real>
-Box image_of(const Box& box, const Real (*linear)[3], const double* start) {
-  Box image;
+VoxelBox image_of(const VoxelBox& box, const Real (*linear)[3], const double* start) {
+  VoxelBox image;
   for (int row = 0; row < 3; ++row) {
     double low = start[row], high = low;
     for (int axis = 0; axis < 3; ++axis) {
@@ -149,8 +149,8 @@ inline Footprint footprint_of(const Footprint* parts, const HexCorners& rest) {
 }
 
 /// The source voxels around the positions that a cell of the mesh has for the voxels of `box`.
-inline Box samples_of(const Footprint& footprint, const Box& box) {
-  Box part, rest;
+inline VoxelBox samples_of(const Footprint& footprint, const VoxelBox& box) {
+  VoxelBox part, rest;
   for (int axis = 0; axis < 3; ++axis) {
     part.begin[axis] = std::max<std::int64_t>(box.begin[axis] - footprint.begin[axis], 0);
     part.end[axis] =
@@ -159,7 +159,7 @@ inline Box samples_of(const Footprint& footprint, const Box& box) {
     rest.end[axis] = footprint.source_end[axis];
   }
   if (footprint.is_boxed) return rest;
-  Box image = image_of(part, footprint.linear, footprint.offset);
+  VoxelBox image = image_of(part, footprint.linear, footprint.offset);
   for (int axis = 0; axis < 3; ++axis) {
     image.begin[axis] -= footprint.spread[axis];
     image.end[axis] += footprint.spread[axis];
@@ -168,7 +168,7 @@ inline Box samples_of(const Footprint& footprint, const Box& box) {
 }
 
 /// Whether the cell may own voxels of `box`.
-inline bool meets(const Footprint& footprint, const Box& box) {
+inline bool meets(const Footprint& footprint, const VoxelBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
     if (footprint.begin[axis] >= box.end[axis] || footprint.end[axis] <= box.begin[axis]) {
       return false;
@@ -178,7 +178,7 @@ inline bool meets(const Footprint& footprint, const Box& box) {
 }
 
 /// Upper bound of the number of (tetrahedron, cell) pairs within `box`. @pre meets(footprint, box)
-inline std::int64_t pairs_of(const Footprint& footprint, const Box& box) {
+inline std::int64_t pairs_of(const Footprint& footprint, const VoxelBox& box) {
   std::int64_t pairs = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto begin = std::max<std::int64_t>(box.begin[axis], footprint.begin[axis]);

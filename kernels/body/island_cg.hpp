@@ -49,7 +49,7 @@ struct GradientScalars {
 
 /// r = b - A x, z = p = D^-1 r. Returns r . z and b . D^-1 b.
 template <class T>
-struct GradientStartBody {
+struct IslandStartBody {
   GradientArrays<T> a;
 
   TETWARP_HD void residual(std::int64_t row, T* r, T* b) const {
@@ -81,7 +81,7 @@ struct GradientStartBody {
 
 /// q = A p. Returns p . q.
 template <class T>
-struct GradientProductBody {
+struct IslandProductBody {
   GradientArrays<T> a;
 
   TETWARP_HD PlainSums<1> operator()(std::int64_t row) const {
@@ -99,7 +99,7 @@ struct GradientProductBody {
 
 /// x += step p, r -= step q, z = D^-1 r. Returns r . z.
 template <class T>
-struct GradientStepBody {
+struct IslandStepBody {
   GradientArrays<T> a;
   const double* step;
 
@@ -124,7 +124,7 @@ struct GradientStepBody {
 
 /// p = z + turn p.
 template <class T>
-struct GradientTurnBody {
+struct IslandTurnBody {
   GradientArrays<T> a;
   const double* turn;
 
@@ -206,11 +206,11 @@ struct GradientIteration {
 
   template <class Exec>
   TETWARP_ANY_EXEC void run(Exec& exec) const {
-    exec.sum_to(begin, end, GradientProductBody<T>{a}, &scalars->curvature);
+    exec.sum_to(begin, end, IslandProductBody<T>{a}, &scalars->curvature);
     exec.once(GradientLengthBody{scalars});
-    exec.sum_to(begin, end, GradientStepBody<T>{a, &scalars->step}, &scalars->next);
+    exec.sum_to(begin, end, IslandStepBody<T>{a, &scalars->step}, &scalars->next);
     exec.once(GradientMixBody{scalars});
-    exec.for_each(begin, end, GradientTurnBody<T>{a, &scalars->turn});
+    exec.for_each(begin, end, IslandTurnBody<T>{a, &scalars->turn});
   }
 };
 
@@ -234,7 +234,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {
-    exec.sum_to(begin, end, GradientStartBody<T>{a}, &scalars->start);
+    exec.sum_to(begin, end, IslandStartBody<T>{a}, &scalars->start);
     const PlainSums<2> start = exec.load(&scalars->start);
     const double square = start.value[0], unit = start.value[1];
     if (unit == 0) {  // b = 0

@@ -24,7 +24,7 @@ struct NodeMovedBody {
 };
 
 /// One index = one number: sets it.
-struct FillBody {
+struct FillNumbersBody {
   double value;
   View<double> to;
 

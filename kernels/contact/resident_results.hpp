@@ -36,7 +36,7 @@ struct ScatterItemsBody {
 };
 
 /// One index = one row: out = offset + matrix x.
-struct RowVelocityBody {
+struct RowResultBody {
   RowsView rows;
   View<const double> values, x, offset;
   View<double> out;

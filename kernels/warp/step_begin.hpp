@@ -26,7 +26,7 @@ struct StepBeginBody {
   TETWARP_HD void operator()(std::int64_t i) const {
     if (i < quantize.nodes.size) {
       quantize(i);
-      if (before.size > 0) NodeMovedBody{before, quantize.nodes, node_moved}(i);
+      if (before.size > 0) MeshNodeMovedBody{before, quantize.nodes, node_moved}(i);
     }
     if (i < counters.size) counters[i] = 0;
     if (i < cell_counts.size) cell_counts[i] = 0;

@@ -11,7 +11,7 @@
 namespace tetwarp {
 
 /// One index = one node; any order.
-struct NodeMovedBody {
+struct MeshNodeMovedBody {
   View<const Node> before;
   View<const Node> now;
   View<std::uint8_t> moved;
@@ -74,7 +74,7 @@ void tet_moved(Exec& exec,
                View<std::int64_t> moved_counts,
                View<std::int64_t> class_counts,
                const HexView& hexes = {}) {
-  exec.for_each("warp/setup", now.size, NodeMovedBody{before, now, node_moved});
+  exec.for_each("warp/setup", now.size, MeshNodeMovedBody{before, now, node_moved});
   exec.for_each("warp/setup", setups.size,
                 TetMovedBody{tets, node_moved, setups, moved, moved_counts, class_counts, hexes});
 }

@@ -19,6 +19,19 @@ refuse() {
   fi
 }
 
+# Types of one name in several headers of a namespace: the linker keeps one of the templates made of
+# them.
+refuse_twin_types() {
+  local twins
+  twins=$(grep -rhoE '^(struct|class|enum class) [A-Za-z0-9]+( final)?( :.*| \{.*)$' kernels host io \
+    --include=*.hpp --include=*.cuh --exclude-dir=reference \
+    --exclude=h5*.hpp --exclude=fclib*.hpp |
+    awk '{ print $1 == "enum" ? $3 : $2 }' | sort | uniq -d)
+  [[ -z $twins ]] && return 0
+  echo "lint: types of these names are in several headers:" "$twins" >&2
+  return 1
+}
+
 lint() {
   local file lines status=0
   refuse 'dead code' -E '^[[:space:]]*#[[:space:]]*if[[:space:]]+0' "${sources[@]}" || status=1
@@ -26,6 +39,7 @@ lint() {
   refuse 'a path of one machine' -E '/(home|root|work|tmp|Users)/' \
     "${sources[@]}" cmake CMakeLists.txt dev .ci || status=1
   python3 tests/lint/folders.py || status=1
+  refuse_twin_types || status=1
   while read -r file; do
     lines=$(wc -l <"$file")
     if ((lines > 300)); then

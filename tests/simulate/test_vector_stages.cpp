@@ -124,7 +124,7 @@ void expect_equal_products() {
   a.p = view(p);
   a.q = view(q);
   double sum = 0;
-  for (std::int64_t row = 0; row < rows; ++row) sum += GradientProductBody<T>{a}(row).value[0];
+  for (std::int64_t row = 0; row < rows; ++row) sum += IslandProductBody<T>{a}(row).value[0];
   a.q = view(other);
   for (const VectorStages* stages : usable_stages()) {
     double vectors = 0;

@@ -119,9 +119,9 @@ class ResidentArrays {
     grid.for_each(label, indices.dofs(),
                   ScatterItemsBody<1>{indices.dof_of_place, body_velocity, v});
     const View<const double> x = indices.is_local ? View<const double>(r) : View<const double>(v);
-    grid.for_each(label, r.size,
-                  RowVelocityBody{rows_, indices.is_local ? in.matrix : in.jacobian, x,
-                                  in.given_velocity, u});
+    grid.for_each(
+        label, r.size,
+        RowResultBody{rows_, indices.is_local ? in.matrix : in.jacobian, x, in.given_velocity, u});
     sums_.resize(2);
     const View<ResultSums> sums = view_of(sums_);
     grid.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);

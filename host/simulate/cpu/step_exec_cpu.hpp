@@ -66,9 +66,9 @@ class CpuGradientExec {
  private:
   template <int count, class Body>
   static PlainSums<count> sum_of(const Body& body, std::int64_t begin, std::int64_t end) {
-    if constexpr (std::is_same_v<Body, GradientProductBody<double>>) {
+    if constexpr (std::is_same_v<Body, IslandProductBody<double>>) {
       return vector_stages().product(body.a, begin, end);
-    } else if constexpr (std::is_same_v<Body, GradientProductBody<float>>) {
+    } else if constexpr (std::is_same_v<Body, IslandProductBody<float>>) {
       return vector_stages().product_float(body.a, begin, end);
     } else {
       PlainSums<count> sum{};

@@ -79,7 +79,7 @@ void assemble_of(const BlockAssembleBody& body, std::int64_t begin, std::int64_t
   for (std::int64_t k = begin; k < end; ++k) own(k);
 }
 
-/// GradientProductBody of rows [begin, end) with a block's column in a vector. Reads one number
+/// IslandProductBody of rows [begin, end) with a block's column in a vector. Reads one number
 /// beyond the last block.
 template <int width, class T>
 PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int64_t end) {

@@ -5,7 +5,7 @@
 
 #include "host/base/index_space.hpp"
 #include "host/base/point3.hpp"
-#include "host/scene/scalar_rows.hpp"
+#include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 #include "host/simulate/model/model_parts.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 constexpr double least_coverage = 0.02;
 
 /// Sample of the voxel whose centre is nearest to a point.
-double nearest_sample(const Grid& grid, ScalarRows& samples, const Point3& point) {
+double nearest_sample(const Grid& grid, VolumeRows& samples, const Point3& point) {
   const IndexFromWorld map = index_from_world(grid);
   std::array<std::int64_t, 3> ijk{};
   for (std::size_t d = 0; d < 3; ++d) {
@@ -115,7 +115,7 @@ TetMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::s
   const auto& image = std::get<ImageGeometry>(part.body.geometry);
   const Grid& grid = image.volume.grid;
   const double voxel_volume = voxel_volume_of(grid);
-  ScalarRows samples(image.volume);
+  VolumeRows samples(image.volume);
   const Transfer transfer(part.body);
   const auto node_of = [&](std::size_t t, std::size_t a) {
     return at(part.geometry.nodes, part.geometry.tets[t][a]);

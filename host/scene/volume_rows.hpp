@@ -1,4 +1,4 @@
-/// @file scalar_rows.hpp
+/// @file volume_rows.hpp
 /// Rows of voxels of a volume as float64.
 #pragma once
 #include <cstdint>
@@ -11,9 +11,9 @@
 namespace tetwarp {
 
 /// Reads a volume row by row. @pre one component, and as many samples as the grid has voxels
-class ScalarRows {
+class VolumeRows {
  public:
-  explicit ScalarRows(const Volume& volume)
+  explicit VolumeRows(const Volume& volume)
       : volume_(volume), row_(static_cast<std::size_t>(volume.grid.dims[0])) {}
 
   /// Samples (0, j, k) to (dims[0] - 1, j, k). Valid until the next call.
