@@ -78,12 +78,15 @@ def fclib_error(q, friction, impulse, velocity):
     return np.linalg.norm(r - projected) / max(np.linalg.norm(q), 1e-300)
 
 
-def solve(problem_file, size, tolerance, max_sweeps):
-    """(converged, sweeps, Siconos' error, impulses, seconds) of one solve."""
+def solve(problem_file, size, tolerance, max_sweeps, solver="NSGS"):
+    """(converged, sweeps, Siconos' error, impulses, seconds) of one solve.
+
+    solver: the end of the name of Siconos' constant SICONOS_FRICTION_3D_...
+    """
     import siconos.numerics as numerics
 
     problem = numerics.frictionContactProblemFromFile(problem_file)
-    options = numerics.SolverOptions(numerics.SICONOS_FRICTION_3D_NSGS)
+    options = numerics.SolverOptions(getattr(numerics, "SICONOS_FRICTION_3D_" + solver))
     options.dparam[numerics.SICONOS_DPARAM_TOL] = tolerance
     options.iparam[numerics.SICONOS_IPARAM_MAX_ITER] = max_sweeps
     impulse, velocity = np.zeros(size), np.zeros(size)

@@ -5,15 +5,18 @@
 /// they often find a solution.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "host/contact/island_solver.hpp"
 #include "host/contact/method_choice.hpp"
 #include "host/contact/newton/newton.hpp"
+#include "host/contact/newton/pivoting.hpp"
 
 namespace tetwarp {
 namespace {
+constexpr std::uint32_t pivoting_starts = 256;
 constexpr int random_starts = 24;
 constexpr std::int64_t steps_per_start = 50;  ///< Newton steps
 
@@ -68,8 +71,34 @@ bool IslandSolver::searches_before_sweeps(const ContactProblem& part,
   return factorizations * step < static_cast<double>(left);
 }
 
-/// Mass splitting and Anderson's method from zero impulses, then Newton's method from random ones;
-/// leaves the best impulses.
+/// Pivoting, which finds exact solutions where the laws are linear; Newton's method removes what
+/// rounding has left.
+/// @return  whether the island is solved
+bool IslandSolver::pivot(std::int64_t i,
+                         const ContactProblem& part,
+                         ContactRun<double>& run,
+                         IslandOutcome& outcome) {
+  constexpr double close = 1e4;  ///< times the allowed error: Newton's method converges from there
+  if (!FrictionPivoting::applies(part, options_)) return false;
+  double* const impulse =
+      run.state().impulse.data() + 3 * structure_.islands[index_of(i)].slot_begin;
+  const FrictionPivoting pivoting(part, options_);
+  for (std::uint32_t start = 0; start < pivoting_starts; ++start) {
+    if (budget_ != nullptr && budget_->is_over()) return false;
+    const std::optional<std::vector<double>> found = pivoting.solve(start);
+    if (!found) continue;
+    std::copy(found->begin(), found->end(), impulse);
+    outcome.sums = run.measure(i);
+    if (run.excess(i, outcome.sums) > close) continue;
+    outcome.methods.push_back("pivoting");
+    if (!run.is_done(i, outcome.sums)) polish(i, part, run, outcome, steps_per_start);
+    if (run.is_done(i, outcome.sums)) return true;
+  }
+  return false;
+}
+
+/// Pivoting, mass splitting and Anderson's method from zero impulses, then Newton's method from
+/// random ones; leaves the best impulses.
 void IslandSolver::start_again(std::int64_t i,
                                const ContactProblem& part,
                                ContactRun<double>& run,
@@ -83,6 +112,7 @@ void IslandSolver::start_again(std::int64_t i,
     best.keep(run.excess(i, outcome.sums));
     return run.is_done(i, outcome.sums) || (budget_ != nullptr && budget_->is_over());
   };
+  if (pivot(i, part, run, outcome)) return;
   const std::int64_t share = (options_.max_sweeps - outcome.sweeps) / 4;
   for (const ContactMethod method : {ContactMethod::mass_splitting, ContactMethod::anderson}) {
     std::fill_n(impulse, size, 0.0);

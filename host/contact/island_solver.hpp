@@ -76,6 +76,10 @@ class IslandSolver {
   bool find_contradiction(std::int64_t island, const ContactProblem& part, EngineResult& result);
   bool find_unbounded(std::int64_t island, const ContactProblem& part, EngineResult& result);
   bool searches_before_sweeps(const ContactProblem& part, const IslandOutcome& outcome) const;
+  bool pivot(std::int64_t island,
+             const ContactProblem& part,
+             ContactRun<double>& run,
+             IslandOutcome& outcome);
   void start_again(std::int64_t island,
                    const ContactProblem& part,
                    ContactRun<double>& run,

@@ -19,10 +19,11 @@ TEST(ContactTruth, ProblemsOfKnownSolvability) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     for (const Solvability kind :
          {Solvability::solvable, Solvability::infeasible, Solvability::jammed}) {
-      const ContactProblem problem = samples::make_solvability(kind, seed, 2 + seed % 7);
+      const FrictionLaw law = seed % 2 == 0 ? FrictionLaw::cone : FrictionLaw::pyramid;
+      const ContactProblem problem = samples::make_solvability(kind, seed, 2 + seed % 7, 1, law);
       const std::string name =
           "kind " + std::to_string(static_cast<int>(kind)) + ", seed " + std::to_string(seed);
-      expect_truth(problem, kind, {.max_sweeps = 2000}, name);
+      expect_truth(problem, kind, {.law = law, .max_sweeps = 2000}, name);
     }
   }
 }
@@ -40,6 +41,9 @@ TEST(ContactTruth, DirectionsOfGrowthDoNotHideSolutions) {
   for (const Hidden& hidden : {Hidden{5123, 14, pyramid, 1e-8},
                                {10156, 12, cone, 1e-8},
                                {10749, 16, pyramid, 1e-6},
+                               {11443, 7, pyramid, 1e-4},
+                               {13481, 12, pyramid, 1e-8},
+                               {15849, 5, pyramid, 1e-6},
                                {10808, 18, cone, 1e-6},
                                {11711, 9, pyramid, 1e-8},
                                {11727, 6, pyramid, 1e-6},

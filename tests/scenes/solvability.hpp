@@ -2,6 +2,7 @@
 /// Contact problems in local form, made from a seed so that their solvability is known.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -12,18 +13,41 @@
 namespace tetwarp::samples {
 
 enum class Solvability {
-  solvable,    ///< q = u - W r for impulses r and velocities u that obey all laws
+  solvable,    ///< q = u - W r for impulses r and velocities u that obey the law of friction given
   infeasible,  ///< the normals of all contacts cancel, and their free velocities approach
   jammed       ///< impulses in the friction cones cancel, and the free velocities approach along
                ///< them: with or without a solution
 };
 
+/// Tangential impulse of a contact that slides with this velocity: against it (cone), or at the
+/// bound of one tangent or of both (pyramid: where it sticks, the velocity becomes 0).
+/// @param along  direction of the velocity
+inline Eigen::Vector2d sliding_impulse(FrictionLaw law,
+                                       double bound,
+                                       const Eigen::Vector2d& along,
+                                       std::mt19937& random,
+                                       Eigen::Ref<Eigen::Vector2d> velocity) {
+  if (law == FrictionLaw::cone) return -bound * along;
+  Eigen::Vector2d impulse;
+  const unsigned slides = 1 + static_cast<unsigned>(random() % 3);  // bit a: along tangent a
+  for (int a = 0; a < 2; ++a) {
+    impulse(a) = -std::copysign(bound, along(a));
+    if ((slides >> a & 1U) != 0) continue;
+    impulse(a) *= 0.9 * static_cast<double>(random() % 1000) / 1000;
+    velocity(a) = 0;
+  }
+  return impulse;
+}
+
 /// `contacts` contacts of W = scale J J^T with as many or fewer dofs than rows, so that W is rank
 /// deficient.
+/// @param law  that a solvable problem obeys: a solution with one law is none with the other where
+///             contacts slide
 inline ContactProblem make_solvability(Solvability kind,
                                        unsigned seed,
                                        Eigen::Index contacts,
-                                       double scale = 1) {
+                                       double scale = 1,
+                                       FrictionLaw law = FrictionLaw::cone) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -67,7 +91,8 @@ inline ContactProblem make_solvability(Solvability kind,
         default:  // sliding
           r(3 * c) = push;
           u.segment<2>(3 * c + 1) = uniform(random) * along;
-          r.segment<2>(3 * c + 1) = -friction * push * along;
+          r.segment<2>(3 * c + 1) =
+              sliding_impulse(law, friction * push, along, random, u.segment<2>(3 * c + 1));
       }
     }
     q = u - delassus * r;
