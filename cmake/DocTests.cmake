@@ -23,4 +23,4 @@ add_test(NAME docs COMMAND ${tetwarp_docs_test} run ${PROJECT_SOURCE_DIR}
   --command $<TARGET_FILE:tetwarp_command> --blocks $<TARGET_FILE:docs_blocks>
   "--mpirun=$<$<BOOL:${TETWARP_HAS_MPI}>:${MPIEXEC_EXECUTABLE}>"
   "--has=$<$<BOOL:${TETWARP_HAS_GMSH}>:gmsh>" "--has=$<$<BOOL:${TETWARP_HAS_VTK}>:vtk>")
-set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300)
+set_tests_properties(docs PROPERTIES LABELS docs TIMEOUT 300 COST 20)  # starts early

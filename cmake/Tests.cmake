@@ -297,5 +297,5 @@ if(NOT TETWARP_BUNDLE)
     -DWITH_IO=${TETWARP_IO} -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER}
     "-DCXX_FLAGS=${CMAKE_CXX_FLAGS}" -DCUDA_ROOT=${CUDAToolkit_TARGET_DIR}
     -P ${PROJECT_SOURCE_DIR}/tests/install/run_install_test.cmake)
-  set_tests_properties(install PROPERTIES LABELS install TIMEOUT 300)
+  set_tests_properties(install PROPERTIES LABELS install TIMEOUT 300 COST 20)  # starts early
 endif()
