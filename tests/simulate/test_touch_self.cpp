@@ -74,7 +74,7 @@ Scene ring(bool touches_itself) {
   Body body;
   body.name = "ring";
   body.geometry = Shape{ArcShape{0.04, 0.01, {-2.5, 2.5}}};
-  body.lattice = Lattice{.edge = 0.009};
+  body.lattice = Lattice{.edge = 0.011};
   body.material = {3e3, 0.3, 1000};
   body.self = touches_itself;
   Scene scene = scene_of({body}, 0.005);
