@@ -3,6 +3,8 @@
 #pragma once
 #include <string>
 
+#include <tetwarp/io_export.hpp>
+
 namespace tetwarp {
 
 /// How the names of temporary files of this process begin: `.<pid>-<place>.`, where <place> stands
@@ -12,6 +14,6 @@ std::string temporary_start();
 
 /// Removes the temporary files that processes of this machine left in a folder when they were
 /// killed. Only the first call for a folder does. @param folder  empty or ending with a slash
-void remove_leftovers_once(const std::string& folder);
+TETWARP_IO_EXPORT void remove_leftovers_once(const std::string& folder);
 
 }  // namespace tetwarp
