@@ -163,10 +163,8 @@ if(NOT BUILD_SHARED_LIBS)
   # recompiles few units.
   tetwarp_add_tests(tetwarp_contact_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     tests/contact/test_contact_acceptance.cpp
-    tests/contact/test_contact_associated.cpp
-    tests/contact/test_contact_pivoting.cpp
-    tests/contact/test_contact_bad_options.cpp
-    tests/contact/test_contact_budget.cpp
+    tests/contact/test_contact_associated.cpp tests/contact/test_contact_pivoting.cpp
+    tests/contact/test_contact_bad_options.cpp tests/contact/test_contact_budget.cpp
     tests/contact/test_contact_truth.cpp
     tests/contact/test_contact_coupled.cpp
     tests/contact/test_contact_limits.cpp
