@@ -14,13 +14,14 @@
 
 namespace tetwarp::test {
 namespace {
-/// Nothing where this build lacks the library.
+/// Nothing, and why in `error`, where this build lacks the library.
 std::optional<ImportedMesh> mesh_of(const std::string& path,
                                     const std::string& text,
+                                    std::string& error,
                                     const MeshImportOptions& options = {}) {
   std::ofstream(path) << text;
   ImportedMesh mesh;
-  const std::string error = io_error([&] { mesh = import_mesh(path, options); });
+  error = io_error([&] { mesh = import_mesh(path, options); });
   if (error.empty()) return mesh;
   EXPECT_NE(error.find("this build cannot read"), std::string::npos) << error;
   return std::nullopt;
@@ -54,8 +55,9 @@ constexpr const char* mixed_file =
 /// Tetrahedra come first in a mesh; arrays and numbers follow their cells.
 TEST(MeshArrays, OfVtkFilesFollowTheirCellsAndVectorsTurn) {
   const ScratchFolder folder;
-  const auto mesh = mesh_of(folder / "a.vtk", mixed_file, {.axes = Axes::lps});
-  if (!mesh) GTEST_SKIP();
+  std::string error;
+  const auto mesh = mesh_of(folder / "a.vtk", mixed_file, error, {.axes = Axes::lps});
+  if (!mesh) GTEST_SKIP() << error;
 
   EXPECT_EQ(mesh->mesh.tets, (std::vector<std::array<std::int32_t, 4>>{{4, 5, 7, 8}}));
   EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{2, 0}));
@@ -71,14 +73,16 @@ TEST(MeshArrays, OfVtkFilesFollowTheirCellsAndVectorsTurn) {
 /// Tags 10 to 50 of nodes, 7 and 8 of cells, which belong to the groups 3 and 5.
 TEST(MeshArrays, OfGmshFilesHoldTagsAndGroups) {
   const ScratchFolder folder;
+  std::string error;
   const auto mesh =
       mesh_of(folder / "a.msh",
               "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
               "$PhysicalNames\n1\n3 3 \"bone\"\n$EndPhysicalNames\n"
               "$Nodes\n5\n10 0 0 0\n20 1 0 0\n30 0 1 0\n40 0 0 1\n50 1 1 1\n$EndNodes\n"
               "$Elements\n3\n6 2 2 0 1 20 30 40\n7 4 2 3 1 10 20 30 40\n8 4 2 5 2 20 30 40 50\n"
-              "$EndElements\n");
-  if (!mesh) GTEST_SKIP();
+              "$EndElements\n",
+              error);
+  if (!mesh) GTEST_SKIP() << error;
 
   EXPECT_EQ(array_of(*mesh, "original_node", false), (std::vector<double>{10, 20, 30, 40, 50}));
   EXPECT_EQ(array_of(*mesh, "original_cell", true), (std::vector<double>{7, 8}));

@@ -123,7 +123,7 @@ TEST(ReadSurface, TakesTheTrianglesOfVtkAndGmshFiles) {
   for (const std::string name : {"m.vtk", "m.msh"}) {
     Surface surface;
     const std::string message = io_error([&] { surface = read_surface(folder / name); });
-    if (message.find("built without") != std::string::npos) continue;
+    if (message.find("this build cannot read") != std::string::npos) continue;
     ASSERT_EQ(message, "") << name;
     EXPECT_EQ(surface.points, (std::vector<Point3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})) << name;
     EXPECT_EQ(surface.triangles.at(0), (std::array<std::int32_t, 3>{0, 1, 2}));

@@ -142,4 +142,14 @@ inline CommandResult run_command(const TemporaryFolder& folder,
   return RunningCommand(folder, words, options).wait();
 }
 
+/// Why this build cannot read one of the meshes of the folder; empty if it reads all.
+inline std::string missing_readers(const TemporaryFolder& folder,
+                                   const std::vector<std::string>& meshes) {
+  for (const std::string& name : meshes) {
+    const std::string message = run_command(folder, {"info", name}).err;
+    if (message.find("this build cannot read") != std::string::npos) return message;
+  }
+  return "";
+}
+
 }  // namespace tetwarp::test
