@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <variant>
 
 namespace tetwarp::cli {
 namespace {
-constexpr double pi = 3.14159265358979;
+using std::numbers::pi;
 
 /// Turns a point about the origin by a rotation vector.
 Point3 turned(const Point3& point, const Point3& turn) {

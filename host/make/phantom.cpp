@@ -23,11 +23,6 @@ constexpr double half_height = 174;    // of the trunk, which ends at neck and h
 constexpr double texture_grain = 5;    // [mm]
 constexpr double texture_depth = 0.1;  // share of the level
 
-/// Share of a voxel that a solid fills, by the distance of its surface from the voxel's center.
-double coverage(double distance, double voxel) {
-  return std::clamp(0.5 - distance / voxel, 0.0, 1.0);
-}
-
 /// Distance to the smooth union of two solids (quadratic smooth minimum).
 double blended(double a, double b) {
   const double overlap = std::max(blend_length - std::abs(a - b), 0.0) / blend_length;

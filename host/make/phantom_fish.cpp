@@ -6,6 +6,7 @@
 #include <tetwarp/make.hpp>
 
 #include "host/base/parallel.hpp"
+#include "host/make/phantom_shapes.hpp"
 
 namespace tetwarp {
 namespace {
@@ -80,18 +81,13 @@ double bone_depth(const Section& section, double u, double v) {
   return depth;
 }
 
-/// Share of a voxel of size `voxel` that a solid fills.
-double coverage(double depth, double voxel) {
-  return std::clamp(0.5 + depth / voxel, 0.0, 1.0);
-}
-
 double fish_at(const Section& section, double u, double v, double voxel) {
   if (std::abs(u) > section.reach() + voxel) return 0;
   const double body = body_depth(section, u, v);
-  double level = fin_level * coverage(fin_depth(section, u, v), voxel);
-  level += coverage(body, voxel) * (flesh_level - level);
+  double level = fin_level * coverage(-fin_depth(section, u, v), voxel);
+  level += coverage(-body, voxel) * (flesh_level - level);
   const double bone = std::min(bone_depth(section, u, v), body);
-  return level + coverage(bone, voxel) * (bone_level - level);
+  return level + coverage(-bone, voxel) * (bone_level - level);
 }
 }  // namespace
 

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include "host/base/counter_hash.hpp"
+#include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {
 constexpr int rods_per_span = 6;
-
-double dot(const Point3& a, const Point3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Point3 moved(const Point3& x, const Point3& direction, double length) {
   return {x[0] + length * direction[0], x[1] + length * direction[1], x[2] + length * direction[2]};

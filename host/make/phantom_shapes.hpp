@@ -12,6 +12,12 @@
 
 namespace tetwarp {
 
+/// Share of a voxel that a solid fills, by the distance of its surface from the voxel's center;
+/// negative inside.
+inline double coverage(double distance, double voxel) {
+  return std::clamp(0.5 - distance / voxel, 0.0, 1.0);
+}
+
 /// Axis-parallel box around a solid.
 struct Extent {
   Point3 low;

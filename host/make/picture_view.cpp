@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {
-constexpr double pi = 3.14159265358979;
+using std::numbers::pi;
 constexpr int shadow_samples = 1536;
 
 }  // namespace

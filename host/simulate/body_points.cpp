@@ -1,4 +1,5 @@
 #include "host/simulate/body_points.hpp"
+#include "host/base/index_of.hpp"
 
 #include <numeric>
 
@@ -7,10 +8,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void add_area_thirds(const std::vector<Point3>& points,
                      const std::vector<std::array<std::int32_t, 3>>& triangles,

@@ -9,13 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/system_pattern.hpp"
 
 namespace tetwarp {
-
-inline std::size_t at(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 inline std::int32_t checked_int32(std::int64_t value) {
   if (value > std::numeric_limits<std::int32_t>::max()) {
@@ -37,20 +34,20 @@ struct Elements {
       throw std::invalid_argument("simulation: " + std::to_string(rows.size()) +
                                   " elements or springs of one kind are too many");
     }
-    std::vector<std::int64_t> count(at(row_count) + 1);
+    std::vector<std::int64_t> count(index_of(row_count) + 1);
     for (const auto& element : rows) {
       for (const std::int32_t row : element) {
-        if (row >= 0) ++count[at(row) + 1];
+        if (row >= 0) ++count[index_of(row) + 1];
       }
     }
     for (std::size_t r = 1; r < count.size(); ++r) count[r] += count[r - 1];
     for (const std::int64_t c : count) lists.start.push_back(checked_int32(c));
-    lists.item.resize(at(count.back()));
+    lists.item.resize(index_of(count.back()));
     for (std::size_t e = 0; e < rows.size(); ++e) {
       for (int slot = 0; slot < slots; ++slot) {
-        const std::int32_t row = rows[e][at(slot)];
+        const std::int32_t row = rows[e][index_of(slot)];
         if (row < 0) continue;
-        lists.item[at(count[at(row)]++)] =
+        lists.item[index_of(count[index_of(row)]++)] =
             static_cast<std::uint32_t>(e) * slots + static_cast<std::uint32_t>(slot);
       }
     }
@@ -65,8 +62,9 @@ void for_each_coupling(const Elements<slots>& elements,
                        std::int32_t row,
                        const Visit& visit) {
   if (incidences.start.empty()) return;
-  for (std::int32_t k = incidences.start[at(row)]; k < incidences.start[at(row) + 1]; ++k) {
-    const std::uint32_t item = incidences.item[at(k)];
+  for (std::int32_t k = incidences.start[index_of(row)]; k < incidences.start[index_of(row) + 1];
+       ++k) {
+    const std::uint32_t item = incidences.item[index_of(k)];
     const auto& columns = elements.rows[item / slots];
     for (std::uint32_t slot = 0; slot < slots; ++slot) {
       if (columns[slot] >= 0) visit(columns[slot], item * slots + slot);

@@ -4,16 +4,13 @@
 #include <stdexcept>
 #include <variant>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/nearest.hpp"
 #include "host/simulate/rotations.hpp"
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi within.
 bool encloses(const Surface& surface, const Point3& x) {

@@ -1,4 +1,5 @@
 #include "host/simulate/scene_drive.hpp"
+#include "host/base/index_of.hpp"
 
 #include <stdexcept>
 
@@ -6,10 +7,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string list_of(const std::vector<std::string>& names) {
   std::string list;

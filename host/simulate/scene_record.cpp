@@ -1,4 +1,5 @@
 #include "host/simulate/scene_record.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 struct TetSums {
   double energy = 0;

@@ -1,14 +1,11 @@
 #include "host/simulate/step_sums.hpp"
+#include "host/base/index_of.hpp"
 
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/rotations.hpp"
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void add_to(Point3& sum, const Point3& x) {
   sum = plus(sum, x);

@@ -1,4 +1,5 @@
 #include "host/simulate/system_pattern.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -28,15 +29,15 @@ class PatternMaker {
 
   /// Island of every block with unknowns; no_island for prescribed blocks.
   std::vector<std::int32_t> islands_of_blocks() const {
-    std::vector<std::int32_t> island(at(model_.block_count()), no_island);
+    std::vector<std::int32_t> island(index_of(model_.block_count()), no_island);
     for (std::size_t body = 0; body < model_.body_island.size(); ++body) {
       const auto take = [&](std::int64_t block) {
-        if (model_.prescribed[at(block)] != 0) return;
+        if (model_.prescribed[index_of(block)] != 0) return;
         if (model_.body_island[body] < 0 || model_.body_island[body] >= model_.island_count) {
           throw std::invalid_argument("simulation: body " + std::to_string(body) +
                                       " has unknowns but no coupling island");
         }
-        island[at(block)] = model_.body_island[body];
+        island[index_of(block)] = model_.body_island[body];
       };
       for (std::int64_t n = model_.body_node[body]; n < model_.body_node[body + 1]; ++n) take(n);
       if (model_.body_rigid[body] < 0) continue;
@@ -51,9 +52,9 @@ class PatternMaker {
     const std::vector<std::int32_t> island = islands_of_blocks();
     const std::int32_t count = checked_int32(model_.block_count());
     pattern_.row_count = count;
-    pattern_.island_start.assign(at(model_.island_count) + 1, 0);
+    pattern_.island_start.assign(index_of(model_.island_count) + 1, 0);
     for (const std::int32_t i : island) {
-      if (i != no_island) ++pattern_.island_start[at(i) + 1];
+      if (i != no_island) ++pattern_.island_start[index_of(i) + 1];
     }
     for (std::size_t i = 1; i < pattern_.island_start.size(); ++i) {
       pattern_.island_start[i] += pattern_.island_start[i - 1];
@@ -61,22 +62,23 @@ class PatternMaker {
     pattern_.unknown_count = pattern_.island_start.back();
     std::vector<std::int32_t> next = pattern_.island_start;
     std::int32_t next_prescribed = pattern_.unknown_count;
-    pattern_.block_of.resize(at(count));
-    pattern_.row_of.resize(at(count));
+    pattern_.block_of.resize(index_of(count));
+    pattern_.row_of.resize(index_of(count));
     for (std::int32_t block = 0; block < count; ++block) {
-      const std::int32_t i = island[at(block)];
-      const std::int32_t row = i == no_island ? next_prescribed++ : next[at(i)]++;
-      pattern_.row_of[at(block)] = row;
-      pattern_.block_of[at(row)] = block;
+      const std::int32_t i = island[index_of(block)];
+      const std::int32_t row = i == no_island ? next_prescribed++ : next[index_of(i)]++;
+      pattern_.row_of[index_of(block)] = row;
+      pattern_.block_of[index_of(row)] = block;
     }
-    pattern_.pair.assign(at(count), 0);
+    pattern_.pair.assign(index_of(count), 0);
     for (std::int64_t b = 0; b < model_.rigid_count; ++b) {
       const std::int64_t block = model_.node_count + 2 * b;
-      const std::int32_t row = pattern_.row_of[at(block)];
-      if (row >= pattern_.unknown_count || pattern_.row_of[at(block) + 1] != row + 1) continue;
+      const std::int32_t row = pattern_.row_of[index_of(block)];
+      if (row >= pattern_.unknown_count || pattern_.row_of[index_of(block) + 1] != row + 1)
+        continue;
       if (row + 1 >= pattern_.unknown_count) continue;
-      pattern_.pair[at(row)] = 1;
-      pattern_.pair[at(row) + 1] = 2;
+      pattern_.pair[index_of(row)] = 1;
+      pattern_.pair[index_of(row) + 1] = 2;
     }
   }
 
@@ -84,7 +86,7 @@ class PatternMaker {
     if (node < 0 || node >= model_.node_count) {
       throw std::invalid_argument("simulation: node " + std::to_string(node) + " does not exist");
     }
-    return pattern_.row_of[at(node)];
+    return pattern_.row_of[index_of(node)];
   }
 
   void set_slots(const ModelPoint& point, std::int32_t* rows) const {
@@ -95,11 +97,12 @@ class PatternMaker {
     }
     if (point.rigid >= 0) {
       const std::int64_t block = model_.node_count + 2 * std::int64_t{point.rigid};
-      rows[0] = pattern_.row_of[at(block)];
-      rows[1] = pattern_.row_of[at(block) + 1];
+      rows[0] = pattern_.row_of[index_of(block)];
+      rows[1] = pattern_.row_of[index_of(block) + 1];
       return;
     }
-    for (int k = 0; k < 4 && point.node[at(k)] >= 0; ++k) rows[k] = row_of_node(point.node[at(k)]);
+    for (int k = 0; k < 4 && point.node[index_of(k)] >= 0; ++k)
+      rows[k] = row_of_node(point.node[index_of(k)]);
   }
 
   void collect_elements() {
@@ -120,14 +123,14 @@ class PatternMaker {
     pattern_.edges.rows = edges_.incidences(pattern_.row_count);
     pattern_.springs.rows = springs_.incidences(pattern_.row_count);
     const auto& entries = model_.scalar_blocks.nodes;
-    pattern_.scalar_start.assign(at(model_.node_count) + 1, 0);
+    pattern_.scalar_start.assign(index_of(model_.node_count) + 1, 0);
     for (std::size_t e = 0; e < entries.size(); ++e) {
       row_of_node(entries[e][0]);
       row_of_node(entries[e][1]);
       if (e > 0 && !(entries[e - 1] < entries[e])) {
         throw std::invalid_argument("simulation: scalar blocks are not sorted");
       }
-      ++pattern_.scalar_start[at(entries[e][0]) + 1];
+      ++pattern_.scalar_start[index_of(entries[e][0]) + 1];
     }
     for (std::size_t n = 1; n < pattern_.scalar_start.size(); ++n) {
       pattern_.scalar_start[n] += pattern_.scalar_start[n - 1];
@@ -138,14 +141,14 @@ class PatternMaker {
   template <class Visit>
   void for_each_column(std::int32_t row, const Visit& visit) const {
     visit(row);
-    const std::int32_t block = pattern_.block_of[at(row)];
+    const std::int32_t block = pattern_.block_of[index_of(row)];
     if (block < model_.node_count) {
-      for (std::int32_t e = pattern_.scalar_start[at(block)];
-           e < pattern_.scalar_start[at(block) + 1]; ++e) {
-        visit(pattern_.row_of[at(model_.scalar_blocks.nodes[at(e)][1])]);
+      for (std::int32_t e = pattern_.scalar_start[index_of(block)];
+           e < pattern_.scalar_start[index_of(block) + 1]; ++e) {
+        visit(pattern_.row_of[index_of(model_.scalar_blocks.nodes[index_of(e)][1])]);
       }
-    } else if (pattern_.pair[at(row)] != 0) {
-      visit(pattern_.pair[at(row)] == 1 ? row + 1 : row - 1);
+    } else if (pattern_.pair[index_of(row)] != 0) {
+      visit(pattern_.pair[index_of(row)] == 1 ? row + 1 : row - 1);
     }
     const auto take = [&](std::int32_t column, std::uint32_t) { visit(column); };
     for_each_coupling(tets_, pattern_.tets.rows, row, take);
@@ -154,13 +157,13 @@ class PatternMaker {
   }
 
   void list_columns() {
-    std::vector<std::int32_t> seen_by(at(pattern_.row_count), -1);
+    std::vector<std::int32_t> seen_by(index_of(pattern_.row_count), -1);
     pattern_.start.push_back(0);
     for (std::int32_t row = 0; row < pattern_.row_count; ++row) {
       const std::size_t first = pattern_.column.size();
       for_each_column(row, [&](std::int32_t column) {
-        if (seen_by[at(column)] == row) return;
-        seen_by[at(column)] = row;
+        if (seen_by[index_of(column)] == row) return;
+        seen_by[index_of(column)] = row;
         pattern_.column.push_back(column);
       });
       const auto begin = pattern_.column.begin() + static_cast<std::ptrdiff_t>(first);
@@ -176,19 +179,20 @@ class PatternMaker {
   }
 
   std::int32_t place_of(std::int32_t row, std::int32_t column) const {
-    const auto begin = pattern_.column.begin() + pattern_.start[at(row)];
-    const auto end = pattern_.column.begin() + pattern_.start[at(row) + 1];
+    const auto begin = pattern_.column.begin() + pattern_.start[index_of(row)];
+    const auto end = pattern_.column.begin() + pattern_.start[index_of(row) + 1];
     return static_cast<std::int32_t>(std::lower_bound(begin, end, column) -
                                      pattern_.column.begin());
   }
 
   void list_upper_blocks() {
-    std::vector<std::int32_t> upper_of(at(pattern_.row_count));  // of the columns of the row
+    std::vector<std::int32_t> upper_of(index_of(pattern_.row_count));  // of the columns of the row
     for (std::int32_t row = 0; row < pattern_.row_count; ++row) {
       const std::size_t first = pattern_.upper.size();
-      for (std::int32_t k = pattern_.diagonal[at(row)]; k < pattern_.start[at(row) + 1]; ++k) {
-        const std::int32_t column = pattern_.column[at(k)];
-        upper_of[at(column)] = static_cast<std::int32_t>(pattern_.upper.size());
+      for (std::int32_t k = pattern_.diagonal[index_of(row)]; k < pattern_.start[index_of(row) + 1];
+           ++k) {
+        const std::int32_t column = pattern_.column[index_of(k)];
+        upper_of[index_of(column)] = static_cast<std::int32_t>(pattern_.upper.size());
         pattern_.upper.push_back({k, place_of(column, row), -1, -1});
       }
       set_constants(row, upper_of);
@@ -199,15 +203,16 @@ class PatternMaker {
   }
 
   void set_constants(std::int32_t row, const std::vector<std::int32_t>& upper_of) {
-    const std::int32_t block = pattern_.block_of[at(row)];
+    const std::int32_t block = pattern_.block_of[index_of(row)];
     if (block >= model_.node_count) {
-      pattern_.upper[at(upper_of[at(row)])].rigid = block - model_.node_count;
+      pattern_.upper[index_of(upper_of[index_of(row)])].rigid = block - model_.node_count;
       return;
     }
-    for (std::int32_t e = pattern_.scalar_start[at(block)];
-         e < pattern_.scalar_start[at(block) + 1]; ++e) {
-      const std::int32_t column = pattern_.row_of[at(model_.scalar_blocks.nodes[at(e)][1])];
-      if (column >= row) pattern_.upper[at(upper_of[at(column)])].scalar = e;
+    for (std::int32_t e = pattern_.scalar_start[index_of(block)];
+         e < pattern_.scalar_start[index_of(block) + 1]; ++e) {
+      const std::int32_t column =
+          pattern_.row_of[index_of(model_.scalar_blocks.nodes[index_of(e)][1])];
+      if (column >= row) pattern_.upper[index_of(upper_of[index_of(column)])].scalar = e;
     }
   }
 
@@ -222,7 +227,7 @@ class PatternMaker {
     counts_.assign(pattern_.upper.size() - first, 0);
     const auto each = [&](const auto& use) {
       for_each_coupling(elements, lists.rows, row, [&](std::int32_t column, std::uint32_t item) {
-        if (column >= row) use(at(upper_of[at(column)]) - first, item);
+        if (column >= row) use(index_of(upper_of[index_of(column)]) - first, item);
       });
     };
     each([&](std::size_t k, std::uint32_t) { ++counts_[k]; });
@@ -234,8 +239,10 @@ class PatternMaker {
       next += size;
       lists.blocks.start.push_back(checked_int32(next));
     }
-    lists.blocks.item.resize(at(next));
-    each([&](std::size_t k, std::uint32_t item) { lists.blocks.item[at(counts_[k]++)] = item; });
+    lists.blocks.item.resize(index_of(next));
+    each([&](std::size_t k, std::uint32_t item) {
+      lists.blocks.item[index_of(counts_[k]++)] = item;
+    });
   }
 
   const Model& model_;

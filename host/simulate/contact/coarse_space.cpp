@@ -1,4 +1,5 @@
 #include "host/simulate/contact/coarse_space.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,10 +11,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Polynomials 1, x, y, z that are orthonormal over points; one that vanishes on them is zero.
 struct AffineBasis {
@@ -70,15 +67,17 @@ struct AffineBasis {
 }  // namespace
 
 CoarseSpace::CoarseSpace(const Model& model)
-    : model_(model), body_of_(at(model.block_count())), slot_of_(model.body_rigid.size(), -1) {
+    : model_(model),
+      body_of_(index_of(model.block_count())),
+      slot_of_(model.body_rigid.size(), -1) {
   for (std::size_t body = 0; body < model.body_rigid.size(); ++body) {
     const auto own = static_cast<std::int32_t>(body);
     for (std::int32_t n = model.body_node[body]; n < model.body_node[body + 1]; ++n) {
-      body_of_[at(n)] = own;
+      body_of_[index_of(n)] = own;
     }
     if (model.body_rigid[body] < 0) continue;
     const std::int64_t linear = model.node_count + 2 * std::int64_t{model.body_rigid[body]};
-    body_of_[at(linear)] = body_of_[at(linear + 1)] = own;
+    body_of_[index_of(linear)] = body_of_[index_of(linear + 1)] = own;
   }
 }
 
@@ -89,7 +88,7 @@ void CoarseSpace::set(const StepSystem& system,
                       const ElasticSpace& elastic,
                       int threads) {
   list_islands(system.rows, islands, takes, elastic);
-  rows_.resize(at(system.rows.unknown_count));
+  rows_.resize(index_of(system.rows.unknown_count));
   mode_count_ = 0;
   std::int64_t numbers = 0;
   for (CoarseIsland& island : islands_) {
@@ -99,9 +98,9 @@ void CoarseSpace::set(const StepSystem& system,
     mode_count_ += island.mode_count;
     numbers += std::int64_t{island.mode_count} * island.mode_count;
   }
-  inverse_.assign(at(numbers), 0);
+  inverse_.assign(index_of(numbers), 0);
   parallel_tasks(threads, static_cast<std::int64_t>(islands_.size()),
-                 [&](std::int64_t i) { set_inverse(system, islands_[at(i)]); });
+                 [&](std::int64_t i) { set_inverse(system, islands_[index_of(i)]); });
 }
 
 void CoarseSpace::list_islands(const SystemRows& rows,
@@ -109,11 +108,11 @@ void CoarseSpace::list_islands(const SystemRows& rows,
                                const std::vector<std::uint8_t>& takes,
                                const ElasticSpace& elastic) {
   islands_.clear();
-  island_of_row_.assign(at(rows.unknown_count), -1);
+  island_of_row_.assign(index_of(rows.unknown_count), -1);
   std::int32_t last = -1;
   for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
     const std::int32_t island = islands.of_block(rows.block_of[row]);
-    if (takes[at(island)] == 0) continue;
+    if (takes[index_of(island)] == 0) continue;
     if (island != last) {
       islands_.emplace_back();
       islands_.back().row_begin = row;
@@ -122,7 +121,7 @@ void CoarseSpace::list_islands(const SystemRows& rows,
       last = island;
     }
     islands_.back().row_end = row + 1;
-    island_of_row_[at(row)] = static_cast<std::int32_t>(islands_.size()) - 1;
+    island_of_row_[index_of(row)] = static_cast<std::int32_t>(islands_.size()) - 1;
   }
 }
 
@@ -130,27 +129,27 @@ void CoarseSpace::set_rows(const SystemRows& rows, const ModelState& state, Coar
   island.mode_count = 0;
   std::vector<AffineBasis> bases;
   std::vector<std::int32_t> bodies;
-  for (std::int32_t row = island.row_begin; row < island.row_end; ++row) rows_[at(row)] = {};
+  for (std::int32_t row = island.row_begin; row < island.row_end; ++row) rows_[index_of(row)] = {};
   if (!island.is_coupled || island.elastic >= 0) return;
   const auto each = [&](const auto& use) {
     for (std::int32_t row = island.row_begin; row < island.row_end; ++row) {
       const std::int32_t block = rows.block_of[row];
-      use(row, block, body_of_[at(block)]);
+      use(row, block, body_of_[index_of(block)]);
     }
   };
   each([&](std::int32_t, std::int32_t block, std::int32_t body) {
-    if (slot_of_[at(body)] < 0) {
-      slot_of_[at(body)] = static_cast<std::int32_t>(bodies.size());
+    if (slot_of_[index_of(body)] < 0) {
+      slot_of_[index_of(body)] = static_cast<std::int32_t>(bodies.size());
       bodies.push_back(body);
       bases.emplace_back();
     }
     if (block < model_.node_count) {
-      bases[at(slot_of_[at(body)])].add_point(state.position[at(block)]);
+      bases[index_of(slot_of_[index_of(body)])].add_point(state.position[index_of(block)]);
     }
   });
   each([&](std::int32_t, std::int32_t block, std::int32_t body) {
     if (block >= model_.node_count) return;
-    bases[at(slot_of_[at(body)])].add_products(state.position[at(block)]);
+    bases[index_of(slot_of_[index_of(body)])].add_products(state.position[index_of(block)]);
   });
   std::vector<std::int32_t> first;
   for (AffineBasis& basis : bases) {
@@ -161,16 +160,16 @@ void CoarseSpace::set_rows(const SystemRows& rows, const ModelState& state, Coar
   if (island.mode_count > most_modes) island.mode_count = 0;
   each([&](std::int32_t row, std::int32_t block, std::int32_t body) {
     if (island.mode_count == 0) return;
-    const std::size_t slot = at(slot_of_[at(body)]);
-    CoarseRow& own = rows_[at(row)];
+    const std::size_t slot = index_of(slot_of_[index_of(body)]);
+    CoarseRow& own = rows_[index_of(row)];
     if (block < model_.node_count) {
       own = {first[slot], 4, {}};
-      bases[slot].values_at(state.position[at(block)], own.factor);
+      bases[slot].values_at(state.position[index_of(block)], own.factor);
     } else {
       own = {first[slot] + (rows.pair[row] == 2 ? 3 : 0), 1, {1}};
     }
   });
-  for (const std::int32_t body : bodies) slot_of_[at(body)] = -1;
+  for (const std::int32_t body : bodies) slot_of_[index_of(body)] = -1;
 }
 
 /// Z^T A Z, a row of A at a time, and its inverse. Modes that vanish get the diagonal 1.
@@ -179,13 +178,13 @@ void CoarseSpace::set_inverse(const StepSystem& system, const CoarseIsland& isla
   if (m == 0) return;
   double* const e = inverse_.data() + island.inverse_begin;
   for (std::int32_t row = island.row_begin; row < island.row_end; ++row) {
-    const CoarseRow& own = rows_[at(row)];
+    const CoarseRow& own = rows_[index_of(row)];
     const std::int32_t end = system.rows.free_end[row];
     for (std::int32_t k = system.rows.start[row]; k < end;) {
-      const CoarseRow& first = rows_[at(system.rows.column[k])];
+      const CoarseRow& first = rows_[index_of(system.rows.column[k])];
       double sum[4][9] = {};  // of successive blocks whose columns have the same modes
       for (; k < end; ++k) {
-        const CoarseRow& other = rows_[at(system.rows.column[k])];
+        const CoarseRow& other = rows_[index_of(system.rows.column[k])];
         if (other.first != first.first) break;
         const double* const a = system.values.data + 9 * std::int64_t{k};
         for (std::int32_t q = 0; q < first.count; ++q) {

@@ -1,4 +1,5 @@
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -7,10 +8,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Appends the blocks of contacts, one contact after the other.
 class RowMaker {
@@ -37,13 +34,13 @@ class RowMaker {
                 const Point3& point,
                 double sign) {
     if (material.is_rigid()) {
-      if (frames_[at(body)] >= 0) add_frame(frames_[at(body)], point, sign);
+      if (frames_[index_of(body)] >= 0) add_frame(frames_[index_of(body)], point, sign);
       return;
     }
-    const std::int32_t first = scene_.surfaces.bodies[at(body)].first_vertex;
+    const std::int32_t first = scene_.surfaces.bodies[index_of(body)].first_vertex;
     for (std::size_t k = 0; k < 3; ++k) {
       if (material.vertex[k] < 0) continue;
-      const ModelPoint& vertex = scene_.vertex_point[at(first + material.vertex[k])];
+      const ModelPoint& vertex = scene_.vertex_point[index_of(first + material.vertex[k])];
       const double weight = sign * material.weight[k];
       if (vertex.rigid >= 0) {
         add_frame(vertex.rigid, point, weight);
@@ -57,7 +54,7 @@ class RowMaker {
 
   void add_frame(std::int32_t frame, const Point3& point, double weight) {
     const std::int32_t linear = model_.node_count + 2 * frame;
-    const Point3& centre = state_.position[at(model_.node_count + frame)];
+    const Point3& centre = state_.position[index_of(model_.node_count + frame)];
     Point3 arm;
     for (std::size_t i = 0; i < 3; ++i) arm[i] = point[i] - centre[i];
     add_linear(linear, weight);
@@ -107,9 +104,9 @@ class RowMaker {
 }  // namespace
 
 std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Model& model) {
-  std::vector<std::int32_t> frames(at(scene.body_count()), -1);
+  std::vector<std::int32_t> frames(index_of(scene.body_count()), -1);
   for (std::size_t r = 0; r < model.rigid.body.size(); ++r) {
-    const std::size_t body = at(model.rigid.body[r]);
+    const std::size_t body = index_of(model.rigid.body[r]);
     if (body < frames.size()) frames[body] = static_cast<std::int32_t>(r);
   }
   return frames;

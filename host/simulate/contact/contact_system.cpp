@@ -1,4 +1,5 @@
 #include "host/simulate/contact/contact_system.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,6 @@
 namespace tetwarp {
 namespace {
 
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Copies the entries of some contacts, `width` numbers of each.
 void gather(const std::vector<std::int32_t>& contacts,
             std::size_t width,
@@ -22,7 +19,7 @@ void gather(const std::vector<std::int32_t>& contacts,
             std::vector<double>& to) {
   to.clear();
   for (const std::int32_t contact : contacts) {
-    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(width * at(contact));
+    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(width * index_of(contact));
     to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
   }
 }
@@ -53,7 +50,7 @@ struct Share {
   std::vector<std::int32_t> contacts;  ///< ascending
 
   void clear(std::int32_t island_count) {
-    islands.assign(at(island_count), 0);
+    islands.assign(index_of(island_count), 0);
     contacts.clear();
   }
   bool is_empty() const { return std::find(islands.begin(), islands.end(), 1) == islands.end(); }
@@ -123,7 +120,7 @@ bool ContactSystem::State::iterates_two_levels() const {
 
 double ContactSystem::State::recovery_speed(const ContactKey& key) const {
   return options.recovery_fraction *
-         std::min(scene.body_size[at(key.body_a)], scene.body_size[at(key.body_b)]);
+         std::min(scene.body_size[index_of(key.body_a)], scene.body_size[index_of(key.body_b)]);
 }
 
 /// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
@@ -145,11 +142,12 @@ void ContactSystem::State::set_laws(const ContactTracker& tracker,
   recovered.assign(contacts.size(), 0);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
-      const std::int32_t block = rows.block[at(e)];
-      if (model.prescribed[at(block)] == 0) continue;
+      const std::int32_t block = rows.block[index_of(e)];
+      if (model.prescribed[index_of(block)] == 0) continue;
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < 3; ++i) {
-          prescribed[3 * c + k] += rows.value[at(e)][3 * k + i] * velocity[at(block)][i];
+          prescribed[3 * c + k] +=
+              rows.value[index_of(e)][3 * k + i] * velocity[index_of(block)][i];
         }
       }
     }
@@ -178,12 +176,13 @@ void ContactSystem::State::divide() {
   const bool divides = iterates_two_levels();
   for (std::int32_t i = 0; i < islands.count(); ++i) {
     if (!islands.has_contacts(i) && options.skips_islands) continue;
-    (divides && islands.is_soft(i) ? soft : other).islands[at(i)] = 1;
+    (divides && islands.is_soft(i) ? soft : other).islands[index_of(i)] = 1;
   }
   for (std::size_t c = 0; c < islands.of_contact().size(); ++c) {
     const std::int32_t island = islands.of_contact()[c];
     if (island < 0) continue;
-    (soft.islands[at(island)] != 0 ? soft : other).contacts.push_back(static_cast<std::int32_t>(c));
+    (soft.islands[index_of(island)] != 0 ? soft : other)
+        .contacts.push_back(static_cast<std::int32_t>(c));
   }
 }
 
@@ -191,7 +190,7 @@ void ContactSystem::State::take_impulses(const Share& share,
                                          const std::vector<double>& impulse,
                                          const std::vector<double>& velocity) {
   for (std::size_t k = 0; k < share.contacts.size(); ++k) {
-    const std::size_t c = at(share.contacts[k]);
+    const std::size_t c = index_of(share.contacts[k]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       solution.impulse[3 * c + axis] = impulse[3 * k + axis];
       solution.velocity[3 * c + axis] = velocity[3 * k + axis];
@@ -200,13 +199,13 @@ void ContactSystem::State::take_impulses(const Share& share,
 }
 
 void ContactSystem::State::add_block_impulses() {
-  impulses.assign(at(model.block_count()), Point3{0, 0, 0});
+  impulses.assign(index_of(model.block_count()), Point3{0, 0, 0});
   for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
     for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
-      Point3& own = impulses[at(rows.block[at(e)])];
+      Point3& own = impulses[index_of(rows.block[index_of(e)])];
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          own[i] += rows.value[at(e)][3 * axis + i] * solution.impulse[3 * c + axis];
+          own[i] += rows.value[index_of(e)][3 * axis + i] * solution.impulse[3 * c + axis];
         }
       }
     }

@@ -1,4 +1,5 @@
 #include "host/simulate/contact/elastic_space.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 
@@ -10,21 +11,17 @@ namespace {
 constexpr std::size_t most_touched = 400;   // nodes of a body
 constexpr std::size_t most_time_steps = 3;  // whose factors are kept
 
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
-
 }  // namespace
 
 ElasticSpace::ElasticSpace(const Model& model)
-    : model_(model), body_of_island_(at(model.island_count), -1) {
-  std::vector<std::int32_t> bodies(at(model.island_count), 0);
+    : model_(model), body_of_island_(index_of(model.island_count), -1) {
+  std::vector<std::int32_t> bodies(index_of(model.island_count), 0);
   for (std::size_t body = 0; body < model.body_island.size(); ++body) {
     const std::int32_t island = model.body_island[body];
     if (island < 0) continue;
     const auto own = static_cast<std::int32_t>(body);
-    ++bodies[at(island)];
-    body_of_island_[at(island)] = RestFactor::is_possible(model, own) ? own : -1;
+    ++bodies[index_of(island)];
+    body_of_island_[index_of(island)] = RestFactor::is_possible(model, own) ? own : -1;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i] > 1) body_of_island_[i] = -1;
@@ -36,49 +33,50 @@ void ElasticSpace::choose(const SystemRows& rows,
                           const std::vector<std::uint8_t>& takes,
                           const ContactRows& contact_rows,
                           const std::vector<std::int32_t>& contacts) {
-  body_of_row_.assign(at(rows.unknown_count), -1);
-  slot_of_row_.assign(at(rows.unknown_count), -1);
-  row_of_block_.assign(at(rows.block_of.size), -1);
+  body_of_row_.assign(index_of(rows.unknown_count), -1);
+  slot_of_row_.assign(index_of(rows.unknown_count), -1);
+  row_of_block_.assign(index_of(rows.block_of.size), -1);
   std::size_t count = 0;
   std::int32_t last = -1;
   for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
     const std::int32_t island = islands.of_block(rows.block_of[row]);
-    if (takes[at(island)] == 0 || body_of_island_[at(island)] < 0) continue;
+    if (takes[index_of(island)] == 0 || body_of_island_[index_of(island)] < 0) continue;
     if (island != last) {
       if (count == bodies_.size()) bodies_.emplace_back();
-      bodies_[count].body = body_of_island_[at(island)];
+      bodies_[count].body = body_of_island_[index_of(island)];
       bodies_[count].row_begin = row;
       bodies_[count].touched.clear();
       ++count;
       last = island;
     }
     bodies_[count - 1].row_end = row + 1;
-    body_of_row_[at(row)] = static_cast<std::int32_t>(count) - 1;
-    row_of_block_[at(rows.block_of[row])] = row;
+    body_of_row_[index_of(row)] = static_cast<std::int32_t>(count) - 1;
+    row_of_block_[index_of(rows.block_of[row])] = row;
   }
   bodies_.resize(count);
   for (const std::int32_t contact : contacts) {
-    for (const std::int32_t block : contact_rows.blocks_of(at(contact))) {
-      const std::int32_t row = row_of_block_[at(block)];
-      if (row >= 0) slot_of_row_[at(row)] = 0;
+    for (const std::int32_t block : contact_rows.blocks_of(index_of(contact))) {
+      const std::int32_t row = row_of_block_[index_of(block)];
+      if (row >= 0) slot_of_row_[index_of(row)] = 0;
     }
   }
   for (ElasticBody& own : bodies_) {
     for (std::int32_t row = own.row_begin; row < own.row_end; ++row) {
-      if (slot_of_row_[at(row)] < 0) continue;
-      slot_of_row_[at(row)] = static_cast<std::int32_t>(own.touched.size());
+      if (slot_of_row_[index_of(row)] < 0) continue;
+      slot_of_row_[index_of(row)] = static_cast<std::int32_t>(own.touched.size());
       own.touched.push_back(row - own.row_begin);
     }
   }
   const auto is_left = [&](const ElasticBody& own) {
     if (own.touched.size() <= most_touched) return false;
-    for (std::int32_t row = own.row_begin; row < own.row_end; ++row) body_of_row_[at(row)] = -1;
+    for (std::int32_t row = own.row_begin; row < own.row_end; ++row)
+      body_of_row_[index_of(row)] = -1;
     return true;
   };
   bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), is_left), bodies_.end());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     for (std::int32_t row = bodies_[b].row_begin; row < bodies_[b].row_end; ++row) {
-      body_of_row_[at(row)] = static_cast<std::int32_t>(b);
+      body_of_row_[index_of(row)] = static_cast<std::int32_t>(b);
     }
   }
 }
@@ -100,19 +98,19 @@ void ElasticSpace::set(const ModelState& state, double time_step, std::int64_t f
     found->of_body.resize(model_.body_island.size());
   }
   parallel_tasks(threads, static_cast<std::int64_t>(bodies_.size()),
-                 [&](std::int64_t b) { set_body(bodies_[at(b)], state, time_step, *found); });
+                 [&](std::int64_t b) { set_body(bodies_[index_of(b)], state, time_step, *found); });
 }
 
 void ElasticSpace::set_body(ElasticBody& own,
                             const ModelState& state,
                             double time_step,
                             Factors& factors) {
-  std::unique_ptr<RestFactor>& factor = factors.of_body[at(own.body)];
+  std::unique_ptr<RestFactor>& factor = factors.of_body[index_of(own.body)];
   if (!factor) factor = std::make_unique<RestFactor>(model_, own.body, time_step);
   own.factor = factor.get();
   own.rotation = factor->mean_rotation(state);
-  own.compliance.assign(at(own.size) * 3 * own.touched.size(), 0);
-  own.push.resize(3 * at(own.row_end - own.row_begin));
+  own.compliance.assign(index_of(own.size) * 3 * own.touched.size(), 0);
+  own.push.resize(3 * index_of(own.row_end - own.row_begin));
   double* out = own.compliance.data();
   for (const std::int32_t node : own.touched) {
     const double* column = factor->columns(node);

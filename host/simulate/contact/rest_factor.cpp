@@ -1,4 +1,5 @@
 #include "host/simulate/contact/rest_factor.hpp"
+#include "host/base/index_of.hpp"
 
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
@@ -15,18 +16,16 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 constexpr std::int32_t most_nodes = 4096;
 
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
-
 /// Entries of A_0 between nodes with unknowns of one body.
 class RestMatrix {
  public:
   RestMatrix(const Model& model, std::int32_t body, double time_step)
-      : model_(model), begin_(model.body_node[at(body)]), end_(model.body_node[at(body) + 1]) {
-    slot_.assign(at(end_ - begin_), -1);
+      : model_(model),
+        begin_(model.body_node[index_of(body)]),
+        end_(model.body_node[index_of(body) + 1]) {
+    slot_.assign(index_of(end_ - begin_), -1);
     for (std::int32_t n = begin_; n < end_; ++n) {
-      if (model.prescribed[at(n)] == 0) slot_[at(n - begin_)] = count_++;
+      if (model.prescribed[index_of(n)] == 0) slot_[index_of(n - begin_)] = count_++;
     }
     add_masses(time_step);
     add_springs(time_step);
@@ -36,11 +35,12 @@ class RestMatrix {
 
   void add_tet(std::int32_t t, double time_step) {
     const ModelTets& tets = model_.tets;
-    const double scale = time_step * (time_step + tets.gamma[at(t)]) * tets.volume[at(t)];
-    const double lambda = scale * tets.lambda[at(t)], mu = scale * tets.mu[at(t)];
+    const double scale =
+        time_step * (time_step + tets.gamma[index_of(t)]) * tets.volume[index_of(t)];
+    const double lambda = scale * tets.lambda[index_of(t)], mu = scale * tets.mu[index_of(t)];
     double g[4][3] = {};
     for (int k = 0; k < 9; ++k) {
-      g[1 + k / 3][k % 3] = tets.gradient[at(t)][at(k)];
+      g[1 + k / 3][k % 3] = tets.gradient[index_of(t)][index_of(k)];
       g[0][k % 3] -= g[1 + k / 3][k % 3];
     }
     for (int a = 0; a < 4; ++a) {
@@ -53,7 +53,7 @@ class RestMatrix {
                 lambda * g[a][i] * g[b][j] + mu * g[b][i] * g[a][j] + (i == j ? mu * along : 0);
           }
         }
-        add(tets.nodes[at(t)][at(a)], tets.nodes[at(t)][at(b)], block);
+        add(tets.nodes[index_of(t)][index_of(a)], tets.nodes[index_of(t)][index_of(b)], block);
       }
     }
   }
@@ -67,14 +67,14 @@ class RestMatrix {
     pattern.setFromTriplets(graph.begin(), graph.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     Eigen::AMDOrdering<int>()(pattern, order);
-    place.resize(at(count_));
-    for (std::int32_t k = 0; k < count_; ++k) place[at(order.indices()[k])] = k;
+    place.resize(index_of(count_));
+    for (std::int32_t k = 0; k < count_; ++k) place[index_of(order.indices()[k])] = k;
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [nodes, block] : blocks_) {
-      const int row = 3 * place[at(nodes[0])], column = 3 * place[at(nodes[1])];
+      const int row = 3 * place[index_of(nodes[0])], column = 3 * place[index_of(nodes[1])];
       if (row < column) continue;
       for (int e = 0; e < 9; ++e) {
-        entries.emplace_back(row + e / 3, column + e % 3, block[at(e)]);
+        entries.emplace_back(row + e / 3, column + e % 3, block[index_of(e)]);
       }
     }
     Matrix result(3 * count_, 3 * count_);
@@ -84,7 +84,7 @@ class RestMatrix {
 
  private:
   std::int32_t slot_of(std::int32_t node) const {
-    return node >= begin_ && node < end_ ? slot_[at(node - begin_)] : -1;
+    return node >= begin_ && node < end_ ? slot_[index_of(node - begin_)] : -1;
   }
   void add(std::int32_t a, std::int32_t b, const double* block) {
     const std::int32_t row = slot_of(a), column = slot_of(b);
@@ -130,8 +130,9 @@ class RestMatrix {
 }  // namespace
 
 bool RestFactor::is_possible(const Model& model, std::int32_t body) {
-  const std::int32_t begin = model.body_node[at(body)], end = model.body_node[at(body) + 1];
-  if (model.body_rigid[at(body)] >= 0 || end - begin > most_nodes) return false;
+  const std::int32_t begin = model.body_node[index_of(body)],
+                     end = model.body_node[index_of(body) + 1];
+  if (model.body_rigid[index_of(body)] >= 0 || end - begin > most_nodes) return false;
   const auto is_own = [&](std::int32_t node) { return node >= begin && node < end; };
   for (const auto& nodes : model.edges.nodes) {
     if (is_own(nodes[0])) return false;
@@ -143,7 +144,8 @@ bool RestFactor::is_possible(const Model& model, std::int32_t body) {
 }
 
 RestFactor::RestFactor(const Model& model, std::int32_t body, double time_step) : model_(model) {
-  const std::int32_t begin = model.body_node[at(body)], end = model.body_node[at(body) + 1];
+  const std::int32_t begin = model.body_node[index_of(body)],
+                     end = model.body_node[index_of(body) + 1];
   RestMatrix rest(model, body, time_step);
   for (std::size_t t = 0; t < model.tets.nodes.size(); ++t) {
     const std::int32_t node = model.tets.nodes[t][0];
@@ -155,7 +157,7 @@ RestFactor::RestFactor(const Model& model, std::int32_t body, double time_step) 
   Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::NaturalOrdering<int>> factor(matrix);
   const Matrix lower = factor.matrixL();
   const std::int32_t count = rest.count();
-  std::vector<std::int32_t> slot(at(count), -1);  // of a row in the column of blocks
+  std::vector<std::int32_t> slot(index_of(count), -1);  // of a row in the column of blocks
   start_.assign(1, 0);
   for (std::int32_t j = 0; j < count; ++j) {
     const std::size_t first = entries_.size();
@@ -168,14 +170,14 @@ RestFactor::RestFactor(const Model& model, std::int32_t body, double time_step) 
           corner[e] = it.value();
           continue;
         }
-        if (slot[at(row)] < 0) {
-          slot[at(row)] = static_cast<std::int32_t>(entries_.size());
+        if (slot[index_of(row)] < 0) {
+          slot[index_of(row)] = static_cast<std::int32_t>(entries_.size());
           entries_.push_back({row, {}});
         }
-        entries_[at(slot[at(row)])].block[e] = static_cast<float>(it.value());
+        entries_[index_of(slot[index_of(row)])].block[e] = static_cast<float>(it.value());
       }
     }
-    for (std::size_t k = first; k < entries_.size(); ++k) slot[at(entries_[k].row)] = -1;
+    for (std::size_t k = first; k < entries_.size(); ++k) slot[index_of(entries_[k].row)] = -1;
     const double a = 1 / corner[0], b = 1 / corner[4], c = 1 / corner[8];
     const double ba = -b * corner[3] * a;
     diagonal_.push_back({static_cast<float>(a), static_cast<float>(ba), static_cast<float>(b),
@@ -183,14 +185,14 @@ RestFactor::RestFactor(const Model& model, std::int32_t body, double time_step) 
                          static_cast<float>(-c * corner[7] * b), static_cast<float>(c)});
     start_.push_back(static_cast<std::int32_t>(entries_.size()));
   }
-  column_of_.assign(at(count), -1);
-  work_.resize(at(3 * std::int64_t{count}));
+  column_of_.assign(index_of(count), -1);
+  work_.resize(index_of(3 * std::int64_t{count}));
 }
 
 void RestFactor::solve(double* x) {
   const std::size_t count = order_.size();
   double* const w = work_.data();
-  for (std::size_t n = 0; n < count; ++n) std::copy_n(x + 3 * n, 3, w + 3 * at(order_[n]));
+  for (std::size_t n = 0; n < count; ++n) std::copy_n(x + 3 * n, 3, w + 3 * index_of(order_[n]));
   for (std::size_t j = 0; j < count; ++j) {
     const auto& l = diagonal_[j];
     double* const own = w + 3 * j;
@@ -198,8 +200,8 @@ void RestFactor::solve(double* x) {
     const double c = l[3] * own[0] + l[4] * own[1] + l[5] * own[2];
     own[0] = a, own[1] = b, own[2] = c;
     for (std::int32_t k = start_[j]; k < start_[j + 1]; ++k) {
-      const Entry& entry = entries_[at(k)];
-      double* const out = w + 3 * at(entry.row);
+      const Entry& entry = entries_[index_of(k)];
+      double* const out = w + 3 * index_of(entry.row);
       for (int i = 0; i < 3; ++i) {
         out[i] -= entry.block[3 * i] * a + entry.block[3 * i + 1] * b + entry.block[3 * i + 2] * c;
       }
@@ -209,8 +211,8 @@ void RestFactor::solve(double* x) {
     double* const own = w + 3 * j;
     double a = own[0], b = own[1], c = own[2];
     for (std::int32_t k = start_[j]; k < start_[j + 1]; ++k) {
-      const Entry& entry = entries_[at(k)];
-      const double* const in = w + 3 * at(entry.row);
+      const Entry& entry = entries_[index_of(k)];
+      const double* const in = w + 3 * index_of(entry.row);
       a -= entry.block[0] * in[0] + entry.block[3] * in[1] + entry.block[6] * in[2];
       b -= entry.block[1] * in[0] + entry.block[4] * in[1] + entry.block[7] * in[2];
       c -= entry.block[2] * in[0] + entry.block[5] * in[1] + entry.block[8] * in[2];
@@ -220,22 +222,22 @@ void RestFactor::solve(double* x) {
     own[1] = l[2] * b + l[4] * c;
     own[2] = l[5] * c;
   }
-  for (std::size_t n = 0; n < count; ++n) std::copy_n(w + 3 * at(order_[n]), 3, x + 3 * n);
+  for (std::size_t n = 0; n < count; ++n) std::copy_n(w + 3 * index_of(order_[n]), 3, x + 3 * n);
 }
 
 const double* RestFactor::columns(std::int32_t node) {
   const std::size_t size = 3 * order_.size();
-  std::int32_t& place = column_of_[at(node)];
+  std::int32_t& place = column_of_[index_of(node)];
   if (place < 0) {
     place = static_cast<std::int32_t>(columns_.size() / (3 * size));
     columns_.resize(columns_.size() + 3 * size, 0.0);
-    double* const own = columns_.data() + 3 * size * at(place);
+    double* const own = columns_.data() + 3 * size * index_of(place);
     for (std::size_t i = 0; i < 3; ++i) {
-      own[i * size + 3 * at(node) + i] = 1;
+      own[i * size + 3 * index_of(node) + i] = 1;
       solve(own + i * size);
     }
   }
-  return columns_.data() + 3 * size * at(place);
+  return columns_.data() + 3 * size * index_of(place);
 }
 
 std::array<double, 9> RestFactor::mean_rotation(const ModelState& state) const {
@@ -243,11 +245,11 @@ std::array<double, 9> RestFactor::mean_rotation(const ModelState& state) const {
   for (const std::int32_t t : tets_) {
     double x[12], f[9];
     for (std::size_t a = 0; a < 4; ++a) {
-      const Point3& corner = state.position[at(model_.tets.nodes[at(t)][a])];
+      const Point3& corner = state.position[index_of(model_.tets.nodes[index_of(t)][a])];
       std::copy(corner.begin(), corner.end(), x + 3 * a);
     }
-    deformation_gradient(x, model_.tets.gradient[at(t)].data(), f);
-    for (int e = 0; e < 9; ++e) sum[e] += model_.tets.volume[at(t)] * f[e];
+    deformation_gradient(x, model_.tets.gradient[index_of(t)].data(), f);
+    for (int e = 0; e < 9; ++e) sum[e] += model_.tets.volume[index_of(t)] * f[e];
   }
   std::array<double, 9> rotation;
   tet_rotation(sum, rotation.data());

@@ -1,4 +1,5 @@
 #include "host/simulate/contact/rest_growth.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 
@@ -7,10 +8,6 @@
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void add_to(std::vector<Point3>& list, std::int32_t index, const Point3& x) {
   Point3& entry = list[index_of(index)];

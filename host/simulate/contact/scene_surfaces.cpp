@@ -1,4 +1,5 @@
 #include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -20,9 +21,6 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-std::size_t index_of(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 template <class T>
 std::int32_t count_of(const std::vector<T>& list) {
   return static_cast<std::int32_t>(list.size());

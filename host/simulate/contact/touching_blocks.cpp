@@ -1,4 +1,5 @@
 #include "host/simulate/contact/touching_blocks.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -8,9 +9,6 @@
 namespace tetwarp {
 namespace {
 
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
 template <class T>
 View<const T> view_of(const std::vector<T>& own) {
   return {own.data(), static_cast<std::int64_t>(own.size())};
@@ -28,9 +26,9 @@ void TouchingBlocks::set(const StepSystem& system,
                          double relaxation) {
   set_laws(laws);
   elastic_ = &elastic;
-  row_of_block_.assign(at(system.rows.block_of.size), -1);
+  row_of_block_.assign(index_of(system.rows.block_of.size), -1);
   for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
-    if (coarse.island_of_row(row) >= 0) row_of_block_[at(system.rows.block_of[row])] = row;
+    if (coarse.island_of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
   }
   part_start_.assign(1, 0);
   coarse_start_.clear();
@@ -84,25 +82,25 @@ void TouchingBlocks::add_rows(const StepSystem& system,
                               const ContactRows& rows,
                               std::int32_t contact) {
   const std::size_t first_part = parts_.size();
-  const std::int32_t end = rows.start[at(contact) + 1];
-  for (std::int32_t e = rows.start[at(contact)]; e < end; ++e) {
-    const std::int32_t row = row_of_block_[at(rows.block[at(e)])];
+  const std::int32_t end = rows.start[index_of(contact) + 1];
+  for (std::int32_t e = rows.start[index_of(contact)]; e < end; ++e) {
+    const std::int32_t row = row_of_block_[index_of(rows.block[index_of(e)])];
     if (row < 0) continue;
     const bool is_rigid = system.rows.pair[row] == 1;
     const std::int32_t size = is_rigid ? 6 : 3;
     const std::int64_t first = 3 * std::int64_t{row};
     const std::int32_t body = elastic_->body_of_row(row);
     const std::int64_t place = body < 0 ? first
-                                        : elastic_->bodies()[at(body)].first +
+                                        : elastic_->bodies()[index_of(body)].first +
                                               3 * std::int64_t{elastic_->slot_of_row(row)};
     parts_.push_back({first, place, static_cast<std::int64_t>(jacobian_.size()), size});
     part_item_.push_back(row);
     touched_.push_back(row);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double* const linear = rows.value[at(e)].data() + 3 * k;
+      const double* const linear = rows.value[index_of(e)].data() + 3 * k;
       jacobian_.insert(jacobian_.end(), linear, linear + 3);
       if (!is_rigid) continue;
-      const double* const angular = rows.value[at(e) + 1].data() + 3 * k;
+      const double* const angular = rows.value[index_of(e) + 1].data() + 3 * k;
       jacobian_.insert(jacobian_.end(), angular, angular + 3);
     }
     if (is_rigid) {
@@ -122,7 +120,7 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
   const std::size_t last = parts_.size();
   for (std::size_t p = first_part; p < last; ++p) {
     const std::int32_t own = coarse.island_of_row(part_item_[p]);
-    const CoarseIsland& island = coarse.islands()[at(own)];
+    const CoarseIsland& island = coarse.islands()[index_of(own)];
     if (island.mode_count == 0) continue;
     std::size_t place = last;
     while (place < parts_.size() && part_item_[place] != own) ++place;
@@ -130,7 +128,7 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
       parts_.push_back({coarse_begin + island.mode_begin, coarse_begin + island.mode_begin,
                         static_cast<std::int64_t>(jacobian_.size()), island.mode_count});
       part_item_.push_back(own);
-      jacobian_.resize(jacobian_.size() + 3 * at(island.mode_count), 0);
+      jacobian_.resize(jacobian_.size() + 3 * index_of(island.mode_count), 0);
     }
     const Part part = parts_[p];
     double* const out = jacobian_.data() + parts_[place].value;
@@ -154,28 +152,28 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
 void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
                                        std::size_t contact,
                                        std::int32_t part) {
-  const std::int32_t row = part_item_[at(part)], body = elastic.body_of_row(row);
-  const ElasticBody& own = elastic.bodies()[at(body)];
+  const std::int32_t row = part_item_[index_of(part)], body = elastic.body_of_row(row);
+  const ElasticBody& own = elastic.bodies()[index_of(body)];
   const auto& r = own.rotation;
-  const double* const j = jacobian_.data() + parts_[at(part)].value;
-  double* const turned = turned_.data() + parts_[at(part)].value;
+  const double* const j = jacobian_.data() + parts_[index_of(part)].value;
+  double* const turned = turned_.data() + parts_[index_of(part)].value;
   for (std::size_t e = 0; e < 9; ++e) {
     const double* const from = j + e / 3 * 3;
     turned[e] = from[0] * r[e % 3] + from[1] * r[3 + e % 3] + from[2] * r[6 + e % 3];
   }
   double* const block = constants_[contact].block;
   for (std::int32_t q = part_start_[contact]; q <= part; ++q) {
-    const std::int32_t other = part_item_[at(q)];
+    const std::int32_t other = part_item_[index_of(q)];
     if (elastic.body_of_row(other) != body) continue;
-    const double* const second = turned_.data() + parts_[at(q)].value;
+    const double* const second = turned_.data() + parts_[index_of(q)].value;
     const double* const g = own.compliance.data() +
-                            3 * at(elastic.slot_of_row(other)) * at(own.size) +
-                            3 * at(elastic.slot_of_row(row));
+                            3 * index_of(elastic.slot_of_row(other)) * index_of(own.size) +
+                            3 * index_of(elastic.slot_of_row(row));
     for (std::size_t b = 0; b < 3; ++b) {
       double moved[3] = {};  // of the row for a unit impulse along axis b
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < 3; ++i) {
-          moved[i] += g[k * at(own.size) + i] * second[3 * b + k];
+          moved[i] += g[k * index_of(own.size) + i] * second[3 * b + k];
         }
       }
       for (std::size_t a = 0; a < 3; ++a) {
@@ -200,16 +198,16 @@ void TouchingBlocks::set_responses(const CoarseSpace& coarse,
     double* const block = constants_[c].block;
     std::fill(block, block + 9, 0.0);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
-      const Part& part = parts_[at(p)];
+      const Part& part = parts_[index_of(p)];
       const bool is_coarse = p >= coarse_start_[c];
-      if (!is_coarse && elastic.body_of_row(part_item_[at(p)]) >= 0) {
+      if (!is_coarse && elastic.body_of_row(part_item_[index_of(p)]) >= 0) {
         add_elastic_block(elastic, c, p);
         continue;
       }
-      const CoarseIsland& island = coarse.islands()[at(
-          is_coarse ? part_item_[at(p)] : coarse.island_of_row(part_item_[at(p)]))];
+      const CoarseIsland& island = coarse.islands()[index_of(
+          is_coarse ? part_item_[index_of(p)] : coarse.island_of_row(part_item_[index_of(p)]))];
       const double* const m = is_coarse ? coarse.inverse().data() + island.inverse_begin
-                                        : inverse.at(part_item_[at(p)]);
+                                        : inverse.at(part_item_[index_of(p)]);
       const double factor = is_coarse || !island.is_coupled ? 1 : relaxation;
       const double* const j = jacobian_.data() + part.value;
       double* const response = response_.data() + part.value;

@@ -2,33 +2,26 @@
 /// TouchingBlocks in the iteration: sweeps, velocities, residuals.
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "kernels/contact/contact_residual.hpp"
 
 namespace tetwarp {
-namespace {
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
-
 /// Copies Jacobian and responses of a contact to three rows of one length each, a multiple of four
 /// that zeros fill up. Only contacts that are swept need it.
 void TouchingBlocks::pack(std::size_t contact) {
   std::int32_t size = 0;
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
-    size += parts_[at(p)].size;
+    size += parts_[index_of(p)].size;
   }
   size = (size + 3) / 4 * 4;
   packed_size_[contact] = size;
   packed_start_[contact] = static_cast<std::int64_t>(packed_.size());
-  packed_.resize(packed_.size() + 6 * at(size), 0.0);
-  if (gathered_.size() < at(size)) gathered_.resize(at(size));
+  packed_.resize(packed_.size() + 6 * index_of(size), 0.0);
+  if (gathered_.size() < index_of(size)) gathered_.resize(index_of(size));
   double* out = packed_.data() + packed_start_[contact];
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
-    const Part& part = parts_[at(p)];
+    const Part& part = parts_[index_of(p)];
     for (std::int32_t a = 0; a < 3; ++a) {
       const std::int64_t from = part.value + a * part.size;
       const bool is_elastic = part.place != part.first;
@@ -45,18 +38,18 @@ void TouchingBlocks::pack_elastic(std::size_t contact) {
   elastic_start_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
   std::int32_t last = -1;
   for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
-    const std::int32_t row = part_item_[at(p)], body = elastic_->body_of_row(row);
+    const std::int32_t row = part_item_[index_of(p)], body = elastic_->body_of_row(row);
     if (body < 0) continue;
-    const ElasticBody& own = elastic_->bodies()[at(body)];
+    const ElasticBody& own = elastic_->bodies()[index_of(body)];
     if (body != last) {
       elastic_parts_.push_back(
           {own.first, static_cast<std::int64_t>(elastic_response_.size()), own.size});
-      elastic_response_.resize(elastic_response_.size() + 3 * at(own.size), 0.0);
+      elastic_response_.resize(elastic_response_.size() + 3 * index_of(own.size), 0.0);
     }
     last = body;
-    const double* const j = turned_.data() + parts_[at(p)].value;
+    const double* const j = turned_.data() + parts_[index_of(p)].value;
     const double* const g =
-        own.compliance.data() + 3 * at(elastic_->slot_of_row(row)) * at(own.size);
+        own.compliance.data() + 3 * index_of(elastic_->slot_of_row(row)) * index_of(own.size);
     for (std::int64_t a = 0; a < 3; ++a) {
       double* const out = elastic_response_.data() + elastic_parts_.back().value + a * own.size;
       const double x = j[3 * a], y = j[3 * a + 1], z = j[3 * a + 2];
@@ -71,7 +64,7 @@ void TouchingBlocks::pack_elastic(std::size_t contact) {
 void TouchingBlocks::add_elastic(std::size_t contact, const double* change, double* y) const {
   const double a = change[0], b = change[1], c = change[2];
   for (std::int32_t p = elastic_start_[contact]; p < elastic_end_[contact]; ++p) {
-    const ElasticPart& part = elastic_parts_[at(p)];
+    const ElasticPart& part = elastic_parts_[index_of(p)];
     const double* const response = elastic_response_.data() + part.value;
     double* const v = y + part.place;
     for (std::int64_t k = 0; k < part.size; ++k) {
@@ -109,8 +102,8 @@ void add_products(const double* jacobian, std::int32_t size, const double* v, do
 void TouchingBlocks::gather(std::size_t contact, const double* y) {
   double* out = gathered_.data();
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
-    copy_threes(y + parts_[at(p)].place, parts_[at(p)].size, out);
-    out += parts_[at(p)].size;
+    copy_threes(y + parts_[index_of(p)].place, parts_[index_of(p)].size, out);
+    out += parts_[index_of(p)].size;
   }
   std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
 }
@@ -120,15 +113,16 @@ void TouchingBlocks::sweep(ContactSwitches switches,
                            double* y,
                            double* impulse) {
   for (const std::int32_t contact : list) {
-    if (packed_start_[at(contact)] < 0) pack(at(contact));
-    operations_ += 6 * std::int64_t{packed_size_[at(contact)]};
-    for (std::int32_t p = elastic_start_[at(contact)]; p < elastic_end_[at(contact)]; ++p) {
-      operations_ += 3 * elastic_parts_[at(p)].size;
+    if (packed_start_[index_of(contact)] < 0) pack(index_of(contact));
+    operations_ += 6 * std::int64_t{packed_size_[index_of(contact)]};
+    for (std::int32_t p = elastic_start_[index_of(contact)]; p < elastic_end_[index_of(contact)];
+         ++p) {
+      operations_ += 3 * elastic_parts_[index_of(p)].size;
     }
   }
   double* const v = gathered_.data();
   for (std::size_t place_in_list = 0; place_in_list < list.size(); ++place_in_list) {
-    const std::size_t c = at(list[place_in_list]);
+    const std::size_t c = index_of(list[place_in_list]);
     const std::int32_t size = packed_size_[c];
     const double* const jacobian = packed_.data() + packed_start_[c];
     const double* const response = jacobian + 3 * size;
@@ -146,8 +140,8 @@ void TouchingBlocks::sweep(ContactSwitches switches,
     }
     std::int32_t place = 0;
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1];
-         place += parts_[at(p)].size, ++p) {
-      copy_threes(v + place, parts_[at(p)].size, y + parts_[at(p)].place);
+         place += parts_[index_of(p)].size, ++p) {
+      copy_threes(v + place, parts_[index_of(p)].size, y + parts_[index_of(p)].place);
     }
     add_elastic(c, change, y);
   }
@@ -158,12 +152,12 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
                           const double* after,
                           double* y) const {
   for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::size_t c = at(list[k]);
+    const std::size_t c = index_of(list[k]);
     const double r[3] = {after[3 * k] - before[3 * k], after[3 * k + 1] - before[3 * k + 1],
                          after[3 * k + 2] - before[3 * k + 2]};
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
-      const Part& part = parts_[at(p)];
+      const Part& part = parts_[index_of(p)];
       const double* const response = response_.data() + part.value;
       double* const v = y + part.place;
       for (std::int32_t i = 0; i < part.size; ++i) {
@@ -179,7 +173,7 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
 void TouchingBlocks::velocity_at(std::size_t contact, const double* x, double* velocity) const {
   for (std::size_t a = 0; a < 3; ++a) velocity[a] = offset_[3 * contact + a];
   for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
-    const Part& part = parts_[at(p)];
+    const Part& part = parts_[index_of(p)];
     for (int a = 0; a < 3; ++a) {
       const double* const j = jacobian_.data() + part.value + a * part.size;
       for (std::int32_t k = 0; k < part.size; ++k) velocity[a] += j[k] * x[part.first + k];
@@ -218,7 +212,7 @@ TouchingSums TouchingBlocks::measure(ContactSwitches switches,
 /// force += J^T r of one contact.
 void TouchingBlocks::add_push(std::size_t contact, const double* r, double* force) const {
   for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
-    const Part& part = parts_[at(p)];
+    const Part& part = parts_[index_of(p)];
     const double* const j = jacobian_.data() + part.value;
     for (std::int32_t k = 0; k < part.size; ++k) {
       force[part.first + k] += j[k] * r[0] + j[part.size + k] * r[1] + j[2 * part.size + k] * r[2];

@@ -1,4 +1,5 @@
 #include "host/simulate/contact/two_level_solver.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -27,10 +28,6 @@ constexpr double inner_share = 0.002;  // of the error before an outer iteration
 // of 1e4 to 1e8 Pa, with and without adhesion.
 constexpr double defect_factor = 8;
 constexpr double law_factor = 2;
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 class Clock {
  public:
@@ -67,7 +64,7 @@ void TwoLevelSolver::list_chunks(const SystemRows& rows) {
       row = end;
     }
   }
-  restricted_.resize(chunks_.size() * at(restricted_width_));
+  restricted_.resize(chunks_.size() * index_of(restricted_width_));
   squares_.resize(chunks_.size());
 }
 
@@ -81,31 +78,32 @@ void TwoLevelSolver::prepare(const StepSystem& system,
   const SystemRows& all = system.rows;
   const std::int64_t numbers = 3 * std::int64_t{all.count};
   list_chunks(all);
-  inverse_.resize(at(9 * std::int64_t{all.unknown_count} + 36 * std::int64_t{model_.rigid_count}));
+  inverse_.resize(
+      index_of(9 * std::int64_t{all.unknown_count} + 36 * std::int64_t{model_.rigid_count}));
   diagonal_ = {all.pair,
                all.block_of,
                all.unknown_count,
                model_.node_count,
                {inverse_.data(), static_cast<std::int64_t>(inverse_.size())}};
   for (auto* values : {&x_, &product_, &force_, &weights_, &pull_, &moved_}) {
-    values->resize(at(numbers));
+    values->resize(index_of(numbers));
   }
-  y_.resize(at(numbers + coarse_.mode_count() + elastic_.size()));
-  coarse_defect_.resize(at(coarse_.mode_count()));
+  y_.resize(index_of(numbers + coarse_.mode_count() + elastic_.size()));
+  coarse_defect_.resize(index_of(coarse_.mode_count()));
   const RowInvertBody<double> invert{all, system.values, diagonal_};
   std::fill(weights_.begin(), weights_.end(), 0.0);
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    const Chunk& chunk = chunks_[at(c)];
+    const Chunk& chunk = chunks_[index_of(c)];
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
       invert(row);
       const double* const own = system.values.data + 9 * std::int64_t{all.diagonal[row]};
-      for (int i = 0; i < 3; ++i) weights_[at(3 * std::int64_t{row} + i)] = own[4 * i];
+      for (int i = 0; i < 3; ++i) weights_[index_of(3 * std::int64_t{row} + i)] = own[4 * i];
     }
   });
   for (std::int32_t row = 0; row < all.count; ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
-      x_[3 * at(row) + i] = velocity[at(all.block_of[row])][i];
-      force_[3 * at(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
+      x_[3 * index_of(row) + i] = velocity[index_of(all.block_of[row])][i];
+      force_[3 * index_of(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
     }
   }
   blocks_.set(system, coarse_, elastic_, rows, contacts, laws, diagonal_, relaxation_);
@@ -119,8 +117,8 @@ void TwoLevelSolver::prepare(const StepSystem& system,
   if (change.size() != velocity.size()) return;
   for (const Chunk& chunk : chunks_) {
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const Point3& own = change[at(all.block_of[row])];
-      for (std::size_t i = 0; i < 3; ++i) x_[3 * at(row) + i] += own[i];
+      const Point3& own = change[index_of(all.block_of[row])];
+      for (std::size_t i = 0; i < 3; ++i) x_[3 * index_of(row) + i] += own[i];
     }
   }
 }
@@ -181,7 +179,7 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   const std::int64_t size = 3 * std::int64_t{chunks_.back().row_end} - begin;
   CpuContactExec exec(threads_);
   using Mixer = AndersonMixer<CpuContactExec, double>;
-  mixed_.resize(at(Mixer::columns * size));
+  mixed_.resize(index_of(Mixer::columns * size));
   Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
   const double alone = std::sqrt(
@@ -220,10 +218,10 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   if (!outcome.converged) take_best(outcome);
   for (const Chunk& chunk : chunks_) {
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const std::size_t block = at(system.rows.block_of[row]);
+      const std::size_t block = index_of(system.rows.block_of[row]);
       for (std::size_t i = 0; i < 3; ++i) {
-        change[block][i] = x_[3 * at(row) + i] - velocity[block][i];
-        velocity[block][i] = x_[3 * at(row) + i];
+        change[block][i] = x_[3 * index_of(row) + i] - velocity[block][i];
+        velocity[block][i] = x_[3 * index_of(row) + i];
       }
     }
   }

@@ -2,19 +2,12 @@
 /// A step of TwoLevelSolver without its contacts: M^-1 (b + J^T r - A v).
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 #include "host/simulate/contact/two_level_solver.hpp"
 #include "host/simulate/cpu/vector_stages.hpp"
 
 namespace tetwarp {
-namespace {
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
-
-}  // namespace
-
 /// y = x + omega D^-1 d, d = force - A x, and the coarse part of M^-1 d. @returns d . M^-1 d
 double TwoLevelSolver::step(const StepSystem& system) {
   GradientArrays<double> a;
@@ -23,7 +16,7 @@ double TwoLevelSolver::step(const StepSystem& system) {
   a.p = {x_.data(), static_cast<std::int64_t>(x_.size())};
   a.q = {product_.data(), static_cast<std::int64_t>(product_.size())};
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    vector_stages().product(a, chunks_[at(c)].row_begin, chunks_[at(c)].row_end);
+    vector_stages().product(a, chunks_[index_of(c)].row_begin, chunks_[index_of(c)].row_end);
     step_chunk(c);
   });
   find_coarse();
@@ -38,16 +31,16 @@ double TwoLevelSolver::step(const StepSystem& system) {
 double TwoLevelSolver::step_elastic() {
   elastic_squares_.resize(elastic_.bodies().size());
   parallel_tasks(threads_, static_cast<std::int64_t>(elastic_squares_.size()), [&](std::int64_t b) {
-    const ElasticBody& own = elastic_.bodies()[at(b)];
-    const std::size_t begin = 3 * at(own.row_begin), end = 3 * at(own.row_end);
-    elastic_.solve(at(b), product_.data() + begin, moved_.data() + begin);
+    const ElasticBody& own = elastic_.bodies()[index_of(b)];
+    const std::size_t begin = 3 * index_of(own.row_begin), end = 3 * index_of(own.row_end);
+    elastic_.solve(index_of(b), product_.data() + begin, moved_.data() + begin);
     double square = 0;
     for (std::size_t i = begin; i < end; ++i) {
       y_[i] = x_[i] + moved_[i];
       square += product_[i] * moved_[i];
     }
-    elastic_squares_[at(b)] = square;
-    elastic_.gather(at(b), y_.data(), y_.data());
+    elastic_squares_[index_of(b)] = square;
+    elastic_.gather(index_of(b), y_.data(), y_.data());
   });
   double square = 0;
   for (const double own : elastic_squares_) square += own;
@@ -59,34 +52,34 @@ void TwoLevelSolver::add_elastic() {
   if (elastic_.bodies().empty()) return;
   std::fill(pull_.begin(), pull_.end(), 0.0);
   blocks_.set_changes(stepped_.data(), impulse_.data(), pull_.data());
-  parallel_tasks(threads_, static_cast<std::int64_t>(elastic_.bodies().size()),
-                 [&](std::int64_t b) {
-                   const ElasticBody& own = elastic_.bodies()[at(b)];
-                   const std::size_t begin = 3 * at(own.row_begin), end = 3 * at(own.row_end);
-                   elastic_.solve(at(b), pull_.data() + begin, moved_.data() + begin);
-                   for (std::size_t i = begin; i < end; ++i) y_[i] += moved_[i];
-                 });
+  parallel_tasks(
+      threads_, static_cast<std::int64_t>(elastic_.bodies().size()), [&](std::int64_t b) {
+        const ElasticBody& own = elastic_.bodies()[index_of(b)];
+        const std::size_t begin = 3 * index_of(own.row_begin), end = 3 * index_of(own.row_end);
+        elastic_.solve(index_of(b), pull_.data() + begin, moved_.data() + begin);
+        for (std::size_t i = begin; i < end; ++i) y_[i] += moved_[i];
+      });
 }
 
 /// The rows of a chunk: y, and parts of d . omega D^-1 d and Z^T d.
 void TwoLevelSolver::step_chunk(std::int64_t c) {
-  const Chunk& chunk = chunks_[at(c)];
-  const CoarseIsland& island = coarse_.islands()[at(chunk.island)];
+  const Chunk& chunk = chunks_[index_of(c)];
+  const CoarseIsland& island = coarse_.islands()[index_of(chunk.island)];
   const double omega = island.is_coupled ? relaxation_ : 1;
   double* const d = product_.data();
   const std::int64_t end = 3 * std::int64_t{chunk.row_end};
   for (std::int64_t i = 3 * std::int64_t{chunk.row_begin}; i < end; ++i)
-    d[i] = force_[at(i)] - d[i];
+    d[i] = force_[index_of(i)] - d[i];
   double* const restricted = restricted_.data() + c * restricted_width_;
   std::fill(restricted, restricted + island.mode_count, 0.0);
   double square = 0;
-  squares_[at(c)] = 0;
+  squares_[index_of(c)] = 0;
   if (island.elastic >= 0) return;
   for (std::int64_t row = chunk.row_begin; row < chunk.row_end; ++row) {
     double z[6];
     const int count = diagonal_.multiply(row, d + 3 * row, z);
     for (int i = 0; i < count; ++i) {
-      y_[at(3 * row + i)] = x_[at(3 * row + i)] + omega * z[i];
+      y_[index_of(3 * row + i)] = x_[index_of(3 * row + i)] + omega * z[i];
       square += omega * d[3 * row + i] * z[i];
     }
     const CoarseRow& own = coarse_.row(row);
@@ -95,24 +88,24 @@ void TwoLevelSolver::step_chunk(std::int64_t c) {
         restricted[own.first + 3 * k + i] += own.factor[k] * d[3 * row + i];
     }
   }
-  squares_[at(c)] = square;
+  squares_[index_of(c)] = square;
 }
 
 /// Coarse unknowns (Z^T A Z)^-1 Z^T d.
 void TwoLevelSolver::find_coarse() {
   std::fill(coarse_defect_.begin(), coarse_defect_.end(), 0.0);
   for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const CoarseIsland& island = coarse_.islands()[at(chunks_[c].island)];
+    const CoarseIsland& island = coarse_.islands()[index_of(chunks_[c].island)];
     const double* const part =
         restricted_.data() + static_cast<std::int64_t>(c) * restricted_width_;
     for (std::int32_t k = 0; k < island.mode_count; ++k) {
-      coarse_defect_[at(island.mode_begin + k)] += part[k];
+      coarse_defect_[index_of(island.mode_begin + k)] += part[k];
     }
   }
   for (const CoarseIsland& island : coarse_.islands()) {
     const double* const m = coarse_.inverse().data() + island.inverse_begin;
     const double* const d = coarse_defect_.data() + island.mode_begin;
-    double* const out = y_.data() + x_.size() + at(island.mode_begin);
+    double* const out = y_.data() + x_.size() + index_of(island.mode_begin);
     for (std::int32_t i = 0; i < island.mode_count; ++i) {
       double sum = 0;
       for (std::int32_t k = 0; k < island.mode_count; ++k) {
@@ -126,10 +119,10 @@ void TwoLevelSolver::find_coarse() {
 /// Adds the motions of the coarse unknowns to the rows of y.
 void TwoLevelSolver::add_coarse() {
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    const Chunk& chunk = chunks_[at(c)];
-    const CoarseIsland& island = coarse_.islands()[at(chunk.island)];
+    const Chunk& chunk = chunks_[index_of(c)];
+    const CoarseIsland& island = coarse_.islands()[index_of(chunk.island)];
     if (island.mode_count == 0) return;
-    const double* const modes = y_.data() + x_.size() + at(island.mode_begin);
+    const double* const modes = y_.data() + x_.size() + index_of(island.mode_begin);
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
       const CoarseRow& own = coarse_.row(row);
       double* const v = y_.data() + 3 * std::int64_t{row};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/index_of.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "host/simulate/contact/two_level_solver.hpp"
 
@@ -10,10 +11,6 @@ namespace tetwarp {
 namespace {
 
 constexpr std::int64_t most_sweeps = 50;  // in an outer iteration
-
-std::size_t at(std::int64_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 
@@ -42,7 +39,7 @@ double TwoLevelSolver::sweep_working() {
   double square = 0;
   for (std::size_t k = 0; k < list.size(); ++k) {
     for (std::size_t a = 0; a < 3; ++a) {
-      square += blocks_.diagonal()[3 * at(list[k]) + a] *
+      square += blocks_.diagonal()[3 * index_of(list[k]) + a] *
                 square_of(swept_[3 * k + a] - before_[3 * k + a]);
     }
   }
@@ -58,7 +55,7 @@ void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
   const auto size = static_cast<std::int64_t>(3 * list.size());
   CpuContactExec exec(threads_);
   using Mixer = AndersonMixer<CpuContactExec, double>;
-  mixed_impulses_.resize(at(Mixer::columns * size));
+  mixed_impulses_.resize(index_of(Mixer::columns * size));
   listed_diagonal_.clear();
   for (const std::int32_t contact : list) {
     const auto begin = blocks_.diagonal().begin() + 3 * std::ptrdiff_t{contact};

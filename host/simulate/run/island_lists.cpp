@@ -2,15 +2,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 
 namespace tetwarp {
 namespace {
-
-std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 double diagonal_of(const std::vector<Point3>& points) {
   if (points.empty()) return 0;

@@ -1,4 +1,5 @@
 #include "host/simulate/run/island_sleep.hpp"
+#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,6 @@ namespace tetwarp {
 namespace {
 
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-
-std::size_t index_of(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Source: Fowler, Noll, Vo (FNV-1a, 64 bits), eight bytes at a time.
 void add_to(std::uint64_t& hash, double number) {
