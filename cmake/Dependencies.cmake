@@ -39,6 +39,9 @@ target_compile_options(tetwarp_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wconversion;-ffp-contract=off>
   $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra,-ffp-contract=off;$<$<BOOL:${TETWARP_STRICT_FP}>:-fmad=false;-DTETWARP_STRICT_FP>>)
+# g++ collects its garbage less often: a tenth less time to compile for a quarter more memory.
+target_compile_options(tetwarp_options INTERFACE
+  $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1048576>)
 # Eigen would split products by the number of OpenMP threads, so that bits would depend on it;
 # for matrices of a few hundred rows on a busy machine this was also 100 times slower.
 target_compile_definitions(tetwarp_options INTERFACE EIGEN_DONT_PARALLELIZE)

@@ -216,10 +216,11 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact_cuda.cpp
     tests/warp/test_blocks.cpp tests/warp/test_parity.cpp
     tests/warp/test_warp_antialias.cpp tests/warp/test_warp_fields.cpp
-    tests/warp/test_warp_hexahedra.cpp
-    tests/warp/test_warp_in_flight.cpp tests/warp/test_warp_intensity.cpp
-    tests/warp/test_warp_quantities.cpp tests/warp/test_warp_rounding.cpp)
+    tests/warp/test_warp_hexahedra.cpp tests/warp/test_warp_in_flight.cpp
+    tests/warp/test_warp_intensity.cpp tests/warp/test_warp_quantities.cpp
+    tests/warp/test_warp_rounding.cpp)
   tetwarp_test_target(tetwarp_backend_tests)
+  set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
   if(TETWARP_FUSED_EMULATION)
     set_source_files_properties(tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
