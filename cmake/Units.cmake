@@ -29,8 +29,7 @@ tetwarp_unit(contact_rows host/contact/problem/checks.cpp host/contact/problem/r
   host/contact/problem/spring_offset.cpp host/contact/tracker/input_checks.cpp
   host/contact/tracker/record_update.cpp host/contact/tracker/tracker.cpp
   host/contact/structure/color.cpp host/contact/structure/extract.cpp
-  host/contact/structure/islands.cpp host/contact/structure/structure_local.cpp
-  host/contact/structure/system.cpp)
+  host/contact/structure/islands.cpp host/contact/structure/system.cpp)
 tetwarp_unit(base host/base/volume.cpp host/base/mesh.cpp host/base/error.cpp host/base/names.cpp
   host/base/parallel.cpp host/base/backend.cpp host/base/report.cpp host/base/page_lock.cpp)
 tetwarp_unit(warp host/warp/hex_split.cpp host/warp/transform_checks.cpp host/warp/warper.cpp

@@ -44,23 +44,6 @@ void gather_laws(const std::vector<std::int32_t>& contacts,
   gather(contacts, 1, adhesion.saturation_pressure, to.adhesion.saturation_pressure);
 }
 
-/// Coupling islands and contacts that one solver takes.
-struct Share {
-  std::vector<std::uint8_t> islands;
-  std::vector<std::int32_t> contacts;  ///< ascending
-
-  void clear(std::int32_t island_count) {
-    islands.assign(index_of(island_count), 0);
-    contacts.clear();
-  }
-  bool is_empty() const { return std::find(islands.begin(), islands.end(), 1) == islands.end(); }
-  void take(const Share& other) {
-    for (std::size_t i = 0; i < islands.size(); ++i) islands[i] |= other.islands[i];
-    contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
-    std::sort(contacts.begin(), contacts.end());
-  }
-};
-
 /// Without Newton's steps no method but sweeps, and no search for the reasons why they fail.
 ContactOptions sweeping(ContactOptions options) {
   const bool is_automatic = options.method == ContactMethod::automatic;
@@ -71,6 +54,23 @@ ContactOptions sweeping(ContactOptions options) {
 }  // namespace
 
 struct ContactSystem::State {
+  /// Coupling islands and contacts that one solver takes.
+  struct Share {
+    std::vector<std::uint8_t> islands;
+    std::vector<std::int32_t> contacts;  ///< ascending
+
+    void clear(std::int32_t island_count) {
+      islands.assign(index_of(island_count), 0);
+      contacts.clear();
+    }
+    bool is_empty() const { return std::find(islands.begin(), islands.end(), 1) == islands.end(); }
+    void take(const Share& other) {
+      for (std::size_t i = 0; i < islands.size(); ++i) islands[i] |= other.islands[i];
+      contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
+      std::sort(contacts.begin(), contacts.end());
+    }
+  };
+
   State(const SceneSurfaces& surfaces, const Model& of, const ContactSystemOptions& given)
       : scene(surfaces),
         model(of),

@@ -203,7 +203,8 @@ class StartSearch {
 };
 
 std::string point_text(const Point3& x) {
-  return "(" + number_text(x[0]) + ", " + number_text(x[1]) + ", " + number_text(x[2]) + ")";
+  return std::string("(") + number_text(x[0]) + ", " + number_text(x[1]) + ", " +
+         number_text(x[2]) + ")";
 }
 
 }  // namespace
