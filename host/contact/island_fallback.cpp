@@ -146,7 +146,8 @@ void IslandSolver::sweep_while_cheaper(std::int64_t island,
     const std::int64_t from = outcome.sweeps;
     run.sweep_on(island, from + std::max<std::int64_t>(64, from / 2));
     outcome.sums = run.measure(island);
-    if (run.is_done(island, outcome.sums)) return;
+    const bool has_ended = outcome.sweeps == from;  // its numbers are not finite
+    if (has_ended || run.is_done(island, outcome.sums)) return;
     const double left =
         sweeps_left(before, run.excess(island, outcome.sums), outcome.sweeps - from);
     if (prefers_newton(worth, outcome.sweeps, left)) return;
