@@ -8,9 +8,9 @@ function(tetwarp_unit name)
     math(EXPR number "${number} + 1")
   endforeach()
 endfunction()
-tetwarp_unit(newton host/contact/tracker/match.cpp host/contact/problem/matrix.cpp
-  host/contact/problem/measure.cpp host/contact/newton/natural_map.cpp
-  host/contact/newton/newton.cpp host/contact/newton/newton_system.cpp
+tetwarp_unit(measure host/contact/tracker/match.cpp host/contact/problem/matrix.cpp
+  host/contact/problem/measure.cpp host/contact/newton/natural_map.cpp)
+tetwarp_unit(newton host/contact/newton/newton.cpp host/contact/newton/newton_system.cpp
   host/contact/newton/pivoting.cpp)
 tetwarp_unit(fallback host/contact/newton/associated.cpp host/contact/newton/contact_assembly.cpp
   host/contact/island_fallback.cpp host/contact/island_restart.cpp)
