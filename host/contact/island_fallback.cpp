@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "host/contact/best_impulses.hpp"
 #include "host/contact/certificate.hpp"
 #include "host/contact/island_solver.hpp"
 #include "host/contact/method_choice.hpp"
@@ -14,15 +15,17 @@
 
 namespace tetwarp {
 namespace {
-/// Newton steps that an island is expected to take, and those after which sweeps continue. Stacks
-/// and jams take some ten, packings with friction hundreds.
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Newton steps that an island is expected to take, and those that the phases of a trial share out.
+/// Stacks and jams take some ten, packings with friction hundreds.
 struct NewtonTrial {
   std::int64_t expected;
-  std::int64_t limit;
+  std::int64_t shared;
 };
 constexpr NewtonTrial newton_trials[] = {{40, 60}, {200, 400}};
-/// No other limit than the number of contacts sets.
-constexpr std::int64_t all_steps = std::numeric_limits<std::int64_t>::max();
+/// A trial takes at most as long as the sweeps before it, so that sweeps which would have converged
+/// without it take at most twice as long; but it may take this many steps in any case.
+constexpr std::int64_t short_trial = 40;
 
 /// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
 /// than Newton's take only where many sweeps are allowed, too.
@@ -77,15 +80,19 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   if (clamp_contradicting(island, run, brief, result)) return;
   const ContactProblem part =
       make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
+  std::vector<double> last;
   if (is_automatic) {
+    const double step = sweeps_per_step(part);
     for (const NewtonTrial& trial : newton_trials) {
-      sweep_while_cheaper(island, part, run, outcome, trial.expected);
+      const std::int64_t steps = std::min(trial.expected, max_newton_steps(part.contact_count()));
+      sweep_while_cheaper(island, run, outcome, static_cast<double>(steps) * step, last);
       if (run.is_done(island, outcome.sums)) return;
-      polish(island, part, run, outcome, trial.limit);
+      const auto affordable = static_cast<std::int64_t>(static_cast<double>(outcome.sweeps) / step);
+      polish(island, part, run, outcome, {trial.shared, std::max(short_trial, affordable)});
       if (run.is_done(island, outcome.sums)) return;
     }
   } else {
-    polish(island, part, run, outcome, all_steps);
+    polish(island, part, run, outcome, {});
     if (run.is_done(island, outcome.sums)) return;
   }
   if (clamp_contradicting(island, run, full, result)) return;
@@ -94,11 +101,18 @@ void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, Engin
   if (is_automatic) {
     is_searched = searches_before_sweeps(part, outcome);
     const bool is_unbounded = is_searched && find_unbounded(island, part, result);
-    if (is_unbounded) start_again(island, part, run, outcome);
-    if (!run.is_done(island, outcome.sums)) run.sweep_on(island, options_.max_sweeps);
-    outcome.sums = run.measure(island);
-    if (run.is_done(island, outcome.sums)) return;
-    polish(island, part, run, outcome, all_steps);  // this better start may converge
+    if (is_unbounded) {
+      start_again(island, part, run, outcome);
+      last.clear();
+    }
+    if (!run.is_done(island, outcome.sums)) {
+      sweep_while_cheaper(island, run, outcome, infinity, last);
+    }
+    double before = infinity;
+    while (!run.is_done(island, outcome.sums) && run.excess(island, outcome.sums) < before / 2) {
+      before = run.excess(island, outcome.sums);
+      polish(island, part, run, outcome, {});  // each better start may converge
+    }
   }
   if (!is_searched && !run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
 }
@@ -117,7 +131,8 @@ void IslandSolver::continue_with_rows(std::int64_t island,
   for (const bool is_first : {true, false}) {
     if (has_newton) {
       polish(island, part, run, outcome,
-             is_automatic && is_first ? newton_trials[1].limit : all_steps);
+             is_automatic && is_first ? NewtonLimits{.shared = newton_trials[1].shared}
+                                      : NewtonLimits{});
     }
     if (!is_first || !is_automatic || run.is_done(island, outcome.sums)) return;
     run.sweep_on(island, options_.max_sweeps);
@@ -127,31 +142,44 @@ void IslandSolver::continue_with_rows(std::int64_t island,
 }
 
 /// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.
-void IslandSolver::sweep_while_cheaper(std::int64_t island,
-                                       const ContactProblem& part,
+/// Leaves the best impulses. The next sweeps continue from the last ones: near impulses of a small
+/// residual that are no solution the residual first grows, and sweeps from the best ones would
+/// return there.
+/// @param newton_sweeps  sweeps that take as long as Newton's method would
+/// @param last           in: where to continue, empty: the current impulses; out: the last ones
+void IslandSolver::sweep_while_cheaper(std::int64_t i,
                                        ContactRun<double>& run,
                                        IslandOutcome& outcome,
-                                       std::int64_t newton_steps) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::int64_t contacts = part.contact_count();
+                                       double newton_sweeps,
+                                       std::vector<double>& last) {
+  const ContactIsland& island = structure_.islands[index_of(i)];
+  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
+  const std::int64_t size = 3 * island.contact_count();
+  BestImpulses best(impulse, size, run.excess(i, outcome.sums));
+  std::copy(last.begin(), last.end(), impulse);
+  while (outcome.sweeps < options_.max_sweeps && !(budget_ != nullptr && budget_->is_over())) {
+    const double before = best.excess();
+    const std::int64_t from = outcome.sweeps;
+    const double least = run.sweep_past_best(i, from + std::max<std::int64_t>(64, from / 2));
+    outcome.sums = run.measure(i);
+    if (run.is_done(i, outcome.sums)) return;
+    best.keep(run.best_impulse(i), least);
+    const std::int64_t sweeps = outcome.sweeps - from;
+    if (sweeps == 0) break;  // numbers are not finite
+    const double left = sweeps_left(before, best.excess(), sweeps);
+    if (prefers_newton(newton_sweeps, outcome.sweeps, left)) break;
+  }
+  last.assign(impulse, impulse + size);
+  best.restore();
+  outcome.sums = run.measure(i);
+}
+
+/// Sweeps that take as long as a step of Newton's method; infinity where it may not be used.
+double IslandSolver::sweeps_per_step(const ContactProblem& part) const {
   const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
   const NewtonCost cost = newton_cost(part, memory);
-  double worth = infinity;
-  if (cost.bytes <= memory && options_.max_newton > 0) {
-    const std::int64_t steps = std::min(newton_steps, max_newton_steps(contacts));
-    worth = static_cast<double>(steps) * sweeps_per_newton_step(cost, contacts);
-  }
-  while (outcome.sweeps < options_.max_sweeps && !(budget_ != nullptr && budget_->is_over())) {
-    const double before = run.excess(island, outcome.sums);
-    const std::int64_t from = outcome.sweeps;
-    run.sweep_on(island, from + std::max<std::int64_t>(64, from / 2));
-    outcome.sums = run.measure(island);
-    const bool has_ended = outcome.sweeps == from;  // its numbers are not finite
-    if (has_ended || run.is_done(island, outcome.sums)) return;
-    const double left =
-        sweeps_left(before, run.excess(island, outcome.sums), outcome.sweeps - from);
-    if (prefers_newton(worth, outcome.sweeps, left)) return;
-  }
+  if (cost.bytes > memory || options_.max_newton == 0) return infinity;
+  return sweeps_per_newton_step(cost, part.contact_count());
 }
 
 /// @return  whether normal offsets that sweeps show to contradict each other were noted
@@ -196,7 +224,7 @@ void IslandSolver::polish(std::int64_t i,
                           const ContactProblem& part,
                           ContactRun<double>& run,
                           IslandOutcome& outcome,
-                          std::int64_t step_limit) {
+                          const NewtonLimits& limits) {
   const ContactIsland& island = structure_.islands[index_of(i)];
   ContactOptions options = options_;
   options.tolerance /= 2;  // relative to this island, not to the whole problem
@@ -204,7 +232,7 @@ void IslandSolver::polish(std::int64_t i,
   std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
   const std::vector<double> swept = polished;
   const NewtonResult newton =
-      newton_polish(part, options, polished, body_velocity, budget_, step_limit);
+      newton_polish(part, options, polished, body_velocity, budget_, limits);
   outcome.newton_iterations += newton.iterations;
   if (newton.iterations > 0) outcome.methods.push_back(report_name_of(ContactMethod::newton));
   const double before = run.excess(i, outcome.sums);

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "host/contact/best_impulses.hpp"
 #include "host/contact/island_solver.hpp"
 #include "host/contact/method_choice.hpp"
 #include "host/contact/newton/newton.hpp"
@@ -19,25 +20,6 @@ namespace {
 constexpr std::uint32_t pivoting_starts = 256;
 constexpr int random_starts = 24;
 constexpr std::int64_t steps_per_start = 50;  ///< Newton steps
-
-/// Keeps the better one of the impulses at construction and those at the end.
-class BestImpulses {
- public:
-  BestImpulses(double* impulse, std::int64_t size, double excess)
-      : impulse_(impulse), best_(impulse, impulse + size), excess_(excess) {}
-
-  void keep(double excess) {
-    if (!(excess < excess_)) return;
-    excess_ = excess;
-    std::copy_n(impulse_, best_.size(), best_.begin());
-  }
-  void restore() { std::copy(best_.begin(), best_.end(), impulse_); }
-
- private:
-  double* impulse_;
-  std::vector<double> best_;
-  double excess_;
-};
 
 /// Random impulses inside the friction cones, of a size that grows by a factor of 100 over the
 /// starts.
@@ -65,8 +47,7 @@ bool IslandSolver::searches_before_sweeps(const ContactProblem& part,
   constexpr double factorizations = 60;
   constexpr std::int64_t few = 4096;
   if (options_.max_newton == 0) return false;
-  const double memory = budget_ != nullptr ? budget_->memory_limit() : INFINITY;
-  const double step = sweeps_per_newton_step(newton_cost(part, memory), part.contact_count());
+  const double step = sweeps_per_step(part);
   const std::int64_t left = std::max(options_.max_sweeps - outcome.sweeps, few);
   return factorizations * step < static_cast<double>(left);
 }
@@ -91,7 +72,7 @@ bool IslandSolver::pivot(std::int64_t i,
     outcome.sums = run.measure(i);
     if (run.excess(i, outcome.sums) > close) continue;
     outcome.methods.push_back("pivoting");
-    if (!run.is_done(i, outcome.sums)) polish(i, part, run, outcome, steps_per_start);
+    if (!run.is_done(i, outcome.sums)) polish(i, part, run, outcome, {.shared = steps_per_start});
     if (run.is_done(i, outcome.sums)) return true;
   }
   return false;
@@ -109,7 +90,7 @@ void IslandSolver::start_again(std::int64_t i,
   BestImpulses best(impulse, size, run.excess(i, outcome.sums));
   const auto is_done = [&] {
     outcome.sums = run.measure(i);
-    best.keep(run.excess(i, outcome.sums));
+    best.keep(impulse, run.excess(i, outcome.sums));
     return run.is_done(i, outcome.sums) || (budget_ != nullptr && budget_->is_over());
   };
   if (pivot(i, part, run, outcome)) return;
@@ -128,7 +109,7 @@ void IslandSolver::start_again(std::int64_t i,
     const std::vector<double> random = random_impulses(part, scale / 10, start);
     std::copy(random.begin(), random.end(), impulse);
     outcome.sums = run.measure(i);
-    polish(i, part, run, outcome, steps_per_start);
+    polish(i, part, run, outcome, {.shared = steps_per_start});
   }
   best.restore();
   outcome.sums = run.measure(i);

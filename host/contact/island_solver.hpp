@@ -11,6 +11,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/engine_result.hpp"
 #include "host/contact/feasibility.hpp"
+#include "host/contact/newton/newton.hpp"
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
@@ -65,10 +66,10 @@ class IslandSolver {
   void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void continue_with_rows(std::int64_t island, ContactRun<double>& run, EngineResult& result);
   void sweep_while_cheaper(std::int64_t island,
-                           const ContactProblem& part,
                            ContactRun<double>& run,
                            IslandOutcome& outcome,
-                           std::int64_t newton_steps);
+                           double newton_sweeps,
+                           std::vector<double>& last);
   bool clamp_contradicting(std::int64_t island,
                            const ContactRun<double>& run,
                            ContradictionSearch search,
@@ -88,7 +89,8 @@ class IslandSolver {
               const ContactProblem& part,
               ContactRun<double>& run,
               IslandOutcome& outcome,
-              std::int64_t step_limit);
+              const NewtonLimits& limits);
+  double sweeps_per_step(const ContactProblem& part) const;
 
   ContactOptions options_;
   int threads_;

@@ -23,7 +23,7 @@ double sweeps_left(double before, double after, std::int64_t sweeps) {
 bool prefers_newton(double worth, std::int64_t spent, double left) {
   if (static_cast<double>(spent) > worth) return true;
   if (left <= worth) return false;
-  return static_cast<double>(spent) * std::min(left, 2 * worth) > worth * worth / 2;
+  return 1.5 * static_cast<double>(spent) * std::min(left, 2 * worth) > worth * worth;
 }
 
 }  // namespace tetwarp

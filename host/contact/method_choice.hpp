@@ -19,7 +19,7 @@ double sweeps_per_newton_step(const NewtonCost& cost, std::int64_t contacts);
 double sweeps_left(double before, double after, std::int64_t sweeps);
 
 /// Whether to leave sweeps for a series of Newton steps that cost as much as `worth` sweeps. The
-/// slower the sweeps converge, the earlier: after a quarter of that cost at the earliest, at the
+/// slower the sweeps converge, the earlier: after a third of that cost at the earliest, at the
 /// latest after all of it, and in between not while they promise to converge sooner.
 /// @param spent  sweeps so far
 /// @param left   of sweeps_left()

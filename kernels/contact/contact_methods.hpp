@@ -161,7 +161,7 @@ class ContactMethods {
       case ContactMethod::newton:
         break;
     }
-    if (anderson({100, 4, 0.9, 10}) != StopReason::stalled) return false;
+    if (anderson({64, 4, 0.6, 10}) != StopReason::stalled) return false;
     restore_best();
     conjugate_directions({48, 1, 0.5});
     return true;
@@ -221,6 +221,7 @@ struct IslandEnd {
   StopReason reason = StopReason::exhausted;
   std::int64_t sweeps = 0;    ///< those of earlier solves included
   bool has_switched = false;  ///< from accelerated sweeps to conjugate directions
+  double best_excess = 0;     ///< error over allowed error of the best impulses
 };
 
 /// Method and budget of every island.
@@ -228,9 +229,10 @@ struct MethodPlan {
   ContactMethod method = ContactMethod::automatic;
   double freeze_share = 0;  ///< FrozenContacts::share, if the state has counters
   std::int64_t sweep_budget = 0;
+  bool leaves_best = true;  ///< else the last impulses, the best in MethodWork::best
 };
 
-/// Solves one island from the current impulses and leaves the best ones.
+/// Solves one island from the current impulses and leaves the best ones, or the last.
 /// @param sweeps_done  by earlier solves of the island
 /// @param work         views of the whole problem
 /// @param log          receives every measured residual by note(ContactEvent)
@@ -248,9 +250,9 @@ TETWARP_ANY_EXEC IslandEnd solve_island(ContactPipeline<Exec, T>& pipeline,
     const ContactState<T>& state = pipeline.state();
     has_switched = methods.run(plan.method, {state.unchanged_visits, state.skipped_visits, true,
                                              static_cast<T>(plan.freeze_share)});
-    methods.restore_best();
+    if (plan.leaves_best) methods.restore_best();
   }
-  return {convergence.reason(), convergence.sweeps(), has_switched};
+  return {convergence.reason(), convergence.sweeps(), has_switched, convergence.best_excess()};
 }
 
 /// Residual of an island and the scale of its free velocities.

@@ -71,12 +71,13 @@ VectorXd AssociatedContact::lift_of(const VectorXd& velocity) const {
   return lift;
 }
 
-VectorXd AssociatedContact::solve(const VectorXd& lift) {
+VectorXd AssociatedContact::solve(const VectorXd& lift, std::int64_t step_limit) {
   start(lift);
   VectorXd best = impulse_;
   double least = std::numeric_limits<double>::infinity();
   int idle = 0;
-  for (int step = 0; step < iteration_limit; ++step) {
+  const std::int64_t last = std::min<std::int64_t>(step_limit, iteration_limit);
+  for (std::int64_t step = 0; step < last; ++step) {
     const double mean_gap = gap();
     const double error = std::max(mean_gap / (unit_ * unit_), mismatch(lift) / unit_);
     if (!std::isfinite(error)) break;

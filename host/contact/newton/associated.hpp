@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -40,7 +41,9 @@ class AssociatedContact {
   /// Rounding ends the iteration at a duality gap of 1e-6 to 1e-12 relative to the energy of the
   /// free motion, so that the result is close to a solution only.
   /// @param lift  s, [contacts], m/s
-  Eigen::VectorXd solve(const Eigen::VectorXd& lift);
+  /// @param step_limit  linear systems at most
+  Eigen::VectorXd solve(const Eigen::VectorXd& lift,
+                        std::int64_t step_limit = std::numeric_limits<std::int64_t>::max());
 
   /// The impulses of the last step of the last solve(). Where no impulses solve the problem, they
   /// have grown along a direction that causes no velocity.

@@ -77,8 +77,7 @@ class NewtonPolish {
     free_energy_ = map_.value(none, delassus.free_velocity(), 1).squaredNorm();
   }
 
-  /// @param step_limit  linear systems at most, about
-  void run(const VectorXd& start, std::int64_t step_limit);
+  void run(const VectorXd& start, const NewtonLimits& limits);
 
   const Iterate& best() const { return best_; }
   bool is_done(const Iterate& iterate) const { return error_of(iterate) <= options_.tolerance; }
@@ -108,8 +107,11 @@ class NewtonPolish {
     return options_.measure == ContactMeasure::eta ? iterate.eta : iterate.fclib;
   }
 
-  /// The best iterate is within the tolerance, its error is rounding, or the budget is used up.
-  bool is_settled() const { return is_over_ || is_done(best_) || error_of(best_) < rounding_error; }
+  /// The best iterate is within the tolerance, its error is rounding, or no steps are left.
+  bool is_settled() const {
+    return is_over_ || iterations_ >= total_limit_ || is_done(best_) ||
+           error_of(best_) < rounding_error;
+  }
 
   void keep(const Iterate& iterate) {
     if (error_of(iterate) < error_of(best_)) best_ = iterate;
@@ -154,12 +156,13 @@ class NewtonPolish {
   double free_energy_ = 0;
   Iterate best_;
   std::int64_t iterations_ = 0;
+  std::int64_t total_limit_ = NewtonLimits::none;  ///< of iterations_
 };
 
-void NewtonPolish::run(const VectorXd& start, std::int64_t step_limit) {
+void NewtonPolish::run(const VectorXd& start, const NewtonLimits& limits) {
   best_ = make_iterate(start);
-  const std::int64_t limit =
-      std::min(step_limit, max_newton_steps(static_cast<std::int64_t>(contacts_.size())));
+  total_limit_ = limits.total;
+  const std::int64_t limit = std::min(limits.shared, max_newton_steps(std::ssize(contacts_)));
   Approach approach{.center = best_};
   advance(approach, limit / 4, first_patience);
   if (is_settled()) return;
@@ -174,7 +177,7 @@ void NewtonPolish::run(const VectorXd& start, std::int64_t step_limit) {
 void NewtonPolish::advance(Approach& approach, std::int64_t limit, std::int64_t patience) {
   double& epsilon = approach.epsilon;
   int idle = 0;
-  const std::int64_t end = iterations_ + limit;
+  const std::int64_t end = std::min(iterations_ + limit, total_limit_);
   double halved = error_of(best_) / 2;
   std::int64_t halved_at = iterations_;
   while (!is_over_ && !is_done(best_) && iterations_ < end) {
@@ -208,10 +211,11 @@ void NewtonPolish::advance(Approach& approach, std::int64_t limit, std::int64_t 
 void NewtonPolish::solve_associated(std::int64_t limit) {
   AssociatedContact associated(contacts_, options_.law, delassus_, system_, budget_);
   VectorXd lift = VectorXd::Zero(static_cast<Index>(contacts_.size()));
-  const std::int64_t end = iterations_ + limit;
+  const std::int64_t end = std::min(iterations_ + limit, total_limit_);
   while (!is_settled() && iterations_ < end) {
     const std::int64_t before = associated.iterations();
-    Approach approach{.center = make_iterate(associated.solve(lift)), .epsilon = lift_epsilon};
+    Approach approach{.center = make_iterate(associated.solve(lift, total_limit_ - iterations_)),
+                      .epsilon = lift_epsilon};
     iterations_ += associated.iterations() - before;
     is_over_ = associated.is_over();
     keep(approach.center);
@@ -273,7 +277,7 @@ NewtonResult newton_polish(const ContactProblem& problem,
                            std::vector<double>& impulse,
                            std::vector<double>& body_velocity,
                            SolveBudget* budget,
-                           std::int64_t step_limit) {
+                           const NewtonLimits& limits) {
   if (budget != nullptr) {
     const bool fits = budget->allows_memory(newton_cost(problem, budget->memory_limit()).bytes);
     if (!fits || budget->is_over()) return {};
@@ -285,7 +289,7 @@ NewtonResult newton_polish(const ContactProblem& problem,
     start = Eigen::Map<const VectorXd>(impulse.data(), static_cast<Index>(impulse.size()));
   }
   NewtonPolish polish(problem, options, delassus, budget);
-  polish.run(start, step_limit);
+  polish.run(start, limits);
   const Iterate& best = polish.best();
   impulse.assign(best.impulse.begin(), best.impulse.end());
   const VectorXd v = delassus.body_velocity(best.impulse);

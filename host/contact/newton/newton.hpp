@@ -18,6 +18,14 @@ struct NewtonResult {
   bool converged = false;  ///< options.measure is at most options.tolerance
 };
 
+/// Linear systems at most.
+struct NewtonLimits {
+  static constexpr std::int64_t none = std::numeric_limits<std::int64_t>::max();
+  std::int64_t shared = none;  ///< shared out between the phases; up to about twice as many in all;
+                               ///< a smaller limit follows from the number of contacts
+  std::int64_t total = none;   ///< of all phases; exceeded by at most a dozen
+};
+
 /// Limit of the linear systems of newton_polish() for a number of contacts, shared out between its
 /// phases; up to about twice as many in all.
 std::int64_t max_newton_steps(std::int64_t contacts);
@@ -37,8 +45,6 @@ std::int64_t max_newton_steps(std::int64_t contacts);
 /// @param impulse        in: start, [3 contacts], or empty: zeros; out: the best [N s]
 /// @param body_velocity  out: v that the impulses cause, [dofs], m/s; empty in local form
 /// @param budget         ends the iteration; null: no limits
-/// @param step_limit     linear systems at most, about; a smaller limit follows from the number of
-///                       contacts
 /// @pre check_problem(problem) has passed
 /// @throws ContactProblemError  A as a whole is not positive definite
 ///
@@ -52,6 +58,6 @@ NewtonResult newton_polish(const ContactProblem& problem,
                            std::vector<double>& impulse,
                            std::vector<double>& body_velocity,
                            SolveBudget* budget = nullptr,
-                           std::int64_t step_limit = std::numeric_limits<std::int64_t>::max());
+                           const NewtonLimits& limits = {});
 
 }  // namespace tetwarp

@@ -131,9 +131,16 @@ class ContactRun {
   void sweep_on(std::int64_t i,
                 std::int64_t sweep_end,
                 ContactMethod method = ContactMethod::nonlinear_cg) {
-    const int threads = island(i).contact_count() >= shared_from ? threads_ : 1;
-    go_on(i, threads, method, std::min(sweep_end, options_.max_sweeps));
+    go_on(i, threads_of(i), method, std::min(sweep_end, options_.max_sweeps));
   }
+  /// The same, but leaves the last impulses; best_impulse() has the best.
+  /// @return  error over allowed error of the best impulses
+  double sweep_past_best(std::int64_t i, std::int64_t sweep_end) {
+    return go_on(i, threads_of(i), ContactMethod::nonlinear_cg,
+                 std::min(sweep_end, options_.max_sweeps), false);
+  }
+  /// [3 slots of the island], of the last sweeps of the island
+  const T* best_impulse(std::int64_t i) const { return work_.best.data + 3 * island(i).slot_begin; }
 
   ContactSums measure(std::int64_t i) {
     CpuContactExec exec(1);
@@ -151,6 +158,9 @@ class ContactRun {
   /// as much as some thousand contacts, and a color has only a part of all contacts.
   static constexpr std::int64_t shared_from = 16384;
 
+  int threads_of(std::int64_t i) const {
+    return island(i).contact_count() >= shared_from ? threads_ : 1;
+  }
   const ContactIsland& island(std::int64_t i) const {
     return structure_.islands[static_cast<std::size_t>(i)];
   }
@@ -168,7 +178,11 @@ class ContactRun {
     outcome.free_square = sums.free_square;
   }
 
-  void go_on(std::int64_t i, int threads, ContactMethod method, std::int64_t sweep_end) {
+  double go_on(std::int64_t i,
+               int threads,
+               ContactMethod method,
+               std::int64_t sweep_end,
+               bool leaves_best = true) {
     CpuContactExec exec(threads);
     ContactPipeline<CpuContactExec, T> pipeline = pipeline_of(i, exec);
     IslandOutcome& outcome = outcomes_[static_cast<std::size_t>(i)];
@@ -176,10 +190,12 @@ class ContactRun {
     MethodPlan plan = plan_of(options_);
     plan.method = method;
     plan.sweep_budget = sweep_end;
+    plan.leaves_best = leaves_best;
     const IslandEnd end = solve_island(pipeline, criteria_[static_cast<std::size_t>(i)], plan,
                                        outcome.sweeps, work_, log);
     outcome.add(end, method, island(i).contact_count());
     outcome.events.insert(outcome.events.end(), log.events.begin(), log.events.end());
+    return end.best_excess;
   }
 
   const ContactOptions& options_;
