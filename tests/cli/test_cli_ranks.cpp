@@ -24,7 +24,8 @@ class Ranks : public testing::Test {
 
   /// mpirun of Open MPI 4.1 sometimes hangs in PMIx_server_finalize after a rank has failed and all
   /// have ended. It is then killed and started again, up to three times. A deadlock of the ranks
-  /// would hang every time and fail the test.
+  /// would hang every time and fail the test. It has a folder of its own for its sockets: two
+  /// processes at the same time sometimes fail to create the common one.
   CommandResult run_three(Names words) const {
     words.insert(words.begin(), "warp");
     constexpr int was_killed = 137;
@@ -35,8 +36,9 @@ class Ranks : public testing::Test {
           run_command(scene, words,
                       {.launcher = {"/usr/bin/timeout", "--signal=KILL", "40", "/usr/bin/env",
                                     "OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1",
-                                    "OMPI_MCA_rmaps_base_oversubscribe=1", no_leak_check,
-                                    TETWARP_MPIRUN, "-n", "3"}});
+                                    "OMPI_MCA_rmaps_base_oversubscribe=1",
+                                    "OMPI_MCA_orte_tmpdir_base=" + sockets.path().string(),
+                                    no_leak_check, TETWARP_MPIRUN, "-n", "3"}});
       if (result.exit_code != was_killed) return result;
     }
     ADD_FAILURE() << "killed three times after 40 s: " << result.err;
@@ -79,6 +81,7 @@ class Ranks : public testing::Test {
   }
 
   Scene scene;
+  TemporaryFolder sockets;
 };
 
 int lines_of_ours(const std::string& text) {

@@ -151,6 +151,7 @@ TEST(Temporal, GoesOnAfterTheStepsThatAreComplete) {
 
 /// With little memory the steps are copied brick by brick.
 TEST(Temporal, IsTheSameInBlocksWhenItCanBeResumed) {
+  if (has_address_sanitizer) GTEST_SKIP() << "the address sanitizer takes more memory";
   const Scene scene;
   const Names words{"--temporal", "--memory", "60M", "--outputs", "displacement"};
   Volume volume = make_volume(ramp_volume<float>().grid, PixelType::float32, 1, "density");

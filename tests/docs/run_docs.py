@@ -151,7 +151,9 @@ class Runner:
             words = ["bash", "-euo", "pipefail", "-c", block.text]
             if block.needs == "mpirun":  # Open MPI has leaks
                 environment = self.environment | {"ASAN_OPTIONS": "detect_leaks=0"}
-                return run_block(words, folder, environment, 3)
+                with tempfile.TemporaryDirectory(prefix="tetwarp-mpi-") as sockets:
+                    environment["OMPI_MCA_orte_tmpdir_base"] = sockets
+                    return run_block(words, folder, environment, 3)
             return run_block(words, folder, self.environment, 1)
         if block.language == "cpp":
             words = [str(self.arguments.blocks.resolve()), key_of(page, block)]

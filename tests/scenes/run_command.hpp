@@ -142,6 +142,13 @@ inline CommandResult run_command(const TemporaryFolder& folder,
   return RunningCommand(folder, words, options).wait();
 }
 
+/// The sanitizer alone takes more memory than a test of a limit allows.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool has_address_sanitizer = true;
+#else
+constexpr bool has_address_sanitizer = false;
+#endif
+
 /// Why this build cannot read one of the meshes of the folder; empty if it reads all.
 inline std::string missing_readers(const TemporaryFolder& folder,
                                    const std::vector<std::string>& meshes) {
