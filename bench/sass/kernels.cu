@@ -11,7 +11,7 @@ namespace tetwarp {
 template __global__ void cell_raster_kernel<float, false>(RasterJob<float>);
 template __global__ void cell_raster_kernel<std::uint8_t, false>(RasterJob<std::uint8_t>);
 template __global__ void cell_class_kernel<float>(
-    RasterJob<float>, InteriorCell*, std::uint32_t*, std::uint32_t*, CellListCounts*);
+    CellWorkBody<float>, InteriorCell*, std::uint32_t*, std::uint32_t*, CellListCounts*);
 template __global__ void cell_interior_kernel<float>(RasterJob<float>,
                                                      const InteriorCell*,
                                                      const CellListCounts*);
@@ -19,6 +19,7 @@ template __global__ void cell_interior_kernel<std::uint8_t>(RasterJob<std::uint8
                                                             const InteriorCell*,
                                                             const CellListCounts*);
 template __global__ void cell_tested_kernel<float>(RasterJob<float>,
+                                                   const std::uint32_t*,
                                                    const std::uint32_t*,
                                                    const CellListCounts*);
 

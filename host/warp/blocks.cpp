@@ -14,6 +14,7 @@
 #include "host/warp/hex_split.hpp"
 #include "host/warp/sources.hpp"
 #include "host/warp/tet_footprint.hpp"
+#include "kernels/warp/cell_class.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
@@ -222,16 +223,23 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   constexpr double tet_bytes = 600, pair_bytes = 32, output_share = 0.1, source_share = 0.005;
   const auto hexes = cells.end() - std::ranges::lower_bound(cells, lone_tet_count());
   const auto tets = std::ssize(cells) + (tets_per_hex - 1) * hexes;
-  double around = tet_bytes * static_cast<double>(tets) +
-                  (output_share + limits.scratch_voxel) * output_voxels +
-                  source_share * source_voxels;
+  const double around = tet_bytes * static_cast<double>(tets) +
+                        (output_share + limits.scratch_voxel) * output_voxels +
+                        source_share * source_voxels;
+  double pairs = 0;
   for (const std::int32_t t : cells) {
-    around +=
-        pair_bytes * static_cast<double>(pairs_of(footprints[static_cast<std::size_t>(t)], box));
+    pairs += static_cast<double>(pairs_of(footprints[static_cast<std::size_t>(t)], box));
   }
   const double samples = limits.source_voxel * source_voxels + limits.output_voxel * output_voxels;
-  block.host_bytes = 2 * samples + around;
-  block.device_bytes = samples + around;
+  block.host_bytes = 2 * samples + around + pair_bytes * pairs;
+
+  // A device keeps two lists of pairs and three arrays for sorting, with room for a quarter more
+  // pairs; and each cell has a place in each of the lists of cells by class.
+  constexpr double device_pair_bytes = 36, list_room = 1.25, least_room = 1024;
+  constexpr double class_bytes = sizeof(InteriorCell) + 2.0 * sizeof(std::uint32_t);
+  const double cell_count = output_voxels / (cell_edge * cell_edge * cell_edge);
+  block.device_bytes = samples + around + device_pair_bytes * (list_room * pairs + least_room) +
+                       (options.skip.interior_cells ? class_bytes * cell_count : 0.0);
   return block;
 }
 

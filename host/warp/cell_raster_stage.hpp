@@ -2,7 +2,8 @@
 /// Stage "raster" of the warp as the pipeline calls it.
 #pragma once
 #include "host/warp/geometry.hpp"
-#include "kernels/warp/cell_raster.hpp"
+#include "host/warp/step_counters.hpp"
+#include "kernels/warp/cell_work.hpp"
 
 namespace tetwarp {
 
@@ -11,10 +12,17 @@ namespace tetwarp {
 template <class Exec>
 class CellRaster {
  public:
+  /// Chooses the work of the cells and computes them.
   /// @param has_classes  whether cells within one tetrahedron may take a path of their own
+  /// @param counts       numbers of cells by class, zeros; null: the executor clears its own
   template <class T>
-  void run(Exec& exec, const RasterJob<T>& job, bool, const ProgressPart& progress) {
-    cell_raster(exec, job, progress);
+  void run(Exec& exec,
+           const CellWorkBody<T>& work,
+           bool /*has_classes*/,
+           CellListCounts* /*counts*/,
+           const ProgressPart& progress) {
+    cell_work(exec, work);
+    cell_raster(exec, work.job, progress);
   }
 };
 

@@ -8,7 +8,7 @@
 
 #include "kernels/base/stage_times.hpp"
 #include "kernels/base/view.hpp"
-#include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/cell_class.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
@@ -56,6 +56,7 @@ struct CounterMemory {
   MeshCounters mesh;
   WorkCounters work;
   SpreadCounts spread;
+  CellListCounts lists;  ///< of the first source
 };
 constexpr std::int64_t counter_words = sizeof(StepCounters) / sizeof(std::int64_t);
 constexpr std::int64_t kept_words = sizeof(MeshCounters) / sizeof(std::int64_t);

@@ -175,15 +175,11 @@ class WarpPipeline : public WarpBackend {
   void count_folded() {
     const View<const std::uint8_t> touched =
         pairs_.is_update() ? pairs_.touched() : View<const std::uint8_t>{};
+    const View<std::int64_t> folded{&pairs_.counters()->mesh.folded, 1};
     const auto count = [&](View<const Node> nodes, const PairList& list, std::int64_t weight) {
-      exec_.for_each("warp/fold", geometry_.frame.voxel_count(),
-                     VoxelFoldBody{pairs_.tets(),
-                                   nodes,
-                                   list,
-                                   touched,
-                                   geometry_.frame,
-                                   {&pairs_.counters()->mesh.folded, 1},
-                                   weight});
+      const VoxelFoldBody body = {pairs_.tets(),   nodes,  list,  touched,
+                                  geometry_.frame, folded, weight};
+      exec_.for_each("warp/fold", geometry_.frame.voxel_count(), body);
     };
     if (pairs_.is_update()) count(pairs_.nodes_before(), pairs_.list_before(), -1);
     count(pairs_.nodes(), pairs_.list(), 1);
@@ -218,11 +214,13 @@ class WarpPipeline : public WarpBackend {
       job.transforms = transforms_.transforms(s, pairs_.tet_count());
       job.outside_transform = transforms_.outside();
       job.reorientation = transforms_.reorientation(s);
-      choose_work(s, job);
+      const CellWorkBody<T> work = work_of_cells(s, job);
       if (plan_.options.intensity == Intensity::conservative) {
-        overlap(s, job, part);
+        cell_work(exec_, work);
+        overlap(s, work.job, part);
       } else {
-        cell_raster_.run(exec_, job, plan_.options.skip.interior_cells, part);
+        cell_raster_.run(exec_, work, plan_.options.skip.interior_cells,
+                         s == 0 ? &pairs_.counters()->lists : nullptr, part);
       }
       if (totals_.are_requested()) {
         totals_.run(s, number_view(job.source.data), number_view(job.volume), pairs_);
@@ -253,16 +251,17 @@ class WarpPipeline : public WarpBackend {
 
   /// Finds the cells to keep and the cells to fill with one value; the others are sampled.
   template <class T>
-  void choose_work(std::size_t s, RasterJob<T>& job) {
-    const UniformMap uniform =
-        plan_.options.skip.constant_cells && job.transforms.size == 0
-            ? sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest())
-            : UniformMap{};
-    if (stale_.size == 0 && uniform.reach.size == 0) return;
-    const std::int64_t cells = geometry_.frame.cell_count();
-    cell_work(exec_, job, uniform, stale_, cell_work_.view(cells),
-              {pairs_.counters()->spread.constant_cells, s == 0 ? SpreadCounts::places : 0});
-    job.cell_work = cell_work_.const_view(cells);
+  CellWorkBody<T> work_of_cells(std::size_t s, const RasterJob<T>& job) {
+    CellWorkBody<T> body = {job, {}, stale_, {}, {}};
+    if (plan_.options.skip.constant_cells && job.transforms.size == 0) {
+      body.uniform = sources_.uniform_map(s, job.source, pairs_.tets(), pairs_.rest());
+    }
+    if (stale_.size == 0 && body.uniform.reach.size == 0) return body;
+    body.work = cell_work_.view(geometry_.frame.cell_count());
+    body.job.cell_work = {body.work.data, body.work.size};
+    body.constant_count = {pairs_.counters()->spread.constant_cells,
+                           s == 0 ? SpreadCounts::places : 0};
+    return body;
   }
 
   /// Records a computed step for the next one. @returns its report without times

@@ -155,6 +155,12 @@ class Device {
     run_all();
     return memory_.erase(static_cast<const std::byte*>(data)) == 1;
   }
+  /// Bytes of all memory of the device that is allocated now.
+  std::size_t allocated() const {
+    std::size_t sum = 0;
+    for (const auto& [begin, memory] : memory_) sum += memory.is_pinned ? 0 : memory.size;
+    return sum;
+  }
   bool is_on_device(const void* data, std::size_t size) const {
     return is_within(data, size, false);
   }

@@ -27,7 +27,7 @@ struct alignas(16) InteriorCell {
 };
 
 /// Numbers of cells in the lists of cell_class_kernel().
-struct CellListCounts {
+struct alignas(8) CellListCounts {
   std::int32_t interior;
   std::int32_t tested;
   std::int32_t general;

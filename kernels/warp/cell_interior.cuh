@@ -4,6 +4,7 @@
 #pragma once
 #include "kernels/exec/launch.hpp"
 #include "kernels/warp/cell_class.hpp"
+#include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/interior_sample.hpp"
 
 namespace tetwarp {
@@ -36,22 +37,27 @@ __device__ __forceinline__ int place_in_list(bool has_item, std::int32_t* count)
   return first + __popc(items & ((1u << lane) - 1));
 }
 
-/// Lists cells by class. The order of a list depends on the device's scheduling; each
-/// cell is written on its own, so that the output does not.
+/// Chooses the work of each cell where that is to be done, and lists cells by class. The order of a
+/// list depends on the device's scheduling; each cell is written on its own, so that the output
+/// does not.
 ///
 /// Blocks: one per class_threads cells. Threads: class_threads.
 /// @param counts  zeros
 template <class T>
-__global__ void __launch_bounds__(class_threads) cell_class_kernel(RasterJob<T> job,
+__global__ void __launch_bounds__(class_threads) cell_class_kernel(CellWorkBody<T> work,
                                                                    InteriorCell* interior,
                                                                    std::uint32_t* tested,
                                                                    std::uint32_t* general,
                                                                    CellListCounts* counts) {
+  const RasterJob<T>& job = work.job;
   const std::int64_t cell =
       std::int64_t{blockIdx.x} * class_threads + static_cast<int>(threadIdx.x);
   InteriorCell record = {};
-  const CellClass found =
-      cell < job.frame.cell_count() ? class_of(job, cell, record) : CellClass::keep;
+  CellClass found = CellClass::keep;
+  if (cell < job.frame.cell_count()) {
+    if (cell < work.work.size) work(cell);
+    found = class_of(job, cell, record);
+  }
   const int at_interior = place_in_list(found == CellClass::interior, &counts->interior);
   const int at_tested = place_in_list(found == CellClass::tested, &counts->tested);
   const int at_general = place_in_list(found == CellClass::general, &counts->general);

@@ -177,24 +177,16 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
   }
 }
 
-/// Finds the owner of every voxel of a cell and stores its samples.
-///
-/// Blocks: one per cell of the job; where the job lists cells, those after the list end at once.
-/// Threads: raster_threads. Shared: one RasterChunk and four counters, about
-/// 2.1 KiB with float32, 2.9 KiB with float64 arithmetic.
-/// @tparam is_general  whether the job may have wide filters, transforms or hexahedra
-template <class T, bool is_general>
-__global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>())
-    cell_raster_kernel(RasterJob<T> job) {
-  __shared__ RasterChunk<ArithmeticOf<T>> chunk;
-  __shared__ int block_counts[4];
-
+/// Finds the owner of every voxel of a cell and stores its samples. Called by all threads of a
+/// block.
+/// @tparam is_general   whether the job may have wide filters, transforms or hexahedra
+/// @param block_counts  shared, 4 entries
+template <bool is_general, class T>
+__device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
+                                            std::int64_t cell,
+                                            RasterChunk<ArithmeticOf<T>>& chunk,
+                                            int* block_counts) {
   const int thread = static_cast<int>(threadIdx.x);
-  std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
-  if (job.listed != nullptr) {
-    if (cell >= *job.listed_count) return;
-    cell = job.listed[cell];
-  }
   int corner[3];
   job.frame.set_corner(cell, corner);
   const int i = thread % cell_edge;
@@ -231,6 +223,25 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>()
 
   __syncthreads();
   add_counts(job, cell, mine, block_counts);
+}
+
+/// All cells of a job, or those that it lists.
+///
+/// Blocks: one per cell of the job; where the job lists cells, those after the list end at once.
+/// Threads: raster_threads. Shared: one RasterChunk and four counters, about
+/// 2.1 KiB with float32, 2.9 KiB with float64 arithmetic.
+template <class T, bool is_general>
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>())
+    cell_raster_kernel(RasterJob<T> job) {
+  __shared__ RasterChunk<ArithmeticOf<T>> chunk;
+  __shared__ int block_counts[4];
+
+  std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
+  if (job.listed != nullptr) {
+    if (cell >= *job.listed_count) return;
+    cell = job.listed[cell];
+  }
+  raster_cell<is_general>(job, cell, chunk, block_counts);
 }
 
 /// The kernel for a job. Jobs with wide filters, transforms or hexahedra use the general kernel,

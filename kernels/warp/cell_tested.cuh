@@ -1,6 +1,7 @@
 /// @file cell_tested.cuh
-/// Stage "raster" of the warp as a CUDA kernel, for cells of several tetrahedra whose samples all
-/// lie in the source: tests as in cell_raster.cuh, samples without clamps and switches.
+/// Stage "raster" of the warp as a CUDA kernel, for cells that are not interior. Cells of several
+/// tetrahedra whose samples all lie in the source have tests as in cell_raster.cuh and samples
+/// without clamps and switches; the others are computed as there.
 #pragma once
 #include "kernels/warp/cell_class.hpp"
 #include "kernels/warp/cell_raster.cuh"
@@ -10,19 +11,16 @@ namespace tetwarp {
 
 static_assert(most_tested_pairs == raster_chunk);
 
-/// Computes the listed cells of class `tested`. Voxels that no tetrahedron covers are sampled by
-/// the map of the first one, which stays in the source too, and stored as background.
-///
-/// Blocks: at least one per listed cell; those after the list end at once. Threads: raster_threads.
+/// A cell of class `tested`. Voxels that no tetrahedron covers are sampled by the map of the first
+/// one, which stays in the source too, and stored as background. Called by all threads of a block.
+/// @param starts        shared, raster_chunk entries
+/// @param block_counts  shared, 4 entries
 template <class T>
-__global__ void __launch_bounds__(raster_threads, raster_blocks<T, false>())
-    cell_tested_kernel(RasterJob<T> job, const std::uint32_t* cells, const CellListCounts* counts) {
-  __shared__ RasterChunk<float> chunk;
-  __shared__ const T* starts[raster_chunk];
-  __shared__ int block_counts[4];
-
-  if (static_cast<int>(blockIdx.x) >= counts->tested) return;
-  const std::int64_t cell = cells[blockIdx.x];
+__device__ __forceinline__ void tested_cell(const RasterJob<T>& job,
+                                            std::int64_t cell,
+                                            RasterChunk<float>& chunk,
+                                            const T** starts,
+                                            int* block_counts) {
   int corner[3];
   job.frame.set_corner(cell, corner);
   const int thread = static_cast<int>(threadIdx.x);
@@ -67,6 +65,29 @@ __global__ void __launch_bounds__(raster_threads, raster_blocks<T, false>())
   }
   __syncthreads();
   add_counts(job, cell, mine, block_counts);
+}
+
+/// Computes the listed cells of class `tested`, then those of class `general`.
+///
+/// Blocks: at least one per listed cell; those after both lists end at once. Threads:
+/// raster_threads.
+/// @param general  null: these cells are left out, as those of hexahedra must be
+template <class T>
+__global__ void __launch_bounds__(raster_threads, raster_blocks<T, false>())
+    cell_tested_kernel(RasterJob<T> job,
+                       const std::uint32_t* tested,
+                       const std::uint32_t* general,
+                       const CellListCounts* counts) {
+  __shared__ RasterChunk<float> chunk;
+  __shared__ const T* starts[raster_chunk];
+  __shared__ int block_counts[4];
+
+  const int block = static_cast<int>(blockIdx.x), tested_count = counts->tested;
+  if (block < tested_count) {
+    tested_cell(job, tested[block], chunk, starts, block_counts);
+  } else if (general != nullptr && block - tested_count < counts->general) {
+    raster_cell<false>(job, general[block - tested_count], chunk, block_counts);
+  }
 }
 
 }  // namespace tetwarp

@@ -58,14 +58,25 @@ TETWARP_HD bool has_constant_of(const SourceView<T>& source, std::int64_t a, std
   return has_bits_of(source.coefficients + a * count, source.coefficients + b * count, count);
 }
 
-/// One index = one cell; any order.
+/// Sets the work of a cell: `keep_cell`, `sample_cell`, or the source voxel that has the value of
+/// all its covered voxels. One index = one cell; any order.
+///
+/// Conservative: a cell is filled only if the source is constant at every position at which the
+/// cell could be sampled, so the output is the same as with sampling.
+///
+/// Determinism: which cells are filled may differ between back ends by the rounding of a position;
+/// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.
+/// Source: ours.
 template <class T>
 struct CellWorkBody {
-  RasterJob<T> job;
-  UniformMap uniform;
-  View<const std::uint8_t> touched;
-  View<std::int64_t> work;
-  View<std::int64_t> constant_count;
+  RasterJob<T> job;    ///< its cell_work is what this sets, or size 0
+  UniformMap uniform;  ///< of the job's source, or of its coefficients where it has some; empty: no
+                       ///< cell is filled
+  View<const std::uint8_t>
+      touched;              ///< from cell_merge, shape [cell_count]; empty: all are touched
+  View<std::int64_t> work;  ///< out, shape [cell_count]; empty: there is nothing to choose
+  View<std::int64_t> constant_count;  ///< the number of filled cells is added to its entries; may
+                                      ///< be empty
 
   TETWARP_HD void operator()(std::int64_t cell) const {
     if (touched.size > 0 && touched[cell] == 0) {
@@ -96,31 +107,10 @@ struct CellWorkBody {
   }
 };
 
-/// Sets the work of each cell: `keep_cell`, `sample_cell`, or the source voxel that has the value
-/// of all its covered voxels.
-///
-/// Conservative: a cell is filled only if the source is constant at every position at which the
-/// cell could be sampled, so the output is the same as with sampling.
-/// @param exec            where to run
-/// @param job             all but cell_work
-/// @param uniform         map of the job's source, or of its coefficients where it has some; empty:
-///                        no cell is filled
-/// @param touched         from cell_merge, shape [cell_count]; empty: all cells are touched
-/// @param work            out, shape [cell_count]
-/// @param constant_count  the number of filled cells is added to its entries; empty: not counted
-///
-/// Determinism: which cells are filled may differ between back ends by the rounding of a position;
-/// the output cannot. Cost: one box and one byte per pair, up to the first that is not uniform.
-/// Source: ours.
+/// Sets the work of all cells.
 template <class Exec, class T>
-void cell_work(Exec& exec,
-               const RasterJob<T>& job,
-               const UniformMap& uniform,
-               View<const std::uint8_t> touched,
-               View<std::int64_t> work,
-               View<std::int64_t> constant_count) {
-  exec.for_each("warp/raster", work.size,
-                CellWorkBody<T>{job, uniform, touched, work, constant_count});
+void cell_work(Exec& exec, const CellWorkBody<T>& body) {
+  exec.for_each("warp/raster", body.work.size, body);
 }
 
 }  // namespace tetwarp

@@ -103,21 +103,18 @@ class RasterBench {
       if (!has_interior_cells(job)) throw std::logic_error("the job has no interior cells");
       const auto blocks = static_cast<unsigned>(cells + class_threads - 1) / class_threads;
       counts = {0, 0, 0};
-      launch(nullptr, cell_class_kernel<T>, dim3(blocks), class_threads, 0, job, interior.data(),
+      const CellWorkBody<T> work{job, {}, {}, {}, {}};
+      launch(nullptr, cell_class_kernel<T>, dim3(blocks), class_threads, 0, work, interior.data(),
              tested.data(), general.data(), &counts);
       launch(nullptr, cell_interior_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
              &counts);
       launch(nullptr, cell_owner_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
              &counts);
       launch(nullptr, cell_tested_kernel<T>, dim3(static_cast<unsigned>(cells)), raster_threads, 0,
-             job, tested.data(), &counts);
+             job, tested.data(), general.data(), &counts);
       interior_cells = counts.interior;
       tested_cells = counts.tested;
       general_cells = counts.general;
-      job.listed = general.data();
-      job.listed_count = &counts.general;
-      launch(nullptr, raster_kernel(job), dim3(static_cast<unsigned>(cells)), raster_threads, 0,
-             job);
     });
   }
   int interior_cells = 0, tested_cells = 0, general_cells = 0;  ///< of the last by_classes()

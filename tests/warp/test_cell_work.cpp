@@ -41,7 +41,7 @@ class CellWork : public EachExec<Exec> {
     if (knows_source) map.reach = reach;
     const auto work = this->template zeros<std::int64_t>(input.frame.cell_count());
     const auto count = this->template zeros<std::int64_t>(1);
-    cell_work(this->exec(), job, map, View<const std::uint8_t>(this->upload(touched)), work, count);
+    cell_work(this->exec(), CellWorkBody<float>{job, map, this->upload(touched), work, count});
     return {this->download(work), this->download(count).front()};
   }
 };

@@ -1,6 +1,6 @@
 /// @file cell_raster_cuda.cuh
 /// Stage "raster" on a device: cells within one tetrahedron by a lean kernel, the others by one
-/// block per cell.
+/// block per cell. The first kernel chooses the work of the cells and lists them by class.
 /// @see cell_interior.cuh, cell_raster.cuh
 #pragma once
 #include "host/warp/warp_pipeline.hpp"
@@ -24,11 +24,19 @@ template <>
 class CellRaster<CudaExec> {
  public:
   template <class T>
-  void run(CudaExec& exec, RasterJob<T> job, bool has_classes, const ProgressPart& progress) {
+  void run(CudaExec& exec,
+           const CellWorkBody<T>& work,
+           bool has_classes,
+           CellListCounts* counts,
+           const ProgressPart& progress) {
     if constexpr (can_blend<T> && sizeof(ArithmeticOf<T>) == 4) {
-      if (has_classes && has_interior_cells(job)) run_interior(exec, job);
+      if (has_classes && has_interior_cells(work.job)) {
+        run_classes(exec, work, counts, progress);
+        return;
+      }
     }
-    cell_raster(exec, job, progress);
+    cell_work(exec, work);
+    cell_raster(exec, work.job, progress);
   }
 
  private:
@@ -37,22 +45,27 @@ class CellRaster<CudaExec> {
   /// Blocks that fit a large device at once: they share the list of cells.
   static constexpr std::int64_t most_blocks = 132 * 8;
 
-  /// Computes the interior cells and lists the others in `job`.
   template <class T>
-  void run_interior(CudaExec& exec, RasterJob<T>& job) {
+  void run_classes(CudaExec& exec,
+                   const CellWorkBody<T>& work,
+                   CellListCounts* counts,
+                   const ProgressPart& progress) {
+    RasterJob<T> job = work.job;
     const std::int64_t cells = job.frame.cell_count();
     interior_.reserve(cells);
     tested_.reserve(cells);
     general_.reserve(cells);
-    counts_.reserve(1);
     InteriorCell* const interior = interior_.view(cells).data;
     std::uint32_t* const tested = tested_.view(cells).data;
     std::uint32_t* const general = general_.view(cells).data;
-    CellListCounts* const counts = counts_.view(1).data;
     const char* const label = "warp/raster";
-    exec.zero(label, counts_.view(1));
+    if (counts == nullptr) {
+      counts_.reserve(1);
+      counts = counts_.view(1).data;
+      exec.zero(label, counts_.view(1));
+    }
     exec.enqueue(label, cell_class_kernel<T>,
-                 blocks_of((cells + class_threads - 1) / class_threads), class_threads, 0, job,
+                 blocks_of((cells + class_threads - 1) / class_threads), class_threads, 0, work,
                  interior, tested, general, counts);
     const dim3 blocks = blocks_of(min_of(2 * cells, most_blocks));
     exec.enqueue(label, cell_interior_kernel<T>, blocks, interior_threads, 0, job, interior,
@@ -60,10 +73,15 @@ class CellRaster<CudaExec> {
     if (job.mask != nullptr || job.tet != nullptr) {
       exec.enqueue(label, cell_owner_kernel<T>, blocks, interior_threads, 0, job, interior, counts);
     }
+    const bool has_hexes = job.hexes.nodes.size > 0;
     exec.enqueue(label, cell_tested_kernel<T>, blocks_of(cells), raster_threads, 0, job, tested,
-                 counts);
-    job.listed = general;
-    job.listed_count = &counts->general;
+                 has_hexes ? nullptr : general, counts);
+    if (has_hexes) {
+      job.listed = general;
+      job.listed_count = &counts->general;
+      cell_raster(exec, job, progress);
+    }
+    progress.report(1.0);
   }
 
   DeviceBuffer<InteriorCell> interior_;
