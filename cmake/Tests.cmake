@@ -231,12 +231,11 @@ if(NOT BUILD_SHARED_LIBS)
   endforeach()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_primitives>
-    tests/emu/emulated_contact.cpp
-    tests/emu/test_cell_list_emulated.cpp tests/emu/test_contact_arrays_emulated.cpp
-    tests/emu/test_contact_emulated.cpp tests/emu/test_device_errors.cpp
-    tests/emu/test_step_operations.cpp tests/emu/test_warp_emulated.cpp
-    tests/emu/test_warp_emulated_copies.cpp tests/emu/test_warp_emulated_memory.cpp
-    tests/emu/test_warp_emulated_overlap.cpp
+    tests/emu/emulated_contact.cpp tests/emu/test_cell_list_emulated.cpp
+    tests/emu/test_contact_arrays_emulated.cpp tests/emu/test_contact_emulated.cpp
+    tests/emu/test_device_errors.cpp tests/emu/test_step_operations.cpp
+    tests/emu/test_warp_emulated.cpp tests/emu/test_warp_emulated_copies.cpp
+    tests/emu/test_warp_emulated_memory.cpp tests/emu/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
   tetwarp_discover(tetwarp_emulated_tests parity)
   if(tetwarp_device_tests)
