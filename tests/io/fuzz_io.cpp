@@ -238,10 +238,10 @@ bool fuzz(int seconds, std::uint64_t seed) {
 
 // Sanitizers end the child so that it is counted; HDF5 copes with allocations that are refused.
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizers' names
-extern "C" const char* __asan_default_options() {
+extern "C" [[gnu::visibility("default")]] const char* __asan_default_options() {
   return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1";
 }
-extern "C" const char* __ubsan_default_options() {
+extern "C" [[gnu::visibility("default")]] const char* __ubsan_default_options() {
   return "halt_on_error=1:abort_on_error=1";
 }
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)

@@ -180,10 +180,10 @@ bool fuzz(int seconds, std::uint64_t seed, const std::string& choice) {
 }  // namespace
 
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizers' names
-extern "C" const char* __asan_default_options() {
+extern "C" [[gnu::visibility("default")]] const char* __asan_default_options() {
   return "abort_on_error=1:detect_leaks=0:allocator_may_return_null=1";
 }
-extern "C" const char* __ubsan_default_options() {
+extern "C" [[gnu::visibility("default")]] const char* __ubsan_default_options() {
   return "halt_on_error=1:abort_on_error=1";
 }
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
