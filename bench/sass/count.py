@@ -5,7 +5,8 @@ Compiles bench/sass/kernels.cu for one architecture, reads `cuobjdump -sass` and
 registers, stack, spills, resident blocks, and the instructions on the longest path through
 
 * the innermost loop that computes and stores voxels ("stored"), per store to global memory,
-* the innermost loop that stores nothing ("tested"), per turn: the test of a voxel in a tetrahedron,
+* the innermost loop that stores nothing ("tested"), per test of a voxel in a tetrahedron: a turn
+  tests the four voxels of a thread,
 * the kernel from its first to its last instruction, every loop taken once ("whole").
 
 Paths that an instruction of AVOID lies on are left out: float64 and calls serve rare voxels only.
@@ -22,6 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 REGISTERS, WARPS, BLOCKS = 65536, 64, 32  # of a multiprocessor of sm_90
+VOXELS_TESTED = 4  # per turn of the loop over tetrahedra: raster_depth
 AVOID = re.compile(r"^(D(ADD|MUL|FMA|SETP)|CALL)\b")
 FLOOR = re.compile(r"^(FRND|F2I|FADD\.RM)")  # of a position: in the loop over voxels
 INSTRUCTION = re.compile(r"^\s*/\*([0-9a-f]{4,})\*/\s+(?:@(!?U?P\w+)\s+)?([A-Z][\w.]*)([^;]*);")
@@ -161,7 +163,7 @@ def counts_of(kernel):
         elif sum(line[2].startswith("FFMA") for line in code) >= 12:
             path = longest(kernel, blocks, successors, head, body, latches, False)
             if tested is None and path:
-                tested = path[0]
+                tested = path[0] / VOXELS_TESTED
     exits = {b for b, block in enumerate(blocks) if kernel.code[block[-1]][2].startswith("EXIT")}
     whole = longest(kernel, blocks, successors, 0, set(range(len(blocks))), exits, True)
     if stored is None and whole:
@@ -241,7 +243,7 @@ def main():
         stored, tested, whole = counts_of(kernel)
         name = run("c++filt", kernel.name).strip()
         blocks = resident_blocks(registers, 128)
-        print(f"{f'{stored:.1f}' if stored else '-':>7} {tested or '-':>7} "
+        print(f"{f'{stored:.1f}' if stored else '-':>7} {f'{tested:.1f}' if tested else '-':>7} "
               f"{whole[0] if whole else '-':>6} {whole[1] if whole else '-':>6} {registers:>5} "
               f"{stack:>6} {spilled:>6} {blocks:>7} {blocks * 4 * 100 // WARPS:>5}%  {short(name)}")
 

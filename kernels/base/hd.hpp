@@ -44,6 +44,15 @@ TETWARP_HD T min_of(T a, T b) {
   return b < a ? b : a;
 }
 
+/// The smaller of two numbers; if one of them is NaN, the other.
+TETWARP_HD float smaller_of(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fminf(a, b);  // one instruction; a comparison and a choice are two
+#else
+  return b < a || a != a ? b : a;
+#endif
+}
+
 template <class T>
 TETWARP_HD T max_of(T a, T b) {
   return a < b ? b : a;

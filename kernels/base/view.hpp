@@ -65,11 +65,14 @@ struct OutputFrame {
     return cell_index(ijk[0] >> cell_shift, ijk[1] >> cell_shift, ijk[2] >> cell_shift);
   }
   /// First voxel [frame] of a cell.
-  TETWARP_HD void set_corner(std::int64_t cell, int* corner) const {
-    const std::int64_t line = cell / cells[0];
-    corner[0] = static_cast<int>(cell % cells[0]) * cell_edge;
-    corner[1] = static_cast<int>(line % cells[1]) * cell_edge;
-    corner[2] = static_cast<int>(line / cells[1]) * cell_edge;
+  /// @tparam Index  std::int64_t, or std::uint32_t, whose divisions are shorter on a device
+  template <class Index>
+  TETWARP_HD void set_corner(Index cell, int* corner) const {
+    const auto nx = static_cast<Index>(cells[0]), ny = static_cast<Index>(cells[1]);
+    const Index line = cell / nx, layer = line / ny;
+    corner[0] = static_cast<int>(cell - line * nx) * cell_edge;
+    corner[1] = static_cast<int>(line - layer * ny) * cell_edge;
+    corner[2] = static_cast<int>(layer) * cell_edge;
   }
 };
 

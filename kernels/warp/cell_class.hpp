@@ -90,7 +90,7 @@ TETWARP_HD CellClass class_of(const RasterJob<T>& job, std::int64_t cell, Interi
   const CellRange range = job.ranges[cell];
   if (work != sample_cell || range.begin == range.end) return CellClass::general;
   int corner[3];
-  job.frame.set_corner(cell, corner);
+  job.frame.set_corner(static_cast<std::uint32_t>(cell), corner);  // cells are listed by 32 bits
   if (!is_whole_cell(job.frame, corner)) return CellClass::general;
   if (range.end - range.begin > most_tested_pairs) return CellClass::general;
   double start[3], linear[3][3];

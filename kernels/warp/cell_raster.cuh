@@ -1,18 +1,12 @@
 /// @file cell_raster.cuh
 /// Stage "raster" of the warp as a CUDA kernel: one block writes each voxel of one output cell
 /// once, background included: no races on shared faces, no separate clearing.
-///
-/// 128 threads in two layers of 64 (i fastest, so that a row of 8 voxels is one 32-byte sector of
-/// float32), four voxels along k per thread. Planes, rows and maps of `raster_chunk` tetrahedra at
-/// a time are computed by the first threads into shared memory, from which all threads read them.
 #pragma once
 #include "kernels/exec/launch.hpp"
-#include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/cell_owners.cuh"
 #include "kernels/warp/voxel_transform.hpp"
 
 namespace tetwarp {
-
-constexpr int raster_threads = 128;
 
 /// Minimum blocks per multiprocessor: five leave 96 registers to a thread. The general kernel needs
 /// more on every architecture, the plain one on sm_120: with fewer blocks none spills.
@@ -26,92 +20,17 @@ constexpr int raster_blocks() {
 #endif
 }
 
-constexpr int raster_chunk = 16;
-constexpr int raster_depth = 4;  ///< voxels per thread, two apart along k
-
-/// Data of up to `raster_chunk` tetrahedra in shared memory, one slot each.
-template <class Real>
-struct RasterChunk {
-  CellPlanes planes[raster_chunk];
-  SourceMap<Real> maps[raster_chunk];
-  int tet[raster_chunk];
-  std::uint16_t rows[raster_chunk];  ///< extent of the box in the cell: bits j, and bits 8 + k
-  bool accepted[raster_chunk];
-  bool copied[raster_chunk];
-  bool own_map[raster_chunk];  ///< steep or trilinear: sampled by store_owned() instead of `maps`
-};
-
-/// Bit b for each voxel corner + b, b in 0..7, that lies in [begin, end).
-__device__ __forceinline__ unsigned bits_within(int begin, int end, int corner) {
-  const int first = min_of(max_of(begin - corner, 0), cell_edge);
-  const int past = min_of(max_of(end - corner, 0), cell_edge);
-  return ((1u << past) - 1) & ~((1u << first) - 1);
-}
-
-/// Fills the chunk with the tetrahedra of pairs [first, first + count).
-template <class T>
-__device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
-                                           std::uint32_t first,
-                                           int count,
-                                           const int* corner,
-                                           RasterChunk<ArithmeticOf<T>>& chunk) {
-  const int thread = static_cast<int>(threadIdx.x);
-  if (thread < 4 * count) {
-    const CellPair pair = job.pairs[first + static_cast<unsigned>(thread / 4)];
-    set_cell_plane(job.setups[tet_of(pair)], thread % 4, corner, chunk.planes[thread / 4]);
-  } else if (thread >= 4 * raster_chunk && thread - 4 * raster_chunk < count) {
-    const int slot = thread - 4 * raster_chunk;
-    const CellPair pair = job.pairs[first + static_cast<unsigned>(slot)];
-    const TetSetup& tet = job.setups[tet_of(pair)];
-    double start[3], linear[3][3];
-    map_start(tet, corner, start, linear);
-    chunk.maps[slot] = make_source_map<ArithmeticOf<T>>(job.source, start, linear);
-    chunk.tet[slot] = tet_of(pair);
-    chunk.rows[slot] =
-        static_cast<std::uint16_t>(bits_within(tet.begin[1], tet.end[1], corner[1]) |
-                                   bits_within(tet.begin[2], tet.end[2], corner[2]) << cell_edge);
-    chunk.accepted[slot] = is_accepted(pair);
-    chunk.copied[slot] = is_copied(job, tet);
-    chunk.own_map[slot] = tet.kind == MapKind::trilinear ||
-                          (sizeof(ArithmeticOf<T>) == 4 && tet.kind == MapKind::steep);
-  }
-}
-
-/// Slot of the tetrahedron in the chunk that owns voxel (i, j, k) of the cell; -1 if none does.
-template <class T>
-__device__ __forceinline__ int find_owner(const RasterJob<T>& job,
-                                          const RasterChunk<ArithmeticOf<T>>& chunk,
-                                          int count,
-                                          const int* corner,
-                                          int i,
-                                          int j,
-                                          int k,
-                                          RasterCounts& mine) {
-  for (int slot = 0; slot < count; ++slot) {
-    if (chunk.accepted[slot]) return slot;
-    if ((chunk.rows[slot] >> j & chunk.rows[slot] >> (cell_edge + k) & 1) == 0) continue;
-    ++mine.inside_tests;
-    const int side = certain_side(chunk.planes[slot], i, j, k);
-    if (side > 0) return slot;
-    if (side < 0) continue;
-    ++mine.exact_tests;
-    const TetNodes tet = tet_nodes(job.nodes, job.tets.data + std::int64_t{4} * chunk.tet[slot]);
-    if (is_inside_exact(tet, corner[0] + i, corner[1] + j, corner[2] + k)) return slot;
-  }
-  return -1;
-}
-
-/// Voxels of the output among the `raster_depth` of this thread: bit d for (i, j, k + 2 d).
-__device__ __forceinline__ unsigned voxels_in_output(
-    const OutputFrame& frame, const int* corner, int i, int j, int k) {
-  unsigned voxels = 0;
+/// Voxels of the output among those of this thread.
+__device__ __forceinline__ VoxelBits
+voxels_in_output(const OutputFrame& frame, const int* corner, int i, int j, int k) {
+  VoxelBits voxels = 0;
   for (int d = 0; d < raster_depth; ++d) {
     const int x[3] = {corner[0] + i, corner[1] + j, corner[2] + k + 2 * d};
     bool within = true;
     for (int axis = 0; axis < 3; ++axis) {
       within = within && x[axis] >= frame.begin[axis] && x[axis] < frame.end[axis];
     }
-    voxels |= static_cast<unsigned>(within) << d;
+    voxels |= static_cast<VoxelBits>(within) << 8 * d;
   }
   return voxels;
 }
@@ -172,7 +91,7 @@ __device__ __forceinline__ void add_counts(const RasterJob<T>& job,
     job.cell_covered[cell] = static_cast<std::uint16_t>(block_counts[0]);
   }
   if (job.counts != nullptr && thread < 4 && block_counts[thread] != 0) {
-    RasterCounts* const counts = job.counts + cell % job.count_places;
+    RasterCounts* const counts = job.counts + (cell & (job.count_places - 1));
     atomic_add(reinterpret_cast<std::int64_t*>(counts) + thread, block_counts[thread]);
   }
 }
@@ -189,14 +108,12 @@ __device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
   const int thread = static_cast<int>(threadIdx.x);
   int corner[3];
   job.frame.set_corner(cell, corner);
-  const int i = thread % cell_edge;
-  const int j = thread / cell_edge % cell_edge;
-  const int k_first = thread / (cell_edge * cell_edge);
+  const int i = thread & 7, j = thread >> cell_shift & 7, k_first = thread >> 2 * cell_shift;
   const std::int64_t work = work_of(job, cell);
   if (work == keep_cell) return;
   const CellRange range = job.ranges[cell];
   RasterCounts mine = {0, 0, 0, 0};
-  unsigned open = voxels_in_output(job.frame, corner, i, j, k_first);  // those without an owner yet
+  VoxelBits open = voxels_in_output(job.frame, corner, i, j, k_first);  // without an owner yet
   if (thread < 4) block_counts[thread] = 0;
   const auto voxel_at = [&](int k) {
     return CellVoxel{corner, i, j, k,
@@ -208,17 +125,16 @@ __device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
     __syncthreads();  // all threads have finished with the chunk before
     load_chunk(job, first, count, corner, chunk);
     __syncthreads();
+    const VoxelBits before = open;
+    const auto slots = find_owners(job, chunk, count, corner, i, j, k_first, open, mine);
     for (int d = 0; d < raster_depth; ++d) {
-      const int k = k_first + 2 * d;
-      if ((open >> d & 1) == 0) continue;
-      const int slot = find_owner(job, chunk, count, corner, i, j, k, mine);
-      if (slot < 0) continue;
-      open &= ~(1u << d);
-      store_covered<is_general>(job, chunk, slot, work, voxel_at(k), mine);
+      if (!has_voxel(before & ~open, d)) continue;
+      store_covered<is_general>(job, chunk, slot_of(slots, d), work, voxel_at(k_first + 2 * d),
+                                mine);
     }
   }
   for (int d = 0; d < raster_depth; ++d) {
-    if ((open >> d & 1) != 0) store_uncovered<is_general>(job, voxel_at(k_first + 2 * d));
+    if (has_voxel(open, d)) store_uncovered<is_general>(job, voxel_at(k_first + 2 * d));
   }
 
   __syncthreads();

@@ -10,6 +10,7 @@
 
 #include "kernels/base/view.hpp"
 #include "kernels/warp/cell_pairs.hpp"
+#include "kernels/warp/cell_planes.hpp"
 #include "kernels/warp/face_sign.hpp"
 #include "kernels/warp/hex_map.hpp"
 #include "kernels/warp/tet_setup.hpp"
@@ -56,7 +57,7 @@ struct RasterGeometry {
   std::uint8_t* mask;             ///< may be null
   std::int32_t* tet;              ///< may be null
   RasterCounts* counts;           ///< may be null; a device adds to that of a cell's number modulo
-  std::int64_t count_places = 1;  ///< this number
+  std::int64_t count_places = 1;  ///< this number, a power of two
 
   /// Per cell: keep_cell, sample_cell, or the source voxel whose samples are stored in every
   /// covered voxel. Size 0: sample_cell for all.
@@ -94,44 +95,6 @@ TETWARP_HD bool has_outside_transform(const RasterGeometry& job) {
 /// What to do with a cell, see RasterGeometry::cell_work.
 TETWARP_HD std::int64_t work_of(const RasterGeometry& job, std::int64_t cell) {
   return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
-}
-
-/// The four planes of a tetrahedron relative to one cell in float32. Scaled so that a value above 1
-/// is certainly inside, and one below -1 certainly outside, despite rounding.
-struct CellPlanes {
-  float value[4];    ///< at the cell's corner voxel
-  float step[3][4];  ///< per voxel along i, j, k
-};
-
-/// One float32 plane relative to a cell's first voxel `corner` [frame].
-///
-/// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
-/// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
-/// unit of the scaled planes is u (8 |v| + 192).
-TETWARP_HD void set_cell_plane(const TetSetup& tet,
-                               int face,
-                               const int* corner,
-                               CellPlanes& planes) {
-  const double value = tet.plane[0][face] * static_cast<double>(corner[0] - tet.anchor[0]) +
-                       tet.plane[1][face] * static_cast<double>(corner[1] - tet.anchor[1]) +
-                       tet.plane[2][face] * static_cast<double>(corner[2] - tet.anchor[2]) +
-                       tet.plane[3][face];
-  const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
-  planes.value[face] = static_cast<float>(value * scale);
-  for (int axis = 0; axis < 3; ++axis) {
-    planes.step[axis][face] = static_cast<float>(tet.plane[axis][face] * scale);
-  }
-}
-
-/// +1: certainly inside; -1: certainly outside; 0: too close to a face for float32 to decide.
-TETWARP_HD int certain_side(const CellPlanes& planes, int i, int j, int k) {
-  float least = 2.0f;
-  for (int face = 0; face < 4; ++face) {
-    const float line = (planes.value[face] + planes.step[1][face] * static_cast<float>(j)) +
-                       planes.step[2][face] * static_cast<float>(k);
-    least = min_of(least, line + planes.step[0][face] * static_cast<float>(i));
-  }
-  return least > 1.0f ? 1 : least < -1.0f ? -1 : 0;
 }
 
 /// Source position of a cell's first voxel under a tetrahedron's map, in float64.

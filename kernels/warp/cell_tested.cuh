@@ -17,15 +17,14 @@ static_assert(most_tested_pairs == raster_chunk);
 /// @param block_counts  shared, 4 entries
 template <class T>
 __device__ __forceinline__ void tested_cell(const RasterJob<T>& job,
-                                            std::int64_t cell,
+                                            std::uint32_t cell,
                                             RasterChunk<float>& chunk,
                                             const T** starts,
                                             int* block_counts) {
   int corner[3];
   job.frame.set_corner(cell, corner);
   const int thread = static_cast<int>(threadIdx.x);
-  const int i = thread % cell_edge, j = thread / cell_edge % cell_edge;
-  const int k_first = thread / (cell_edge * cell_edge);
+  const int i = thread & 7, j = thread >> cell_shift & 7, k_first = thread >> 2 * cell_shift;
   const CellRange range = job.ranges[cell];
   const auto count = static_cast<int>(range.end - range.begin);
   if (thread < 4) block_counts[thread] = 0;
@@ -38,16 +37,14 @@ __device__ __forceinline__ void tested_cell(const RasterJob<T>& job,
   __syncthreads();
 
   RasterCounts mine = {0, 0, 0, 0};
-  int slots[raster_depth];
-  for (int d = 0; d < raster_depth; ++d) {
-    slots[d] = find_owner(job, chunk, count, corner, i, j, k_first + 2 * d, mine);
-    mine.covered += slots[d] >= 0;
-  }
+  VoxelBits open = all_voxels;
+  const auto slots = find_owners(job, chunk, count, corner, i, j, k_first, open, mine);
+  mine.covered = raster_depth - __popc(open);
   const SourceSteps steps(job.source.dims);
   InteriorTap taps[raster_depth];
   SampleCube<T> cubes[raster_depth];
   for (int d = 0; d < raster_depth; ++d) {
-    const int slot = max_of(slots[d], 0);
+    const int slot = slot_of(slots, d);
     float x[3];
     local_position(chunk.maps[slot], i, j, k_first + 2 * d, x);
     taps[d] = interior_tap(x);
@@ -59,9 +56,10 @@ __device__ __forceinline__ void tested_cell(const RasterJob<T>& job,
   T* const out = job.volume + first;
   for (int d = 0; d < raster_depth; ++d) {
     const int at = (k_first + 2 * d) * slice;
-    out[at] = slots[d] >= 0 ? interior_value(cubes[d], taps[d]) : job.background;
-    if (job.mask != nullptr) job.mask[first + at] = slots[d] >= 0;
-    if (job.tet != nullptr) job.tet[first + at] = slots[d] >= 0 ? chunk.tet[slots[d]] : -1;
+    const bool covered = !has_voxel(open, d);
+    out[at] = covered ? interior_value(cubes[d], taps[d]) : job.background;
+    if (job.mask != nullptr) job.mask[first + at] = covered;
+    if (job.tet != nullptr) job.tet[first + at] = covered ? chunk.tet[slot_of(slots, d)] : -1;
   }
   __syncthreads();
   add_counts(job, cell, mine, block_counts);
