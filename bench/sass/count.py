@@ -4,7 +4,8 @@
 Compiles bench/sass/kernels.cu for one architecture, reads `cuobjdump -sass` and prints a table:
 registers, stack, spills, resident blocks, and the instructions on the longest path through
 
-* the innermost loop that computes and stores voxels ("stored"), per store to global memory,
+* the innermost loop that computes and stores voxels ("stored"), per store to global memory; in the
+  kernel of tested cells from the first test, made once, to the barrier after the stores,
 * the innermost loop that stores nothing ("tested"), per test of a voxel in a tetrahedron: a turn
   tests the four voxels of a thread,
 * the kernel from its first to its last instruction, every loop taken once ("whole").
@@ -35,6 +36,10 @@ class Kernel:
     def __init__(self, name):
         self.name = name
         self.code = []
+
+    def tests_then_stores(self):
+        """Whether a thread first finds the owners of its voxels, then stores them, without a loop."""
+        return "cell_tested_kernel" in self.name
 
     def stores_one(self):
         """Whether a turn of the loop handles one voxel, whatever else it may store."""
@@ -152,6 +157,9 @@ def counts_of(kernel):
     """Instructions per stored voxel, per test and of the whole kernel; None where there is none."""
     blocks, successors = kernel.blocks()
     stored = tested = None
+    everything = set(range(len(blocks)))
+    barriers = {b for b, block in enumerate(blocks)
+                if any(kernel.code[n][2].startswith("BAR") for n in block)}
     for head, body, latches in loops_of(successors):
         code = [kernel.code[n] for b in body for n in blocks[b]]
         if any(line[2].startswith("STG") for line in code):
@@ -164,8 +172,11 @@ def counts_of(kernel):
             path = longest(kernel, blocks, successors, head, body, latches, False)
             if tested is None and path:
                 tested = path[0] / VOXELS_TESTED
+            if stored is None and kernel.tests_then_stores():
+                path = longest(kernel, blocks, successors, head, everything, barriers, True)
+                stored = path[0] / VOXELS_TESTED if path else None
     exits = {b for b, block in enumerate(blocks) if kernel.code[block[-1]][2].startswith("EXIT")}
-    whole = longest(kernel, blocks, successors, 0, set(range(len(blocks))), exits, True)
+    whole = longest(kernel, blocks, successors, 0, everything, exits, True)
     if stored is None and whole:
         stored = whole[0] / whole[1]
     return stored, tested, whole
