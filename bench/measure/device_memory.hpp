@@ -10,7 +10,7 @@ class DeviceMemory {
  public:
   /// @throws CudaError
   explicit DeviceMemory(std::size_t bytes);
-  ~DeviceMemory();
+  ~DeviceMemory();  // NOLINT(performance-trivially-destructible): not trivial with CUDA
   DeviceMemory(const DeviceMemory&) = delete;
   DeviceMemory& operator=(const DeviceMemory&) = delete;
 

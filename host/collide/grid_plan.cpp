@@ -122,7 +122,7 @@ GridPlan make_grid_plan(const std::array<std::int64_t, item_sizes>& counts,
     plan.levels[l].per_cell =
         cells_per_box / mean_extent(classes.data() + begin, classes.data() + past);
     for (std::size_t c = begin; c < past; ++c) {
-      plan.level_of_size[classes[c].size] = static_cast<std::int8_t>(l);
+      plan.level_of_size[classes[c].size] = static_cast<std::uint8_t>(l);
     }
   }
   set_keys(plan, space, items);

@@ -195,6 +195,7 @@ CageWeights make_cage_weights(const std::string& place,
   }
   cage.weight.resize(points.size() * vertices.size());
   std::vector<LatticePoint> places;
+  places.reserve(points.size());
   for (const Point3& point : points) places.push_back(located(fine, point));
   const HarmonicWeights harmonic(coarse, fine);
   for (std::size_t v = 0; v < vertices.size(); ++v) {

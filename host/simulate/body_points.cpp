@@ -69,6 +69,7 @@ std::vector<double> shares_of(const BodyGeometry& geometry,
     add_area_thirds(geometry.surface.points, geometry.surface.triangles, all);
   }
   std::vector<double> shares;
+  shares.reserve(selected.size());
   for (const std::int32_t i : selected) shares.push_back(all[index_of(i)]);
   double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   if (!(sum > 0)) {

@@ -21,8 +21,8 @@ struct GridLevel {
 struct GridPlan {
   double origin[3];  ///< lowest corner of all boxes
   std::int32_t level_count;
-  std::int32_t key_bits, key_shift;       ///< bits of a cell's number; of 32, how many it drops
-  std::int8_t level_of_size[item_sizes];  ///< ascending from the finest, 0
+  std::int32_t key_bits, key_shift;        ///< bits of a cell's number; of 32, how many it drops
+  std::uint8_t level_of_size[item_sizes];  ///< ascending from the finest, 0
   GridLevel levels[item_sizes];
 
   /// Position of a cell along an axis: monotone in x, so that the cell of a box's corner is among

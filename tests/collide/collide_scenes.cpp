@@ -215,7 +215,8 @@ CollideScene pile_scene(int count, int triangles, const BodyFlags& flags) {
   const int rings = std::max(1, triangles / (2 * count * sectors));
   scene.surfaces.thickness = 1e-5;
   for (int b = 0; b < count; ++b) {
-    const Point3 cell = {b % 3 * 1.98, b / 3 % 3 * 1.98, b / 9 * 1.98};
+    const int layer = b / 9, row = b / 3 % 3;
+    const Point3 cell = {b % 3 * 1.98, row * 1.98, layer * 1.98};
     const Point3 centre = plus(times(radius, cell), random_point(random, 0.02 * radius));
     scene.add_ball(centre, radius, rings, sectors, flags);
     scene.move_body(b, plus({0, 0, -1e-3}, random_point(random, 5e-4)));

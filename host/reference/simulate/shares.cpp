@@ -71,6 +71,7 @@ std::vector<double> shares_of(const System& system, int body, const std::vector<
     add_area_thirds(geometry.surface.points, geometry.surface.triangles, all);
   }
   std::vector<double> shares;
+  shares.reserve(selected.size());
   for (const int index : selected) shares.push_back(all[static_cast<std::size_t>(index)]);
   return shares;
 }

@@ -65,9 +65,9 @@ void ContactStep::thaw(std::span<const std::uint8_t> is_still) {
   if (sleeping_.empty()) return;
   std::vector<SleepingContact> still;
   std::vector<ContactRecord> woken, all;
-  for (SleepingContact& contact : sleeping_) {
+  for (const SleepingContact& contact : sleeping_) {
     if (!still_.empty() && both_still(bodies_of(contact.record.key))) {
-      still.push_back(std::move(contact));
+      still.push_back(contact);
     } else {
       woken.push_back(contact.record);
     }
