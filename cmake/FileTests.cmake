@@ -45,7 +45,7 @@ if(NOT BUILD_SHARED_LIBS)
   add_executable(fuzz_mesh tests/io/fuzz_mesh.cpp)
   target_include_directories(fuzz_mesh PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(fuzz_mesh PRIVATE tetwarp_io tetwarp_hdf5 tetwarp_options)
-  add_test(NAME fuzz_mesh COMMAND fuzz_mesh 5 1)
+  add_test(NAME fuzz_mesh COMMAND fuzz_mesh 2 1)
   set_tests_properties(fuzz_mesh PROPERTIES LABELS io)
 endif()
 

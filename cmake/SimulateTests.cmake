@@ -103,7 +103,6 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_touch_throw.cpp
     )
   set(tetwarp_contact_law_tests  # closed forms of contact, through the Simulator
-    tests/simulate/test_contact_stress.cpp
     tests/simulate/test_law_adhesion.cpp
     tests/simulate/test_law_balances.cpp
     tests/simulate/test_law_repeats.cpp
@@ -153,6 +152,7 @@ if(NOT BUILD_SHARED_LIBS)
   endif()
   tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
     tests/simulate/test_contact_large.cpp
+    tests/simulate/test_contact_stress.cpp
     tests/simulate/test_law_peel.cpp
     tests/simulate/test_simulator_large.cpp
     tests/simulate/test_touch_energy.cpp)

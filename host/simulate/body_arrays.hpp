@@ -23,6 +23,7 @@ std::int64_t count_of(const std::vector<T>& values) {
 }
 template <class T>
 View<const double> numbers_of(const std::vector<T>& arrays) {
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): T may be double itself
   constexpr std::int64_t width = sizeof(T) / sizeof(double);
   return {reinterpret_cast<const double*>(arrays.data()), width * count_of(arrays)};
 }

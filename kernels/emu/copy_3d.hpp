@@ -36,7 +36,8 @@ inline cudaExtent make_cudaExtent(std::size_t width, std::size_t height, std::si
 /// From the device to the host only, without positions.
 inline cudaError_t cudaMemcpy3DAsync(const cudaMemcpy3DParms* parameters, cudaStream_t stream) {
   return tetwarp::simt::call(true, [&](auto& device) {
-    const auto [width, height, depth] = parameters->extent;
+    const std::size_t width = parameters->extent.width, height = parameters->extent.height;
+    const std::size_t depth = parameters->extent.depth;
     const cudaPitchedPtr from = parameters->srcPtr, to = parameters->dstPtr;
     const auto slice = [](const cudaPitchedPtr& array, std::size_t k) {
       return static_cast<std::byte*>(array.ptr) + k * array.ysize * array.pitch;

@@ -23,6 +23,7 @@ inline thread_local int current_device = 0;
 
 }  // namespace tetwarp::simt
 
+// NOLINTBEGIN(readability-identifier-naming): CUDA's own names
 inline const char* cudaGetErrorString(cudaError_t error) {
   switch (error) {
     case cudaSuccess:
@@ -52,3 +53,4 @@ inline cudaError_t cudaGetLastError() {
   tetwarp::simt::last_error = cudaSuccess;
   return error;
 }
+// NOLINTEND(readability-identifier-naming)

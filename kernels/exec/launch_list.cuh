@@ -74,6 +74,7 @@ class PendingKernel : public PendingLaunch {
   template <std::size_t... index>
   bool has_bytes_of(const PendingKernel& other, std::index_sequence<index...>) const {
     return (... && (std::memcmp(addresses_[index], other.addresses_[index],
+                                // NOLINTNEXTLINE(bugprone-sizeof-expression): pointers, too
                                 sizeof(std::get<index>(values_))) == 0));
   }
 

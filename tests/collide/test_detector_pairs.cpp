@@ -8,6 +8,7 @@
 #include "tests/collide/brute_force_pairs.hpp"
 
 namespace tetwarp {
+// NOLINTNEXTLINE(readability-identifier-naming): GoogleTest calls it
 inline void PrintTo(const TouchingPair& pair, std::ostream* out) {
   *out << "kind " << static_cast<int>(pair.kind) << " " << pair.a << " " << pair.b << " at "
        << pair.time << " from " << pair.start_distance;

@@ -153,7 +153,7 @@ constexpr bool has_address_sanitizer = false;
 inline std::string missing_readers(const TemporaryFolder& folder,
                                    const std::vector<std::string>& meshes) {
   for (const std::string& name : meshes) {
-    const std::string message = run_command(folder, {"info", name}).err;
+    std::string message = run_command(folder, {"info", name}).err;
     if (message.find("this build cannot read") != std::string::npos) return message;
   }
   return "";
