@@ -116,6 +116,7 @@ void print(int cells) {
 }  // namespace
 }  // namespace tetwarp
 
+// NOLINTNEXTLINE(bugprone-exception-escape): an exception ends the program with its message
 int main(int argc, char** argv) {
   const int cells = argc == 2 ? std::atoi(argv[1]) : 0;
   if (cells < 1 || cells > 100) {

@@ -23,7 +23,7 @@ namespace tetwarp {
 TETWARP_HD double mul_rn(double a, double b) {
 #if defined(__CUDA_ARCH__)
   return __dmul_rn(a, b);
-#elif defined(__FMA__)
+#elif defined(__FMA__) && !defined(__clang__)
   return __builtin_assoc_barrier(a * b);  // the emulated device may be compiled with contraction
 #else
   return a * b;  // the build turns contraction off on the host

@@ -41,7 +41,7 @@ struct Sums {
 };
 
 template <class T>
-View<T> view_of(std::vector<T>& values) {
+View<T> whole_view(std::vector<T>& values) {
   return {values.data(), std::ssize(values)};
 }
 
@@ -69,19 +69,19 @@ Made make_list(const Stages<CpuExec>& stages,
   std::vector<std::uint8_t> touched(count);
   std::vector<std::int64_t> fresh(4), accepted(4), touched_count(4), size(1);
   Made made{std::vector<CellPair>(places), std::vector<CellRange>(count + 1)};
-  cell_list(
-      exec, candidate_sums.view(), {stages.setups, {}, frame, {}, {}, {}},
-      {view_of(candidates), view_of(numbers), view_of(counts), cell_sums.view(), view_of(placed)},
-      {{},
-       {},
-       {before, moved, view_of(stay)},
-       view_of(made.pairs),
-       view_of(made.ranges),
-       view_of(touched),
-       view_of(fresh),
-       view_of(accepted),
-       view_of(touched_count)},
-      view_of(size));
+  cell_list(exec, candidate_sums.view(), {stages.setups, {}, frame, {}, {}, {}},
+            {whole_view(candidates), whole_view(numbers), whole_view(counts), cell_sums.view(),
+             whole_view(placed)},
+            {{},
+             {},
+             {before, moved, whole_view(stay)},
+             whole_view(made.pairs),
+             whole_view(made.ranges),
+             whole_view(touched),
+             whole_view(fresh),
+             whole_view(accepted),
+             whole_view(touched_count)},
+            whole_view(size));
   exec.drain();
   const auto sum = [](const std::vector<std::int64_t>& values) {
     return std::accumulate(values.begin(), values.end(), std::int64_t{0});
@@ -104,11 +104,11 @@ struct Expected {
         ranges(static_cast<std::size_t>(frame.cell_count() + 1)) {
     std::vector<CellPair> candidates(pairs.size());
     cell_cull(exec, stages.setups, stages.corner_offsets, stages.masks, stages.pair_offsets, {},
-              frame, view_of(candidates));
+              frame, whole_view(candidates));
     const std::int64_t last = stages.pair_offsets.size - 1;
-    cell_pairs(exec, View<const CellPair>(view_of(candidates)),
-               {stages.pair_offsets.data + last, 1}, frame, view_of(pairs), {&size, 1},
-               view_of(ranges), {&accepted, 1});
+    cell_pairs(exec, View<const CellPair>(whole_view(candidates)),
+               {stages.pair_offsets.data + last, 1}, frame, whole_view(pairs), {&size, 1},
+               whole_view(ranges), {&accepted, 1});
   }
   PairList list() const {
     return {{pairs.data(), std::ssize(pairs)}, {ranges.data(), std::ssize(ranges)}};
@@ -164,7 +164,7 @@ TEST(CellListEmulated, UpdatesKeepThePairsThatStay) {
   }
 
   const Made made = make_list(stages, input.frame, stages.candidates.size + 100,
-                              View<const std::uint8_t>(view_of(moved)), expected.list());
+                              View<const std::uint8_t>(whole_view(moved)), expected.list());
 
   expect_same(made, expected);
   EXPECT_EQ(made.fresh, fresh);

@@ -11,7 +11,7 @@
 
 namespace tetwarp::test {
 namespace {
-void expect_equal_bits(const RasterCase& what) {
+void expect_bits_of_rows(const RasterCase& what) {
   with_pixel_type(what.type, [&]<class T>(T) {
     RasterBench<T> bench(what);
     const Rastered<T> rows = bench.by_rows();
@@ -35,10 +35,10 @@ TEST(CellRasterSimt, EveryPixelTypeHasTheSameBits) {
   for (const PixelType type :
        {PixelType::float32, PixelType::int16, PixelType::uint8, PixelType::uint16, PixelType::int8,
         PixelType::float64, PixelType::int32}) {
-    expect_equal_bits({.type = type});
+    expect_bits_of_rows({.type = type});
   }
   for (const PixelType type : {PixelType::uint64, PixelType::int16, PixelType::float32}) {
-    expect_equal_bits({.type = type, .filter = Filter::nearest});
+    expect_bits_of_rows({.type = type, .filter = Filter::nearest});
   }
 }
 
@@ -46,14 +46,15 @@ TEST(CellRasterSimt, EveryFilterHasTheSameBits) {
   for (const Filter filter : {Filter::cubic, Filter::bspline, Filter::lanczos}) {
     for (const char* scene : {"waved", "other_grid"}) {
       for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::int16}) {
-        expect_equal_bits({.scene = scene, .type = type, .filter = filter, .outside = stretched()});
+        expect_bits_of_rows(
+            {.scene = scene, .type = type, .filter = filter, .outside = stretched()});
       }
     }
-    expect_equal_bits({.type = PixelType::float32, .components = 3, .filter = filter});
-    expect_equal_bits({.type = PixelType::float64, .filter = filter});
+    expect_bits_of_rows({.type = PixelType::float32, .components = 3, .filter = filter});
+    expect_bits_of_rows({.type = PixelType::float64, .filter = filter});
   }
   for (const PixelType type : {PixelType::uint8, PixelType::int16, PixelType::uint64}) {
-    expect_equal_bits({.type = type, .filter = Filter::labels, .outside = stretched()});
+    expect_bits_of_rows({.type = type, .filter = Filter::labels, .outside = stretched()});
   }
 }
 
@@ -61,21 +62,21 @@ TEST(CellRasterSimt, EverySceneHasTheSameBits) {
   for (const char* scene :
        {"identity", "aligned", "rotated", "outside", "oblique", "slivers_1", "thin_aligned_1",
         "soup", "overlapping", "folded", "far", "other_grid"}) {
-    expect_equal_bits({.scene = scene, .type = PixelType::int16});
-    expect_equal_bits({.scene = scene, .type = PixelType::float32});
+    expect_bits_of_rows({.scene = scene, .type = PixelType::int16});
+    expect_bits_of_rows({.scene = scene, .type = PixelType::float32});
   }
 }
 
 TEST(CellRasterSimt, SeveralComponentsHaveTheSameBits) {
   for (const int components : {2, 3, 9}) {
-    expect_equal_bits({.type = PixelType::uint8, .components = components});
-    expect_equal_bits({.type = PixelType::float32, .components = components});
-    expect_equal_bits({.type = PixelType::float64, .components = components});
+    expect_bits_of_rows({.type = PixelType::uint8, .components = components});
+    expect_bits_of_rows({.type = PixelType::float32, .components = components});
+    expect_bits_of_rows({.type = PixelType::float64, .components = components});
   }
 }
 
 TEST(CellRasterSimt, CopyingAndInterpolatingHaveTheSameBits) {
-  expect_equal_bits({.scene = "aligned", .copy_whole_shifts = false});
+  expect_bits_of_rows({.scene = "aligned", .copy_whole_shifts = false});
   const Rastered<float> copied = RasterBench<float>({.scene = "aligned"}).by_blocks();
   const Rastered<float> blended =
       RasterBench<float>({.scene = "aligned", .copy_whole_shifts = false}).by_blocks();
@@ -86,8 +87,8 @@ TEST(CellRasterSimt, CopyingAndInterpolatingHaveTheSameBits) {
 
 TEST(CellRasterSimt, UncoveredVoxelsHaveTheSameBits) {
   for (const PixelType type : {PixelType::float32, PixelType::uint8, PixelType::float64}) {
-    expect_equal_bits({.scene = "rotated", .type = type, .outside = same_place(0, 0, 0)});
-    expect_equal_bits({.scene = "rotated", .type = type, .outside = stretched()});
+    expect_bits_of_rows({.scene = "rotated", .type = type, .outside = same_place(0, 0, 0)});
+    expect_bits_of_rows({.scene = "rotated", .type = type, .outside = stretched()});
   }
 }
 
@@ -95,8 +96,8 @@ TEST(CellRasterSimt, WindowsThatStartInsideACellHaveTheSameBits) {
   for (const Region& region : {Region{{3, 5, 1}, {20, 16, 19}}, Region{{9, 0, 7}, {10, 17, 8}},
                                Region{{15, 15, 15}, {20, 17, 22}}}) {
     for (const char* scene : {"identity", "waved"}) {
-      expect_equal_bits({.scene = scene, .region = region});
-      expect_equal_bits(
+      expect_bits_of_rows({.scene = scene, .region = region});
+      expect_bits_of_rows(
           {.scene = scene, .type = PixelType::int16, .outside = stretched(), .region = region});
     }
   }
@@ -106,8 +107,8 @@ TEST(CellRasterSimt, WindowsThatStartInsideACellHaveTheSameBits) {
 TEST(CellRasterSimt, CellsOfManyTetrahedraHaveTheSameBits) {
   EXPECT_GT(RasterBench<float>({.scene = "tiny"}).max_pairs_in_a_cell(), 10u * raster_chunk);
   EXPECT_GT(RasterBench<float>({.scene = "soup"}).max_pairs_in_a_cell(), raster_chunk + 0u);
-  expect_equal_bits({.scene = "tiny"});
-  expect_equal_bits({.scene = "tiny", .type = PixelType::int16});
+  expect_bits_of_rows({.scene = "tiny"});
+  expect_bits_of_rows({.scene = "tiny", .type = PixelType::int16});
 }
 
 /// Kept cells are not written, filled ones hold their voxel's samples where they are covered.

@@ -36,6 +36,7 @@ inline std::int64_t euler_number(const Surface& surface) {
 inline std::vector<double> volumes_of(const std::vector<Point3>& nodes,
                                       const std::vector<std::array<std::int32_t, 4>>& tets) {
   std::vector<double> volumes;
+  volumes.reserve(tets.size());
   for (const auto& [a, b, c, d] : tets) {
     volumes.push_back(tet_volume(at(nodes, a), at(nodes, b), at(nodes, c), at(nodes, d)));
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <tetwarp/names.hpp>
 #include <variant>
@@ -79,7 +80,7 @@ TEST(ShippedScenes, TorsoIsOnePersonOfTissueWithItsBaseFixed) {
   const Point3 centre = std::get<SphereSelection>(liver.select.at(0)).centre;
   std::size_t voxel = 0;
   for (const std::size_t axis : {2, 1, 0}) {
-    const auto index = static_cast<std::size_t>(centre[axis] / 1.5e-3 + 0.5);
+    const auto index = static_cast<std::size_t>(std::lround(centre[axis] / 1.5e-3));
     voxel = voxel * static_cast<std::size_t>(image.volume.grid.dims[axis]) + index;
   }
   EXPECT_NEAR(samples[voxel], 0.55, 0.1);

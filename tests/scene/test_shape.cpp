@@ -31,7 +31,9 @@ void for_samples(const Bounds& bounds, int n, const Visit& visit) {
 
 TEST(Shape, HasTheVolumeOfThePointsInside) {
   constexpr int n = 80;
-  for (const auto& [name, shape] : named_shapes()) {
+  for (const auto& named : named_shapes()) {
+    const std::string& name = named.first;
+    const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
     const Point3 length = minus(bounds.high, bounds.low);
     double inside = 0;
@@ -44,7 +46,9 @@ TEST(Shape, HasTheVolumeOfThePointsInside) {
 }
 
 TEST(Shape, IsOutsideBeyondItsBounds) {
-  for (const auto& [name, shape] : named_shapes()) {
+  for (const auto& named : named_shapes()) {
+    const std::string& name = named.first;
+    const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
     Bounds wide = bounds;
     for (std::size_t d = 0; d < 3; ++d) {
@@ -65,7 +69,9 @@ TEST(Shape, IsOutsideBeyondItsBounds) {
 
 /// Differences over small and large distances; the fraction of tetrahedra relies on the slope.
 TEST(Shape, HasALevelOfBoundedSlope) {
-  for (const auto& [name, shape] : named_shapes()) {
+  for (const auto& named : named_shapes()) {
+    const std::string& name = named.first;
+    const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
     const double slope = level_slope(shape) * (1 + 1e-12);
     Point3 last = bounds.low;

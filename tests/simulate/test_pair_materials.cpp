@@ -23,6 +23,7 @@ AdhesionMaterial glue(double energy, double stiffness) {
 
 Scene boxes(int count) {
   std::vector<Body> bodies;
+  bodies.reserve(static_cast<std::size_t>(count));
   for (int b = 0; b < count; ++b) {
     bodies.push_back(rigid_box("box" + std::to_string(b), {0.1, 0.1, 0.1}, {1.0 * b, 0, 0}));
   }

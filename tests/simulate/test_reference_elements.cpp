@@ -27,6 +27,7 @@ std::vector<Point3> mapped(const std::vector<Point3>& points,
                            const Matrix3d& linear,
                            const Vector3d& offset) {
   std::vector<Point3> result;
+  result.reserve(points.size());
   for (const Point3& x : points) result.push_back(point_of(linear * vector_of(x) + offset));
   return result;
 }

@@ -147,6 +147,7 @@ TEST(ReferenceOrder, OfBodiesAndNodesDoesNotMatter) {
   }
 
   std::vector<Point3> kite;
+  kite.reserve(places.size());
   for (const std::int32_t n : places) {
     kite.push_back(b.node_positions(1)[static_cast<std::size_t>(n)]);
   }

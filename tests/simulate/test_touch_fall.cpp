@@ -92,6 +92,7 @@ TEST(Collisions, OfSpheresKeepMomentum) {
 /// Each box carries those above it.
 TEST(Stacks, OfBoxesCarryTheirWeights) {
   std::vector<Body> boxes;
+  boxes.reserve(3);
   for (int k = 0; k < 3; ++k) {
     boxes.push_back(
         rigid_box("box" + std::to_string(k), {0.05, 0.05, 0.05}, {0, 0, 0.051 + 0.101 * k}));
