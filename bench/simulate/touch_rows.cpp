@@ -127,9 +127,9 @@ void run_touch(benchmark::State& state, const TouchCase& of, int threads) {
       {"forces", &StepSeconds::forces},   {"assembly", &StepSeconds::assembly},
       {"linear", &StepSeconds::linear},   {"detection", &StepSeconds::detection},
       {"contact", &StepSeconds::contact}, {"update", &StepSeconds::update}};
-  for (const auto& [name, stage] : stages) {
-    state.counters[name] =
-        median_of(records, [&](const StepRecord& of_step) { return 1e3 * of_step.seconds.*stage; });
+  for (const auto& stage : stages) {
+    state.counters[stage.first] = median_of(
+        records, [&](const StepRecord& of_step) { return 1e3 * of_step.seconds.*stage.second; });
   }
   state.counters["contacts"] = median_of(records, [](const StepRecord& r) { return r.contacts; });
   state.counters["passes"] =

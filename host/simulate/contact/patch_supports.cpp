@@ -87,9 +87,9 @@ bool PatchSupports::is_flat(double tolerance) const {
     xg += place.x * place.gap, yg += place.y * place.gap;
     mean += place.gap / static_cast<double>(places_.size());
   }
-  const auto [along_x, along_y] = slope_of(xx, xy, yy, xg, yg);
+  const auto slope = slope_of(xx, xy, yy, xg, yg);
   return std::all_of(places_.begin(), places_.end(), [&](const Place& place) {
-    const double plane = mean + along_x * place.x + along_y * place.y;
+    const double plane = mean + slope[0] * place.x + slope[1] * place.y;
     return std::abs(place.gap - plane) <= tolerance;
   });
 }

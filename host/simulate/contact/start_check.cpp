@@ -95,7 +95,8 @@ class StartSearch {
 
   template <class Visit>
   void visit_crossed(const TriangleTree& tree, std::int32_t edge, const Visit& visit) const {
-    const auto& [from, to] = at(surfaces_.edges, edge);
+    const auto& ends = at(surfaces_.edges, edge);
+    const std::int32_t from = ends[0], to = ends[1];
     Bounds box;
     box.include(place(from));
     box.include(place(to));
