@@ -89,6 +89,7 @@ void run_step(benchmark::State& state, int cells, int threads) {
       {"update", &StepSeconds::update}};
   for (const auto& [name, seconds] : stages) {
     std::vector<double> all;
+    all.reserve(outcomes.size());
     for (const StepOutcome& outcome : outcomes) all.push_back(1e3 * (outcome.seconds.*seconds));
     state.counters[name] = median(all);
   }

@@ -98,6 +98,7 @@ std::vector<StepRecord> records_of(Simulator& simulator, const TouchCase& of) {
 template <class Number>
 double median_of(const std::vector<StepRecord>& records, const Number& number) {
   std::vector<double> values;
+  values.reserve(records.size());
   for (const StepRecord& record : records) values.push_back(static_cast<double>(number(record)));
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
@@ -105,6 +106,7 @@ double median_of(const std::vector<StepRecord>& records, const Number& number) {
 
 Timing timing_of(const std::vector<StepRecord>& records) {
   std::vector<double> seconds;
+  seconds.reserve(records.size());
   for (const StepRecord& record : records) seconds.push_back(record.seconds.total);
   std::sort(seconds.begin(), seconds.end());
   Timing timing;
