@@ -1,6 +1,11 @@
 #include "host/contact/structure/system.hpp"
 
 namespace tetwarp {
+namespace {
+/// Slots from which constants are computed by all threads: fewer take less than the start of a
+/// thread costs.
+constexpr std::size_t worth_a_thread = 1024;
+}  // namespace
 
 ContactChoices choices_of(const ContactOptions& options) {
   return {options.relaxation, options.skip.debonded_springs, options.skip.frictionless_rows};
@@ -12,7 +17,7 @@ void fill_system(const ContactProblem& problem,
                  ContactSystem<double>& system,
                  ContactSavings& savings,
                  int threads) {
-  CpuContactExec exec(threads);
+  CpuContactExec exec(structure.contact_of_slot.size() < worth_a_thread ? 1 : threads);
   system.resize(exec, structure.indices());
   savings = fill_numbers(exec, input_of(problem), structure.indices(), choices_of(options),
                          system.views());

@@ -112,15 +112,19 @@ class ContactRun {
   /// one thread each.
   void solve() {
     std::vector<std::int64_t> small;
+    std::int64_t contacts = 0, most = 0;  // of small islands: of all, of the largest
     for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
       if (island(i).is_coupled) continue;
-      if (threads_ > 1 && island(i).contact_count() >= shared_from) {
+      const std::int64_t own = island(i).contact_count();
+      if (threads_ > 1 && own >= shared_from) {
         go_on(i, threads_, options_.method, options_.max_sweeps);
       } else {
         small.push_back(i);
+        contacts += own;
+        most = std::max(most, own);
       }
     }
-    const bool is_worth_it = threads_ > 1 && small.size() > 1 && system_.constants.size() > 128;
+    const bool is_worth_it = contacts - most >= worth_a_thread;
     parallel_tasks(is_worth_it ? threads_ : 1, std::ssize(small), [&](std::int64_t k) {
       go_on(small[static_cast<std::size_t>(k)], 1, options_.method, options_.max_sweeps);
     });
@@ -157,6 +161,9 @@ class ContactRun {
   /// Number of contacts from which an island uses all threads. Starting threads for one color costs
   /// as much as some thousand contacts, and a color has only a part of all contacts.
   static constexpr std::int64_t shared_from = 16384;
+  /// Contacts outside the largest small island from which islands are solved in parallel: with
+  /// fewer, solves take less than the start of a thread costs.
+  static constexpr std::int64_t worth_a_thread = 512;
 
   int threads_of(std::int64_t i) const {
     return island(i).contact_count() >= shared_from ? threads_ : 1;
