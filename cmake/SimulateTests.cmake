@@ -91,6 +91,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_contact_bonds.cpp
     tests/simulate/test_contact_system.cpp
     tests/simulate/test_contact_system_blocks.cpp
+    tests/simulate/test_following_motion.cpp
     tests/simulate/test_two_level.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact

@@ -104,6 +104,8 @@ class ConjugateDirection {
   TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
     exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, &state_->square);
   }
+  /// In memory of the executor.
+  const State* state() const { return state_; }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->square.value[0])); }
   TETWARP_ANY_EXEC bool advance(View<const T> x, View<T> image) {
     exec_.once("contact/mix", DecideBody{state_});

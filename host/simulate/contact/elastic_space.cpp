@@ -85,7 +85,7 @@ void ElasticSpace::set(const ModelState& state, double time_step, std::int64_t f
   size_ = 0;
   for (ElasticBody& own : bodies_) {
     own.first = first + size_;
-    own.size = (3 * static_cast<std::int64_t>(own.touched.size()) + 3) / 4 * 4;
+    own.size = (3 * static_cast<std::int64_t>(own.touched.size()) + 7) / 8 * 8;
     size_ += own.size;
   }
   if (bodies_.empty()) return;
@@ -111,9 +111,9 @@ void ElasticSpace::set_body(ElasticBody& own,
   own.rotation = factor->mean_rotation(state);
   own.compliance.assign(index_of(own.size) * 3 * own.touched.size(), 0);
   own.push.resize(3 * index_of(own.row_end - own.row_begin));
-  double* out = own.compliance.data();
+  float* out = own.compliance.data();
   for (const std::int32_t node : own.touched) {
-    const double* column = factor->columns(node);
+    const float* column = factor->columns(node);
     for (int i = 0; i < 3; ++i, out += own.size, column += 3 * factor->node_count()) {
       for (std::size_t k = 0; k < own.touched.size(); ++k) {
         std::copy_n(column + 3 * own.touched[k], 3, out + 3 * k);

@@ -18,8 +18,9 @@ struct ElasticBody {
   RestFactor* factor = nullptr;
   std::array<double, 9> rotation{};   ///< R, of the mean of the body; rows first
   std::vector<std::int32_t> touched;  ///< nodes, from row_begin
-  std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded
-  std::vector<double> compliance;     ///< [3 touched][size] of A_0^-1, a column at a time
+  std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded to
+                                      ///< a multiple of 8
+  std::vector<float> compliance;      ///< [3 touched][size] of A_0^-1, a column at a time
   std::vector<double> push;           ///< work, [rows][3]
 };
 

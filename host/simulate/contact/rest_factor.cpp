@@ -225,16 +225,17 @@ void RestFactor::solve(double* x) {
   for (std::size_t n = 0; n < count; ++n) std::copy_n(w + 3 * index_of(order_[n]), 3, x + 3 * n);
 }
 
-const double* RestFactor::columns(std::int32_t node) {
+const float* RestFactor::columns(std::int32_t node) {
   const std::size_t size = 3 * order_.size();
   std::int32_t& place = column_of_[index_of(node)];
   if (place < 0) {
     place = static_cast<std::int32_t>(columns_.size() / (3 * size));
-    columns_.resize(columns_.size() + 3 * size, 0.0);
-    double* const own = columns_.data() + 3 * size * index_of(place);
+    std::vector<double> own(size);
     for (std::size_t i = 0; i < 3; ++i) {
-      own[i * size + 3 * index_of(node) + i] = 1;
-      solve(own + i * size);
+      std::fill(own.begin(), own.end(), 0.0);
+      own[3 * index_of(node) + i] = 1;
+      solve(own.data());
+      columns_.insert(columns_.end(), own.begin(), own.end());
     }
   }
   return columns_.data() + 3 * size * index_of(place);

@@ -23,8 +23,8 @@ class RestFactor {
   std::int32_t node_count() const { return static_cast<std::int32_t>(order_.size()); }
   /// x = A_0^-1 x, [nodes][3].
   void solve(double* x);
-  /// The columns of A_0^-1 of a node, [3][nodes][3]; kept once found.
-  const double* columns(std::int32_t node);
+  /// The columns of A_0^-1 of a node, [3][nodes][3], rounded; kept once found.
+  const float* columns(std::int32_t node);
   /// The rotation of the mean of the deformation gradients, rows first.
   std::array<double, 9> mean_rotation(const ModelState& state) const;
 
@@ -41,7 +41,7 @@ class RestFactor {
   std::vector<Entry> entries_;
   std::vector<std::array<float, 6>> diagonal_;  ///< inverses of the lower triangles L_jj
   std::vector<std::int32_t> column_of_;         ///< [nodes] place in columns_, or -1
-  std::vector<double> columns_;                 ///< [found][3][nodes][3]
+  std::vector<float> columns_;                  ///< [found][3][nodes][3]
   std::vector<double> work_;
 };
 

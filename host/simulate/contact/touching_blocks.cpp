@@ -42,6 +42,7 @@ void TouchingBlocks::set(const StepSystem& system,
   set_responses(coarse, elastic, inverse, relaxation);
   packed_start_.assign(constants_.size(), -1);
   packed_size_.resize(constants_.size());
+  moves_rows_.resize(constants_.size());
   packed_.clear();
   elastic_start_.assign(constants_.size(), 0);
   elastic_end_.assign(constants_.size(), 0);
@@ -166,9 +167,9 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
     const std::int32_t other = part_item_[index_of(q)];
     if (elastic.body_of_row(other) != body) continue;
     const double* const second = turned_.data() + parts_[index_of(q)].value;
-    const double* const g = own.compliance.data() +
-                            3 * index_of(elastic.slot_of_row(other)) * index_of(own.size) +
-                            3 * index_of(elastic.slot_of_row(row));
+    const float* const g = own.compliance.data() +
+                           3 * index_of(elastic.slot_of_row(other)) * index_of(own.size) +
+                           3 * index_of(elastic.slot_of_row(row));
     for (std::size_t b = 0; b < 3; ++b) {
       double moved[3] = {};  // of the row for a unit impulse along axis b
       for (std::size_t k = 0; k < 3; ++k) {

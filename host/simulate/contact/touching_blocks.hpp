@@ -1,6 +1,7 @@
 /// @file touching_blocks.hpp
 /// Contacts in the metric of a two-level iteration: what their impulses move, and sweeps over them.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -54,6 +55,8 @@ class TouchingBlocks {
             const double* before,
             const double* after,
             double* y) const;
+  /// Places of y that impulses of contacts change, ascending; of contacts that have been swept.
+  void list_moved(const std::vector<std::int32_t>& list, std::vector<std::int64_t>& places);
   /// Diagonal of the blocks J M^-1 J^T of the contacts, [3 contacts].
   const std::vector<double>& diagonal() const { return diagonal_; }
   /// u = J x + w of all contacts. @param x  [rows][3]. @param velocity  out [3 contacts]
@@ -106,6 +109,7 @@ class TouchingBlocks {
   void pack_elastic(std::size_t contact);
   void add_elastic(std::size_t contact, const double* change, double* y) const;
   void gather(std::size_t contact, const double* y);
+  void scatter(std::size_t contact, double* y) const;
   void add_push(std::size_t contact, const double* r, double* force) const;
   void velocity_at(std::size_t contact, const double* x, double* velocity) const;
 
@@ -119,12 +123,15 @@ class TouchingBlocks {
   std::vector<std::int32_t> touched_;       ///< rows, ascending
   std::vector<std::int64_t> packed_start_;  ///< [contacts] in packed_, -1: not there yet
   std::vector<std::int32_t> packed_size_;   ///< [contacts]
+  std::vector<std::uint8_t> moves_rows_;    ///< [contacts] not elastic bodies alone, of packed ones
   std::vector<double> packed_;              ///< of contacts three rows of J, three of responses
   std::vector<double> gathered_;            ///< velocities of one contact
   std::vector<double> turned_;              ///< J of rows of elastic bodies, in their frames
   std::vector<ElasticPart> elastic_parts_;
   std::vector<std::int32_t> elastic_start_, elastic_end_;  ///< [contacts] in elastic_parts_
-  std::vector<double> elastic_response_;                   ///< [parts][3][size]
+  std::vector<float> elastic_response_;                    ///< [parts][3][size], rounded
+  std::vector<std::array<std::int64_t, 2>> ranges_;
+  std::vector<double> summed_;  ///< before they are rounded
   const ElasticSpace* elastic_ = nullptr;
   std::vector<std::int32_t> working_;
   std::int64_t operations_ = 0;

@@ -4,6 +4,7 @@
 
 #include "host/base/index_of.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
 #include "kernels/contact/contact_residual.hpp"
 
 namespace tetwarp {
@@ -20,11 +21,13 @@ void TouchingBlocks::pack(std::size_t contact) {
   packed_.resize(packed_.size() + 6 * index_of(size), 0.0);
   if (gathered_.size() < index_of(size)) gathered_.resize(index_of(size));
   double* out = packed_.data() + packed_start_[contact];
+  moves_rows_[contact] = 0;
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const Part& part = parts_[index_of(p)];
+    const bool is_elastic = part.place != part.first;
+    if (!is_elastic) moves_rows_[contact] = 1;
     for (std::int32_t a = 0; a < 3; ++a) {
       const std::int64_t from = part.value + a * part.size;
-      const bool is_elastic = part.place != part.first;
       std::copy_n((is_elastic ? turned_ : jacobian_).data() + from, part.size, out + a * size);
       std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
     }
@@ -36,40 +39,37 @@ void TouchingBlocks::pack(std::size_t contact) {
 /// Velocities of all touched nodes of elastic bodies for unit impulses.
 void TouchingBlocks::pack_elastic(std::size_t contact) {
   elastic_start_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
-  std::int32_t last = -1;
-  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
-    const std::int32_t row = part_item_[index_of(p)], body = elastic_->body_of_row(row);
-    if (body < 0) continue;
-    const ElasticBody& own = elastic_->bodies()[index_of(body)];
-    if (body != last) {
-      elastic_parts_.push_back(
-          {own.first, static_cast<std::int64_t>(elastic_response_.size()), own.size});
-      elastic_response_.resize(elastic_response_.size() + 3 * index_of(own.size), 0.0);
+  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact];) {
+    const std::int32_t body = elastic_->body_of_row(part_item_[index_of(p)]);
+    if (body < 0) {
+      ++p;
+      continue;
     }
-    last = body;
-    const double* const j = turned_.data() + parts_[index_of(p)].value;
-    const double* const g =
-        own.compliance.data() + 3 * index_of(elastic_->slot_of_row(row)) * index_of(own.size);
-    for (std::int64_t a = 0; a < 3; ++a) {
-      double* const out = elastic_response_.data() + elastic_parts_.back().value + a * own.size;
-      const double x = j[3 * a], y = j[3 * a + 1], z = j[3 * a + 2];
-      for (std::int64_t k = 0; k < own.size; ++k) {
-        out[k] += g[k] * x + g[own.size + k] * y + g[2 * own.size + k] * z;
+    const ElasticBody& own = elastic_->bodies()[index_of(body)];
+    const std::size_t size = index_of(own.size);
+    summed_.assign(3 * size, 0.0);
+    for (; p < coarse_start_[contact]; ++p) {
+      const std::int32_t row = part_item_[index_of(p)];
+      if (elastic_->body_of_row(row) != body) break;
+      const double* const j = turned_.data() + parts_[index_of(p)].value;
+      const float* const g =
+          own.compliance.data() + 3 * index_of(elastic_->slot_of_row(row)) * size;
+      for (std::size_t a = 0; a < 3; ++a) {
+        vector_stages().add_rows(g, own.size, j + 3 * a, own.size, summed_.data() + a * size);
       }
     }
+    elastic_parts_.push_back(
+        {own.first, static_cast<std::int64_t>(elastic_response_.size()), own.size});
+    elastic_response_.insert(elastic_response_.end(), summed_.begin(), summed_.end());
   }
   elastic_end_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
 }
 
 void TouchingBlocks::add_elastic(std::size_t contact, const double* change, double* y) const {
-  const double a = change[0], b = change[1], c = change[2];
   for (std::int32_t p = elastic_start_[contact]; p < elastic_end_[contact]; ++p) {
     const ElasticPart& part = elastic_parts_[index_of(p)];
-    const double* const response = elastic_response_.data() + part.value;
-    double* const v = y + part.place;
-    for (std::int64_t k = 0; k < part.size; ++k) {
-      v[k] += response[k] * a + response[part.size + k] * b + response[2 * part.size + k] * c;
-    }
+    vector_stages().add_rows(elastic_response_.data() + part.value, part.size, change, part.size,
+                             y + part.place);
   }
 }
 
@@ -108,6 +108,16 @@ void TouchingBlocks::gather(std::size_t contact, const double* y) {
   std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
 }
 
+/// Copies the gathered velocities of rows and coarse unknowns back.
+void TouchingBlocks::scatter(std::size_t contact, double* y) const {
+  const double* in = gathered_.data();
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    const Part& part = parts_[index_of(p)];
+    if (part.place == part.first) copy_threes(in, part.size, y + part.place);
+    in += part.size;
+  }
+}
+
 void TouchingBlocks::sweep(ContactSwitches switches,
                            const std::vector<std::int32_t>& list,
                            double* y,
@@ -134,14 +144,12 @@ void TouchingBlocks::sweep(ContactSwitches switches,
     solve_contact(constants_[c], switches, u, r);
     const double change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
     if (change[0] == 0 && change[1] == 0 && change[2] == 0) continue;
-    for (std::int32_t k = 0; k < size; ++k) {
-      v[k] += response[k] * change[0] + response[size + k] * change[1] +
-              response[2 * size + k] * change[2];
-    }
-    std::int32_t place = 0;
-    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1];
-         place += parts_[index_of(p)].size, ++p) {
-      copy_threes(v + place, parts_[index_of(p)].size, y + parts_[index_of(p)].place);
+    if (moves_rows_[c] != 0) {
+      for (std::int32_t k = 0; k < size; ++k) {
+        v[k] += response[k] * change[0] + response[size + k] * change[1] +
+                response[2 * size + k] * change[2];
+      }
+      scatter(c, y);
     }
     add_elastic(c, change, y);
   }
@@ -166,6 +174,27 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
       }
     }
     add_elastic(c, r, y);
+  }
+}
+
+void TouchingBlocks::list_moved(const std::vector<std::int32_t>& list,
+                                std::vector<std::int64_t>& places) {
+  ranges_.clear();
+  for (const std::int32_t contact : list) {
+    const std::size_t c = index_of(contact);
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const Part& part = parts_[index_of(p)];
+      if (part.place == part.first) ranges_.push_back({part.place, part.size});
+    }
+    for (std::int32_t p = elastic_start_[c]; p < elastic_end_[c]; ++p) {
+      ranges_.push_back({elastic_parts_[index_of(p)].place, elastic_parts_[index_of(p)].size});
+    }
+  }
+  std::sort(ranges_.begin(), ranges_.end());
+  ranges_.erase(std::unique(ranges_.begin(), ranges_.end()), ranges_.end());
+  places.clear();
+  for (const auto& [first, size] : ranges_) {
+    for (std::int64_t k = 0; k < size; ++k) places.push_back(first + k);
   }
 }
 

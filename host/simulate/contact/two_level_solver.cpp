@@ -22,7 +22,8 @@ constexpr std::int64_t most_operations = 1'000'000'000;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
 constexpr std::int32_t chunk_rows = 64;
-constexpr double inner_share = 0.002;  // of the error before an outer iteration, left by its sweeps
+// Of the error before an outer iteration, left by its sweeps; with single elastic bodies.
+constexpr double inner_share = 0.002, elastic_share = 0.005;
 // The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors the
 // error was an upper bound of eta, by a factorization of A, on bodies of some hundred nodes with E
 // of 1e4 to 1e8 Pa, with and without adhesion.
@@ -199,7 +200,7 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     }
     if (!keep_best(outcome)) break;
     stepped_ = impulse_;
-    outcome.sweeps += sweep(inner_share * error);
+    outcome.sweeps += sweep((elastic_.bodies().empty() ? inner_share : elastic_share) * error);
     ++outcome.outer_iterations;
     if (options_.progress && !options_.progress({clock.seconds(), outcome.sweeps, 0})) {
       return outcome;

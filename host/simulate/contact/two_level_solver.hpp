@@ -6,6 +6,7 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/simulate/contact/following_motion.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "kernels/contact/anderson.hpp"
 
@@ -27,10 +28,10 @@ struct TwoLevelOutcome {
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
 ///     v = v_f + M^-1 J^T (r - r before)
 ///
-/// with Anderson acceleration of v, and of r in the sweeps. It has converged where the defect of A
-/// v = b + J^T r in the norm of M^-1 and the natural map of the laws are together at most
-/// `tolerance` times the sum of the square root of the work of the impulses and of the natural map
-/// without impulses, or as small as the error of the velocities without contact.
+/// with Anderson acceleration of v, and acceleration of r in the sweeps. It has converged where the
+/// defect of A v = b + J^T r in the norm of M^-1 and the natural map of the laws are together at
+/// most `tolerance` times the sum of the square root of the work of the impulses and of the natural
+/// map without impulses, or as small as the error of the velocities without contact.
 ///
 /// It ends, without having converged, after a number of operations, and where its residual no
 /// longer shrinks, as of bodies that are squeezed so that no velocities satisfy all contacts. The
@@ -79,6 +80,11 @@ class TwoLevelSolver {
   double find_error(double defect, double& work);
   std::int64_t sweep(double enough);
   double sweep_working();
+  template <class Accelerator, class Follow>
+  void sweep_accelerated(const std::vector<std::int32_t>& list,
+                         double enough,
+                         const Follow& follow,
+                         std::int64_t& sweeps);
   void sweep_listed(const std::vector<std::int32_t>& list, double enough, std::int64_t& sweeps);
   void gather_impulses(const std::vector<std::int32_t>& list);
   void scatter_impulses(const std::vector<std::int32_t>& list);
@@ -120,7 +126,10 @@ class TwoLevelSolver {
   std::int64_t restricted_width_ = 0;
   double least_error_ = 0;                                 ///< of the velocities without contact
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
-  std::vector<double> before_, swept_, unmixed_, listed_diagonal_, mixed_impulses_;  ///< of sweep()
+  std::vector<double> before_, swept_, unaccelerated_, listed_diagonal_,
+      accelerated_;  ///< of sweep()
+  std::vector<std::int64_t> moved_places_;
+  FollowingMotion motion_;
   std::vector<std::int32_t> pushing_;  ///< contacts with impulses
   Best best_;
 };

@@ -47,37 +47,65 @@ double TwoLevelSolver::sweep_working() {
   return std::sqrt(square);
 }
 
-/// Sweeps over `list` with Anderson acceleration of its impulses, until a sweep changes them by at
-/// most `enough` or `sweeps` is at its limit.
-void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
-                                  double enough,
-                                  std::int64_t& sweeps) {
+/// Sweeps over `list`, accelerated, until a sweep changes its impulses by at most `enough` or
+/// `sweeps` is at its limit.
+/// @param follow  (accelerator): moves y as the accelerator has changed `swept_`
+template <class Accelerator, class Follow>
+void TwoLevelSolver::sweep_accelerated(const std::vector<std::int32_t>& list,
+                                       double enough,
+                                       const Follow& follow,
+                                       std::int64_t& sweeps) {
   const auto size = static_cast<std::int64_t>(3 * list.size());
   CpuContactExec exec(threads_);
-  using Mixer = AndersonMixer<CpuContactExec, double>;
-  mixed_impulses_.resize(index_of(Mixer::columns * size));
+  accelerated_.resize(index_of(Accelerator::columns * size));
   listed_diagonal_.clear();
   for (const std::int32_t contact : list) {
     const auto begin = blocks_.diagonal().begin() + 3 * std::ptrdiff_t{contact};
     listed_diagonal_.insert(listed_diagonal_.end(), begin, begin + 3);
   }
-  Mixer mixer(exec, {listed_diagonal_.data(), size},
-              {mixed_impulses_.data(), Mixer::columns * size});
+  Accelerator accelerator(exec, {listed_diagonal_.data(), size},
+                          {accelerated_.data(), Accelerator::columns * size});
   gather_impulses(list);
   const View<double> image{swept_.data(), size};
   while (sweeps < most_sweeps) {
     before_ = swept_;
+    motion_.keep(y_.data());
     const View<const double> before{before_.data(), size};
     blocks_.sweep(switches_, list, y_.data(), swept_.data());
     ++sweeps;
-    mixer.observe(before, image);
-    if (mixer.defect() <= enough || sweeps == most_sweeps) break;
-    unmixed_ = swept_;
-    if (mixer.advance(before, image)) {
-      blocks_.push(list, unmixed_.data(), swept_.data(), y_.data());
-    }
+    accelerator.observe(before, image);
+    if (accelerator.defect() <= enough || sweeps == most_sweeps) break;
+    unaccelerated_ = swept_;
+    if (accelerator.advance(before, image)) follow(accelerator);
   }
   scatter_impulses(list);
+}
+
+/// Conjugate directions follow impulses that drift, as those of many contacts between elastic
+/// bodies do, whose velocities determine them poorly. Springs, which hold cloth, are linear:
+/// Anderson acceleration finds their impulses sooner.
+void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
+                                  double enough,
+                                  std::int64_t& sweeps) {
+  using Directions = ConjugateDirection<CpuContactExec, double>;
+  using Mixer = AndersonMixer<CpuContactExec, double>;
+  moved_places_.clear();
+  if (elastic_.bodies().empty()) {
+    motion_.start(moved_places_);
+    sweep_accelerated<Mixer>(
+        list, enough,
+        [&](const Mixer&) { blocks_.push(list, unaccelerated_.data(), swept_.data(), y_.data()); },
+        sweeps);
+  } else {
+    blocks_.list_moved(list, moved_places_);
+    motion_.start(moved_places_);
+    sweep_accelerated<Directions>(
+        list, enough,
+        [&](const Directions& directions) {
+          motion_.advance(directions.state()->is_restart, directions.state()->ratio, y_.data());
+        },
+        sweeps);
+  }
 }
 
 /// Sweeps until one over all contacts that work changes their impulses by at most `enough` in the

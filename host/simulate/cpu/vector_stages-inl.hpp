@@ -107,9 +107,30 @@ PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int
 }
 
 template <int width>
+void add_rows_of(
+    const float* rows, std::int64_t stride, const double* change, std::int64_t size, double* sum) {
+  typedef float Floats __attribute__((vector_size(4 * width)));
+  typedef typename LaneVector<width>::Numbers Numbers;
+  for (std::int64_t k = 0; k < size; k += width) {
+    Numbers own;
+    __builtin_memcpy(&own, sum + k, sizeof(own));
+    for (int a = 0; a < 3; ++a) {
+      Floats row;
+      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
+      own += __builtin_convertvector(row, Numbers) * change[a];
+    }
+    __builtin_memcpy(sum + k, &own, sizeof(own));
+  }
+}
+
+template <int width>
 constexpr VectorStages vector_stages_of(const char* name) {
-  return {name, tet_forces_of<width>, assemble_of<width>, product_of<width, double>,
-          product_of<width, float>};
+  return {name,
+          tet_forces_of<width>,
+          assemble_of<width>,
+          product_of<width, double>,
+          product_of<width, float>,
+          add_rows_of<width>};
 }
 
 }  // namespace tetwarp

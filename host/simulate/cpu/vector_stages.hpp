@@ -18,6 +18,10 @@ struct VectorStages {
   PlainSums<1> (*product_float)(const GradientArrays<float>& a,
                                 std::int64_t begin,
                                 std::int64_t end);
+  /// sum += change[0] rows[0] + change[1] rows[1] + change[2] rows[2], rows of `stride` numbers.
+  /// @param size  a multiple of 8
+  void (*add_rows)(
+      const float* rows, std::int64_t stride, const double* change, std::int64_t size, double* sum);
 };
 
 /// The widest that this processor has.
