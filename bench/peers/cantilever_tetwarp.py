@@ -34,8 +34,8 @@ def run(command, nu, cells):
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder)
         (path / "beam.json").write_text(json.dumps(scene(nu, cells)))
-        subprocess.run([command, "simulate", path / "beam.json", "-o", path / "out"], check=True,
-                       stdout=subprocess.DEVNULL)
+        subprocess.run([command, "simulate", path / "beam.json", "-o", path / "out", "--threads", "1"],
+                       check=True, stdout=subprocess.DEVNULL)
         with h5py.File(path / "out" / "series.h5") as series:
             milliseconds = 1e3 * numpy.mean(series["seconds/total"][1:])
         with h5py.File(path / "out" / "beam.vtkhdf") as file:

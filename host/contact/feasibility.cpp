@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "host/exec/contact_exec_cpu.hpp"
-#include "kernels/contact/contact_memory.hpp"
 #include "kernels/contact/contact_pipeline.hpp"
 
 namespace tetwarp {
@@ -18,6 +16,18 @@ ContactSystem<double> make_bare(const ContactSystem<double>& system) {
     c.kind = ContactKind::frictionless;
   }
   return bare;
+}
+
+/// Sets the state of an island to that without impulses.
+void start_island(const ContactNumbers<double>& numbers,
+                  const ContactIsland& island,
+                  StateMemory<CpuContactExec, double>& state) {
+  const std::int64_t slot = 3 * island.slot_begin, size = 3 * island.contact_count();
+  std::fill_n(state.impulse.begin() + slot, size, 0.0);
+  std::copy_n(numbers.free_velocity.data + slot, size, state.velocity.begin() + slot);
+  if (numbers.is_local) return;
+  std::copy(numbers.body_free.data + island.dof_begin, numbers.body_free.data + island.dof_end,
+            state.body_velocity.begin() + island.dof_begin);
 }
 
 /// y . B y for impulses y of the pipeline's island. The impulses of the pipeline are kept, and its
@@ -49,19 +59,23 @@ std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
                                               const ContradictionSearch& search,
+                                              ContradictionMemory& memory,
                                               SolveBudget* budget) {
   // A distance counts as infinite if it is larger by this factor than that of single contacts.
   constexpr double far = 1e7;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     if (!is_contact(system.constants[index_of(s)].kind)) return {};
   }
-  const ContactSystem<double> bare = make_bare(system);
-  const ContactNumbers<double> numbers = bare.numbers(structure.indices());
   CpuContactExec exec(1);
-  StateMemory<CpuContactExec, double> state;
-  state.reset(exec, numbers, false);
+  if (!memory.bare) {
+    memory.bare = make_bare(system);
+    memory.state.reset(exec, memory.bare->numbers(structure.indices()), false);
+  }
+  const ContactSystem<double>& bare = *memory.bare;
+  const ContactNumbers<double> numbers = bare.numbers(structure.indices());
+  start_island(numbers, island, memory.state);
   ContactPipeline<CpuContactExec, double> pipeline(exec, numbers, view_of(structure.color_start),
-                                                   island, {}, state.views());
+                                                   island, {}, memory.state.views());
   double required = 0;
   for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
     const auto slot = static_cast<std::size_t>(s);

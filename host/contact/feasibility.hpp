@@ -12,6 +12,8 @@
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/structure/structure.hpp"
 #include "host/contact/structure/system.hpp"
+#include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/contact_memory.hpp"
 
 namespace tetwarp {
 
@@ -22,6 +24,13 @@ struct ContradictionSearch {
                                    ///< make it grow
 };
 
+/// What a search needs of a problem, kept between the searches on its islands.
+struct ContradictionMemory {
+  std::optional<ContactSystem<double>>
+      bare;  ///< without friction and springs; empty: of no problem
+  StateMemory<CpuContactExec, double> state;
+};
+
 /// Slots of an island whose normal offsets contradict each other; empty when none do, and for
 /// islands with other blocks of rows than contacts.
 ///
@@ -29,12 +38,14 @@ struct ContradictionSearch {
 /// -y.q / sqrt(y.B y) in the energy norm. Where the offsets contradict each other, the impulses of
 /// frictionless sweeps grow without bound along a y for which this is infinite; the slots with
 /// y > 0 are returned.
+/// @param memory  of searches on the same system, or empty
 /// @param budget  ends the search; null: no limits
 /// @pre A does not couple the blocks of the island
 std::vector<std::int64_t> contradicting_slots(const ContactStructure& structure,
                                               const ContactSystem<double>& system,
                                               const ContactIsland& island,
                                               const ContradictionSearch& search,
+                                              ContradictionMemory& memory,
                                               SolveBudget* budget = nullptr);
 
 /// Solves a problem; as long as contacts that contradict each other are found, raises their

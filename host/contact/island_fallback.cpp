@@ -187,8 +187,9 @@ bool IslandSolver::clamp_contradicting(std::int64_t island,
                                        const ContactRun<double>& run,
                                        ContradictionSearch search,
                                        EngineResult& result) {
-  for (const std::int64_t slot : contradicting_slots(
-           structure_, run.system(), structure_.islands[index_of(island)], search, budget_)) {
+  for (const std::int64_t slot :
+       contradicting_slots(structure_, run.system(), structure_.islands[index_of(island)], search,
+                           contradiction_memory_, budget_)) {
     result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
   }
   return !result.clamped.empty();

@@ -14,6 +14,7 @@ IslandSolver::IslandSolver(const ContactOptions& options, int threads, ContactDe
 ContactSavings IslandSolver::set_problem(const ContactProblem& problem) {
   problem_ = &problem;
   has_host_system_ = has_device_system_ = false;
+  contradiction_memory_.bare.reset();
   if (device_ != nullptr) return set_device_problem();
   ContactSavings savings;
   fill_system(problem, options_, structure_, system_, savings, threads_);

@@ -98,9 +98,10 @@ class IslandSolver {
   SolveBudget* budget_ = nullptr;
   ContactStructure structure_;
   const ContactProblem* problem_ = nullptr;
-  ContactSystem<double> system_;    ///< kept, so that its memory is reused
-  bool has_host_system_ = false;    ///< system_ has the numbers of the problem
-  bool has_device_system_ = false;  ///< the device has them
+  ContactSystem<double> system_;              ///< kept, so that its memory is reused
+  bool has_host_system_ = false;              ///< system_ has the numbers of the problem
+  bool has_device_system_ = false;            ///< the device has them
+  ContradictionMemory contradiction_memory_;  ///< of the problem
   std::vector<double> free_motion_;
   std::shared_ptr<BlockJacobiMemory<CpuContactExec>>
       block_jacobi_memory_;  ///< null: no island iterated so far
