@@ -127,6 +127,15 @@ class RestMatrix {
   std::map<std::array<std::int32_t, 2>, std::array<double, 9>> blocks_;
 };
 
+typedef double Four __attribute__((vector_size(4 * sizeof(double))));
+
+bool is_zero(double x) {
+  return x == 0;
+}
+bool is_zero(const Four& x) {
+  return x[0] == 0 && x[1] == 0 && x[2] == 0;
+}
+
 }  // namespace
 
 bool RestFactor::is_possible(const Model& model, std::int32_t body) {
@@ -189,39 +198,49 @@ RestFactor::RestFactor(const Model& model, std::int32_t body, double time_step) 
   work_.resize(index_of(3 * std::int64_t{count}));
 }
 
-void RestFactor::solve(double* x) {
+/// w = A_0^-1 w in the order of L. @tparam Real  a number, or a vector of numbers of as many w
+template <class Real>
+void RestFactor::substitute(Real* w) const {
   const std::size_t count = order_.size();
-  double* const w = work_.data();
-  for (std::size_t n = 0; n < count; ++n) std::copy_n(x + 3 * n, 3, w + 3 * index_of(order_[n]));
   for (std::size_t j = 0; j < count; ++j) {
+    Real* const own = w + 3 * j;
+    if (is_zero(own[0]) && is_zero(own[1]) && is_zero(own[2])) continue;
     const auto& l = diagonal_[j];
-    double* const own = w + 3 * j;
-    const double a = l[0] * own[0], b = l[1] * own[0] + l[2] * own[1];
-    const double c = l[3] * own[0] + l[4] * own[1] + l[5] * own[2];
+    const Real a = double{l[0]} * own[0], b = double{l[1]} * own[0] + double{l[2]} * own[1];
+    const Real c = double{l[3]} * own[0] + double{l[4]} * own[1] + double{l[5]} * own[2];
     own[0] = a, own[1] = b, own[2] = c;
     for (std::int32_t k = start_[j]; k < start_[j + 1]; ++k) {
       const Entry& entry = entries_[index_of(k)];
-      double* const out = w + 3 * index_of(entry.row);
+      const float* const e = entry.block;
+      Real* const out = w + 3 * index_of(entry.row);
       for (int i = 0; i < 3; ++i) {
-        out[i] -= entry.block[3 * i] * a + entry.block[3 * i + 1] * b + entry.block[3 * i + 2] * c;
+        out[i] -= double{e[3 * i]} * a + double{e[3 * i + 1]} * b + double{e[3 * i + 2]} * c;
       }
     }
   }
   for (std::size_t j = count; j-- > 0;) {
-    double* const own = w + 3 * j;
-    double a = own[0], b = own[1], c = own[2];
+    Real* const own = w + 3 * j;
+    Real a = own[0], b = own[1], c = own[2];
     for (std::int32_t k = start_[j]; k < start_[j + 1]; ++k) {
       const Entry& entry = entries_[index_of(k)];
-      const double* const in = w + 3 * index_of(entry.row);
-      a -= entry.block[0] * in[0] + entry.block[3] * in[1] + entry.block[6] * in[2];
-      b -= entry.block[1] * in[0] + entry.block[4] * in[1] + entry.block[7] * in[2];
-      c -= entry.block[2] * in[0] + entry.block[5] * in[1] + entry.block[8] * in[2];
+      const float* const e = entry.block;
+      const Real* const in = w + 3 * index_of(entry.row);
+      a -= double{e[0]} * in[0] + double{e[3]} * in[1] + double{e[6]} * in[2];
+      b -= double{e[1]} * in[0] + double{e[4]} * in[1] + double{e[7]} * in[2];
+      c -= double{e[2]} * in[0] + double{e[5]} * in[1] + double{e[8]} * in[2];
     }
     const auto& l = diagonal_[j];
-    own[0] = l[0] * a + l[1] * b + l[3] * c;
-    own[1] = l[2] * b + l[4] * c;
-    own[2] = l[5] * c;
+    own[0] = double{l[0]} * a + double{l[1]} * b + double{l[3]} * c;
+    own[1] = double{l[2]} * b + double{l[4]} * c;
+    own[2] = double{l[5]} * c;
   }
+}
+
+void RestFactor::solve(double* x) {
+  const std::size_t count = order_.size();
+  double* const w = work_.data();
+  for (std::size_t n = 0; n < count; ++n) std::copy_n(x + 3 * n, 3, w + 3 * index_of(order_[n]));
+  substitute(w);
   for (std::size_t n = 0; n < count; ++n) std::copy_n(w + 3 * index_of(order_[n]), 3, x + 3 * n);
 }
 
@@ -230,12 +249,14 @@ const float* RestFactor::columns(std::int32_t node) {
   std::int32_t& place = column_of_[index_of(node)];
   if (place < 0) {
     place = static_cast<std::int32_t>(columns_.size() / (3 * size));
-    std::vector<double> own(size);
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::fill(own.begin(), own.end(), 0.0);
-      own[3 * index_of(node) + i] = 1;
-      solve(own.data());
-      columns_.insert(columns_.end(), own.begin(), own.end());
+    columns_.resize(columns_.size() + 3 * size);
+    std::vector<Four> w(size, Four{});  // the three columns side by side
+    for (std::size_t i = 0; i < 3; ++i) w[3 * index_of(order_[index_of(node)]) + i][i] = 1;
+    substitute(w.data());
+    float* const out = columns_.data() + 3 * size * index_of(place);
+    for (std::size_t k = 0; k < size; ++k) {
+      const Four& own = w[3 * index_of(order_[k / 3]) + k % 3];
+      for (std::size_t i = 0; i < 3; ++i) out[i * size + k] = static_cast<float>(own[i]);
     }
   }
   return columns_.data() + 3 * size * index_of(place);

@@ -34,6 +34,9 @@ class RestFactor {
     float block[9];    ///< rows first
   };
 
+  template <class Real>
+  void substitute(Real* w) const;
+
   const Model& model_;
   std::vector<std::int32_t> tets_;
   std::vector<std::int32_t> order_;  ///< [nodes] place in L
