@@ -62,7 +62,7 @@ bench_cantilever() {
   : >"$log"
   if "$python" -c 'import h5py, numpy' 2>/dev/null; then
     { cmake --build "$folder" --target tetwarp_command &&
-      OMP_NUM_THREADS=1 "$python" "$peers/cantilever_tetwarp.py" "$folder/tetwarp" | tee -a "$log"; } ||
+      "$python" "$peers/cantilever_tetwarp.py" "$folder/tetwarp" | tee -a "$log"; } ||
       echo "cantilever_tetwarp.py failed"
   else
     echo "missing: h5py or numpy; the cantilever in tetwarp is left out"
