@@ -90,7 +90,6 @@ set(tetwarp_collide_sources  # host/collide: which features touch during a motio
 set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their solution
   host/simulate/contact/cage_growth.cpp
   host/simulate/contact/cage_pose.cpp
-  host/simulate/contact/coarse_space.cpp
   host/simulate/contact/contact_islands.cpp
   host/simulate/contact/contact_rows.cpp
   host/simulate/contact/contact_system.cpp
@@ -110,6 +109,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/rigid_patches.cpp
   host/simulate/contact/round_shape.cpp
   host/simulate/contact/scene_surfaces.cpp
+  host/simulate/contact/solved_islands.cpp
   host/simulate/contact/start_check.cpp
   host/simulate/contact/start_shrink.cpp
   host/simulate/contact/step_problem.cpp

@@ -17,7 +17,7 @@ View<const T> view_of(const std::vector<T>& own) {
 }  // namespace
 
 void TouchingBlocks::set(const StepSystem& system,
-                         const CoarseSpace& coarse,
+                         const SolvedIslands& islands,
                          const ElasticSpace& elastic,
                          const ContactRows& rows,
                          const std::vector<std::int32_t>& contacts,
@@ -28,18 +28,17 @@ void TouchingBlocks::set(const StepSystem& system,
   elastic_ = &elastic;
   row_of_block_.assign(index_of(system.rows.block_of.size), -1);
   for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
-    if (coarse.island_of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
+    if (islands.of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
   }
   part_start_.assign(1, 0);
-  coarse_start_.clear();
   parts_.clear();
-  part_item_.clear();
+  part_row_.clear();
   jacobian_.clear();
   touched_.clear();
-  for (const std::int32_t contact : contacts) add_rows(system, coarse, rows, contact);
+  for (const std::int32_t contact : contacts) add_rows(system, rows, contact);
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-  set_responses(coarse, elastic, inverse, relaxation);
+  set_responses(islands, elastic, inverse, relaxation);
   packed_start_.assign(constants_.size(), -1);
   packed_size_.resize(constants_.size());
   moves_rows_.resize(constants_.size());
@@ -79,10 +78,8 @@ void TouchingBlocks::set_laws(const ContactProblem& laws) {
 
 /// Appends the parts of a contact.
 void TouchingBlocks::add_rows(const StepSystem& system,
-                              const CoarseSpace& coarse,
                               const ContactRows& rows,
                               std::int32_t contact) {
-  const std::size_t first_part = parts_.size();
   const std::int32_t end = rows.start[index_of(contact) + 1];
   for (std::int32_t e = rows.start[index_of(contact)]; e < end; ++e) {
     const std::int32_t row = row_of_block_[index_of(rows.block[index_of(e)])];
@@ -95,7 +92,7 @@ void TouchingBlocks::add_rows(const StepSystem& system,
                                         : elastic_->bodies()[index_of(body)].first +
                                               3 * std::int64_t{elastic_->slot_of_row(row)};
     parts_.push_back({first, place, static_cast<std::int64_t>(jacobian_.size()), size});
-    part_item_.push_back(row);
+    part_row_.push_back(row);
     touched_.push_back(row);
     for (std::size_t k = 0; k < 3; ++k) {
       const double* const linear = rows.value[index_of(e)].data() + 3 * k;
@@ -109,43 +106,7 @@ void TouchingBlocks::add_rows(const StepSystem& system,
       ++e;
     }
   }
-  coarse_start_.push_back(static_cast<std::int32_t>(parts_.size()));
-  add_modes(coarse, 3 * std::int64_t{system.rows.count}, first_part);
   part_start_.push_back(static_cast<std::int32_t>(parts_.size()));
-}
-
-/// Appends J Z of the islands that the parts from `first_part` on are in.
-void TouchingBlocks::add_modes(const CoarseSpace& coarse,
-                               std::int64_t coarse_begin,
-                               std::size_t first_part) {
-  const std::size_t last = parts_.size();
-  for (std::size_t p = first_part; p < last; ++p) {
-    const std::int32_t own = coarse.island_of_row(part_item_[p]);
-    const CoarseIsland& island = coarse.islands()[index_of(own)];
-    if (island.mode_count == 0) continue;
-    std::size_t place = last;
-    while (place < parts_.size() && part_item_[place] != own) ++place;
-    if (place == parts_.size()) {
-      parts_.push_back({coarse_begin + island.mode_begin, coarse_begin + island.mode_begin,
-                        static_cast<std::int64_t>(jacobian_.size()), island.mode_count});
-      part_item_.push_back(own);
-      jacobian_.resize(jacobian_.size() + 3 * index_of(island.mode_count), 0);
-    }
-    const Part part = parts_[p];
-    double* const out = jacobian_.data() + parts_[place].value;
-    const double* const j = jacobian_.data() + part.value;
-    for (std::int32_t half = 0; half < part.size / 3; ++half) {
-      const CoarseRow& row = coarse.row(part_item_[p] + half);
-      for (std::int32_t k = 0; k < row.count; ++k) {
-        for (std::int32_t a = 0; a < 3; ++a) {
-          for (std::int32_t i = 0; i < 3; ++i) {
-            out[a * island.mode_count + row.first + 3 * k + i] +=
-                row.factor[k] * j[a * part.size + 3 * half + i];
-          }
-        }
-      }
-    }
-  }
 }
 
 /// Turns J of a row of an elastic body, and adds its products with the rows of the same body before
@@ -153,7 +114,7 @@ void TouchingBlocks::add_modes(const CoarseSpace& coarse,
 void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
                                        std::size_t contact,
                                        std::int32_t part) {
-  const std::int32_t row = part_item_[index_of(part)], body = elastic.body_of_row(row);
+  const std::int32_t row = part_row_[index_of(part)], body = elastic.body_of_row(row);
   const ElasticBody& own = elastic.bodies()[index_of(body)];
   const auto& r = own.rotation;
   const double* const j = jacobian_.data() + parts_[index_of(part)].value;
@@ -164,7 +125,7 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
   }
   double* const block = constants_[contact].block;
   for (std::int32_t q = part_start_[contact]; q <= part; ++q) {
-    const std::int32_t other = part_item_[index_of(q)];
+    const std::int32_t other = part_row_[index_of(q)];
     if (elastic.body_of_row(other) != body) continue;
     const double* const second = turned_.data() + parts_[index_of(q)].value;
     const float* const g = own.compliance.data() +
@@ -188,7 +149,7 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
 }
 
 /// Velocities for unit impulses, and the block of each contact.
-void TouchingBlocks::set_responses(const CoarseSpace& coarse,
+void TouchingBlocks::set_responses(const SolvedIslands& islands,
                                    const ElasticSpace& elastic,
                                    const DiagonalInverse<double>& inverse,
                                    double relaxation) {
@@ -200,16 +161,14 @@ void TouchingBlocks::set_responses(const CoarseSpace& coarse,
     std::fill(block, block + 9, 0.0);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[index_of(p)];
-      const bool is_coarse = p >= coarse_start_[c];
-      if (!is_coarse && elastic.body_of_row(part_item_[index_of(p)]) >= 0) {
+      const std::int32_t row = part_row_[index_of(p)];
+      if (elastic.body_of_row(row) >= 0) {
         add_elastic_block(elastic, c, p);
         continue;
       }
-      const CoarseIsland& island = coarse.islands()[index_of(
-          is_coarse ? part_item_[index_of(p)] : coarse.island_of_row(part_item_[index_of(p)]))];
-      const double* const m = is_coarse ? coarse.inverse().data() + island.inverse_begin
-                                        : inverse.at(part_item_[index_of(p)]);
-      const double factor = is_coarse || !island.is_coupled ? 1 : relaxation;
+      const double* const m = inverse.at(row);
+      const double factor =
+          islands.list()[index_of(islands.of_row(row))].is_coupled ? relaxation : 1;
       const double* const j = jacobian_.data() + part.value;
       double* const response = response_.data() + part.value;
       const std::int32_t n = part.size;

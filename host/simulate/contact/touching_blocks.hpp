@@ -7,8 +7,8 @@
 
 #include <tetwarp/contact_problem.hpp>
 
-#include "host/simulate/contact/coarse_space.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/solved_islands.hpp"
 #include "kernels/body/row_product.hpp"
 #include "kernels/contact/contact_law.hpp"
 
@@ -20,17 +20,17 @@ struct TouchingSums {
   double work = 0;     ///< r . (u - free)
 };
 
-/// Vectors y hold velocities of all rows of the system [rows][3], then the coarse unknowns, then
-/// velocities of the nodes of elastic bodies that contacts touch, in the frames of these bodies at
-/// rest. With M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T a contact sees u = J y_rows + (J Z) y_coarse +
-/// w; of elastic bodies, whose M^-1 = R A_0^-1 R^T, u = J R y_touched + w.
+/// Vectors y hold velocities of all rows of the system [rows][3], then velocities of the nodes of
+/// elastic bodies that contacts touch, in the frames of these bodies at rest. With M^-1 = omega
+/// D^-1 a contact sees u = J y_rows + w; of elastic bodies, whose M^-1 = R A_0^-1 R^T, u = J R
+/// y_touched + w.
 class TouchingBlocks {
  public:
   /// @param laws        friction, offsets, adhesion of the contacts, and their guess
   /// @param contacts    numbers of the contacts in `rows`
   /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
   void set(const StepSystem& system,
-           const CoarseSpace& coarse,
+           const SolvedIslands& islands,
            const ElasticSpace& elastic,
            const ContactRows& rows,
            const std::vector<std::int32_t>& contacts,
@@ -95,12 +95,8 @@ class TouchingBlocks {
   };
 
   void set_laws(const ContactProblem& laws);
-  void add_rows(const StepSystem& system,
-                const CoarseSpace& coarse,
-                const ContactRows& rows,
-                std::int32_t contact);
-  void add_modes(const CoarseSpace& coarse, std::int64_t coarse_begin, std::size_t first_part);
-  void set_responses(const CoarseSpace& coarse,
+  void add_rows(const StepSystem& system, const ContactRows& rows, std::int32_t contact);
+  void set_responses(const SolvedIslands& islands,
                      const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
                      double relaxation);
@@ -115,10 +111,9 @@ class TouchingBlocks {
 
   std::vector<ContactConstants<double>> constants_;
   std::vector<double> offset_, preload_, diagonal_;
-  std::vector<std::int32_t> part_start_;    ///< [contacts + 1]
-  std::vector<std::int32_t> coarse_start_;  ///< [contacts] first part of coarse unknowns
+  std::vector<std::int32_t> part_start_;  ///< [contacts + 1]
   std::vector<Part> parts_;
-  std::vector<std::int32_t> part_item_;  ///< [parts] row, or island in CoarseSpace::islands()
+  std::vector<std::int32_t> part_row_;  ///< [parts]
   std::vector<double> jacobian_, response_;
   std::vector<std::int32_t> touched_;       ///< rows, ascending
   std::vector<std::int64_t> packed_start_;  ///< [contacts] in packed_, -1: not there yet

@@ -39,8 +39,8 @@ void TouchingBlocks::pack(std::size_t contact) {
 /// Velocities of all touched nodes of elastic bodies for unit impulses.
 void TouchingBlocks::pack_elastic(std::size_t contact) {
   elastic_start_[contact] = static_cast<std::int32_t>(elastic_parts_.size());
-  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact];) {
-    const std::int32_t body = elastic_->body_of_row(part_item_[index_of(p)]);
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1];) {
+    const std::int32_t body = elastic_->body_of_row(part_row_[index_of(p)]);
     if (body < 0) {
       ++p;
       continue;
@@ -48,8 +48,8 @@ void TouchingBlocks::pack_elastic(std::size_t contact) {
     const ElasticBody& own = elastic_->bodies()[index_of(body)];
     const std::size_t size = index_of(own.size);
     summed_.assign(3 * size, 0.0);
-    for (; p < coarse_start_[contact]; ++p) {
-      const std::int32_t row = part_item_[index_of(p)];
+    for (; p < part_start_[contact + 1]; ++p) {
+      const std::int32_t row = part_row_[index_of(p)];
       if (elastic_->body_of_row(row) != body) break;
       const double* const j = turned_.data() + parts_[index_of(p)].value;
       const float* const g =
@@ -108,7 +108,7 @@ void TouchingBlocks::gather(std::size_t contact, const double* y) {
   std::fill(out, gathered_.data() + packed_size_[contact], 0.0);
 }
 
-/// Copies the gathered velocities of rows and coarse unknowns back.
+/// Copies the gathered velocities of rows back.
 void TouchingBlocks::scatter(std::size_t contact, double* y) const {
   const double* in = gathered_.data();
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
@@ -198,10 +198,10 @@ void TouchingBlocks::list_moved(const std::vector<std::int32_t>& list,
   }
 }
 
-/// u of the rows of contacts, without coarse unknowns.
+/// u of the rows of contacts.
 void TouchingBlocks::velocity_at(std::size_t contact, const double* x, double* velocity) const {
   for (std::size_t a = 0; a < 3; ++a) velocity[a] = offset_[3 * contact + a];
-  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const Part& part = parts_[index_of(p)];
     for (int a = 0; a < 3; ++a) {
       const double* const j = jacobian_.data() + part.value + a * part.size;
@@ -240,7 +240,7 @@ TouchingSums TouchingBlocks::measure(ContactSwitches switches,
 
 /// force += J^T r of one contact.
 void TouchingBlocks::add_push(std::size_t contact, const double* r, double* force) const {
-  for (std::int32_t p = part_start_[contact]; p < coarse_start_[contact]; ++p) {
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const Part& part = parts_[index_of(p)];
     const double* const j = jacobian_.data() + part.value;
     for (std::int32_t k = 0; k < part.size; ++k) {

@@ -48,16 +48,13 @@ TwoLevelSolver::TwoLevelSolver(const Model& model, const ContactOptions& options
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
       relaxation_(1.3 * options.relaxation),
-      coarse_(model),
       elastic_(model) {}
 
 /// Parts of islands that one task takes; both rows of a rigid body are in one.
 void TwoLevelSolver::list_chunks(const SystemRows& rows) {
   chunks_.clear();
-  restricted_width_ = 0;
-  for (std::size_t i = 0; i < coarse_.islands().size(); ++i) {
-    const CoarseIsland& island = coarse_.islands()[i];
-    restricted_width_ = std::max<std::int64_t>(restricted_width_, island.mode_count);
+  for (std::size_t i = 0; i < islands_.list().size(); ++i) {
+    const SolvedIsland& island = islands_.list()[i];
     for (std::int32_t row = island.row_begin; row < island.row_end;) {
       std::int32_t end = std::min(row + chunk_rows, island.row_end);
       if (end < island.row_end && rows.pair[end] == 2) ++end;
@@ -65,7 +62,6 @@ void TwoLevelSolver::list_chunks(const SystemRows& rows) {
       row = end;
     }
   }
-  restricted_.resize(chunks_.size() * index_of(restricted_width_));
   squares_.resize(chunks_.size());
 }
 
@@ -89,8 +85,7 @@ void TwoLevelSolver::prepare(const StepSystem& system,
   for (auto* values : {&x_, &product_, &force_, &weights_, &pull_, &moved_}) {
     values->resize(index_of(numbers));
   }
-  y_.resize(index_of(numbers + coarse_.mode_count() + elastic_.size()));
-  coarse_defect_.resize(index_of(coarse_.mode_count()));
+  y_.resize(index_of(numbers + elastic_.size()));
   const RowInvertBody<double> invert{all, system.values, diagonal_};
   std::fill(weights_.begin(), weights_.end(), 0.0);
   parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
@@ -107,7 +102,7 @@ void TwoLevelSolver::prepare(const StepSystem& system,
       force_[3 * index_of(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
     }
   }
-  blocks_.set(system, coarse_, elastic_, rows, contacts, laws, diagonal_, relaxation_);
+  blocks_.set(system, islands_, elastic_, rows, contacts, laws, diagonal_, relaxation_);
   std::copy(x_.begin(), x_.end(), y_.begin());
   impulse_ = laws.impulse_guess;
   for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] += blocks_.preload()[c];
@@ -166,9 +161,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
                                       std::vector<Point3>& change) {
   const Clock clock;
   elastic_.choose(system.rows, islands, takes, rows, contacts);
-  coarse_.set(system, state, islands, takes, elastic_, threads_);
-  elastic_.set(state, laws.adhesion.time_step,
-               3 * std::int64_t{system.rows.count} + coarse_.mode_count(), threads_);
+  islands_.set(system.rows, islands, takes, elastic_);
+  elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, threads_);
   prepare(system, contacts, rows, laws, velocity, change);
   change.assign(velocity.size(), Point3{0, 0, 0});
   TwoLevelOutcome outcome;
@@ -205,7 +199,6 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     if (options_.progress && !options_.progress({clock.seconds(), outcome.sweeps, 0})) {
       return outcome;
     }
-    add_coarse();
     add_elastic();
     const View<const double> before{x_.data() + begin, size};
     const View<double> image{y_.data() + begin, size};

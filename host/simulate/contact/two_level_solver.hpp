@@ -1,5 +1,5 @@
 /// @file two_level_solver.hpp
-/// Contacts of deformable and coupled bodies: an outer iteration in two levels around sweeps.
+/// Contacts of deformable and coupled bodies: outer iterations over bodies, sweeps over contacts.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -21,8 +21,8 @@ struct TwoLevelOutcome {
 };
 
 /// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
-/// M^-1 = omega D^-1 + Z (Z^T A Z)^-1 Z^T, D the diagonal blocks of A and Z the coarse space, or
-/// R A_0^-1 R^T for single elastic bodies (ElasticSpace),
+/// M^-1 = omega D^-1, D the diagonal blocks of A, or R A_0^-1 R^T for single elastic bodies
+/// (ElasticSpace),
 ///
 ///     v_f = v + M^-1 (b + J^T r - A v)
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
@@ -65,7 +65,7 @@ class TwoLevelSolver {
  private:
   struct Chunk {
     std::int32_t row_begin = 0, row_end = 0;
-    std::int32_t island = 0;  ///< in CoarseSpace::islands()
+    std::int32_t island = 0;  ///< in SolvedIslands::list()
   };
 
   void prepare(const StepSystem& system,
@@ -90,8 +90,6 @@ class TwoLevelSolver {
   void scatter_impulses(const std::vector<std::int32_t>& list);
   bool keep_best(const TwoLevelOutcome& now);
   void take_best(TwoLevelOutcome& outcome);
-  void find_coarse();
-  void add_coarse();
   double step_elastic();
   void add_elastic();
 
@@ -108,7 +106,7 @@ class TwoLevelSolver {
   ContactSwitches switches_;
   int threads_;
   double relaxation_;  ///< omega
-  CoarseSpace coarse_;
+  SolvedIslands islands_;
   ElasticSpace elastic_;
   TouchingBlocks blocks_;
   std::vector<Chunk> chunks_;
@@ -120,10 +118,7 @@ class TwoLevelSolver {
   std::vector<double> pull_, moved_;  ///< [rows][3] of elastic bodies
   std::vector<double> stepped_;       ///< [3 contacts] impulses of the last step()
   std::vector<double> elastic_squares_;
-  std::vector<double> restricted_;  ///< [chunks][most modes of an island] parts of Z^T d
-  std::vector<double> squares_;     ///< [chunks] parts of d . omega D^-1 d
-  std::vector<double> coarse_defect_;
-  std::int64_t restricted_width_ = 0;
+  std::vector<double> squares_;                            ///< [chunks] parts of d . omega D^-1 d
   double least_error_ = 0;                                 ///< of the velocities without contact
   std::vector<double> impulse_, contact_velocity_, free_;  ///< [3 contacts]
   std::vector<double> before_, swept_, unaccelerated_, listed_diagonal_,

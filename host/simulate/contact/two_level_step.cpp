@@ -8,7 +8,7 @@
 #include "host/simulate/cpu/vector_stages.hpp"
 
 namespace tetwarp {
-/// y = x + omega D^-1 d, d = force - A x, and the coarse part of M^-1 d. @returns d . M^-1 d
+/// y = x + M^-1 d, d = force - A x. @returns d . M^-1 d
 double TwoLevelSolver::step(const StepSystem& system) {
   GradientArrays<double> a;
   a.rows = system.rows;
@@ -19,11 +19,8 @@ double TwoLevelSolver::step(const StepSystem& system) {
     vector_stages().product(a, chunks_[index_of(c)].row_begin, chunks_[index_of(c)].row_end);
     step_chunk(c);
   });
-  find_coarse();
   double square = step_elastic();
   for (const double own : squares_) square += own;
-  const double* const c = y_.data() + x_.size();
-  for (std::size_t k = 0; k < coarse_defect_.size(); ++k) square += coarse_defect_[k] * c[k];
   return square;
 }
 
@@ -61,17 +58,15 @@ void TwoLevelSolver::add_elastic() {
       });
 }
 
-/// The rows of a chunk: y, and parts of d . omega D^-1 d and Z^T d.
+/// The rows of a chunk: y, and its part of d . omega D^-1 d.
 void TwoLevelSolver::step_chunk(std::int64_t c) {
   const Chunk& chunk = chunks_[index_of(c)];
-  const CoarseIsland& island = coarse_.islands()[index_of(chunk.island)];
+  const SolvedIsland& island = islands_.list()[index_of(chunk.island)];
   const double omega = island.is_coupled ? relaxation_ : 1;
   double* const d = product_.data();
   const std::int64_t end = 3 * std::int64_t{chunk.row_end};
   for (std::int64_t i = 3 * std::int64_t{chunk.row_begin}; i < end; ++i)
     d[i] = force_[index_of(i)] - d[i];
-  double* const restricted = restricted_.data() + c * restricted_width_;
-  std::fill(restricted, restricted + island.mode_count, 0.0);
   double square = 0;
   squares_[index_of(c)] = 0;
   if (island.elastic >= 0) return;
@@ -82,55 +77,8 @@ void TwoLevelSolver::step_chunk(std::int64_t c) {
       y_[index_of(3 * row + i)] = x_[index_of(3 * row + i)] + omega * z[i];
       square += omega * d[3 * row + i] * z[i];
     }
-    const CoarseRow& own = coarse_.row(row);
-    for (std::int32_t k = 0; k < own.count; ++k) {
-      for (int i = 0; i < 3; ++i)
-        restricted[own.first + 3 * k + i] += own.factor[k] * d[3 * row + i];
-    }
   }
   squares_[index_of(c)] = square;
-}
-
-/// Coarse unknowns (Z^T A Z)^-1 Z^T d.
-void TwoLevelSolver::find_coarse() {
-  std::fill(coarse_defect_.begin(), coarse_defect_.end(), 0.0);
-  for (std::size_t c = 0; c < chunks_.size(); ++c) {
-    const CoarseIsland& island = coarse_.islands()[index_of(chunks_[c].island)];
-    const double* const part =
-        restricted_.data() + static_cast<std::int64_t>(c) * restricted_width_;
-    for (std::int32_t k = 0; k < island.mode_count; ++k) {
-      coarse_defect_[index_of(island.mode_begin + k)] += part[k];
-    }
-  }
-  for (const CoarseIsland& island : coarse_.islands()) {
-    const double* const m = coarse_.inverse().data() + island.inverse_begin;
-    const double* const d = coarse_defect_.data() + island.mode_begin;
-    double* const out = y_.data() + x_.size() + index_of(island.mode_begin);
-    for (std::int32_t i = 0; i < island.mode_count; ++i) {
-      double sum = 0;
-      for (std::int32_t k = 0; k < island.mode_count; ++k) {
-        sum += m[std::int64_t{i} * island.mode_count + k] * d[k];
-      }
-      out[i] = sum;
-    }
-  }
-}
-
-/// Adds the motions of the coarse unknowns to the rows of y.
-void TwoLevelSolver::add_coarse() {
-  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    const Chunk& chunk = chunks_[index_of(c)];
-    const CoarseIsland& island = coarse_.islands()[index_of(chunk.island)];
-    if (island.mode_count == 0) return;
-    const double* const modes = y_.data() + x_.size() + index_of(island.mode_begin);
-    for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const CoarseRow& own = coarse_.row(row);
-      double* const v = y_.data() + 3 * std::int64_t{row};
-      for (std::int32_t k = 0; k < own.count; ++k) {
-        for (int i = 0; i < 3; ++i) v[i] += own.factor[k] * modes[own.first + 3 * k + i];
-      }
-    }
-  });
 }
 
 }  // namespace tetwarp
