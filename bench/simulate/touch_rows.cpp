@@ -178,6 +178,7 @@ void add_touch_rows(Extent extent) {
                                   {"candies", candies, 6, 4, 8}, {"candies", candies, 12, 4, 6}};
   if (extent == Extent::full) {
     cases.push_back({"cloth", cloth, 99, 2, 3});
+    cases.push_back({"cloth", cloth, 316, 2, 3});
     cases.push_back({"gravel", gravel, 60, 6, 3});
     cases.push_back({"candies", candies, 36, 4, 3});
   }
