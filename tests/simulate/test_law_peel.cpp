@@ -29,6 +29,7 @@ Peel peel(std::int64_t cells, double duration) {
                     {lead / speed, Point3{0, 0, lead}},
                     {8, Point3{lead - 0.16, 0, 0.16}}}}};
   Scene scene = floor_scene({strip}, 0.002, 0);
+  scene.gravity = {0, 0, 0};
   scene.solver.linear_tolerance = 1e-8;
   scene.solver.contact_tolerance = 1e-6;
   scene.contact.material.adhesion = AdhesionMaterial{
@@ -58,13 +59,13 @@ Peel peel(std::int64_t cells, double duration) {
   return result;
 }
 
-/// At a right angle the force is energy times width, whatever the mesh. Cells of 10 and 5 mm, where
-/// sqrt(energy / stiffness) is 5 mm; with longer ones the force ripples more than this way
-/// averages.
+/// At a right angle the force is energy times width, whatever the mesh. Cells of 20, 10 and 5 mm,
+/// where sqrt(energy / stiffness) is 5 mm. The force ripples with the rows of nodes that come off;
+/// with the longest cells its mean needs more rows than this way has, the energy does not.
 TEST(Peel, ForceIsEnergyTimesWidthForEveryMesh) {
-  for (const std::int64_t cells : {20, 40}) {
-    const Peel found = peel(cells, 3);
-    EXPECT_NEAR(found.force, 1, 0.03) << cells;
+  for (const auto& [cells, duration] : {std::pair{10, 4.0}, {20, 3.0}, {40, 3.0}}) {
+    const Peel found = peel(cells, duration);
+    EXPECT_NEAR(found.force, 1, cells == 10 ? 0.1 : 0.03) << cells;
     EXPECT_NEAR(found.energy, 1, 0.02) << cells;
     EXPECT_LT(std::abs(found.sideways), 0.1) << cells;
   }

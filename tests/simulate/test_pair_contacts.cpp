@@ -206,6 +206,30 @@ TEST(PairContacts, AHitOnTheWayHasTheGapOfTheStart) {
   expect_near(contact.tangent, {-1, 0, 0}, 1e-12);  // of body 0 relative to body 1
 }
 
+/// What touches is seen along the normal; a bond keeps the area that it was made with.
+TEST(PairContacts, ABondKeepsItsAreaAsItsSurfaceTurnsAway) {
+  PairScene scene;
+  Square sheet = square(1, 1.5 * h, true);
+  for (Point3& x : sheet.vertices) x = {0.5 * x[0], x[1], 1.5 * h + std::sqrt(0.75) * x[0]};
+  scene.add_mesh(sheet.vertices, sheet.triangles, {.is_rigid = false});
+  scene.add_plane({0, 0, 0}, {0, 0, 1});
+  const auto area_with = [&](double intensity, double area) {
+    std::vector<ContactRecord> records;
+    for (const ReportedContact& contact : scene.contacts()) {
+      ContactRecord& record = records.emplace_back();
+      record.key = contact.key;
+      record.area = area;
+      record.intensity = intensity;
+    }
+    EXPECT_EQ(records.size(), 2U);
+    return area_of(scene.contacts(records));
+  };
+
+  EXPECT_NEAR(area_with(0, 0.25), 0.25, 1e-14);  // half the sheet's, at 60 degrees
+  EXPECT_NEAR(area_with(0.1, 0.25), 0.5, 1e-14);
+  EXPECT_NEAR(area_with(0.1, 0.01), 0.25, 1e-14);
+}
+
 /// Bodies in the other order: the same contacts with sides exchanged.
 TEST(PairContacts, TheOrderOfBodiesChangesNothing) {
   const Square below = fine_box({0, 0, -1}, {1, 1, 0}, 3);

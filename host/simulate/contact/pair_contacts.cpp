@@ -140,6 +140,10 @@ void PairContacts::report_vertex(std::size_t first,
           areas_.share(touch.body_a, touch.body_b) * areas_.seen(touch.a, touch.normal, vertices);
     }
     slots_.push_back(slot_of(touch, records));
+    // A bond keeps its area as the surfaces turn away from each other.
+    const ContactRecord* const record =
+        record_of(records, key_of(touch.body_a, touch.a, touch.body_b, slots_.back()));
+    if (record != nullptr && record->intensity > 0) area = std::max(area, record->area);
     report(touch, touch.a, slots_.back(), area);
   }
 }
