@@ -135,7 +135,9 @@ __global__ void __launch_bounds__(floor_threads, 8)
       for (int v = 0; v < floor_flight; ++v) {
         float x[3];
         for (int row = 0; row < 3; ++row) {
-          x[row] = mul_add(map.axis[2][row], static_cast<float>(v * Tile::layers), at[row]);
+          x[row] = v == 0
+                       ? at[row]
+                       : mul_add(map.axis[2][row], static_cast<float>(v * Tile::layers), at[row]);
         }
         taps[v] = interior_tap(x);
         cubes[v] = sampler.cube(taps[v]);
