@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "bench/measure/affine_device.cuh"
+#include "kernels/warp/cell_class.cuh"
 #include "kernels/warp/cell_interior.cuh"
 #include "kernels/warp/cell_raster.cuh"
 #include "kernels/warp/cell_tested.cuh"
@@ -10,18 +11,14 @@
 namespace tetwarp {
 template __global__ void cell_raster_kernel<float, false>(RasterJob<float>);
 template __global__ void cell_raster_kernel<std::uint8_t, false>(RasterJob<std::uint8_t>);
-template __global__ void cell_class_kernel<float>(
-    CellWorkBody<float>, InteriorCell*, std::uint32_t*, std::uint32_t*, CellListCounts*);
+template __global__ void cell_class_kernel<float>(CellWorkBody<float>, CellLists);
 template __global__ void cell_interior_kernel<float>(RasterJob<float>,
                                                      const InteriorCell*,
                                                      const CellListCounts*);
 template __global__ void cell_interior_kernel<std::uint8_t>(RasterJob<std::uint8_t>,
                                                             const InteriorCell*,
                                                             const CellListCounts*);
-template __global__ void cell_tested_kernel<float>(RasterJob<float>,
-                                                   const std::uint32_t*,
-                                                   const std::uint32_t*,
-                                                   const CellListCounts*);
+template __global__ void cell_tested_kernel<float>(RasterJob<float>, CellLists, bool);
 
 namespace bench {
 template __global__ void affine_kernel<Tile<8, 8>, true, float>(

@@ -234,12 +234,12 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   block.host_bytes = 2 * samples + around + pair_bytes * pairs;
 
   // A device keeps two lists of pairs and three arrays for sorting, with room for a quarter more
-  // pairs; and each cell has a place in each of the lists of cells by class.
+  // pairs; and lists of cells by class.
   constexpr double device_pair_bytes = 36, list_room = 1.25, least_room = 1024;
-  constexpr double class_bytes = sizeof(InteriorCell) + 2.0 * sizeof(std::uint32_t);
   const double cell_count = output_voxels / (cell_edge * cell_edge * cell_edge);
-  block.device_bytes = samples + around + device_pair_bytes * (list_room * pairs + least_room) +
-                       (options.skip.interior_cells ? class_bytes * cell_count : 0.0);
+  const double room = list_room * pairs + least_room;
+  block.device_bytes = samples + around + device_pair_bytes * room +
+                       (options.skip.interior_cells ? class_list_bytes(cell_count, room) : 0.0);
   return block;
 }
 

@@ -1,15 +1,13 @@
 /// @file cell_interior.cuh
-/// Stage "raster" of the warp as CUDA kernels, for cells within one tetrahedron: lists them, and
-/// interpolates their voxels with nothing left to decide.
+/// Stage "raster" of the warp as CUDA kernels, for cells within one tetrahedron: interpolates their
+/// voxels with nothing left to decide.
 #pragma once
 #include "kernels/exec/launch.hpp"
 #include "kernels/warp/cell_class.hpp"
-#include "kernels/warp/cell_work.hpp"
 #include "kernels/warp/interior_sample.hpp"
 
 namespace tetwarp {
 
-constexpr int class_threads = 128;
 constexpr int interior_threads = 128;
 constexpr int interior_warps = interior_threads / 32;
 constexpr int interior_flight = 4;  ///< voxels of a thread whose samples are loaded together
@@ -26,51 +24,6 @@ constexpr int interior_blocks() {
 #endif
 }
 
-/// The place in a list of this lane's item; one atomic addition per warp. All lanes of the warp
-/// call it.
-__device__ __forceinline__ int place_in_list(bool has_item, std::int32_t* count) {
-  const int lane = static_cast<int>(threadIdx.x) % 32;
-  const unsigned items = __ballot_sync(0xffffffffu, has_item);
-  int first = 0;
-  if (lane == 0 && items != 0) first = atomicAdd(count, __popc(items));
-  first = __shfl_sync(0xffffffffu, first, 0);
-  return first + __popc(items & ((1u << lane) - 1));
-}
-
-/// Chooses the work of each cell where that is to be done, and lists cells by class. The order of a
-/// list depends on the device's scheduling; each cell is written on its own, so that the output
-/// does not.
-///
-/// Blocks: one per class_threads cells. Threads: class_threads.
-/// @param counts  zeros
-template <class T>
-__global__ void __launch_bounds__(class_threads) cell_class_kernel(CellWorkBody<T> work,
-                                                                   InteriorCell* interior,
-                                                                   std::uint32_t* tested,
-                                                                   std::uint32_t* general,
-                                                                   CellListCounts* counts) {
-  const RasterJob<T>& job = work.job;
-  const std::int64_t cell =
-      std::int64_t{blockIdx.x} * class_threads + static_cast<int>(threadIdx.x);
-  InteriorCell record = {};
-  CellClass found = CellClass::keep;
-  if (cell < job.frame.cell_count()) {
-    if (cell < work.work.size) work(cell);
-    found = class_of(job, cell, record);
-  }
-  const int at_interior = place_in_list(found == CellClass::interior, &counts->interior);
-  const int at_tested = place_in_list(found == CellClass::tested, &counts->tested);
-  const int at_general = place_in_list(found == CellClass::general, &counts->general);
-  if (found == CellClass::interior) {
-    interior[at_interior] = record;
-    if (job.cell_covered.size > 0) job.cell_covered[cell] = cell_edge * cell_edge * cell_edge;
-  } else if (found == CellClass::tested) {
-    tested[at_tested] = static_cast<std::uint32_t>(cell);
-  } else if (found == CellClass::general) {
-    general[at_general] = static_cast<std::uint32_t>(cell);
-  }
-}
-
 /// Stores the samples of the listed interior cells.
 ///
 /// A warp takes four rows of eight voxels in eight slices of a cell, a thread eight voxels along k.
@@ -82,7 +35,7 @@ __global__ void __launch_bounds__(interior_threads, interior_blocks<T>())
                          const CellListCounts* counts) {
   const int count = counts->interior;
   const int thread = static_cast<int>(threadIdx.x), warp = thread / 32;
-  const int i = thread % cell_edge, j = thread / cell_edge % 4;
+  const int i = thread & 7, j = thread >> cell_shift & 3;
   const int width = job.frame.end[0] - job.frame.begin[0];
   const int slice = width * (job.frame.end[1] - job.frame.begin[1]);
   if (blockIdx.x == 0 && thread == 0 && job.counts != nullptr) {
@@ -92,12 +45,8 @@ __global__ void __launch_bounds__(interior_threads, interior_blocks<T>())
        half += static_cast<int>(gridDim.x) * interior_warps) {
     const InteriorCell& cell = cells[half / 2];
     const int row = j + half % 2 * 4;
-    SourceMap<float> map;
-    for (int r = 0; r < 3; ++r) {
-      map.base[r] = cell.base[r];
-      for (int axis = 0; axis < 3; ++axis) map.axis[axis][r] = cell.axis[axis][r];
-    }
-    const InteriorSource<T> source(job.source.data + cell.source, job.source.dims, thread);
+    const PairMap map = cell.map;
+    const InteriorSource<T> source(static_cast<const T*>(map.source), job.source.dims, thread);
     const std::int64_t first = cell.output + (row * width + i);
     T* const out = job.volume + first;
     for (int k = 0; k < cell_edge; k += interior_flight) {
@@ -130,7 +79,7 @@ __global__ void __launch_bounds__(interior_threads)
       const std::int64_t at = cells[c].output + (v % cell_edge + v / cell_edge % cell_edge * width +
                                                  v / (cell_edge * cell_edge) * slice);
       if (job.mask != nullptr) job.mask[at] = 1;
-      if (job.tet != nullptr) job.tet[at] = cells[c].tet;
+      if (job.tet != nullptr) job.tet[at] = cells[c].map.tet;
     }
   }
 }

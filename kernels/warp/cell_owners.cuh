@@ -6,6 +6,7 @@
 /// at a time are computed by the first threads into shared memory, from which all threads read.
 #pragma once
 #include "kernels/warp/cell_raster.hpp"
+#include "kernels/warp/pair_record.hpp"
 
 namespace tetwarp {
 
@@ -30,13 +31,6 @@ struct RasterChunk {
   bool own_map[raster_chunk];  ///< steep or trilinear: sampled by store_owned() instead of `maps`
 };
 
-/// Bit b for each voxel corner + b, b in 0..7, that lies in [begin, end).
-__device__ __forceinline__ unsigned bits_within(int begin, int end, int corner) {
-  const int first = min_of(max_of(begin - corner, 0), cell_edge);
-  const int past = min_of(max_of(end - corner, 0), cell_edge);
-  return ((1u << past) - 1) & ~((1u << first) - 1);
-}
-
 /// Fills the chunk with the tetrahedra of pairs [first, first + count).
 template <class T>
 __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
@@ -47,7 +41,8 @@ __device__ __forceinline__ void load_chunk(const RasterJob<T>& job,
   const int thread = static_cast<int>(threadIdx.x);
   if (thread < 4 * count) {
     const CellPair pair = job.pairs[first + static_cast<unsigned>(thread / 4)];
-    set_cell_plane(job.setups[tet_of(pair)], thread % 4, corner, chunk.planes[thread / 4]);
+    const CellPlane plane = cell_plane(job.setups[tet_of(pair)], thread % 4, corner);
+    set_cell_plane(plane, thread % 4, chunk.planes[thread / 4]);
   } else if (thread >= 4 * raster_chunk && thread - 4 * raster_chunk < count) {
     const int slot = thread - 4 * raster_chunk;
     const CellPair pair = job.pairs[first + static_cast<unsigned>(slot)];
@@ -85,8 +80,47 @@ TETWARP_HD_RARE VoxelBits inside_exact(
   return inside;
 }
 
-/// Finds the owners of this thread's voxels among the chunk's tetrahedra. A tetrahedron is tested
-/// with all four at once: most of its data is the same for all.
+/// What one thread adds to the counters of the raster.
+struct ThreadCounts {
+  int covered, inside_tests, exact_tests, copied;
+};
+
+/// Those of a thread's voxels that are inside a tetrahedron. All four are tested at once: most of
+/// the tetrahedron's data is the same for all.
+/// @param tested  the voxels in question; others are left out
+template <class T>
+__device__ __forceinline__ VoxelBits inside_of(const RasterJob<T>& job,
+                                               const CellPlanes& planes,
+                                               int tet,
+                                               const int* corner,
+                                               int i,
+                                               int j,
+                                               int k_first,
+                                               VoxelBits tested,
+                                               ThreadCounts& mine) {
+  float column[4], least[raster_depth];
+  set_column(planes, i, j, column);
+  VoxelBits inside = 0;
+  for (int d = 0; d < raster_depth; ++d) {
+    least[d] = least_plane(planes, column, k_first + 2 * d);
+    if (least[d] > 1.0f) inside |= 1u << 8 * d;
+  }
+  inside &= tested;
+  mine.inside_tests += __popc(tested);
+  const float closest = smaller_of(smaller_of(fabsf(least[0]), fabsf(least[1])),
+                                   smaller_of(fabsf(least[2]), fabsf(least[3])));
+  if (closest > 1.0f) return inside;
+  VoxelBits unsure = 0;
+  for (int d = 0; d < raster_depth; ++d) {
+    if (!(fabsf(least[d]) > 1.0f)) unsure |= 1u << 8 * d;
+  }
+  unsure &= tested;
+  mine.exact_tests += __popc(unsure);
+  return inside | inside_exact(job.nodes, job.tets.data + std::int64_t{4} * tet, corner[0] + i,
+                               corner[1] + j, corner[2] + k_first, unsure);
+}
+
+/// Finds the owners of this thread's voxels among the chunk's tetrahedra.
 /// @param open  voxels without an owner yet; in and out
 /// @returns     byte d: the slot of voxel d's owner, if it was open and no longer is; else zero
 template <class T>
@@ -98,7 +132,7 @@ __device__ __forceinline__ std::uint32_t find_owners(const RasterJob<T>& job,
                                                      int j,
                                                      int k_first,
                                                      VoxelBits& open,
-                                                     RasterCounts& mine) {
+                                                     ThreadCounts& mine) {
   std::uint32_t slots = 0;
   for (int slot = 0; slot < count && open != 0; ++slot) {
     VoxelBits inside = open;
@@ -106,25 +140,8 @@ __device__ __forceinline__ std::uint32_t find_owners(const RasterJob<T>& job,
       const VoxelBits tested =
           (chunk.rows[slot] >> j & 1) != 0 ? chunk.layers[slot][k_first] & open : 0;
       if (tested == 0) continue;
-      const CellPlanes& planes = chunk.planes[slot];
-      float column[4];
-      set_column(planes, i, j, column);
-      VoxelBits unsure = 0;
-      inside = 0;
-      for (int d = 0; d < raster_depth; ++d) {
-        const float least = least_plane(planes, column, k_first + 2 * d);
-        if (least > 1.0f) inside |= 1u << 8 * d;
-        if (!(fabsf(least) > 1.0f)) unsure |= 1u << 8 * d;
-      }
-      inside &= tested;
-      unsure &= tested;
-      mine.inside_tests += __popc(tested);
-      if (unsure != 0) {
-        const std::int32_t* const tet = job.tets.data + std::int64_t{4} * chunk.tet[slot];
-        inside |=
-            inside_exact(job.nodes, tet, corner[0] + i, corner[1] + j, corner[2] + k_first, unsure);
-        mine.exact_tests += __popc(unsure);
-      }
+      inside =
+          inside_of(job, chunk.planes[slot], chunk.tet[slot], corner, i, j, k_first, tested, mine);
     }
     slots |= inside * static_cast<unsigned>(slot);  // the slot into the byte of each voxel
     open &= ~inside;

@@ -13,24 +13,33 @@ struct CellPlanes {
   float step[3][4];  ///< per voxel along i, j, k
 };
 
+/// One of the planes.
+struct CellPlane {
+  float value;
+  float step[3];
+};
+
 /// One float32 plane relative to a cell's first voxel `corner` [frame].
 ///
 /// With u = 2^-24 and v a plane's distance from the corner in voxels, rounding the five inputs,
 /// three products and three sums of a plane value costs at most u (5 |v| + 130), fused or not; the
 /// unit of the scaled planes is u (8 |v| + 192).
-TETWARP_HD void set_cell_plane(const TetSetup& tet,
-                               int face,
-                               const int* corner,
-                               CellPlanes& planes) {
+TETWARP_HD CellPlane cell_plane(const TetSetup& tet, int face, const int* corner) {
   const double value = tet.plane[0][face] * static_cast<double>(corner[0] - tet.anchor[0]) +
                        tet.plane[1][face] * static_cast<double>(corner[1] - tet.anchor[1]) +
                        tet.plane[2][face] * static_cast<double>(corner[2] - tet.anchor[2]) +
                        tet.plane[3][face];
   const double scale = 1.0 / ((fabs(value) + 24.0) * 0x1p-21);
-  planes.value[face] = static_cast<float>(value * scale);
-  for (int axis = 0; axis < 3; ++axis) {
-    planes.step[axis][face] = static_cast<float>(tet.plane[axis][face] * scale);
-  }
+  return {static_cast<float>(value * scale),
+          {static_cast<float>(tet.plane[0][face] * scale),
+           static_cast<float>(tet.plane[1][face] * scale),
+           static_cast<float>(tet.plane[2][face] * scale)}};
+}
+
+/// Stores the plane of a face.
+TETWARP_HD void set_cell_plane(const CellPlane& plane, int face, CellPlanes& planes) {
+  planes.value[face] = plane.value;
+  for (int axis = 0; axis < 3; ++axis) planes.step[axis][face] = plane.step[axis];
 }
 
 /// The planes' values at voxel (i, j, 0) of the cell.

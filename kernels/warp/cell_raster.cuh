@@ -43,7 +43,7 @@ __device__ __forceinline__ void store_covered(const RasterJob<T>& job,
                                               int slot,
                                               std::int64_t work,
                                               const CellVoxel& voxel,
-                                              RasterCounts& mine) {
+                                              ThreadCounts& mine) {
   const int t = chunk.tet[slot];
   const bool transformed = is_general && has_transform(job, t);
   ++mine.covered;
@@ -75,23 +75,20 @@ __device__ __forceinline__ void store_uncovered(const RasterJob<T>& job, const C
 }
 
 /// Adds the counts of all threads of the block to those of the job.
-/// @param block_counts  shared, four zeros that all threads see
-template <class T>
-__device__ __forceinline__ void add_counts(const RasterJob<T>& job,
-                                           std::int64_t cell,
-                                           const RasterCounts& mine,
+/// @param number        selects the place of the job's counts, of a cell or block
+/// @param block_counts  shared, four zeros that all threads see; out, the sums
+__device__ __forceinline__ void add_counts(const RasterGeometry& job,
+                                           std::int64_t number,
+                                           const ThreadCounts& mine,
                                            int* block_counts) {
   const int thread = static_cast<int>(threadIdx.x);
-  atomicAdd(&block_counts[0], static_cast<int>(mine.covered));
-  atomicAdd(&block_counts[1], static_cast<int>(mine.inside_tests));
-  atomicAdd(&block_counts[2], static_cast<int>(mine.exact_tests));
-  atomicAdd(&block_counts[3], static_cast<int>(mine.copied));
+  atomicAdd(&block_counts[0], mine.covered);
+  atomicAdd(&block_counts[1], mine.inside_tests);
+  atomicAdd(&block_counts[2], mine.exact_tests);
+  atomicAdd(&block_counts[3], mine.copied);
   __syncthreads();
-  if (job.cell_covered.size > 0 && thread == 0) {
-    job.cell_covered[cell] = static_cast<std::uint16_t>(block_counts[0]);
-  }
   if (job.counts != nullptr && thread < 4 && block_counts[thread] != 0) {
-    RasterCounts* const counts = job.counts + (cell & (job.count_places - 1));
+    RasterCounts* const counts = job.counts + (number & (job.count_places - 1));
     atomic_add(reinterpret_cast<std::int64_t*>(counts) + thread, block_counts[thread]);
   }
 }
@@ -112,7 +109,7 @@ __device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
   const std::int64_t work = work_of(job, cell);
   if (work == keep_cell) return;
   const CellRange range = job.ranges[cell];
-  RasterCounts mine = {0, 0, 0, 0};
+  ThreadCounts mine = {0, 0, 0, 0};
   VoxelBits open = voxels_in_output(job.frame, corner, i, j, k_first);  // without an owner yet
   if (thread < 4) block_counts[thread] = 0;
   const auto voxel_at = [&](int k) {
@@ -139,6 +136,9 @@ __device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
 
   __syncthreads();
   add_counts(job, cell, mine, block_counts);
+  if (job.cell_covered.size > 0 && thread == 0) {
+    job.cell_covered[cell] = static_cast<std::uint16_t>(block_counts[0]);
+  }
 }
 
 /// All cells of a job, or those that it lists.

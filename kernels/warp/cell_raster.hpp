@@ -97,6 +97,17 @@ TETWARP_HD std::int64_t work_of(const RasterGeometry& job, std::int64_t cell) {
   return job.cell_work.size > 0 ? job.cell_work[cell] : sample_cell;
 }
 
+/// One component of map_start().
+TETWARP_HD void map_start_along(
+    const TetSetup& tet, const int* corner, int row, double& start, double* linear) {
+  const double from[3] = {static_cast<double>(corner[0] - tet.anchor[0]),
+                          static_cast<double>(corner[1] - tet.anchor[1]),
+                          static_cast<double>(corner[2] - tet.anchor[2])};
+  start = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] + tet.map[2][row] * from[2] +
+          tet.map[3][row];
+  for (int axis = 0; axis < 3; ++axis) linear[axis] = tet.map[axis][row];
+}
+
 /// Source position of a cell's first voxel under a tetrahedron's map, in float64.
 /// @param start   out [source voxel]
 /// @param linear  out, linear[row][a]: change of the position per voxel along axis a
@@ -104,14 +115,7 @@ TETWARP_HD void map_start(const TetSetup& tet,
                           const int* corner,
                           double* start,
                           double (*linear)[3]) {
-  const double from[3] = {static_cast<double>(corner[0] - tet.anchor[0]),
-                          static_cast<double>(corner[1] - tet.anchor[1]),
-                          static_cast<double>(corner[2] - tet.anchor[2])};
-  for (int row = 0; row < 3; ++row) {
-    start[row] = tet.map[0][row] * from[0] + tet.map[1][row] * from[1] + tet.map[2][row] * from[2] +
-                 tet.map[3][row];
-    for (int axis = 0; axis < 3; ++axis) linear[row][axis] = tet.map[axis][row];
-  }
+  for (int row = 0; row < 3; ++row) map_start_along(tet, corner, row, start[row], linear[row]);
 }
 
 /// Source position of a cell's first voxel under the map of uncovered voxels.

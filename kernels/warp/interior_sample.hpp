@@ -3,6 +3,7 @@
 /// from a uniform start. Same bits as tap_of() and sample() of volume_sample.hpp.
 #pragma once
 #include <cstdint>
+#include <type_traits>
 
 #include "kernels/base/hd.hpp"
 #include "kernels/base/pixel.hpp"
@@ -15,6 +16,19 @@ namespace tetwarp {
 TETWARP_HD std::uint32_t kept(std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   asm volatile("" : "+r"(value));
+#endif
+  return value;
+}
+
+/// The same for other types of 32 bits or less.
+template <class T>
+requires std::is_arithmetic_v<T> TETWARP_HD T kept(T value) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (std::is_same_v<T, float>) {
+    asm volatile("" : "+f"(value));
+  } else {
+    value = static_cast<T>(kept(static_cast<std::uint32_t>(value)));
+  }
 #endif
   return value;
 }
@@ -73,14 +87,18 @@ struct SampleCube {
 struct SourceSteps {
   std::int32_t row;    ///< one voxel along j [sample]
   std::int32_t slice;  ///< one voxel along k
+  std::uint32_t bias;  ///< what floor_bits() adds to an offset
 
-  TETWARP_HD explicit SourceSteps(const int* dims) : row(dims[0]), slice(dims[0] * dims[1]) {}
+  TETWARP_HD explicit SourceSteps(const int* dims)
+      : row(dims[0]),
+        slice(dims[0] * dims[1]),
+        bias(integer_bits *
+             (1 + static_cast<std::uint32_t>(row) + static_cast<std::uint32_t>(slice))) {}
 
   TETWARP_HD std::int32_t offset_of(const InteriorTap& tap) const {
-    const auto voxel = [&](int axis) {
-      return static_cast<std::int32_t>(tap.bits[axis] - integer_bits);
-    };
-    return voxel(2) * slice + voxel(1) * row + voxel(0);
+    return static_cast<std::int32_t>(
+        tap.bits[2] * static_cast<std::uint32_t>(slice) +
+        (tap.bits[1] * static_cast<std::uint32_t>(row) + (tap.bits[0] - bias)));
   }
 
   /// @param at  the lower neighbor of all eight

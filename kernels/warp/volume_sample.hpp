@@ -64,12 +64,17 @@ struct SourceMap {
 
 constexpr double max_whole = 0x1p30;  ///< larger indices are clamped to it; no source is as large
 
+/// The voxel from which local positions count, for a position along one axis of the source.
+TETWARP_HD double whole_voxel(double start) {
+  return floor(min_of(max_of(start, -max_whole), max_whole));
+}
+
 /// The map from (i, j, k) to start + linear (i, j, k), split into whole voxels and a local part.
 template <class Real>
 TETWARP_HD SourceMap<Real> make_source_map(const double* start, const double (*linear)[3]) {
   SourceMap<Real> map;
   for (int row = 0; row < 3; ++row) {
-    const double whole = floor(min_of(max_of(start[row], -max_whole), max_whole));
+    const double whole = whole_voxel(start[row]);
     map.whole[row] = static_cast<int>(whole);
     map.base[row] = static_cast<Real>(start[row] - whole);
     for (int a = 0; a < 3; ++a) map.axis[a][row] = static_cast<Real>(linear[row][a]);
@@ -89,8 +94,9 @@ TETWARP_HD SourceMap<Real> make_source_map(const SourceView<T>& source,
 
 /// Local position x of voxel (i, j, k), whole numbers of any type. Other code repeats this order of
 /// operations to get equal bits.
-template <class Real, class Index>
-TETWARP_HD void local_position(const SourceMap<Real>& map, Index i, Index j, Index k, Real* x) {
+/// @param map  a SourceMap, or another type with its `base` and `axis`
+template <class Map, class Real, class Index>
+TETWARP_HD void local_position(const Map& map, Index i, Index j, Index k, Real* x) {
   for (int row = 0; row < 3; ++row) {
     const Real line =
         mul_add(map.axis[2][row], Real(k), mul_add(map.axis[1][row], Real(j), map.base[row]));

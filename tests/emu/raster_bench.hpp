@@ -14,6 +14,7 @@
 #include "kernels/warp/volume_prefilter.hpp"
 #include "tests/scenes/stages.hpp"
 
+#include "kernels/warp/cell_class.cuh"
 #include "kernels/warp/cell_interior.cuh"
 #include "kernels/warp/cell_raster.cuh"
 #include "kernels/warp/cell_tested.cuh"
@@ -96,22 +97,22 @@ class RasterBench {
   Rastered<T> by_classes() {
     const std::int64_t cells = input_.frame.cell_count();
     std::vector<InteriorCell> interior(static_cast<std::size_t>(cells));
-    std::vector<std::uint32_t> tested(static_cast<std::size_t>(cells));
+    std::vector<RecordRange> tested(static_cast<std::size_t>(cells));
     std::vector<std::uint32_t> general(static_cast<std::size_t>(cells));
-    CellListCounts counts = {0, 0, 0};
+    std::vector<RecordUnit> units(static_cast<std::size_t>(most_units(cells, job_.pairs.size)));
+    CellListCounts counts = {};
+    const CellLists lists{interior.data(), tested.data(), units.data(), general.data(), &counts};
     return filled([&](RasterJob<T> job) {
       if (!has_interior_cells(job)) throw std::logic_error("the job has no interior cells");
-      const auto blocks = static_cast<unsigned>(cells + class_threads - 1) / class_threads;
-      counts = {0, 0, 0};
+      const auto blocks = static_cast<unsigned>(cells + class_cells - 1) / class_cells;
+      counts = {};
       const CellWorkBody<T> work{job, {}, {}, {}, {}};
-      launch(nullptr, cell_class_kernel<T>, dim3(blocks), class_threads, 0, work, interior.data(),
-             tested.data(), general.data(), &counts);
+      launch(nullptr, cell_class_kernel<T>, dim3(blocks), class_threads, 0, work, lists);
       launch(nullptr, cell_interior_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
              &counts);
       launch(nullptr, cell_owner_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
              &counts);
-      launch(nullptr, cell_tested_kernel<T>, dim3(static_cast<unsigned>(cells)), raster_threads, 0,
-             job, tested.data(), general.data(), &counts);
+      launch(nullptr, cell_tested_kernel<T>, dim3(3), raster_threads, 0, job, lists, true);
       interior_cells = counts.interior;
       tested_cells = counts.tested;
       general_cells = counts.general;

@@ -78,6 +78,16 @@ TEST(CellInteriorSimt, InteriorCellsBesideCellsOfEveryOtherClassHaveTheSameBits)
   }
 }
 
+TEST(CellInteriorSimt, TestsAreCountedAsInBlocksOfOneCell) {
+  for (const char* scene : {"overlapping", "aligned", "waved", "slivers_1", "soup"}) {
+    RasterBench<float> bench({.scene = scene});
+    const RasterCounts blocks = bench.by_blocks().counts, classes = bench.by_classes().counts;
+    EXPECT_GT(blocks.inside_tests, 0) << scene;
+    EXPECT_EQ(classes.inside_tests, blocks.inside_tests) << scene;
+    EXPECT_EQ(classes.exact_tests, blocks.exact_tests) << scene;
+  }
+}
+
 TEST(CellInteriorSimt, PositionsOnVoxelsAndBetweenThemHaveTheSameBits) {
   for (const double by : {0.0, 0.25, 0.5, -1.0 / 3}) {
     const Scene scene = shifted_block(44, {by, -by, 2 * by});

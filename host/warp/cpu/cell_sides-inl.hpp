@@ -68,7 +68,7 @@ inline std::uint64_t rows_of(const CellBits& bits) {
   return mask;
 }
 
-/// set_cell_plane() for the four faces, with equal bits.
+/// cell_plane() of the four faces, with equal bits.
 inline void set_cell_planes(const TetSetup& tet, const int* corner, CellPlanes& planes) {
   const hn::CappedTag<double, 4> d;  // one lane per face
   const hn::Rebind<float, decltype(d)> df;

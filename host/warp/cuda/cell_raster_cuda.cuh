@@ -1,10 +1,14 @@
 /// @file cell_raster_cuda.cuh
-/// Stage "raster" on a device: cells within one tetrahedron by a lean kernel, the others by one
-/// block per cell. The first kernel chooses the work of the cells and lists them by class.
-/// @see cell_interior.cuh, cell_raster.cuh
+/// Stage "raster" on a device. The first kernel chooses the work of the cells and lists them by
+/// class; cells within one tetrahedron have a kernel of their own, all others another one.
+/// @see cell_class.cuh, cell_interior.cuh, cell_tested.cuh, cell_raster.cuh
 #pragma once
+#include <type_traits>
+
 #include "host/warp/warp_pipeline.hpp"
+#include "kernels/exec/device_limits.cuh"
 #include "kernels/exec/exec_cuda.cuh"
+#include "kernels/warp/cell_class.cuh"
 #include "kernels/warp/cell_interior.cuh"
 #include "kernels/warp/cell_raster.cuh"
 #include "kernels/warp/cell_tested.cuh"
@@ -46,38 +50,55 @@ class CellRaster<CudaExec> {
   static constexpr std::int64_t most_blocks = 132 * 8;
 
   template <class T>
+  static T* view_of(DeviceBuffer<T>& buffer, std::int64_t size) {
+    buffer.reserve(size);
+    return buffer.view(size).data;
+  }
+
+  /// Blocks of cell_tested_kernel() that the device runs at a time.
+  template <class T>
+  std::int64_t tested_grid(const CudaExec& exec) {
+    std::int64_t& blocks = tested_grids_[sizeof(T)][std::is_signed_v<T>];
+    if (blocks == 0) {
+      int of_one = 0;  // multiprocessor
+      check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&of_one, cell_tested_kernel<T>,
+                                                               raster_threads, 0),
+                 "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+      blocks = of_one * device_limits(exec.number()).multiprocessors;
+    }
+    return blocks;
+  }
+
+  template <class T>
   void run_classes(CudaExec& exec,
                    const CellWorkBody<T>& work,
                    CellListCounts* counts,
                    const ProgressPart& progress) {
     RasterJob<T> job = work.job;
     const std::int64_t cells = job.frame.cell_count();
-    interior_.reserve(cells);
-    tested_.reserve(cells);
-    general_.reserve(cells);
-    InteriorCell* const interior = interior_.view(cells).data;
-    std::uint32_t* const tested = tested_.view(cells).data;
-    std::uint32_t* const general = general_.view(cells).data;
     const char* const label = "warp/raster";
     if (counts == nullptr) {
       counts_.reserve(1);
       counts = counts_.view(1).data;
       exec.zero(label, counts_.view(1));
     }
-    exec.enqueue(label, cell_class_kernel<T>,
-                 blocks_of((cells + class_threads - 1) / class_threads), class_threads, 0, work,
-                 interior, tested, general, counts);
+    const std::int64_t units = most_units(cells, job.pairs.size);
+    const CellLists lists{view_of(interior_, cells), view_of(tested_, cells),
+                          view_of(units_, units), view_of(general_, cells), counts};
+    exec.enqueue(label, cell_class_kernel<T>, blocks_of((cells + class_cells - 1) / class_cells),
+                 class_threads, 0, work, lists);
     const dim3 blocks = blocks_of(min_of(2 * cells, most_blocks));
-    exec.enqueue(label, cell_interior_kernel<T>, blocks, interior_threads, 0, job, interior,
+    exec.enqueue(label, cell_interior_kernel<T>, blocks, interior_threads, 0, job, lists.interior,
                  counts);
     if (job.mask != nullptr || job.tet != nullptr) {
-      exec.enqueue(label, cell_owner_kernel<T>, blocks, interior_threads, 0, job, interior, counts);
+      exec.enqueue(label, cell_owner_kernel<T>, blocks, interior_threads, 0, job, lists.interior,
+                   counts);
     }
     const bool has_hexes = job.hexes.nodes.size > 0;
-    exec.enqueue(label, cell_tested_kernel<T>, blocks_of(cells), raster_threads, 0, job, tested,
-                 has_hexes ? nullptr : general, counts);
+    exec.enqueue(label, cell_tested_kernel<T>, blocks_of(min_of(cells, tested_grid<T>(exec))),
+                 raster_threads, 0, job, lists, !has_hexes);
     if (has_hexes) {
-      job.listed = general;
+      job.listed = lists.general;
       job.listed_count = &counts->general;
       cell_raster(exec, job, progress);
     }
@@ -85,8 +106,11 @@ class CellRaster<CudaExec> {
   }
 
   DeviceBuffer<InteriorCell> interior_;
-  DeviceBuffer<std::uint32_t> tested_, general_;
+  DeviceBuffer<RecordRange> tested_;
+  DeviceBuffer<RecordUnit> units_;
+  DeviceBuffer<std::uint32_t> general_;
   DeviceBuffer<CellListCounts> counts_;
+  std::int64_t tested_grids_[sizeof(float) + 1][2] = {};  ///< by size and sign of T; 0: unknown
 };
 
 }  // namespace tetwarp
