@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "host/collide/collision_surfaces.hpp"
@@ -40,6 +41,13 @@ struct ClosestPair {
   PairKind kind = PairKind::vertex_face;
   std::int32_t a = -1, b = -1;  ///< -1: nothing is nearer than the cap
   double distance = 0;          ///< [m]; without a pair the cap
+};
+
+/// A motion so fast, or surfaces so large beside each other, that pairs do not fit the memory that
+/// detection allows itself.
+class TooManyPairs : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 struct DetectorOptions {

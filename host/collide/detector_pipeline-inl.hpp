@@ -62,7 +62,7 @@ void DetectorPipeline<Exec>::find_item_pairs(std::span<const std::uint8_t> is_st
   exec_.sort_pairs("collide/sort", entries_, host_plan_.key_bits);
   exec_.append("collide/entry_pairs", entries_.size(),
                EntryPairsBody{scene(), plan, entries_.view(), view(item_boxes_), view(item_sizes_)},
-               pairs_);
+               pairs_, most_pairs(items));
   counts_.grid_entries += entries_.size();
   counts_.box_tests += pairs_.tally();
   counts_.box_pairs += pairs_.size();
@@ -80,7 +80,7 @@ void DetectorPipeline<Exec>::find_features(const SurfaceMotion& motion,
   exec_.append("collide/pair_features", pairs_.size() + vertices,
                PairFeaturesBody{scene(), pairs_.view(), motion_, distance,
                                 PlaneView{view(near_start_), view(near_planes_)}},
-               features_);
+               features_, 8 * most_pairs(size_of(items_.items)));
   counts_.pairs += features_.size();
 }
 

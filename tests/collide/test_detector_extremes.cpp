@@ -47,6 +47,18 @@ TEST(DetectorExtremes, SizesMayDifferAMillionTimes) {
   expect_pairs_by_force(scene);
 }
 
+/// 20 million pairs, which would be 100 million of features.
+TEST(DetectorExtremes, ASceneOfTooManyPairsIsRefusedBeforeTheyTakeMemory) {
+  std::mt19937 random(5);
+  CollideScene scene;
+  scene.surfaces.thickness = 1e-3;
+  for (int b = 0; b < 2; ++b) scene.add_soup(random, {0, 0, 0}, 0.1, 0.1, 4500);
+  scene.move_body(0, {1e3, 1e3, 1e3});
+  scene.move_body(1, {1e3, -1e3, 1e3});
+  EXPECT_THROW(make_cpu_detector(scene.surfaces, {.threads = 2})->detect(scene.motion),
+               TooManyPairs);
+}
+
 TEST(DetectorExtremes, OneHugeTriangleAmongTinyOnesNeedsFewTests) {
   CollideScene scene = pile_scene(9, 9000);
   scene.add_mesh({{-1e4, -1e4, -0.03}, {1e4, -1e4, -0.03}, {0, 2e4, -0.03}}, {{0, 1, 2}},

@@ -16,6 +16,7 @@ Point3 impulse_after(const Point3& way) {
   add_rigid(scene.model, 1, {1e-3, 1e-3, 1e-3}, {0, 0, 0});
   add_frame(scene.model, {0, 0, 0});
   scene.make_surfaces(0.1);
+  scene.surfaces.surfaces.thickness = 1e-4;
   scene.touches.push_back({.body_a = scene.model.rigid.body[0],
                            .body_b = scene.model.rigid.body[1],
                            .point_a = on_rigid({0, 0, 0}),
@@ -63,6 +64,14 @@ TEST(ContactBonds, DoNotPushBesideTheirEnds) {
     const Point3 impulse = impulse_after({0.01, 0, -below});
     EXPECT_EQ(impulse[2], 0) << below;
     EXPECT_NEAR(impulse[0] / (-1 * step * 0.01), 1, 0.02) << below;
+  }
+}
+
+/// The normal of the last contact has turned until one end is behind the other one's surface.
+/// Pushing there would oppose the contacts of what is really in front.
+TEST(ContactBonds, DoNotPushFromBehind) {
+  for (const double below : {1e-9, 1e-5, 1e-4, 1e-2}) {
+    EXPECT_EQ(impulse_after({0, 0, -below}), (Point3{0, 0, 0})) << below;
   }
 }
 

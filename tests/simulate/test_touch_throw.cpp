@@ -116,5 +116,25 @@ TEST(Cloth, FoldsWithoutPassingItself) {
   EXPECT_GT(simulator.record().contacts, 0);
 }
 
+/// Boxes around ways of 500 m hold everything else, so that all triangles would be pairs.
+TEST(Throwing, TooFastForTheMemoryOfDetectionIsAnErrorThatNamesTheStep) {
+  Body above = sheet_body("above", {1, 1}, {60, 60}), below = sheet_body("below", {1, 1}, {60, 60});
+  above.pose.position = {0, 0, 1};
+  above.velocity = {1e5, 1e5, -1e6};
+  for (Body* const body : {&above, &below}) body->self = false;
+  Scene scene = scene_of({above, below}, 0.005);
+  scene.thickness = 1e-3;
+  scene.solver.max_substeps = 2;
+  Simulator simulator(scene);
+  try {
+    simulator.step();
+    FAIL() << "expected an error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("step 0: more than"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("also in 2 substeps; reduce time_step"));
+  }
+  EXPECT_EQ(simulator.time(), 0);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

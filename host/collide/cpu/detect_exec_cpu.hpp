@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/base/parallel.hpp"
+#include "host/collide/pair_limit.hpp"
 #include "host/exec/exec_cpu.hpp"
 #include "host/exec/host_buffer.hpp"
 #include "kernels/base/view.hpp"
@@ -90,8 +91,13 @@ class CpuDetectExec {
 
   /// Replaces the list by what body(i, emit) appends for i in [0, count), in order of i:
   /// emit(value) appends one, emit.tally(n) adds n to the list's tally.
+  /// @throws TooManyPairs  before memory is taken for more than `most` values
   template <class Body, class T>
-  void append(const char* label, std::int64_t count, const Body& body, HostList<T>& list) {
+  void append(const char* label,
+              std::int64_t count,
+              const Body& body,
+              HostList<T>& list,
+              std::int64_t most = unlimited) {
     const CpuExec::Clock clock(exec_, label);
     const std::int64_t tasks = task_count(count);
     if (static_cast<std::int64_t>(list.parts_.size()) < tasks) {
@@ -102,7 +108,10 @@ class CpuDetectExec {
       part.values.clear();
       part.tallied = 0;
       const Body own = body;
-      for (std::int64_t i = begin; i < end; ++i) own(i, part);
+      for (std::int64_t i = begin; i < end; ++i) {
+        own(i, part);
+        check_count(static_cast<std::int64_t>(part.values.size()), most);
+      }
     });
     list.clear();
     for (std::int64_t t = 0; t < tasks; ++t) {
@@ -111,6 +120,7 @@ class CpuDetectExec {
       list.size_ += static_cast<std::int64_t>(part.values.size());
       list.tally_ += part.tallied;
     }
+    check_count(list.size_, most);
     if (list.size_ > list.values_.capacity()) list.values_.reserve(list.size_ + list.size_ / 2);
     T* const to = list.values_.view(list.size_).data;
     parallel_tasks(exec_.threads(), tasks, [&](std::int64_t t) {

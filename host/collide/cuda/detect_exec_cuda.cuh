@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "host/collide/pair_limit.hpp"
 #include "kernels/base/view.hpp"
 #include "kernels/exec/device_vector.cuh"
 #include "kernels/exec/exec_cuda.cuh"
@@ -121,7 +122,11 @@ class CudaDetectExec {
   }
   /// Runs the body twice: to count, and to write.
   template <class Body, class T>
-  void append(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
+  void append(const char* label,
+              std::int64_t count,
+              const Body& body,
+              DeviceList<T>& list,
+              std::int64_t most = unlimited) {
     list.clear();
     if (count == 0) return;
     counts_.resize(count + 1);
@@ -129,7 +134,9 @@ class CudaDetectExec {
     exec_.for_each(label, count, AppendCountBody<Body>{body, counts_.view(), tallies_.view()});
     exec_.exclusive_scan(label, counts_.view());
     exec_.exclusive_scan(label, tallies_.view());
-    list.size_ = last_of(counts_);
+    const std::int64_t size = last_of(counts_);
+    check_count(size, most);
+    list.size_ = size;
     list.tally_ = last_of(tallies_);
     if (list.size_ > list.capacity_) {
       list.capacity_ = list.size_ + list.size_ / 2;

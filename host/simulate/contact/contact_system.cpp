@@ -124,11 +124,13 @@ double ContactSystem::State::recovery_speed(const ContactKey& key) const {
 }
 
 /// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
-/// apart sideways, these pass each other without pushing.
+/// apart sideways, these pass each other without pushing. One whose normal has turned away, so that
+/// its ends seem to overlap, does nothing along it: pushing would oppose what does touch there.
 void ContactSystem::State::set_bond(const TrackedContact& contact, std::size_t c) {
-  const double sideways = std::hypot(contact.gap[1], contact.gap[2]);
-  recovered[c] = std::max(recovered[c], sideways / laws.adhesion.time_step);
+  double way = std::hypot(contact.gap[1], contact.gap[2]);
+  if (contact.gap[0] < 0) way += scene.surfaces.thickness - 2 * contact.gap[0];
   if (contact.gap[0] <= 0) laws.adhesion.stiffness[c] = 0;
+  recovered[c] = std::max(recovered[c], way / laws.adhesion.time_step);
 }
 
 /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and limits

@@ -119,7 +119,17 @@ Simulator::Impl::Attempt Simulator::Impl::attempt(int parts) {
     loads_.forces(state_, end, input_.block_force);
     growth_.apply(model, state_, input_);
     if (sleep_.is_on()) begin_sleep();
-    result.is_completed = advance(part, dt, result);
+    try {
+      result.is_completed = advance(part, dt, result);
+    } catch (const TooManyPairs& error) {
+      if (2 * parts > scene.solver.max_substeps) {
+        throw std::runtime_error("step " + std::to_string(step_index) + ": " + error.what() +
+                                 ", also in " + std::to_string(parts) +
+                                 " substeps; reduce time_step or the speeds");
+      }
+      result.is_good = false;
+      return result;
+    }
     if (!result.is_completed) return result;
     if (!result.is_good && 2 * parts <= scene.solver.max_substeps) return result;
     if (!result.is_finite) return result;
