@@ -130,8 +130,9 @@ TEST(Throwing, TooFastForTheMemoryOfDetectionIsAnErrorThatNamesTheStep) {
     simulator.step();
     FAIL() << "expected an error";
   } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("step 0: more than"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("also in 2 substeps; reduce time_step"));
+    const std::string text = error.what();
+    EXPECT_NE(text.find("step 0: more than"), std::string::npos) << text;
+    EXPECT_NE(text.find("also in 2 substeps; reduce time_step"), std::string::npos) << text;
   }
   EXPECT_EQ(simulator.time(), 0);
 }

@@ -17,6 +17,7 @@ struct SleepingContact {
 };
 
 struct ContactMemory {
+  double time_step = 0;  ///< of impulses and changes [s]
   std::vector<ContactRecord> records;
   std::vector<Point3> change;             ///< of velocities by contacts in the last step, or empty
   std::vector<SleepingContact> sleeping;  ///< sorted by key

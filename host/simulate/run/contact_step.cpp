@@ -262,7 +262,7 @@ ContactPart ContactStep::advance(const ModelState& start,
                                  StepSeconds& seconds) {
   ContactPart part;
   start_ = &start;
-  time_step_ = time_step;
+  set_time_step(time_step);
   was_ended_ = false;
   has_step_system_ = false;
   contacts_ = nullptr;

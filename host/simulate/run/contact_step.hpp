@@ -92,6 +92,7 @@ class ContactStep {
   const std::vector<ContactPoint>& points() const { return points_; }
 
   void remember(ContactMemory& memory) const {
+    memory.time_step = time_step_;
     memory.records = tracker_.records();
     memory.change = change_;
     memory.sleeping = sleeping_;
@@ -116,6 +117,7 @@ class ContactStep {
   void record(const ModelState& state, StepRecord& record);
 
  private:
+  void set_time_step(double time_step);
   void set_places(const ModelState& state,
                   const SurfacePlaces& of,
                   std::vector<BodyPlace>& places) const;

@@ -147,7 +147,22 @@ void ContactStep::end(const ModelState& after, ContactPart& part) {
   part.contact_seconds += passed.count();
 }
 
+/// Impulses of another step are a guess for those of this one, in proportion to its time.
+void ContactStep::set_time_step(double time_step) {
+  if (time_step_ > 0 && time_step_ != time_step) {
+    const double ratio = time_step / time_step_;
+    for (Point3& change : change_) change = times(ratio, change);
+    std::vector<ContactRecord> records = tracker_.records();
+    for (ContactRecord& record : records) {
+      record.impulse_world = times(ratio, record.impulse_world);
+    }
+    tracker_ = ContactTracker(tracker_options_, std::move(records));
+  }
+  time_step_ = time_step;
+}
+
 void ContactStep::restore(const ContactMemory& memory) {
+  time_step_ = memory.time_step;
   tracker_ = ContactTracker(tracker_options_, memory.records);
   change_ = memory.change;
   set_sleeping(memory.sleeping);

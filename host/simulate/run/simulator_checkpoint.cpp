@@ -8,7 +8,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
-constexpr std::uint64_t checkpoint_version = checkpoint_kind + 3;
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 4;
 
 // Each of these functions writes with a CheckpointWriter and reads with a CheckpointReader.
 
@@ -131,6 +131,7 @@ struct Simulator::Impl::Saved {
     for (auto& handle : saved.overrides.handles) stream(handle);
     for (auto& script : saved.overrides.scripts) stream(script);
     stream(saved.delays);
+    stream(saved.memory.time_step);
     stream.pass_list(saved.memory.records, [](auto& of, auto& record) { pass_record(of, record); });
     stream.pass_list(saved.memory.change, [](auto& of, auto& change) { of(change); });
     stream.pass_list(saved.memory.sleeping,
