@@ -1,5 +1,6 @@
 /// @file adhesion.cpp
-/// evolve_adhesion(): checks of its arguments, and the stage "adhesion" on the host or on a device.
+/// evolve_adhesion() and evolve(): checks of arguments, and the stage "adhesion" on the host or on
+/// a device.
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
+#include "host/contact/solver_state.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_adhesion.hpp"
 
@@ -35,6 +37,13 @@ void check_adhesion(const AdhesionState& adhesion, std::int64_t contact_count) {
   check_length("adhesion.saturation_pressure", adhesion.saturation_pressure);
 }
 
+void check_evolution(const EvolutionOptions& options) {
+  if (options.debond_gap_factor >= 1 && options.debond_intensity >= 0) return;
+  throw std::invalid_argument(
+      "EvolutionOptions: expected debond_gap_factor >= 1 and debond_intensity >= 0, got " +
+      text_of(options.debond_gap_factor) + " and " + text_of(options.debond_intensity));
+}
+
 void check_arguments(const ContactProblem& problem,
                      const ContactSolution& solution,
                      const EvolutionOptions& options) {
@@ -46,11 +55,52 @@ void check_arguments(const ContactProblem& problem,
                                 std::to_string(solution.impulse.size()) + " and " +
                                 std::to_string(solution.velocity.size()));
   }
-  if (!(options.debond_gap_factor >= 1) || !(options.debond_intensity >= 0)) {
-    throw std::invalid_argument(
-        "EvolutionOptions: expected debond_gap_factor >= 1 and debond_intensity >= 0, got " +
-        text_of(options.debond_gap_factor) + " and " + text_of(options.debond_intensity));
+  check_evolution(options);
+}
+
+void check_arrays(const ContactArrays& arrays,
+                  const ContactTarget& solution,
+                  const AdhesionArrays& adhesion,
+                  const ContactDevice* device) {
+  const bool is_on_device = arrays.memory == Memory::device;
+  if (!(arrays.time_step > 0)) throw std::invalid_argument("time_step: expected more than 0 s");
+  if (arrays.memory != solution.memory) {
+    throw std::invalid_argument("solution: its memory differs from that of the problem");
   }
+  if (is_on_device && device == nullptr) {
+    throw std::invalid_argument("arrays: device memory needs back end cuda");
+  }
+  const std::size_t contacts = arrays.friction.size();
+  const auto check = [&](const std::string& name, auto array, std::size_t size, bool is_optional) {
+    if (is_optional && array.empty()) return;
+    if (array.size() != size) {
+      throw std::invalid_argument(name + ": " + std::to_string(array.size()) +
+                                  " numbers, expected " + std::to_string(size));
+    }
+    if (is_on_device && size > 0 && !device->is_device_memory(array.data())) {
+      throw std::invalid_argument(name + ": not in memory of the device of this solver");
+    }
+  };
+  check("intensity", arrays.intensity, contacts, false);
+  check("solution.impulse", solution.impulse, 3 * contacts, false);
+  check("solution.velocity", solution.velocity, 3 * contacts, false);
+  check("adhesion.intensity", adhesion.intensity, contacts, false);
+  check("adhesion.gap", adhesion.gap, 3 * contacts, false);
+  check("adhesion.debonded", adhesion.debonded, contacts, true);
+  check("velocity_offset", arrays.velocity_offset, 3 * contacts, true);
+  check("gap", arrays.gap, 3 * contacts, true);
+  check("area", arrays.area, contacts, true);
+  check("stiffness", arrays.stiffness, contacts, true);
+  check("tangential_stiffness", arrays.tangential_stiffness, contacts, true);
+  check("adhesion.energy", adhesion.energy, contacts, true);
+  check("adhesion.viscosity", adhesion.viscosity, contacts, true);
+  check("adhesion.bonding_rate", adhesion.bonding_rate, contacts, true);
+  check("adhesion.saturation_pressure", adhesion.saturation_pressure, contacts, true);
+}
+
+template <class T>
+View<T> view_of(std::span<T> array) {
+  return {array.data(), static_cast<std::int64_t>(array.size())};
 }
 }  // namespace
 
@@ -103,6 +153,44 @@ AdhesionStep evolve_adhesion(const ContactProblem& problem,
     contact_adhesion(CpuContactExec(1), body);
   }
   return step;
+}
+
+void ContactSolver::evolve(const ContactArrays& arrays,
+                           const ContactTarget& solution,
+                           const AdhesionArrays& adhesion,
+                           const EvolutionOptions& options) {
+  ContactDevice* const device = state_->device.get();
+  check_evolution(options);
+  check_arrays(arrays, solution, adhesion, device);
+  const AdhesionViews views{.time_step = arrays.time_step,
+                            .area = view_of(arrays.area),
+                            .stiffness = view_of(arrays.stiffness),
+                            .tangential_stiffness = view_of(arrays.tangential_stiffness),
+                            .intensity = view_of(arrays.intensity),
+                            .gap = view_of(arrays.gap),
+                            .energy = view_of(adhesion.energy),
+                            .viscosity = view_of(adhesion.viscosity),
+                            .bonding_rate = view_of(adhesion.bonding_rate),
+                            .saturation_pressure = view_of(adhesion.saturation_pressure),
+                            .impulse = view_of(std::span<const double>(solution.impulse)),
+                            .velocity = view_of(std::span<const double>(solution.velocity)),
+                            .velocity_offset = view_of(arrays.velocity_offset)};
+  const ContactAdhesionBody body = {
+      .in = views,
+      .euler = options.integrator == AdhesionIntegrator::explicit_euler,
+      .debond_gap_factor = options.debond_gap_factor,
+      .debond_intensity = options.debond_intensity,
+      .next_intensity = view_of(adhesion.intensity),
+      .next_gap = view_of(adhesion.gap),
+      .debonded = view_of(adhesion.debonded),
+  };
+  if (arrays.memory == Memory::device) {
+    device->evolve_resident(body, solution.stream);
+  } else if (device != nullptr) {
+    device->evolve(body);
+  } else {
+    contact_adhesion(CpuContactExec(1), body);
+  }
 }
 
 }  // namespace tetwarp

@@ -255,6 +255,12 @@ class TETWARP_EXPORT ContactSolver {
                       const ContactSolution& solution,
                       const EvolutionOptions& options = {});
 
+  /// The same for arrays, which stay where they are; reads impulse and velocity of `solution`.
+  void evolve(const ContactArrays& arrays,
+              const ContactTarget& solution,
+              const AdhesionArrays& adhesion,
+              const EvolutionOptions& options = {});
+
  private:
   struct State;
   std::unique_ptr<State> state_;
@@ -266,8 +272,7 @@ TETWARP_EXPORT ContactSolution solve_contacts(const ContactProblem& problem,
 
 /// Residuals of given impulses and velocities, in float64, by a factorization of A.
 /// @param impulse        r, [3 contacts], N s
-/// @param body_velocity  v, [dofs], m/s, or empty: v is computed from r. Local form: not used, u =
-///                       W r + q
+/// @param body_velocity  v, [dofs], m/s, or empty: computed from r. Local form: u = W r + q
 /// @param options        law, rule and recovery_speed are read
 /// @throws std::invalid_argument  an array has the wrong size, or the problem has bilateral rows or
 ///                                rolling friction: use the function below
@@ -277,8 +282,7 @@ TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
                                            std::span<const double> body_velocity,
                                            const ContactOptions& options = {});
 
-/// The same for a whole solution, also of a problem with rows beyond those of contacts.
-/// @param solution  impulses, velocities and body velocities are read
+/// The same for a whole solution, also with rows beyond those of contacts; its report is not read.
 TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
                                            const ContactSolution& solution,
                                            const ContactOptions& options = {});
@@ -288,8 +292,7 @@ TETWARP_EXPORT ContactResidual residual_of(const ContactProblem& problem,
 /// @return empty arrays for a problem without adhesion
 /// @throws std::invalid_argument  impulse or velocity has the wrong size, or an option is out of
 ///                                range
-/// @throws ContactProblemError    an array of the adhesion has the wrong size, or time_step is not
-///                                above 0
+/// @throws ContactProblemError    an array of the adhesion has the wrong size, or time_step <= 0
 TETWARP_EXPORT AdhesionStep evolve_adhesion(const ContactProblem& problem,
                                             const ContactSolution& solution,
                                             const EvolutionOptions& options = {});

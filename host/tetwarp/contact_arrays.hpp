@@ -2,6 +2,7 @@
 /// The numbers of a contact problem in arrays of the caller, in host memory or on a GPU, and arrays
 /// for its results.
 #pragma once
+#include <cstdint>
 #include <span>
 
 #include <tetwarp/volume.hpp>
@@ -40,6 +41,18 @@ struct ContactTarget {
   /// cudaStream_t on which kernels run, to order them with the caller's work on device memory;
   /// null: a stream of the solver, which first waits for the default stream. cuda only.
   void* stream = nullptr;
+};
+
+/// What a change of adhesion reads besides the problem and its solution, and what it writes; in the
+/// same memory as these. Outputs may be the arrays of the problem.
+struct AdhesionArrays {
+  std::span<const double> energy;               ///< as in AdhesionState, [contacts], optional
+  std::span<const double> viscosity;            ///< the same
+  std::span<const double> bonding_rate;         ///< the same
+  std::span<const double> saturation_pressure;  ///< the same
+  std::span<double> intensity;                  ///< out, as in AdhesionStep, [contacts]
+  std::span<double> gap;                        ///< out, [3 contacts]
+  std::span<std::uint8_t> debonded;             ///< out, [contacts], optional
 };
 
 }  // namespace tetwarp

@@ -93,11 +93,12 @@ struct AdhesionViews {
   View<const double> viscosity;
   View<const double> bonding_rate;
   View<const double> saturation_pressure;
-  View<const double> impulse;   ///< r of the solve, shape [3 contacts], N s
-  View<const double> velocity;  ///< u of the solve, shape [3 contacts], m/s
+  View<const double> impulse;               ///< r of the solve, shape [3 contacts], N s
+  View<const double> velocity;              ///< u of the solve, shape [3 contacts], m/s
+  View<const double> velocity_offset = {};  ///< w, shape [3 contacts], m/s; empty: gap_n is dt w_n
 };
 
-/// One index = one contact; any order.
+/// One index = one contact; any order. Outputs may be the arrays of the inputs.
 struct ContactAdhesionBody {
   AdhesionViews in;
   bool euler;
@@ -112,7 +113,10 @@ struct ContactAdhesionBody {
     const double area = value_or(in.area, c, 0);
     const double stiffness = value_or(in.stiffness, c, 0);
     const double beta = in.intensity[c];
-    const double normal_gap = dt * in.velocity[3 * c];
+    double normal_gap = dt * in.velocity[3 * c];
+    if (in.velocity_offset.size > 0 && in.gap.size > 0) {
+      normal_gap += in.gap[3 * c] - dt * in.velocity_offset[3 * c];
+    }
     const double gap_1 = value_or(in.gap, 3 * c + 1, 0) + dt * in.velocity[3 * c + 1];
     const double gap_2 = value_or(in.gap, 3 * c + 2, 0) + dt * in.velocity[3 * c + 2];
     const double push = in.impulse[3 * c];
@@ -146,7 +150,7 @@ struct ContactAdhesionBody {
     next_gap[3 * c] = normal_gap;
     next_gap[3 * c + 1] = keep * gap_1;
     next_gap[3 * c + 2] = keep * gap_2;
-    debonded[c] = debonds;
+    if (debonded.size > 0) debonded[c] = debonds;
   }
 };
 

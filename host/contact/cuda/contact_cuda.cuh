@@ -143,6 +143,12 @@ class CudaContactDevice final : public ContactDevice {
     grid_.get(view_of(std::as_const(debonded_)), body.debonded.data);
   }
 
+  void evolve_resident(const ContactAdhesionBody& body, void* stream) override {
+    const DeviceScope scope(exec_.number());
+    const CallersStream callers(exec_, stream);
+    contact_adhesion(grid_, body);
+  }
+
   std::string name() const override { return name_; }
 
  private:

@@ -70,7 +70,8 @@ inline AdhesionViews adhesion_on_device(const GridContactExec& exec,
   return numbers_on_device(
       exec, host,
       {&In::area, &In::stiffness, &In::tangential_stiffness, &In::intensity, &In::gap, &In::energy,
-       &In::viscosity, &In::bonding_rate, &In::saturation_pressure, &In::impulse, &In::velocity},
+       &In::viscosity, &In::bonding_rate, &In::saturation_pressure, &In::impulse, &In::velocity,
+       &In::velocity_offset},
       arrays);
 }
 
