@@ -96,6 +96,7 @@ if(NOT BUILD_SHARED_LIBS)
     )
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/test_touch_capsules.cpp
+    tests/simulate/test_touch_edges.cpp
     tests/simulate/test_touch_fall.cpp
     tests/simulate/test_touch_records.cpp
     tests/simulate/test_touch_self.cpp
