@@ -68,6 +68,11 @@ void flush(const Object& file) {
   if (H5Fflush(file.id(), H5F_SCOPE_LOCAL) < 0) file.fail_with_reason("cannot be written");
 }
 
+void close_written(Object& file, const Disk& disk) {
+  if (!file.handle.close()) file.fail_with_reason("cannot be written");
+  disk.check(file);
+}
+
 Object create_growing_file(const std::string& path, Disk& disk) {
   std::error_code error;
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
@@ -78,6 +83,10 @@ Object create_growing_file(const std::string& path, Disk& disk) {
 
 Object open_growing_file(const std::string& path, Disk& disk) {
   static_cast<void>(open_file(path));  // names what is wrong with a file that is missing or damaged
+  return reopen_growing_file(path, disk);
+}
+
+Object reopen_growing_file(const std::string& path, Disk& disk) {
   Object file{path, "", {}};
   const Handle access = disk_access(&disk);
   file.handle = Handle(H5Fopen(path.c_str(), H5F_ACC_RDWR, access.id()), H5Fclose);

@@ -43,11 +43,17 @@ class GrowingDataset {
 /// Writes what is buffered, so that the file can be read as it is now.
 void flush(const Object& file);
 
+/// Closes a file, of which nothing else may be open. Throws IoError if a write has failed.
+void close_written(Object& file, const Disk& disk);
+
 /// Creates a file that has its name from the beginning, for output that is read while it grows.
 /// @param disk  as of create_file()
 Object create_growing_file(const std::string& path, Disk& disk);
 
 /// Opens such a file to append to it. Throws IoError when it is missing or damaged.
 Object open_growing_file(const std::string& path, Disk& disk);
+
+/// Opens one again that this program has written.
+Object reopen_growing_file(const std::string& path, Disk& disk);
 
 }  // namespace tetwarp::h5

@@ -40,121 +40,90 @@ hsize_t chunk_rows(hsize_t rows, int components) {
 }  // namespace
 
 struct StepMeshWriter::State {
-  h5::Disk disk;
-  h5::Object file, root, steps;
+  std::string path;
   std::vector<StepArray> arrays;
-  std::vector<hsize_t> row_counts;  // of each array at a step
-  std::vector<h5::GrowingDataset> values, offsets;
-  std::vector<h5::GrowingDataset> steady;
-  h5::GrowingDataset times;
+  h5::Disk disk = {};
+  std::vector<hsize_t> row_counts = {};  // of each array at a step
   std::int64_t step_count = 0;
 
-  State(const std::string& path,
-        const std::vector<StepArray>& step_arrays,
-        std::span<const Point3> points,
-        const CellRows& cells);
-  State(const std::string& path,
-        const std::vector<StepArray>& step_arrays,
-        std::size_t point_count,
-        std::int64_t kept);
-  void drop_later();
-  void write_step_count();
+  void create(std::span<const Point3> points, const CellRows& cells);
 };
 
-StepMeshWriter::State::State(const std::string& path,
-                             const std::vector<StepArray>& step_arrays,
-                             std::span<const Point3> points,
-                             const CellRows& cells)
-    : file(h5::create_growing_file(path, disk)),
-      root(h5::create_group(file, "VTKHDF")),
-      arrays(step_arrays) {
-  h5::write_attribute(root, "Version",
-                      std::span<const std::int64_t>(std::array<std::int64_t, 2>{2, 0}));
-  h5::write_text_attribute(root, "Type", "UnstructuredGrid");
-  write_grid(root, points, cells);
-  h5::create_group(root, "FieldData");
-  const h5::Object groups[2] = {h5::create_group(root, "PointData"),
-                                h5::create_group(root, "CellData")};
-  steps = h5::create_group(root, "Steps");
-  h5::write_scalar_attribute(steps, "NSteps", std::int64_t{0});
-  times = h5::GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, step_chunk);
-  for (const SteadyColumn& column : steady_columns) {
-    steady.push_back(
-        h5::GrowingDataset::create(steps, column.name, H5T_STD_I64LE, column.width, step_chunk));
-  }
-  const h5::Object offset_groups[2] = {h5::create_group(steps, "PointDataOffsets"),
-                                       h5::create_group(steps, "CellDataOffsets")};
-  for (const StepArray& array : arrays) {
-    const hsize_t rows = array.is_of_cells ? cells.types.size() : points.size();
-    row_counts.push_back(rows);
-    values.push_back(h5::GrowingDataset::create(groups[array.is_of_cells], array.name,
-                                                H5T_IEEE_F64LE, width_of(array),
-                                                chunk_rows(rows, array.components)));
-    offsets.push_back(h5::GrowingDataset::create(offset_groups[array.is_of_cells], array.name,
-                                                 H5T_STD_I64LE, 0, step_chunk));
-  }
-  h5::flush(file);
-  disk.check(file);
-}
+namespace {
+/// A file while it is changed. It is closed between steps: each open file takes megabytes, and
+/// HDF5 1.10 passes over the datasets of all open files whenever it flushes one.
+class OpenFile {
+ public:
+  explicit OpenFile(h5::Object opened)
+      : file_(std::move(opened)),
+        root_(h5::open_group(file_, "VTKHDF")),
+        steps_(h5::open_group(root_, "Steps")) {}
 
-StepMeshWriter::State::State(const std::string& path,
-                             const std::vector<StepArray>& step_arrays,
-                             std::size_t point_count,
-                             std::int64_t kept)
-    : file(h5::open_growing_file(path, disk)),
-      root(h5::open_group(file, "VTKHDF")),
-      steps(h5::open_group(root, "Steps")),
-      arrays(step_arrays),
-      step_count(kept) {
-  const auto points = h5::read_integers(h5::open_dataset(root, "NumberOfPoints"));
-  const auto cells = h5::read_integers(h5::open_dataset(root, "NumberOfCells"));
-  if (points.size() != 1 || cells.size() != 1 ||
-      points[0] != static_cast<std::int64_t>(point_count)) {
-    root.fail("has other points than the scene; name the folder of the run that is continued");
+  const h5::Object& root() const { return root_; }
+  const h5::Object& steps() const { return steps_; }
+  h5::GrowingDataset times() const { return h5::GrowingDataset::open(steps_, "Values", 0); }
+  h5::GrowingDataset steady(const SteadyColumn& column) const {
+    return h5::GrowingDataset::open(steps_, column.name, column.width);
   }
-  times = h5::GrowingDataset::open(steps, "Values", 0);
-  if (kept < 0 || times.rows() < static_cast<hsize_t>(kept)) {
-    steps.fail("has " + std::to_string(times.rows()) + " steps, fewer than the " +
-               std::to_string(kept) +
-               " up to the checkpoint; name the folder of the run that "
-               "is continued");
+  h5::GrowingDataset values(const StepArray& array) const {
+    return h5::GrowingDataset::open(h5::open_group(root_, group_of(array)), array.name,
+                                    width_of(array));
   }
-  for (const SteadyColumn& column : steady_columns) {
-    steady.push_back(h5::GrowingDataset::open(steps, column.name, column.width));
+  h5::GrowingDataset offsets(const StepArray& array) const {
+    return h5::GrowingDataset::open(
+        h5::open_group(steps_, std::string(group_of(array)) + "Offsets"), array.name, 0);
   }
-  for (const StepArray& array : arrays) {
-    const char* group = array.is_of_cells ? "CellData" : "PointData";
-    const hsize_t rows = static_cast<hsize_t>(array.is_of_cells ? cells[0] : points[0]);
-    row_counts.push_back(rows);
-    values.push_back(
-        h5::GrowingDataset::open(h5::open_group(root, group), array.name, width_of(array)));
-    offsets.push_back(h5::GrowingDataset::open(
-        h5::open_group(steps, std::string(group) + "Offsets"), array.name, 0));
-    if (values.back().rows() < rows * static_cast<hsize_t>(kept) ||
-        offsets.back().rows() < static_cast<hsize_t>(kept)) {
-      root.fail("array " + array.name + " has fewer rows than the steps need");
+
+  /// Writes the number of steps and closes the file.
+  void close(std::int64_t step_count, const h5::Disk& disk) {
+    h5::Handle attribute(H5Aopen(steps_.id(), "NSteps", H5P_DEFAULT), H5Aclose);
+    if (!attribute || H5Awrite(attribute.id(), H5T_NATIVE_INT64, &step_count) < 0) {
+      steps_.fail_with_reason("attribute NSteps cannot be written");
+    }
+    attribute.close();
+    steps_.handle.close();
+    root_.handle.close();
+    h5::close_written(file_, disk);
+  }
+
+ private:
+  static const char* group_of(const StepArray& array) {
+    return array.is_of_cells ? "CellData" : "PointData";
+  }
+
+  h5::Object file_, root_, steps_;
+};
+}  // namespace
+
+void StepMeshWriter::State::create(std::span<const Point3> points, const CellRows& cells) {
+  h5::Object file = h5::create_growing_file(path, disk);
+  {
+    const h5::Object root = h5::create_group(file, "VTKHDF");
+    h5::write_attribute(root, "Version",
+                        std::span<const std::int64_t>(std::array<std::int64_t, 2>{2, 0}));
+    h5::write_text_attribute(root, "Type", "UnstructuredGrid");
+    write_grid(root, points, cells);
+    h5::create_group(root, "FieldData");
+    const h5::Object groups[2] = {h5::create_group(root, "PointData"),
+                                  h5::create_group(root, "CellData")};
+    const h5::Object steps = h5::create_group(root, "Steps");
+    h5::write_scalar_attribute(steps, "NSteps", std::int64_t{0});
+    h5::GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, step_chunk);
+    for (const SteadyColumn& column : steady_columns) {
+      h5::GrowingDataset::create(steps, column.name, H5T_STD_I64LE, column.width, step_chunk);
+    }
+    const h5::Object offset_groups[2] = {h5::create_group(steps, "PointDataOffsets"),
+                                         h5::create_group(steps, "CellDataOffsets")};
+    for (const StepArray& array : arrays) {
+      const hsize_t rows = array.is_of_cells ? cells.types.size() : points.size();
+      row_counts.push_back(rows);
+      h5::GrowingDataset::create(groups[array.is_of_cells], array.name, H5T_IEEE_F64LE,
+                                 width_of(array), chunk_rows(rows, array.components));
+      h5::GrowingDataset::create(offset_groups[array.is_of_cells], array.name, H5T_STD_I64LE, 0,
+                                 step_chunk);
     }
   }
-}
-
-void StepMeshWriter::State::drop_later() {
-  const auto kept = static_cast<hsize_t>(step_count);
-  times.truncate(kept);
-  for (h5::GrowingDataset& column : steady) column.truncate(kept);
-  for (std::size_t a = 0; a < arrays.size(); ++a) {
-    values[a].truncate(row_counts[a] * kept);
-    offsets[a].truncate(kept);
-  }
-  write_step_count();
-}
-
-void StepMeshWriter::State::write_step_count() {
-  const h5::Handle attribute(H5Aopen(steps.id(), "NSteps", H5P_DEFAULT), H5Aclose);
-  if (!attribute || H5Awrite(attribute.id(), H5T_NATIVE_INT64, &step_count) < 0) {
-    steps.fail_with_reason("attribute NSteps cannot be written");
-  }
-  h5::flush(file);
-  disk.check(file);
+  h5::close_written(file, disk);
 }
 
 StepMeshWriter::StepMeshWriter(const std::string& path,
@@ -164,7 +133,8 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
   CellRows cells;
   cells.add<4>(vtk_tetra, mesh.tets);
   cells.add<8>(vtk_hexahedron, mesh.hexes);
-  state_ = std::make_unique<State>(path, arrays, mesh.rest_positions, cells);
+  state_ = std::make_unique<State>(State{path, arrays});
+  state_->create(mesh.rest_positions, cells);
 }
 
 StepMeshWriter::StepMeshWriter(const std::string& path,
@@ -173,7 +143,8 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
   const h5::Silence silence;
   CellRows cells;
   cells.add<3>(vtk_triangle, surface.triangles);
-  state_ = std::make_unique<State>(path, arrays, surface.points, cells);
+  state_ = std::make_unique<State>(State{path, arrays});
+  state_->create(surface.points, cells);
 }
 
 StepMeshWriter::StepMeshWriter(const std::string& path,
@@ -181,19 +152,48 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
                                const std::vector<StepArray>& arrays,
                                std::int64_t steps) {
   const h5::Silence silence;
-  state_ = std::make_unique<State>(path, arrays, point_count, steps);
+  state_ = std::make_unique<State>(State{path, arrays});
+  State& state = *state_;
+  state.step_count = steps;
+  const OpenFile open(h5::open_growing_file(path, state.disk));
+  const auto points = h5::read_integers(h5::open_dataset(open.root(), "NumberOfPoints"));
+  const auto cells = h5::read_integers(h5::open_dataset(open.root(), "NumberOfCells"));
+  if (points.size() != 1 || cells.size() != 1 ||
+      points[0] != static_cast<std::int64_t>(point_count)) {
+    open.root().fail(
+        "has other points than the scene; name the folder of the run that is continued");
+  }
+  const hsize_t rows = open.times().rows(), kept = static_cast<hsize_t>(steps);
+  if (steps < 0 || rows < kept) {
+    open.steps().fail("has " + std::to_string(rows) + " steps, fewer than the " +
+                      std::to_string(steps) +
+                      " up to the checkpoint; name the folder of the run that is continued");
+  }
+  for (const SteadyColumn& column : steady_columns) open.steady(column);
+  for (const StepArray& array : arrays) {
+    state.row_counts.push_back(static_cast<hsize_t>(array.is_of_cells ? cells[0] : points[0]));
+    if (open.values(array).rows() < state.row_counts.back() * kept ||
+        open.offsets(array).rows() < kept) {
+      open.root().fail("array " + array.name + " has fewer rows than the steps need");
+    }
+  }
 }
 
 StepMeshWriter::StepMeshWriter(StepMeshWriter&&) noexcept = default;
-
-StepMeshWriter::~StepMeshWriter() {
-  const h5::Silence silence;
-  state_.reset();
-}
+StepMeshWriter::~StepMeshWriter() = default;
 
 void StepMeshWriter::drop_later() {
   const h5::Silence silence;
-  state_->drop_later();
+  State& state = *state_;
+  const auto kept = static_cast<hsize_t>(state.step_count);
+  OpenFile open(h5::reopen_growing_file(state.path, state.disk));
+  open.times().truncate(kept);
+  for (const SteadyColumn& column : steady_columns) open.steady(column).truncate(kept);
+  for (std::size_t a = 0; a < state.arrays.size(); ++a) {
+    open.values(state.arrays[a]).truncate(state.row_counts[a] * kept);
+    open.offsets(state.arrays[a]).truncate(kept);
+  }
+  open.close(state.step_count, state.disk);
 }
 
 void StepMeshWriter::append(double time, std::span<const std::span<const double>> values) {
@@ -203,34 +203,26 @@ void StepMeshWriter::append(double time, std::span<const std::span<const double>
     const StepArray& array = state.arrays[a];
     const std::size_t expected = state.row_counts[a] * static_cast<std::size_t>(array.components);
     if (a >= values.size() || values[a].size() != expected) {
-      throw IoError(state.file.file, array.name,
-                    "has another number of values than the mesh has rows");
+      throw IoError(state.path, array.name, "has another number of values than the mesh has rows");
     }
     if (!std::ranges::all_of(values[a], [](double value) { return std::isfinite(value); })) {
-      throw IoError(state.file.file, array.name,
+      throw IoError(state.path, array.name,
                     "is not finite at " + std::to_string(time) +
                         " s; the scene is unstable, choose a smaller time_step");
     }
   }
+  OpenFile open(h5::reopen_growing_file(state.path, state.disk));
   for (std::size_t a = 0; a < state.arrays.size(); ++a) {
-    const auto first = static_cast<std::int64_t>(state.values[a].rows());
-    state.values[a].append(H5T_NATIVE_DOUBLE, state.row_counts[a], values[a].data());
-    state.offsets[a].append(H5T_NATIVE_INT64, 1, &first);
+    h5::GrowingDataset own = open.values(state.arrays[a]);
+    const auto first = static_cast<std::int64_t>(own.rows());
+    own.append(H5T_NATIVE_DOUBLE, state.row_counts[a], values[a].data());
+    open.offsets(state.arrays[a]).append(H5T_NATIVE_INT64, 1, &first);
   }
-  for (std::size_t c = 0; c < steady_columns.size(); ++c) {
-    state.steady[c].append(H5T_NATIVE_INT64, 1, &steady_columns[c].value);
+  for (const SteadyColumn& column : steady_columns) {
+    open.steady(column).append(H5T_NATIVE_INT64, 1, &column.value);
   }
-  state.times.append(H5T_NATIVE_DOUBLE, 1, &time);
-  ++state.step_count;
-  state.write_step_count();
-}
-
-void StepMeshWriter::close() {
-  const h5::Silence silence;
-  const std::string path = state_->file.file;
-  h5::flush(state_->file);
-  state_->disk.check(state_->file);
-  state_.reset();
+  open.times().append(H5T_NATIVE_DOUBLE, 1, &time);
+  open.close(++state.step_count, state.disk);
 }
 
 }  // namespace tetwarp

@@ -52,14 +52,31 @@ class Groups {
 }  // namespace
 
 struct SeriesWriter::State {
-  h5::Disk disk;
-  h5::Object file;
+  std::string path;
   std::vector<SeriesColumn> columns;
-  std::vector<h5::GrowingDataset> datasets;
-  std::vector<std::vector<double>> kept;  // values of each column that are not written yet
+  h5::Disk disk = {};
+  std::vector<std::vector<double>> kept = {};  // values of each column that are not written yet
   std::size_t row_size = 0;
   std::int64_t first_step = 0;
   std::int64_t kept_rows = 0;  // of a file that was opened
+
+  /// Changes all datasets. The file is closed before and after: HDF5 1.10 passes over the datasets
+  /// of all open files whenever it flushes one.
+  /// @param change  (dataset, number of the column)
+  template <class Change>
+  void change_datasets(const Change& change) {
+    h5::Object file = h5::reopen_growing_file(path, disk);
+    {
+      Groups groups(file, false);
+      for (std::size_t c = 0; c < columns.size(); ++c) {
+        const Place place = place_of(columns[c]);
+        h5::GrowingDataset dataset =
+            h5::GrowingDataset::open(groups.at(place.group), place.name, width_of(columns[c]));
+        change(dataset, c);
+      }
+    }
+    h5::close_written(file, disk);
+  }
 };
 
 SeriesWriter::SeriesWriter(std::unique_ptr<State> state) : state_(std::move(state)) {
@@ -74,20 +91,20 @@ SeriesWriter::SeriesWriter(const std::string& path,
                            std::int64_t first_step)
     : SeriesWriter([&] {
         const h5::Silence silence;
-        auto state = std::make_unique<State>();
-        state->file = h5::create_growing_file(path, state->disk);
-        state->columns = columns;
+        auto state = std::make_unique<State>(State{path, columns});
         state->first_step = first_step;
-        h5::write_scalar_attribute(state->file, "first_step", first_step);
-        Groups groups(state->file, true);
-        for (const SeriesColumn& column : columns) {
-          const Place place = place_of(column);
-          state->datasets.push_back(h5::GrowingDataset::create(
-              groups.at(place.group), place.name,
-              column.is_integer ? H5T_STD_I64LE : H5T_IEEE_F64LE, width_of(column), chunk_rows));
+        h5::Object file = h5::create_growing_file(path, state->disk);
+        h5::write_scalar_attribute(file, "first_step", first_step);
+        {
+          Groups groups(file, true);
+          for (const SeriesColumn& column : columns) {
+            const Place place = place_of(column);
+            h5::GrowingDataset::create(groups.at(place.group), place.name,
+                                       column.is_integer ? H5T_STD_I64LE : H5T_IEEE_F64LE,
+                                       width_of(column), chunk_rows);
+          }
         }
-        h5::flush(state->file);
-        state->disk.check(state->file);
+        h5::close_written(file, state->disk);
         return state;
       }()) {}
 
@@ -95,16 +112,15 @@ SeriesWriter SeriesWriter::reopen(const std::string& path,
                                   const std::vector<SeriesColumn>& columns,
                                   std::int64_t step) {
   const h5::Silence silence;
-  auto state = std::make_unique<State>();
-  state->file = h5::open_growing_file(path, state->disk);
-  state->columns = columns;
-  state->first_step = h5::read_integer_attribute(state->file, "first_step", 1).front();
+  auto state = std::make_unique<State>(State{path, columns});
+  const h5::Object file = h5::open_growing_file(path, state->disk);
+  state->first_step = h5::read_integer_attribute(file, "first_step", 1).front();
   const std::int64_t rows = step - state->first_step + 1;
-  Groups groups(state->file, false);
+  Groups groups(file, false);
   for (const SeriesColumn& column : columns) {
     const Place place = place_of(column);
-    auto& dataset = state->datasets.emplace_back(
-        h5::GrowingDataset::open(groups.at(place.group), place.name, width_of(column)));
+    const auto dataset =
+        h5::GrowingDataset::open(groups.at(place.group), place.name, width_of(column));
     if (rows < 1 || dataset.rows() < static_cast<hsize_t>(rows)) {
       throw IoError(path, column.path,
                     "has no row of step " + std::to_string(step) +
@@ -131,10 +147,9 @@ SeriesWriter::~SeriesWriter() {
 
 void SeriesWriter::drop_later() {
   const h5::Silence silence;
-  for (h5::GrowingDataset& dataset : state_->datasets) {
-    dataset.truncate(static_cast<hsize_t>(state_->kept_rows));
-  }
-  flush();
+  const auto kept = static_cast<hsize_t>(state_->kept_rows);
+  state_->change_datasets(
+      [&](h5::GrowingDataset& dataset, std::size_t) { dataset.truncate(kept); });
 }
 
 std::int64_t SeriesWriter::first_step() const {
@@ -143,12 +158,12 @@ std::int64_t SeriesWriter::first_step() const {
 
 void SeriesWriter::append(std::span<const double> values) {
   if (values.size() != state_->row_size) {
-    throw IoError(state_->file.file, "", "a row has another number of values than the columns");
+    throw IoError(state_->path, "", "a row has another number of values than the columns");
   }
   const double* value = values.data();
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (!std::isfinite(values[v])) {
-      throw IoError(state_->file.file, "",
+      throw IoError(state_->path, "",
                     "a number of a step is not finite: the scene is unstable; choose a smaller "
                     "time_step");
     }
@@ -162,14 +177,13 @@ void SeriesWriter::append(std::span<const double> values) {
 
 void SeriesWriter::flush() {
   const h5::Silence silence;
-  for (std::size_t c = 0; c < state_->columns.size(); ++c) {
+  if (state_->kept.empty() || state_->kept.front().empty()) return;
+  state_->change_datasets([&](h5::GrowingDataset& dataset, std::size_t c) {
     std::vector<double>& kept = state_->kept[c];
     const auto width = static_cast<std::size_t>(state_->columns[c].components);
-    state_->datasets[c].append(H5T_NATIVE_DOUBLE, kept.size() / width, kept.data());
+    dataset.append(H5T_NATIVE_DOUBLE, kept.size() / width, kept.data());
     kept.clear();
-  }
-  h5::flush(state_->file);
-  state_->disk.check(state_->file);
+  });
 }
 
 }  // namespace tetwarp

@@ -134,9 +134,4 @@ void BodyFiles::append() {
   }
 }
 
-void BodyFiles::close() {
-  for (File& file : files_) file.writer.close();
-  files_.clear();
-}
-
 }  // namespace tetwarp::cli

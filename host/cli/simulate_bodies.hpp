@@ -28,9 +28,6 @@ class BodyFiles {
   /// Appends the state of the simulator to all files.
   void append();
 
-  /// Flushes and closes all files. Throws IoError.
-  void close();
-
   /// Names of the files.
   const std::vector<std::string>& paths() const { return paths_; }
 

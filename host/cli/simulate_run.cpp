@@ -220,7 +220,6 @@ void SimulateRun::finish() {
     const SignalHold until_complete;
     if (series_file_) series_file_->flush();
     series_file_.reset();
-    if (bodies_) bodies_->close();
     if (contacts_) contacts_->close();
   }
   if (!arguments_.checkpoint.empty()) write_checkpoint();

@@ -1,6 +1,7 @@
 /// @file test_io_simulation.cpp
 /// Meshes and series that grow, palettes and films.
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <array>
 #include <cmath>
@@ -49,7 +50,6 @@ TEST(StepMeshWriter, LeavesAFileThatIsCompleteAfterEveryStep) {
     EXPECT_EQ(h5_numbers(path, "VTKHDF/CellData/stress").size(),
               static_cast<std::size_t>(step) + 1);
   }
-  writer.close();
   EXPECT_EQ(MeshReader(path).mesh().tets, one_tet().tets);
 }
 
@@ -73,6 +73,17 @@ TEST(StepMeshWriter, GoesOnBehindAStep) {
   EXPECT_THROW(StepMeshWriter(path, 4, arrays, 5), IoError) << "fewer steps";
   EXPECT_THROW(StepMeshWriter(path, 5, arrays, 1), IoError) << "other points";
   EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), 3u);
+}
+
+TEST(StepMeshWriter, KeepsNoFileOpenBetweenSteps) {
+  const ScratchFolder folder;
+  std::vector<StepMeshWriter> writers;
+  for (int n = 0; n < 5; ++n) {
+    writers.emplace_back(folder / ("body" + std::to_string(n) + ".vtkhdf"), one_tet(), arrays);
+  }
+  for (StepMeshWriter& writer : writers) append(writer, 0, 1);
+
+  EXPECT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0);
 }
 
 TEST(StepMeshWriter, RefusesNumbersThatAreNotFinite) {
