@@ -95,6 +95,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
   host/simulate/contact/edge_side.cpp
+  host/simulate/contact/elastic_groups.cpp
   host/simulate/contact/elastic_space.cpp
   host/simulate/contact/medial_node.cpp
   host/simulate/contact/near_pair.cpp

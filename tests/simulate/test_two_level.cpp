@@ -1,6 +1,7 @@
 /// The two-level iteration of contacts of deformable bodies.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "host/base/point3.hpp"
@@ -42,6 +43,41 @@ HandScene stack_scene(double youngs) {
     touch.normal = {0, 0, -1};
     touch.area = 1e-5;
     scene.touches.push_back(touch);
+  }
+  return scene;
+}
+
+/// Three elastic blocks on a frame: groups of 81, 27 and 41 contacts, of one body or of two.
+HandScene tower_scene() {
+  HandScene scene;
+  Model& model = scene.model;
+  model = empty_model();
+  for (int block = 0; block < 3; ++block) {
+    add_block(model, {.cells = {8, 8, 1},
+                      .edge = 0.005,
+                      .origin = {0, 0, 0.005 * block},
+                      .youngs = 3e4 * (1 + block),
+                      .poisson = 0.4});
+  }
+  const std::int32_t frame = add_frame(model, {0, 0, 0});
+  scene.make_surfaces(0.02);
+  for (std::int32_t block = 0; block < 3; ++block) {
+    const std::int32_t stride =
+        std::array<std::int32_t, 3>{1, 3, 2}[static_cast<std::size_t>(block)];
+    for (std::int32_t node = 0; node < 81; node += stride) {
+      Touch touch;
+      touch.body_a = block;
+      touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
+      if (block == 0) {
+        touch.body_b = model.rigid.body[static_cast<std::size_t>(frame)];
+        touch.point_b = on_rigid(model.start.position[static_cast<std::size_t>(node)]);
+      } else {
+        touch.body_b = block - 1;
+        touch.point_b = on_nodes({81 + node, -1, -1}, {1, 0, 0});
+      }
+      touch.area = 1e-5;
+      scene.touches.push_back(touch);
+    }
   }
   return scene;
 }
@@ -114,6 +150,25 @@ TEST(TwoLevelContact, ResidualIsWithinTheTolerance) {
           EXPECT_LE(step.outcome.residual, tolerance);
           EXPECT_LE(step.residual.eta, 1.5 * tolerance);
         }
+      }
+    }
+  }
+}
+
+/// Sweeps over groups keep the velocities of all touched nodes consistent with the impulses.
+TEST(TwoLevelContact, GroupsOfSeveralBodiesMeetTheTolerance) {
+  const HandScene scene = tower_scene();
+  for (const double adhesion : {0.0, 4e7}) {
+    for (const double tolerance : {1e-4, 1e-7}) {
+      SCOPED_TRACE(testing::Message() << adhesion << " " << tolerance);
+      ContactSystemOptions options;
+      options.recovery_fraction = 1e9;
+      options.solver.tolerance = tolerance;
+
+      for (const StackStep& step : run_stack(scene, options, adhesion, nullptr)) {
+        EXPECT_TRUE(step.outcome.converged);
+        EXPECT_LE(step.residual.eta, 1.5 * tolerance);
+        EXPECT_LT(step.outcome.sweeps, 2000) << step.outcome.outer_iterations;
       }
     }
   }

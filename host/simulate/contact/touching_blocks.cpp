@@ -43,9 +43,8 @@ void TouchingBlocks::set(const StepSystem& system,
   packed_size_.resize(constants_.size());
   moves_rows_.resize(constants_.size());
   packed_.clear();
-  elastic_start_.assign(constants_.size(), 0);
-  elastic_end_.assign(constants_.size(), 0);
-  elastic_parts_.clear();
+  groups_.set(elastic, part_start_, part_row_);
+  elastic_start_.assign(constants_.size(), -1);
   elastic_response_.clear();
   operations_ = 0;
 }

@@ -8,6 +8,7 @@
 #include <tetwarp/contact_problem.hpp>
 
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/elastic_groups.hpp"
 #include "host/simulate/contact/solved_islands.hpp"
 #include "kernels/body/row_product.hpp"
 #include "kernels/contact/contact_law.hpp"
@@ -40,8 +41,11 @@ class TouchingBlocks {
 
   std::int64_t count() const { return static_cast<std::int64_t>(constants_.size()); }
 
-  /// One pass of projected Gauss-Seidel over some contacts.
-  /// @param list     contacts, ascending
+  /// Prepares sweeps over contacts of working(), and puts these in the order of sweeps.
+  void begin_sweeps();
+  /// Projected Gauss-Seidel over some contacts, a group of ElasticGroups after the other, each in
+  /// several passes.
+  /// @param list     contacts, in the order of working()
   /// @param y        in and out
   /// @param impulse  in and out, [3 list]
   void sweep(ContactSwitches switches,
@@ -50,7 +54,7 @@ class TouchingBlocks {
              double* impulse);
   /// Multiplications of all sweeps since set().
   std::int64_t operations() const { return operations_; }
-  /// y += M^-1 J^T (after - before), [3 list] each.
+  /// y += M^-1 J^T (after - before), [3 list] each. @pre no elastic bodies
   void push(const std::vector<std::int32_t>& list,
             const double* before,
             const double* after,
@@ -66,8 +70,9 @@ class TouchingBlocks {
                        const double* impulse,
                        const double* velocity,
                        const double* free);
-  /// Contacts that had an impulse or were off their law in the last measure(), ascending. Most
-  /// contacts of bodies that sink in without contact are neither: what holds the bodies up are few.
+  /// Contacts that had an impulse or were off their law in the last measure(), ascending until
+  /// begin_sweeps(). Most contacts of bodies that sink in without contact are neither: what holds
+  /// the bodies up are few.
   const std::vector<std::int32_t>& working() const { return working_; }
   /// force = load + J^T r in the rows that contacts touch.
   void add_impulses(View<const double> load, const double* impulse, double* force) const;
@@ -87,13 +92,6 @@ class TouchingBlocks {
     std::int32_t size = 0;   ///< a multiple of 3
   };
 
-  /// What a contact moves of an elastic body: all its touched nodes.
-  struct ElasticPart {
-    std::int64_t place = 0;  ///< in y
-    std::int64_t value = 0;  ///< in elastic_response_, 3 x size
-    std::int64_t size = 0;
-  };
-
   void set_laws(const ContactProblem& laws);
   void add_rows(const StepSystem& system, const ContactRows& rows, std::int32_t contact);
   void set_responses(const SolvedIslands& islands,
@@ -103,7 +101,8 @@ class TouchingBlocks {
   void add_elastic_block(const ElasticSpace& elastic, std::size_t contact, std::int32_t part);
   void pack(std::size_t contact);
   void pack_elastic(std::size_t contact);
-  void add_elastic(std::size_t contact, const double* change, double* y) const;
+  void add_push_of_elastic(std::size_t contact, const double* change);
+  void update(ContactSwitches switches, std::size_t contact, double* y, double* impulse);
   void gather(std::size_t contact, const double* y);
   void scatter(std::size_t contact, double* y) const;
   void add_push(std::size_t contact, const double* r, double* force) const;
@@ -122,9 +121,10 @@ class TouchingBlocks {
   std::vector<double> packed_;              ///< of contacts three rows of J, three of responses
   std::vector<double> gathered_;            ///< velocities of one contact
   std::vector<double> turned_;              ///< J of rows of elastic bodies, in their frames
-  std::vector<ElasticPart> elastic_parts_;
-  std::vector<std::int32_t> elastic_start_, elastic_end_;  ///< [contacts] in elastic_parts_
-  std::vector<float> elastic_response_;                    ///< [parts][3][size], rounded
+  ElasticGroups groups_;
+  std::vector<std::int64_t> elastic_start_;  ///< [contacts] in elastic_response_, -1: not there yet
+  std::vector<float> elastic_response_;  ///< of contacts 3 x size of their group, rounded: z for
+                                         ///< unit impulses
   std::vector<std::array<std::int64_t, 2>> ranges_;
   std::vector<double> summed_;  ///< before they are rounded
   const ElasticSpace* elastic_ = nullptr;

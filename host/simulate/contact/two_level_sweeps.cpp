@@ -113,6 +113,7 @@ void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
 /// open stays so in most of them. @returns the sweeps
 std::int64_t TwoLevelSolver::sweep(double enough) {
   std::int64_t sweeps = 0;
+  blocks_.begin_sweeps();
   const std::vector<std::int32_t>& working = blocks_.working();
   while (!working.empty() && sweeps < most_sweeps) {
     ++sweeps;

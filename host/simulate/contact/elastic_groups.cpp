@@ -1,0 +1,178 @@
+#include "host/simulate/contact/elastic_groups.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "host/base/index_of.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
+
+namespace tetwarp {
+namespace {
+
+// Larger groups touch so many nodes of their bodies that all velocities follow every impulse.
+constexpr std::size_t most_of_part = 64;  // contacts
+
+}  // namespace
+
+void ElasticGroups::set(const ElasticSpace& space,
+                        const std::vector<std::int32_t>& part_start,
+                        const std::vector<std::int32_t>& part_row) {
+  space_ = &space;
+  part_start_ = &part_start;
+  part_row_ = &part_row;
+  listed_.clear();
+  groups_.clear();
+  group_of_.assign(part_start.size() - 1, -1);
+  bodies_.assign(group_of_.size(), {-1, -1});
+  place_of_part_.assign(part_row.size(), -1);
+}
+
+/// A contact has two sides, each on one body at most.
+void ElasticGroups::find_bodies(std::int32_t contact) {
+  std::array<std::int32_t, 2>& own = bodies_[index_of(contact)];
+  const std::int32_t end = (*part_start_)[index_of(contact) + 1];
+  for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
+    const std::int32_t body = space_->body_of_row((*part_row_)[index_of(p)]);
+    if (body >= 0 && body != own[0]) own[own[0] < 0 ? 0 : 1] = body;
+  }
+  if (own[1] >= 0 && own[1] < own[0]) std::swap(own[0], own[1]);
+}
+
+bool ElasticGroups::group(std::vector<std::int32_t>& list) {
+  const std::size_t before = listed_.size();
+  for (const std::int32_t contact : list) {
+    if (group_of_[index_of(contact)] >= 0) continue;
+    find_bodies(contact);
+    listed_.push_back(contact);
+  }
+  const bool has_new = listed_.size() != before;
+  if (has_new) make_groups();
+  std::ranges::sort(list, {}, [&](std::int32_t contact) {
+    return std::pair(group_of_[index_of(contact)], contact);
+  });
+  return has_new;
+}
+
+void ElasticGroups::make_groups() {
+  const auto bodies_of = [&](std::int32_t contact) { return bodies_[index_of(contact)]; };
+  std::ranges::sort(listed_, {},
+                    [&](std::int32_t contact) { return std::pair(bodies_of(contact), contact); });
+  groups_.clear();
+  std::size_t most = 0;
+  for (std::size_t begin = 0, end = 0; begin < listed_.size(); begin = end) {
+    while (end < listed_.size() && bodies_of(listed_[end]) == bodies_of(listed_[begin])) {
+      group_of_[index_of(listed_[end++])] = static_cast<std::int32_t>(groups_.size());
+    }
+    Group& group = groups_.emplace_back();
+    list_slots(group, std::span(listed_).subspan(begin, end - begin));
+    most = std::max(most, index_of(group.size));
+  }
+  z_.resize(most);
+  push_.resize(most);
+}
+
+/// Nodes that contacts of one group touch, and the places of their parts.
+void ElasticGroups::list_slots(Group& group, std::span<const std::int32_t> contacts) {
+  const auto for_parts = [&](const auto& visit) {
+    for (const std::int32_t contact : contacts) {
+      const std::int32_t end = (*part_start_)[index_of(contact) + 1];
+      for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
+        const std::int32_t row = (*part_row_)[index_of(p)];
+        const std::int32_t body = space_->body_of_row(row);
+        if (body >= 0) visit(index_of(p), body, space_->slot_of_row(row));
+      }
+    }
+  };
+  const auto body_at = [&](std::int32_t body) {
+    return std::ranges::find(group.bodies, body, &Body::body);
+  };
+  for_parts([&](std::size_t, std::int32_t body, std::int32_t slot) {
+    auto own = body_at(body);
+    if (own == group.bodies.end()) own = group.bodies.insert(own, Body{body, 0, 0, {}});
+    own->slots.push_back(slot);
+  });
+  group.is_whole = contacts.size() > most_of_part;
+  for (Body& own : group.bodies) {
+    if (group.is_whole) {
+      own.slots.resize(space_->bodies()[index_of(own.body)].touched.size());
+      std::iota(own.slots.begin(), own.slots.end(), 0);
+    }
+    std::sort(own.slots.begin(), own.slots.end());
+    own.slots.erase(std::unique(own.slots.begin(), own.slots.end()), own.slots.end());
+    own.first = group.size;
+    own.size = (3 * static_cast<std::int32_t>(own.slots.size()) + 7) / 8 * 8;
+    group.size += own.size;
+  }
+  for_parts([&](std::size_t p, std::int32_t body, std::int32_t slot) {
+    const Body& own = *body_at(body);
+    const auto place = std::lower_bound(own.slots.begin(), own.slots.end(), slot);
+    place_of_part_[p] = own.first + 3 * static_cast<std::int32_t>(place - own.slots.begin());
+  });
+}
+
+void ElasticGroups::copy_compliance(Body& own) const {
+  const ElasticBody& body = space_->bodies()[index_of(own.body)];
+  own.compliance.assign(3 * own.slots.size() * index_of(own.size), 0);
+  float* out = own.compliance.data();
+  for (const std::int32_t slot : own.slots) {
+    for (std::int64_t i = 0; i < 3; ++i, out += own.size) {
+      const float* const column = body.compliance.data() + (3 * std::int64_t{slot} + i) * body.size;
+      for (std::size_t k = 0; k < own.slots.size(); ++k) {
+        std::copy_n(column + 3 * std::int64_t{own.slots[k]}, 3, out + 3 * k);
+      }
+    }
+  }
+}
+
+void ElasticGroups::add_velocities(std::int32_t group,
+                                   std::int32_t place,
+                                   const double* push,
+                                   double* z) {
+  Group& all = groups_[index_of(group)];
+  for (Body& own : all.bodies) {
+    if (place < own.first || place >= own.first + own.size) continue;
+    if (!all.is_whole && own.compliance.empty()) copy_compliance(own);
+    const float* const compliance =
+        (all.is_whole ? space_->bodies()[index_of(own.body)].compliance : own.compliance).data();
+    const std::int64_t column = std::int64_t{place} - own.first;
+    vector_stages().add_rows(compliance + column * own.size, own.size, push, own.size,
+                             z + own.first);
+  }
+}
+
+void ElasticGroups::begin(std::int32_t group, const double* y) {
+  for (const Body& own : groups_[index_of(group)].bodies) {
+    const double* const from = y + space_->bodies()[index_of(own.body)].first;
+    double* out = z_.data() + own.first;
+    for (const std::int32_t slot : own.slots) {
+      const double* const v = from + 3 * std::int64_t{slot};
+      out[0] = v[0], out[1] = v[1], out[2] = v[2];
+      out += 3;
+    }
+  }
+  std::fill_n(push_.begin(), groups_[index_of(group)].size, 0.0);
+}
+
+std::int64_t ElasticGroups::finish(std::int32_t group, double* y) {
+  std::int64_t operations = 0;
+  for (const Body& own : groups_[index_of(group)].bodies) {
+    const ElasticBody& body = space_->bodies()[index_of(own.body)];
+    if (groups_[index_of(group)].is_whole) {
+      std::copy_n(z_.begin() + own.first, own.size, y + body.first);
+      continue;
+    }
+    const double* push = push_.data() + own.first;
+    for (const std::int32_t slot : own.slots) {
+      if (push[0] != 0 || push[1] != 0 || push[2] != 0) {
+        vector_stages().add_rows(body.compliance.data() + 3 * std::int64_t{slot} * body.size,
+                                 body.size, push, body.size, y + body.first);
+        operations += 3 * body.size;
+      }
+      push += 3;
+    }
+  }
+  return operations;
+}
+
+}  // namespace tetwarp
