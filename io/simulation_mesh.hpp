@@ -22,8 +22,8 @@ struct StepArray {
 };
 
 /// Writes a VTKHDF UnstructuredGrid, Version [2,0], of fixed points and cells step by step. The
-/// file has its name from the beginning, and is complete and closed after every call: a program that
-/// ends early leaves a file with the steps so far. IoError where it cannot be written.
+/// file has its name from the beginning, and is complete and closed after every call: a program
+/// that ends early leaves a file with the steps so far. IoError where it cannot be written.
 class TETWARP_IO_EXPORT StepMeshWriter {
  public:
   /// Creates the file; one of that name is replaced.

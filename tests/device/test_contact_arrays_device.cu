@@ -1,6 +1,6 @@
 /// @file test_contact_arrays_device.cu
 /// Contact problems in memory of a real device; skipped without one.
-#include "tests/device/contact_arrays.hpp"
+#include "tests/device/contact_arrays_adhesion.hpp"
 
 namespace tetwarp::test {
 

@@ -1,6 +1,6 @@
 /// @file test_contact_arrays_emulated.cpp
 /// Contact problems in memory of the emulated device: results, and what is copied.
-#include "tests/device/contact_arrays.hpp"
+#include "tests/device/contact_arrays_adhesion.hpp"
 #include "tests/emu/device_calls.hpp"
 
 namespace tetwarp::test {
