@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/step_problem.hpp"
@@ -117,7 +118,8 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     std::vector<std::int32_t> all;
     for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
     StepProblem part;
-    part.set(rows, islands, jacobian, {1, 1}, all);
+    part.set(rows, islands, jacobian,
+             std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
     tracker.fill(part.problem());
     std::vector<double> dofs;
     for (std::int32_t row = 0; row < rows.rows.unknown_count; ++row) {
