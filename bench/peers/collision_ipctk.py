@@ -28,7 +28,7 @@ KINDS = ["generic", "tiny", "translation", "at_vertex", "at_edge", "grazing", "o
          "offset_1e6", "at_end", "coplanar_flat", "coplanar_tilted", "degenerate"]
 ITERATIONS = 100000  # then ipctk reports a touch
 # Asked whether they come within the distance of the answers instead: ipctk needs 0.2 s for a pair
-# that meets in one plane, for some minutes.
+# that meets in one plane, and minutes for some of them.
 IN_PLANE = ["coplanar_flat", "coplanar_tilted", "degenerate"]
 
 

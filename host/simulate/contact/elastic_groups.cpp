@@ -97,9 +97,10 @@ void ElasticGroups::list_slots(Group& group, std::span<const std::int32_t> conta
     if (group.is_whole) {
       own.slots.resize(space_->bodies()[index_of(own.body)].touched.size());
       std::iota(own.slots.begin(), own.slots.end(), 0);
+    } else {
+      std::sort(own.slots.begin(), own.slots.end());
+      own.slots.erase(std::unique(own.slots.begin(), own.slots.end()), own.slots.end());
     }
-    std::sort(own.slots.begin(), own.slots.end());
-    own.slots.erase(std::unique(own.slots.begin(), own.slots.end()), own.slots.end());
     own.first = group.size;
     own.size = (3 * static_cast<std::int32_t>(own.slots.size()) + 7) / 8 * 8;
     group.size += own.size;

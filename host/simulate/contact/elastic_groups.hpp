@@ -16,6 +16,7 @@ namespace tetwarp {
 /// those of changing all of them for every impulse; a contact changes tens instead of hundreds.
 class ElasticGroups {
  public:
+  /// Forgets all groups. The arguments are kept and must outlive the groups.
   /// @param part_start  [contacts + 1] parts of each contact
   /// @param part_row    [parts] the row that a part moves
   void set(const ElasticSpace& space,
@@ -40,7 +41,8 @@ class ElasticGroups {
     return groups_[static_cast<std::size_t>(group)].is_whole;
   }
 
-  /// z for a push on the node of a part. @param push  three. @param z  in and out
+  /// Adds the velocities of a push on one node. @param place  place_of_part()
+  /// @param push  impulse [N s], three. @param z  in and out [m/s], [size]
   void add_velocities(std::int32_t group, std::int32_t place, const double* push, double* z);
 
   /// Copies z from y, and sets the pushes to zero.
@@ -48,6 +50,7 @@ class ElasticGroups {
   /// Adds the velocities of the pushes to y. @returns multiplications
   std::int64_t finish(std::int32_t group, double* y);
 
+  /// z [m/s] and the pushes [N s] of the group that begin() was called for, [size].
   double* velocities() { return z_.data(); }
   double* pushes() { return push_.data(); }
 

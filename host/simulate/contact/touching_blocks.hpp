@@ -43,8 +43,8 @@ class TouchingBlocks {
 
   /// Prepares sweeps over contacts of working(), and puts these in the order of sweeps.
   void begin_sweeps();
-  /// Projected Gauss-Seidel over some contacts, a group of ElasticGroups after the other, each in
-  /// several passes.
+  /// Projected Gauss-Seidel over some contacts, a group of ElasticGroups after the other, small
+  /// ones in several passes.
   /// @param list     contacts, in the order of working()
   /// @param y        in and out
   /// @param impulse  in and out, [3 list]
