@@ -81,7 +81,9 @@ void ElasticSpace::choose(const SystemRows& rows,
   }
 }
 
-void ElasticSpace::set(const ModelState& state, double time_step, std::int64_t first, int threads) {
+void ElasticSpace::set(
+    const ModelState& state, double time_step, std::int64_t first, double damping, int threads) {
+  damping_ = damping;
   size_ = 0;
   for (ElasticBody& own : bodies_) {
     own.first = first + size_;
@@ -116,7 +118,9 @@ void ElasticSpace::set_body(ElasticBody& own,
     const float* column = factor->columns(node);
     for (int i = 0; i < 3; ++i, out += own.size, column += 3 * factor->node_count()) {
       for (std::size_t k = 0; k < own.touched.size(); ++k) {
-        std::copy_n(column + 3 * own.touched[k], 3, out + 3 * k);
+        for (int e = 0; e < 3; ++e) {
+          out[3 * k + index_of(e)] = static_cast<float>(damping_) * column[3 * own.touched[k] + e];
+        }
       }
     }
   }
@@ -134,7 +138,7 @@ void ElasticSpace::solve(std::size_t body, const double* push, double* out) {
   own.factor->solve(x);
   for (std::size_t k = 0; k < own.push.size(); k += 3) {
     for (std::size_t i = 0; i < 3; ++i) {
-      out[k + i] = r[3 * i] * x[k] + r[3 * i + 1] * x[k + 1] + r[3 * i + 2] * x[k + 2];
+      out[k + i] = damping_ * (r[3 * i] * x[k] + r[3 * i + 1] * x[k + 1] + r[3 * i + 2] * x[k + 2]);
     }
   }
 }

@@ -20,7 +20,7 @@ struct ElasticBody {
   std::vector<std::int32_t> touched;  ///< nodes, from row_begin
   std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded to
                                       ///< a multiple of 8
-  std::vector<float> compliance;      ///< [3 touched][size] of A_0^-1, a column at a time
+  std::vector<float> compliance;      ///< [3 touched][size] of M^-1, a column at a time
   std::vector<double> push;           ///< work, [rows][3]
 };
 
@@ -37,8 +37,10 @@ class ElasticSpace {
               const std::vector<std::uint8_t>& takes,
               const ContactRows& contact_rows,
               const std::vector<std::int32_t>& contacts);
-  /// @param first  place of the first number of touched nodes in y
-  void set(const ModelState& state, double time_step, std::int64_t first, int threads);
+  /// @param first    place of the first number of touched nodes in y
+  /// @param damping  a power of two: M^-1 becomes damping R A_0^-1 R^T
+  void set(
+      const ModelState& state, double time_step, std::int64_t first, double damping, int threads);
 
   const std::vector<ElasticBody>& bodies() const { return bodies_; }
   /// Place in bodies() of the body of a row, or -1.
@@ -70,6 +72,7 @@ class ElasticSpace {
   std::vector<std::int32_t> body_of_row_, slot_of_row_, row_of_block_;
   std::vector<Factors> factors_;  ///< of the last time steps
   std::int64_t size_ = 0;
+  double damping_ = 1;
 };
 
 }  // namespace tetwarp

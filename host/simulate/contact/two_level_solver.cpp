@@ -2,8 +2,8 @@
 #include "host/base/index_of.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "host/base/parallel.hpp"
@@ -24,20 +24,35 @@ constexpr std::int64_t small_contacts = 256, small_rows = 128;
 constexpr std::int32_t chunk_rows = 64;
 // Of the error before an outer iteration, left by its sweeps; with single elastic bodies.
 constexpr double inner_share = 0.002, elastic_share = 0.005;
+// Of the error at which the solve ends: sweeps leave as much, as less would gain nothing.
+constexpr double final_share = 0.4;
+// The factors of bodies that are bent much are too soft: the iteration then diverges, and is begun
+// anew with half their compliance. Errors of iterations that converge grow by less than
+// `divergence` at times.
+constexpr double divergence = 30, least_damping = 1.0 / 16;
 // The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors the
 // error was an upper bound of eta, by a factorization of A, on bodies of some hundred nodes with E
 // of 1e4 to 1e8 Pa, with and without adhesion.
 constexpr double defect_factor = 8;
 constexpr double law_factor = 2;
 
-class Clock {
+/// At which change of the impulses the sweeps of an outer iteration end.
+class SweepEnd {
  public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  explicit SweepEnd(double share) : share_(share) {}
+
+  /// @param target  error at which the solve ends
+  /// @param sweeps  of all outer iterations before
+  double next(const TwoLevelError& error, double target, std::int64_t sweeps) {
+    // The change of a sweep is no bound of the error of the laws.
+    if (iterations_++ > 0 && sweeps - before_ <= 2 && error.laws > 0.9 * target) final_ /= 2;
+    before_ = sweeps;
+    return std::max(share_ * error.total, final_ * target);
   }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double share_, final_ = final_share;
+  std::int64_t iterations_ = 0, before_ = 0;
 };
 
 }  // namespace
@@ -119,28 +134,31 @@ void TwoLevelSolver::prepare(const StepSystem& system,
   }
 }
 
-/// The error of r and v = x, and the square root of the work of r.
-double TwoLevelSolver::find_error(double defect, double& work) {
+/// The error of r and v = x.
+TwoLevelError TwoLevelSolver::find_error(double defect) {
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   const TouchingSums sums =
       blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data());
-  work = std::sqrt(std::max(sums.work, 0.0));
-  return std::sqrt(square_of(defect_factor) * std::max(defect, 0.0) +
-                   square_of(law_factor) * sums.natural);
+  TwoLevelError error;
+  error.laws = law_factor * std::sqrt(sums.natural);
+  error.total = std::sqrt(square_of(defect_factor) * std::max(defect, 0.0) +
+                          square_of(law_factor) * sums.natural);
+  error.work = std::sqrt(std::max(sums.work, 0.0));
+  return error;
 }
 
 /// Copies the iterate with the least residual. @returns false if it no longer shrinks
-bool TwoLevelSolver::keep_best(const TwoLevelOutcome& now) {
-  if (now.residual < best_.residual) {
-    best_.residual = now.residual;
+bool TwoLevelSolver::keep_best(double residual, std::int64_t iterations) {
+  if (residual < best_.residual) {
+    best_.residual = residual;
     best_.x = x_;
     best_.impulse = impulse_;
   }
-  if (now.outer_iterations == 0 || best_.residual <= least_progress * best_.mark) {
+  if (iterations == 0 || best_.residual <= least_progress * best_.mark) {
     best_.mark = best_.residual;
-    best_.marked_at = now.outer_iterations;
+    best_.marked_at = iterations;
   }
-  return now.outer_iterations - best_.marked_at < patience;
+  return iterations - best_.marked_at < patience;
 }
 
 void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
@@ -148,6 +166,52 @@ void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
   x_ = best_.x;
   impulse_ = best_.impulse;
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
+}
+
+/// Iterates from what prepare() has set.
+TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system, TwoLevelOutcome& outcome) {
+  const std::int64_t begin = 3 * std::int64_t{chunks_.front().row_begin};
+  const std::int64_t size = 3 * std::int64_t{chunks_.back().row_end} - begin;
+  CpuContactExec exec(threads_);
+  using Mixer = AndersonMixer<CpuContactExec, double>;
+  mixed_.resize(index_of(Mixer::columns * size));
+  Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
+  contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
+  const double alone = std::sqrt(
+      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural);
+  best_.residual = std::numeric_limits<double>::infinity();
+  SweepEnd sweep_end(elastic_.bodies().empty() ? inner_share : elastic_share);
+  for (std::int64_t iterations = 0; outcome.outer_iterations < most_iterations; ++iterations) {
+    blocks_.add_impulses(system.load, impulse_.data(), force_.data());
+    const TwoLevelError error = find_error(step(system));
+    const double scale = std::max(alone + error.work, least_error_ / options_.tolerance);
+    const double target = options_.tolerance * scale;
+    outcome.residual = error.total > 0 ? error.total / scale : 0;
+    if (!std::isfinite(error.total)) return End::fails;
+    if (getenv("TWD"))
+      fprintf(stderr, "it %d err/target %.3g laws %.3g sweeps %d\n", (int)outcome.outer_iterations,
+              error.total / target, error.laws / target, (int)outcome.sweeps);
+    if (error.total <= target) return End::converges;
+    if (!keep_best(outcome.residual, iterations)) return End::fails;
+    if (outcome.residual > divergence * best_.residual) return End::diverges;
+    if (blocks_.operations() > most_operations) return End::fails;
+    stepped_ = impulse_;
+    outcome.sweeps += sweep(sweep_end.next(error, target, outcome.sweeps));
+    ++outcome.outer_iterations;
+    if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
+      return End::is_stopped;
+    }
+    add_elastic();
+    const View<const double> before{x_.data() + begin, size};
+    const View<double> image{y_.data() + begin, size};
+    // What the first iteration leaves is far from what the next ones do.
+    if (iterations > 0) {
+      mixer.observe(before, image);
+      mixer.advance(before, image);
+    }
+    std::copy_n(y_.data() + begin, size, x_.data() + begin);
+  }
+  return End::fails;
 }
 
 TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
@@ -159,54 +223,27 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
                                       const ContactProblem& laws,
                                       std::vector<Point3>& velocity,
                                       std::vector<Point3>& change) {
-  const Clock clock;
+  clock_ = {};
   elastic_.choose(system.rows, islands, takes, rows, contacts);
   islands_.set(system.rows, islands, takes, elastic_);
-  elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, threads_);
-  prepare(system, contacts, rows, laws, velocity, change);
-  change.assign(velocity.size(), Point3{0, 0, 0});
   TwoLevelOutcome outcome;
+  End end = End::converges;
+  for (double damping = 1; damping >= least_damping; damping /= 2) {
+    elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, damping,
+                 threads_);
+    prepare(system, contacts, rows, laws, velocity, change);
+    if (!chunks_.empty()) end = iterate(system, outcome);
+    if (end != End::diverges || elastic_.bodies().empty()) break;
+  }
+  change.assign(velocity.size(), Point3{0, 0, 0});
   if (chunks_.empty()) {
     outcome.converged = outcome.is_result = true;
     return outcome;
   }
-  const std::int64_t begin = 3 * std::int64_t{chunks_.front().row_begin};
-  const std::int64_t size = 3 * std::int64_t{chunks_.back().row_end} - begin;
-  CpuContactExec exec(threads_);
-  using Mixer = AndersonMixer<CpuContactExec, double>;
-  mixed_.resize(index_of(Mixer::columns * size));
-  Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
-  contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
-  const double alone = std::sqrt(
-      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural);
-  best_.residual = std::numeric_limits<double>::infinity();
-  while (outcome.outer_iterations < most_iterations && blocks_.operations() < most_operations) {
-    blocks_.add_impulses(system.load, impulse_.data(), force_.data());
-    const double defect = step(system);
-    double work = 0;
-    const double error = find_error(defect, work);
-    const double scale = std::max(alone + work, least_error_ / options_.tolerance);
-    outcome.residual = error > 0 ? error / scale : 0;
-    if (!std::isfinite(error)) break;
-    if (error <= options_.tolerance * scale) {
-      outcome.converged = true;
-      break;
-    }
-    if (!keep_best(outcome)) break;
-    stepped_ = impulse_;
-    outcome.sweeps += sweep((elastic_.bodies().empty() ? inner_share : elastic_share) * error);
-    ++outcome.outer_iterations;
-    if (options_.progress && !options_.progress({clock.seconds(), outcome.sweeps, 0})) {
-      return outcome;
-    }
-    add_elastic();
-    const View<const double> before{x_.data() + begin, size};
-    const View<double> image{y_.data() + begin, size};
-    mixer.observe(before, image);
-    mixer.advance(before, image);
-    std::copy_n(y_.data() + begin, size, x_.data() + begin);
-  }
-  const bool is_small = blocks_.count() <= small_contacts && size <= 3 * small_rows;
+  if (end == End::is_stopped) return outcome;
+  outcome.converged = end == End::converges;
+  const bool is_small = blocks_.count() <= small_contacts &&
+                        chunks_.back().row_end - chunks_.front().row_begin <= small_rows;
   outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);

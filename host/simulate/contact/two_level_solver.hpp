@@ -1,6 +1,7 @@
 /// @file two_level_solver.hpp
 /// Contacts of deformable and coupled bodies: outer iterations over bodies, sweeps over contacts.
 #pragma once
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,12 @@ struct TwoLevelOutcome {
   std::int64_t outer_iterations = 0, sweeps = 0;
 };
 
+/// Of an iterate; square roots of energies.
+struct TwoLevelError {
+  double total = 0, laws = 0;  ///< of equations and laws together; of the laws
+  double work = 0;             ///< of the impulses
+};
+
 /// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
 /// M^-1 = omega D^-1, D the diagonal blocks of A, or R A_0^-1 R^T for single elastic bodies
 /// (ElasticSpace),
@@ -28,10 +35,11 @@ struct TwoLevelOutcome {
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
 ///     v = v_f + M^-1 J^T (r - r before)
 ///
-/// with Anderson acceleration of v, and acceleration of r in the sweeps. It has converged where the
-/// defect of A v = b + J^T r in the norm of M^-1 and the natural map of the laws are together at
-/// most `tolerance` times the sum of the square root of the work of the impulses and of the natural
-/// map without impulses, or as small as the error of the velocities without contact.
+/// with Anderson acceleration of v from the second iteration on, and acceleration of r in the
+/// sweeps. It has converged where the defect of A v = b + J^T r in the norm of M^-1 and the natural
+/// map of the laws are together at most `tolerance` times the sum of the square root of the work of
+/// the impulses and of the natural map without impulses, or as small as the error of the velocities
+/// without contact.
 ///
 /// It ends, without having converged, after a number of operations, and where its residual no
 /// longer shrinks, as of bodies that are squeezed so that no velocities satisfy all contacts. The
@@ -63,6 +71,16 @@ class TwoLevelSolver {
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
 
  private:
+  enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
+  class Clock {
+   public:
+    double seconds() const {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+   private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  };
   struct Chunk {
     std::int32_t row_begin = 0, row_end = 0;
     std::int32_t island = 0;  ///< in SolvedIslands::list()
@@ -77,7 +95,7 @@ class TwoLevelSolver {
   void list_chunks(const SystemRows& rows);
   double step(const StepSystem& system);
   void step_chunk(std::int64_t chunk);
-  double find_error(double defect, double& work);
+  TwoLevelError find_error(double defect);
   std::int64_t sweep(double enough);
   double sweep_working();
   template <class Accelerator, class Follow>
@@ -88,7 +106,8 @@ class TwoLevelSolver {
   void sweep_listed(const std::vector<std::int32_t>& list, double enough, std::int64_t& sweeps);
   void gather_impulses(const std::vector<std::int32_t>& list);
   void scatter_impulses(const std::vector<std::int32_t>& list);
-  bool keep_best(const TwoLevelOutcome& now);
+  bool keep_best(double residual, std::int64_t iterations);
+  End iterate(const StepSystem& system, TwoLevelOutcome& outcome);
   void take_best(TwoLevelOutcome& outcome);
   double step_elastic();
   void add_elastic();
@@ -106,6 +125,7 @@ class TwoLevelSolver {
   ContactSwitches switches_;
   int threads_;
   double relaxation_;  ///< omega
+  Clock clock_;        ///< since the start of the solve
   SolvedIslands islands_;
   ElasticSpace elastic_;
   TouchingBlocks blocks_;
