@@ -39,6 +39,7 @@ set(tetwarp_model_sources
   host/simulate/model/triangle_cloth.cpp)
 set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cuda
   host/simulate/cell_fields.cpp
+  host/simulate/cpu/rest_gradients.cpp
   host/simulate/cpu/stepper_cpu.cpp
   host/simulate/cpu/vector_stages.cpp
   host/simulate/cpu/vector_stages_base.cpp
@@ -46,6 +47,8 @@ set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cu
   host/simulate/run/fingerprint.cpp
   host/simulate/reference_rows.cpp
   host/simulate/reference_stepper.cpp
+  host/simulate/rest_factor.cpp
+  host/simulate/rest_factors.cpp
   host/simulate/scene_drive.cpp
   host/simulate/scene_loads.cpp
   host/simulate/scene_record.cpp
@@ -105,7 +108,6 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/patch_moments.cpp
   host/simulate/contact/patch_supports.cpp
   host/simulate/contact/prepare_start.cpp
-  host/simulate/contact/rest_factor.cpp
   host/simulate/contact/rest_growth.cpp
   host/simulate/contact/rigid_patches.cpp
   host/simulate/contact/round_shape.cpp
@@ -117,6 +119,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/surface_motion.cpp
   host/simulate/contact/touch_area.cpp
   host/simulate/contact/touching_blocks.cpp
+  host/simulate/contact/touching_groups.cpp
   host/simulate/contact/touching_sweeps.cpp
   host/simulate/contact/triangle_tree.cpp
   host/simulate/contact/two_level_solver.cpp

@@ -26,6 +26,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_edge_spring.cpp
     tests/simulate/test_stepper_bodies.cpp
     tests/simulate/test_stepper_move.cpp
+    tests/simulate/test_rest_gradients.cpp
     tests/simulate/test_stepper_options.cpp
     tests/simulate/test_vector_assembly.cpp
     tests/simulate/test_vector_stages.cpp

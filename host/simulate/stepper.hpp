@@ -16,6 +16,8 @@
 
 namespace tetwarp {
 
+class RestFactors;
+
 /// What acts from outside in one step. Sizes are those of the model.
 struct StepInput {
   double time_step = 0;                     ///< [s]
@@ -50,6 +52,7 @@ struct StepperOptions {
   int device = 0;
   bool float32_solve = false;
   SimulateSkipOptions skip = {};
+  std::shared_ptr<RestFactors> factors = {};  ///< of elastic bodies, or null: own ones; cpu only
   std::function<bool(std::int64_t linear_iterations)> progress = {};  ///< false ends the step
 };
 

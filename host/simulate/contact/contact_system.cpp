@@ -77,7 +77,7 @@ struct ContactSystem::State {
         options(given),
         frames(frames_of_bodies(surfaces, of)),
         islands(of),
-        two_level(of, given.solver),
+        two_level(of, given.solver, given.factors),
         solver(sweeping(given.solver)) {}
 
   void set_laws(const ContactTracker& tracker,

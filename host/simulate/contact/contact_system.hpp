@@ -10,6 +10,7 @@
 #include <tetwarp/contact_tracker.hpp>
 
 #include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/simulate/rest_factors.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -19,6 +20,7 @@ struct ContactSystemOptions {
   double recovery_fraction = 0.2;  ///< existing penetration is undone at most at this fraction of
                                    ///< the smaller body's size per second
   bool skips_islands = true;       ///< coupling islands without contacts are not solved again
+  std::shared_ptr<RestFactors> factors = {};  ///< of elastic bodies, or null: own ones
 };
 
 /// How the solves of a step went.

@@ -1,10 +1,12 @@
 #include "host/simulate/contact/elastic_groups.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
 
 #include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
 #include "host/simulate/cpu/vector_stages.hpp"
 
 namespace tetwarp {
@@ -21,66 +23,61 @@ void ElasticGroups::set(const ElasticSpace& space,
   space_ = &space;
   part_start_ = &part_start;
   part_row_ = &part_row;
-  listed_.clear();
   groups_.clear();
+  group_of_bodies_.clear();
   group_of_.assign(part_start.size() - 1, -1);
-  bodies_.assign(group_of_.size(), {-1, -1});
   place_of_part_.assign(part_row.size(), -1);
 }
 
-/// A contact has two sides, each on one body at most.
-void ElasticGroups::find_bodies(std::int32_t contact) {
-  std::array<std::int32_t, 2>& own = bodies_[index_of(contact)];
+/// A contact has two sides, each on one body at most. @returns these, or -1
+std::array<std::int32_t, 2> ElasticGroups::bodies_of(std::int32_t contact) const {
+  std::array<std::int32_t, 2> own{-1, -1};
   const std::int32_t end = (*part_start_)[index_of(contact) + 1];
   for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
     const std::int32_t body = space_->body_of_row((*part_row_)[index_of(p)]);
     if (body >= 0 && body != own[0]) own[own[0] < 0 ? 0 : 1] = body;
   }
   if (own[1] >= 0 && own[1] < own[0]) std::swap(own[0], own[1]);
+  return own;
 }
 
-bool ElasticGroups::group(std::vector<std::int32_t>& list) {
-  const std::size_t before = listed_.size();
+const std::vector<std::int32_t>& ElasticGroups::group(std::vector<std::int32_t>& list) {
+  changed_.clear();
   for (const std::int32_t contact : list) {
     if (group_of_[index_of(contact)] >= 0) continue;
-    find_bodies(contact);
-    listed_.push_back(contact);
+    const auto [found, is_new] = group_of_bodies_.try_emplace(bodies_of(contact), count());
+    if (is_new) groups_.push_back({});
+    group_of_[index_of(contact)] = found->second;
+    groups_[index_of(found->second)].contacts.push_back(contact);
+    changed_.push_back(found->second);
   }
-  const bool has_new = listed_.size() != before;
-  if (has_new) make_groups();
+  std::ranges::sort(changed_);
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+  for (const std::int32_t g : changed_) {
+    Group& own = groups_[index_of(g)];
+    std::ranges::sort(own.contacts);
+    own = Group{std::move(own.contacts)};
+    list_slots(own);
+  }
   std::ranges::sort(list, {}, [&](std::int32_t contact) {
     return std::pair(group_of_[index_of(contact)], contact);
   });
-  return has_new;
-}
-
-void ElasticGroups::make_groups() {
-  const auto bodies_of = [&](std::int32_t contact) { return bodies_[index_of(contact)]; };
-  std::ranges::sort(listed_, {},
-                    [&](std::int32_t contact) { return std::pair(bodies_of(contact), contact); });
-  groups_.clear();
-  std::size_t most = 0;
-  for (std::size_t begin = 0, end = 0; begin < listed_.size(); begin = end) {
-    while (end < listed_.size() && bodies_of(listed_[end]) == bodies_of(listed_[begin])) {
-      group_of_[index_of(listed_[end++])] = static_cast<std::int32_t>(groups_.size());
-    }
-    Group& group = groups_.emplace_back();
-    list_slots(group, std::span(listed_).subspan(begin, end - begin));
-    most = std::max(most, index_of(group.size));
-  }
-  z_.resize(most);
-  push_.resize(most);
+  return changed_;
 }
 
 /// Nodes that contacts of one group touch, and the places of their parts.
-void ElasticGroups::list_slots(Group& group, std::span<const std::int32_t> contacts) {
+void ElasticGroups::list_slots(Group& group) {
   const auto for_parts = [&](const auto& visit) {
-    for (const std::int32_t contact : contacts) {
+    for (const std::int32_t contact : group.contacts) {
       const std::int32_t end = (*part_start_)[index_of(contact) + 1];
       for (std::int32_t p = (*part_start_)[index_of(contact)]; p < end; ++p) {
         const std::int32_t row = (*part_row_)[index_of(p)];
         const std::int32_t body = space_->body_of_row(row);
-        if (body >= 0) visit(index_of(p), body, space_->slot_of_row(row));
+        if (body >= 0) {
+          visit(index_of(p), body, space_->slot_of_row(row));
+        } else {
+          group.is_pure = false;
+        }
       }
     }
   };
@@ -92,7 +89,7 @@ void ElasticGroups::list_slots(Group& group, std::span<const std::int32_t> conta
     if (own == group.bodies.end()) own = group.bodies.insert(own, Body{body, 0, 0, {}});
     own->slots.push_back(slot);
   });
-  group.is_whole = contacts.size() > most_of_part;
+  group.is_whole = group.contacts.size() > most_of_part;
   for (Body& own : group.bodies) {
     if (group.is_whole) {
       own.slots.resize(space_->bodies()[index_of(own.body)].touched.size());
@@ -110,6 +107,8 @@ void ElasticGroups::list_slots(Group& group, std::span<const std::int32_t> conta
     const auto place = std::lower_bound(own.slots.begin(), own.slots.end(), slot);
     place_of_part_[p] = own.first + 3 * static_cast<std::int32_t>(place - own.slots.begin());
   });
+  group.z.resize(index_of(group.size));
+  group.push.resize(index_of(group.size));
 }
 
 void ElasticGroups::copy_compliance(Body& own) const {
@@ -143,36 +142,55 @@ void ElasticGroups::add_velocities(std::int32_t group,
 }
 
 void ElasticGroups::begin(std::int32_t group, const double* y) {
-  for (const Body& own : groups_[index_of(group)].bodies) {
+  Group& all = groups_[index_of(group)];
+  for (const Body& own : all.bodies) {
     const double* const from = y + space_->bodies()[index_of(own.body)].first;
-    double* out = z_.data() + own.first;
+    double* out = all.z.data() + own.first;
     for (const std::int32_t slot : own.slots) {
       const double* const v = from + 3 * std::int64_t{slot};
       out[0] = v[0], out[1] = v[1], out[2] = v[2];
       out += 3;
     }
   }
-  std::fill_n(push_.begin(), groups_[index_of(group)].size, 0.0);
+  std::ranges::fill(all.push, 0.0);
 }
 
-std::int64_t ElasticGroups::finish(std::int32_t group, double* y) {
-  std::int64_t operations = 0;
-  for (const Body& own : groups_[index_of(group)].bodies) {
-    const ElasticBody& body = space_->bodies()[index_of(own.body)];
-    if (groups_[index_of(group)].is_whole) {
-      std::copy_n(z_.begin() + own.first, own.size, y + body.first);
-      continue;
-    }
-    const double* push = push_.data() + own.first;
-    for (const std::int32_t slot : own.slots) {
-      if (push[0] != 0 || push[1] != 0 || push[2] != 0) {
-        vector_stages().add_rows(body.compliance.data() + 3 * std::int64_t{slot} * body.size,
-                                 body.size, push, body.size, y + body.first);
-        operations += 3 * body.size;
-      }
-      push += 3;
-    }
+/// Of one body of a group.
+std::int64_t ElasticGroups::finish(const Group& group, const Body& own, double* y) const {
+  const ElasticBody& body = space_->bodies()[index_of(own.body)];
+  if (group.is_whole) {
+    std::copy_n(group.z.begin() + own.first, own.size, y + body.first);
+    return 0;
   }
+  std::int64_t operations = 0;
+  const double* push = group.push.data() + own.first;
+  for (const std::int32_t slot : own.slots) {
+    if (push[0] != 0 || push[1] != 0 || push[2] != 0) {
+      vector_stages().add_rows(body.compliance.data() + 3 * std::int64_t{slot} * body.size,
+                               body.size, push, body.size, y + body.first);
+      operations += 3 * body.size;
+    }
+    push += 3;
+  }
+  return operations;
+}
+
+std::int64_t ElasticGroups::finish(std::span<const std::int32_t> groups, double* y, int threads) {
+  finished_.clear();
+  for (const std::int32_t group : groups) {
+    for (const Body& own : groups_[index_of(group)].bodies) finished_.push_back(own.body);
+  }
+  std::ranges::sort(finished_);
+  finished_.erase(std::unique(finished_.begin(), finished_.end()), finished_.end());
+  std::atomic<std::int64_t> operations = 0;
+  parallel_tasks(threads, static_cast<std::int64_t>(finished_.size()), [&](std::int64_t k) {
+    for (const std::int32_t group : groups) {
+      const Group& all = groups_[index_of(group)];
+      for (const Body& own : all.bodies) {
+        if (own.body == finished_[index_of(k)]) operations += finish(all, own, y);
+      }
+    }
+  });
   return operations;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -22,10 +23,16 @@ class ElasticGroups {
   void set(const ElasticSpace& space,
            const std::vector<std::int32_t>& part_start,
            const std::vector<std::int32_t>& part_row);
-  /// Sorts a list of contacts into the order of sweeps, one group after the other. If it has
-  /// contacts that no list before had, groups are made anew of these and all before.
-  /// @returns whether they were
-  bool group(std::vector<std::int32_t>& list);
+  /// Sorts a list of contacts into the order of sweeps, one group after the other. Groups that it
+  /// gives contacts that no list before had are made anew.
+  /// @returns these groups
+  const std::vector<std::int32_t>& group(std::vector<std::int32_t>& list);
+
+  std::int32_t count() const { return static_cast<std::int32_t>(groups_.size()); }
+  /// All contacts of a group that have been listed, ascending.
+  const std::vector<std::int32_t>& contacts(std::int32_t group) const {
+    return groups_[static_cast<std::size_t>(group)].contacts;
+  }
 
   /// The group of a contact that has been listed.
   std::int32_t of_contact(std::size_t contact) const { return group_of_[contact]; }
@@ -41,18 +48,29 @@ class ElasticGroups {
     return groups_[static_cast<std::size_t>(group)].is_whole;
   }
 
+  /// Whether all its contacts move nodes of elastic bodies alone.
+  bool is_pure(std::int32_t group) const {
+    return groups_[static_cast<std::size_t>(group)].is_pure;
+  }
+
   /// Adds the velocities of a push on one node. @param place  place_of_part()
   /// @param push  impulse [N s], three. @param z  in and out [m/s], [size]
   void add_velocities(std::int32_t group, std::int32_t place, const double* push, double* z);
 
   /// Copies z from y, and sets the pushes to zero.
   void begin(std::int32_t group, const double* y);
-  /// Adds the velocities of the pushes to y. @returns multiplications
-  std::int64_t finish(std::int32_t group, double* y);
+  /// Adds the velocities of the pushes to y, one group after the other.
+  /// @param threads  that share the bodies
+  /// @returns multiplications
+  std::int64_t finish(std::span<const std::int32_t> groups, double* y, int threads);
 
-  /// z [m/s] and the pushes [N s] of the group that begin() was called for, [size].
-  double* velocities() { return z_.data(); }
-  double* pushes() { return push_.data(); }
+  /// z [m/s] and the pushes [N s] since begin() of a group, [size].
+  double* velocities(std::int32_t group) {
+    return groups_[static_cast<std::size_t>(group)].z.data();
+  }
+  double* pushes(std::int32_t group) {
+    return groups_[static_cast<std::size_t>(group)].push.data();
+  }
 
   /// Appends the ranges {first, size} of y that finish() changes.
   template <class Ranges>
@@ -71,23 +89,25 @@ class ElasticGroups {
     std::vector<float> compliance = {};  ///< [3 slots][size], empty: not needed yet
   };
   struct Group {
-    std::vector<Body> bodies;
+    std::vector<std::int32_t> contacts;
+    std::vector<Body> bodies = {};
     std::int32_t size = 0;
-    bool is_whole = false;
+    bool is_whole = false, is_pure = true;
+    std::vector<double> z = {}, push = {};
   };
 
-  void list_slots(Group& group, std::span<const std::int32_t> contacts);
-  void find_bodies(std::int32_t contact);
-  void make_groups();
+  void list_slots(Group& group);
+  std::array<std::int32_t, 2> bodies_of(std::int32_t contact) const;
+  std::int64_t finish(const Group& group, const Body& own, double* y) const;
   void copy_compliance(Body& own) const;
 
   const ElasticSpace* space_ = nullptr;
   const std::vector<std::int32_t>*part_start_ = nullptr, *part_row_ = nullptr;
-  std::vector<std::int32_t> listed_;  ///< all contacts that have been listed
   std::vector<Group> groups_;
+  std::vector<std::int32_t> changed_;  ///< by the last group()
+  std::map<std::array<std::int32_t, 2>, std::int32_t> group_of_bodies_;
+  std::vector<std::int32_t> finished_;  ///< bodies of finish()
   std::vector<std::int32_t> group_of_, place_of_part_;
-  std::vector<std::array<std::int32_t, 2>> bodies_;  ///< of each contact, or -1
-  std::vector<double> z_, push_;
 };
 
 }  // namespace tetwarp

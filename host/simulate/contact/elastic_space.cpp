@@ -8,25 +8,11 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::size_t most_touched = 400;   // nodes of a body
-constexpr std::size_t most_time_steps = 3;  // whose factors are kept
+constexpr std::size_t most_touched = 400;  // nodes of a body
 
 }  // namespace
 
-ElasticSpace::ElasticSpace(const Model& model)
-    : model_(model), body_of_island_(index_of(model.island_count), -1) {
-  std::vector<std::int32_t> bodies(index_of(model.island_count), 0);
-  for (std::size_t body = 0; body < model.body_island.size(); ++body) {
-    const std::int32_t island = model.body_island[body];
-    if (island < 0) continue;
-    const auto own = static_cast<std::int32_t>(body);
-    ++bodies[index_of(island)];
-    body_of_island_[index_of(island)] = RestFactor::is_possible(model, own) ? own : -1;
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i] > 1) body_of_island_[i] = -1;
-  }
-}
+ElasticSpace::ElasticSpace(std::shared_ptr<RestFactors> factors) : factors_(std::move(factors)) {}
 
 void ElasticSpace::choose(const SystemRows& rows,
                           const ContactIslands& islands,
@@ -40,10 +26,10 @@ void ElasticSpace::choose(const SystemRows& rows,
   std::int32_t last = -1;
   for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
     const std::int32_t island = islands.of_block(rows.block_of[row]);
-    if (takes[index_of(island)] == 0 || body_of_island_[index_of(island)] < 0) continue;
+    if (takes[index_of(island)] == 0 || factors_->body_of_island(island) < 0) continue;
     if (island != last) {
       if (count == bodies_.size()) bodies_.emplace_back();
-      bodies_[count].body = body_of_island_[index_of(island)];
+      bodies_[count].body = factors_->body_of_island(island);
       bodies_[count].row_begin = row;
       bodies_[count].touched.clear();
       ++count;
@@ -91,28 +77,15 @@ void ElasticSpace::set(
     size_ += own.size;
   }
   if (bodies_.empty()) return;
-  auto found = std::find_if(factors_.begin(), factors_.end(),
-                            [&](const Factors& own) { return own.time_step == time_step; });
-  if (found == factors_.end()) {
-    if (factors_.size() == most_time_steps) factors_.erase(factors_.begin());
-    factors_.push_back({time_step, {}});
-    found = factors_.end() - 1;
-    found->of_body.resize(model_.body_island.size());
-  }
+  factors_->set_time_step(time_step);
   parallel_tasks(threads, static_cast<std::int64_t>(bodies_.size()),
-                 [&](std::int64_t b) { set_body(bodies_[index_of(b)], state, time_step, *found); });
+                 [&](std::int64_t b) { set_body(bodies_[index_of(b)], state); });
 }
 
-void ElasticSpace::set_body(ElasticBody& own,
-                            const ModelState& state,
-                            double time_step,
-                            Factors& factors) {
-  std::unique_ptr<RestFactor>& factor = factors.of_body[index_of(own.body)];
-  if (!factor) factor = std::make_unique<RestFactor>(model_, own.body, time_step);
-  own.factor = factor.get();
-  own.rotation = factor->mean_rotation(state);
+void ElasticSpace::set_body(ElasticBody& own, const ModelState& state) {
+  RestFactor* const factor = own.factor = &factors_->of_body(own.body);
+  own.rotation = factor->mean_rotation(state.position.front().data());
   own.compliance.assign(index_of(own.size) * 3 * own.touched.size(), 0);
-  own.push.resize(3 * index_of(own.row_end - own.row_begin));
   float* out = own.compliance.data();
   for (const std::int32_t node : own.touched) {
     const float* column = factor->columns(node);
@@ -128,18 +101,10 @@ void ElasticSpace::set_body(ElasticBody& own,
 
 void ElasticSpace::solve(std::size_t body, const double* push, double* out) {
   ElasticBody& own = bodies_[body];
-  const auto& r = own.rotation;
-  double* const x = own.push.data();
-  for (std::size_t k = 0; k < own.push.size(); k += 3) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      x[k + i] = r[i] * push[k] + r[3 + i] * push[k + 1] + r[6 + i] * push[k + 2];
-    }
-  }
-  own.factor->solve(x);
-  for (std::size_t k = 0; k < own.push.size(); k += 3) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      out[k + i] = damping_ * (r[3 * i] * x[k] + r[3 * i + 1] * x[k + 1] + r[3 * i + 2] * x[k + 2]);
-    }
+  own.factor->solve_turned(own.rotation, push, out);
+  if (damping_ == 1) return;
+  for (std::int64_t k = 0; k < 3 * std::int64_t{own.row_end - own.row_begin}; ++k) {
+    out[k] *= damping_;
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/simulate/contact/contact_islands.hpp"
-#include "host/simulate/contact/rest_factor.hpp"
+#include "host/simulate/rest_factors.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -21,7 +21,6 @@ struct ElasticBody {
   std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded to
                                       ///< a multiple of 8
   std::vector<float> compliance;      ///< [3 touched][size] of M^-1, a column at a time
-  std::vector<double> push;           ///< work, [rows][3]
 };
 
 /// Which bodies are solved by their factors at rest, M^-1 = R A_0^-1 R^T, and their compliance at
@@ -29,7 +28,7 @@ struct ElasticBody {
 /// those with very many touched nodes are not.
 class ElasticSpace {
  public:
-  explicit ElasticSpace(const Model& model);
+  explicit ElasticSpace(std::shared_ptr<RestFactors> factors);
 
   /// Chooses among the coupling islands that are taken.
   void choose(const SystemRows& rows,
@@ -59,18 +58,11 @@ class ElasticSpace {
   void gather(std::size_t body, const double* rows, double* y) const;
 
  private:
-  struct Factors {
-    double time_step = 0;
-    std::vector<std::unique_ptr<RestFactor>> of_body;  ///< [bodies], null: not needed yet
-  };
+  void set_body(ElasticBody& own, const ModelState& state);
 
-  void set_body(ElasticBody& own, const ModelState& state, double time_step, Factors& factors);
-
-  const Model& model_;
-  std::vector<std::int32_t> body_of_island_;  ///< [coupling islands] or -1
+  std::shared_ptr<RestFactors> factors_;
   std::vector<ElasticBody> bodies_;
   std::vector<std::int32_t> body_of_row_, slot_of_row_, row_of_block_;
-  std::vector<Factors> factors_;  ///< of the last time steps
   std::int64_t size_ = 0;
   double damping_ = 1;
 };

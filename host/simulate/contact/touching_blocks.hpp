@@ -27,6 +27,8 @@ struct TouchingSums {
 /// y_touched + w.
 class TouchingBlocks {
  public:
+  explicit TouchingBlocks(int threads) : threads_(threads) {}
+
   /// @param laws        friction, offsets, adhesion of the contacts, and their guess
   /// @param contacts    numbers of the contacts in `rows`
   /// @param relaxation  omega of rows that A couples to others; of single rigid bodies it is 1
@@ -44,7 +46,9 @@ class TouchingBlocks {
   /// Prepares sweeps over contacts of working(), and puts these in the order of sweeps.
   void begin_sweeps();
   /// Projected Gauss-Seidel over some contacts, a group of ElasticGroups after the other, small
-  /// ones in several passes.
+  /// ones in several passes, and where they move elastic bodies alone two groups side by side:
+  /// each from the velocities before both. For two blocks of a symmetric positive definite matrix
+  /// such sweeps converge, too.
   /// @param list     contacts, in the order of working()
   /// @param y        in and out
   /// @param impulse  in and out, [3 list]
@@ -102,7 +106,24 @@ class TouchingBlocks {
   void pack(std::size_t contact);
   void pack_elastic(std::size_t contact);
   void add_push_of_elastic(std::size_t contact, const double* change);
+  void set_matrix(std::int32_t group);
+  bool has_matrix(std::int32_t group) const;
   void update(ContactSwitches switches, std::size_t contact, double* y, double* impulse);
+  /// A group and its contacts in a list.
+  struct Range {
+    std::int32_t group = 0;
+    std::size_t begin = 0, end = 0;
+  };
+  void sweep_in_turn(ContactSwitches switches,
+                     const Range& range,
+                     const std::vector<std::int32_t>& list,
+                     double* y,
+                     double* impulse);
+  void sweep_matrix(ContactSwitches switches,
+                    const Range& range,
+                    const std::vector<std::int32_t>& list,
+                    const double* y,
+                    double* impulse);
   void gather(std::size_t contact, const double* y);
   void scatter(std::size_t contact, double* y) const;
   void add_push(std::size_t contact, const double* r, double* force) const;
@@ -125,11 +146,22 @@ class TouchingBlocks {
   std::vector<std::int64_t> elastic_start_;  ///< [contacts] in elastic_response_, -1: not there yet
   std::vector<float> elastic_response_;  ///< of contacts 3 x size of their group, rounded: z for
                                          ///< unit impulses
-  std::vector<std::array<std::int64_t, 2>> ranges_;
+  std::vector<std::array<std::int64_t, 2>> moved_;
   std::vector<double> summed_;  ///< before they are rounded
+  /// J M^-1 J^T of the contacts of a group, rounded; three columns of each contact.
+  struct GroupMatrix {
+    std::int64_t stride = 0;
+    std::vector<float> values;
+    std::vector<double> velocity;  ///< u of its contacts, [stride]
+    std::vector<double> before;    ///< impulses
+  };
+  std::vector<GroupMatrix> matrices_;       ///< [groups], empty of those without
+  std::vector<std::int32_t> matrix_place_;  ///< [contacts] in the matrix of its group
+  std::vector<Range> ranges_;               ///< groups with a matrix of the present sweep
   const ElasticSpace* elastic_ = nullptr;
   std::vector<std::int32_t> working_;
   std::int64_t operations_ = 0;
+  int threads_;
   std::vector<std::int32_t> row_of_block_, slots_;
 };
 

@@ -8,15 +8,6 @@
 #include "kernels/contact/contact_residual.hpp"
 
 namespace tetwarp {
-namespace {
-
-// Passes in a sweep over a group of a few contacts among others: bonds make impulses within a group
-// converge slowly. In the scene `candy` at rest 1, 2, 3, 4 and 8 passes needed 285, 110, 74, 73 and
-// 67 sweeps a step. Passes over one group alone are sweeps without acceleration.
-constexpr int group_passes = 3;
-
-}  // namespace
-
 /// Copies Jacobian and responses of a contact to three rows of one length each, a multiple of four
 /// that zeros fill up. Only contacts that are swept need it.
 void TouchingBlocks::pack(std::size_t contact) {
@@ -89,7 +80,7 @@ void add_products(const double* jacobian, std::int32_t size, const double* v, do
 /// The velocities that a contact depends on, in the order of its packed rows.
 void TouchingBlocks::gather(std::size_t contact, const double* y) {
   double* out = gathered_.data();
-  const double* const z = groups_.velocities();
+  const double* const z = groups_.velocities(groups_.of_contact(contact));
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const Part& part = parts_[index_of(p)];
     const std::int32_t place = groups_.place_of_part(index_of(p));
@@ -113,22 +104,17 @@ void TouchingBlocks::scatter(std::size_t contact, double* y) const {
 void TouchingBlocks::add_push_of_elastic(std::size_t contact, const double* change) {
   const std::int32_t size = packed_size_[contact];
   const double* j = packed_.data() + packed_start_[contact];
+  double* const pushes = groups_.pushes(groups_.of_contact(contact));
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const std::int32_t place = groups_.place_of_part(index_of(p));
     if (place >= 0) {
-      double* const push = groups_.pushes() + place;
+      double* const push = pushes + place;
       for (std::int32_t k = 0; k < 3; ++k) {
         push[k] += j[k] * change[0] + j[size + k] * change[1] + j[2 * size + k] * change[2];
       }
     }
     j += parts_[index_of(p)].size;
   }
-}
-
-void TouchingBlocks::begin_sweeps() {
-  if (!groups_.group(working_)) return;
-  elastic_start_.assign(constants_.size(), -1);
-  elastic_response_.clear();
 }
 
 /// One update of a contact of the group that begin() was called for.
@@ -155,31 +141,8 @@ void TouchingBlocks::update(ContactSwitches switches, std::size_t c, double* y, 
   }
   if (moved == 0) return;
   vector_stages().add_rows(elastic_response_.data() + elastic_start_[c], moved, change, moved,
-                           groups_.velocities());
+                           groups_.velocities(groups_.of_contact(c)));
   if (!groups_.is_whole(groups_.of_contact(c))) add_push_of_elastic(c, change);
-}
-
-void TouchingBlocks::sweep(ContactSwitches switches,
-                           const std::vector<std::int32_t>& list,
-                           double* y,
-                           double* impulse) {
-  for (const std::int32_t contact : list) {
-    if (packed_start_[index_of(contact)] < 0) pack(index_of(contact));
-    if (elastic_start_[index_of(contact)] < 0) pack_elastic(index_of(contact));
-  }
-  for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
-    const std::int32_t group = groups_.of_contact(index_of(list[begin]));
-    while (end < list.size() && groups_.of_contact(index_of(list[end])) == group) ++end;
-    const bool is_part = groups_.size(group) > 0 && !groups_.is_whole(group);
-    const int passes = is_part && end - begin < list.size() ? group_passes : 1;
-    groups_.begin(group, y);
-    for (int pass = 0; pass < passes; ++pass) {
-      for (std::size_t k = begin; k < end; ++k) {
-        update(switches, index_of(list[k]), y, impulse + 3 * k);
-      }
-    }
-    operations_ += groups_.finish(group, y);
-  }
 }
 
 void TouchingBlocks::push(const std::vector<std::int32_t>& list,
@@ -205,19 +168,19 @@ void TouchingBlocks::push(const std::vector<std::int32_t>& list,
 
 void TouchingBlocks::list_moved(const std::vector<std::int32_t>& list,
                                 std::vector<std::int64_t>& places) {
-  ranges_.clear();
+  moved_.clear();
   for (const std::int32_t contact : list) {
     const std::size_t c = index_of(contact);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[index_of(p)];
-      if (part.place == part.first) ranges_.push_back({part.place, part.size});
+      if (part.place == part.first) moved_.push_back({part.place, part.size});
     }
-    groups_.list_ranges(groups_.of_contact(c), ranges_);
+    groups_.list_ranges(groups_.of_contact(c), moved_);
   }
-  std::sort(ranges_.begin(), ranges_.end());
-  ranges_.erase(std::unique(ranges_.begin(), ranges_.end()), ranges_.end());
+  std::sort(moved_.begin(), moved_.end());
+  moved_.erase(std::unique(moved_.begin(), moved_.end()), moved_.end());
   places.clear();
-  for (const auto& [first, size] : ranges_) {
+  for (const auto& [first, size] : moved_) {
     for (std::int64_t k = 0; k < size; ++k) places.push_back(first + k);
   }
 }

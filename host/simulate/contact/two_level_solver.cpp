@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "host/base/parallel.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
@@ -57,13 +58,16 @@ class SweepEnd {
 
 }  // namespace
 
-TwoLevelSolver::TwoLevelSolver(const Model& model, const ContactOptions& options)
+TwoLevelSolver::TwoLevelSolver(const Model& model,
+                               const ContactOptions& options,
+                               std::shared_ptr<RestFactors> factors)
     : model_(model),
       options_(options),
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
       relaxation_(1.3 * options.relaxation),
-      elastic_(model) {}
+      elastic_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)),
+      blocks_(threads_) {}
 
 /// Parts of islands that one task takes; both rows of a rigid body are in one.
 void TwoLevelSolver::list_chunks(const SystemRows& rows) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -48,7 +49,10 @@ struct TwoLevelError {
 /// Determinism: same bits for any number of threads.
 class TwoLevelSolver {
  public:
-  TwoLevelSolver(const Model& model, const ContactOptions& options);
+  /// @param factors  of the elastic bodies, or null: own ones
+  TwoLevelSolver(const Model& model,
+                 const ContactOptions& options,
+                 std::shared_ptr<RestFactors> factors);
 
   /// @param takes     [coupling islands] which are taken
   /// @param contacts  numbers of the contacts in `rows`; they act on these islands

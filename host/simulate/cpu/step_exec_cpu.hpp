@@ -11,6 +11,7 @@
 
 #include "host/base/parallel.hpp"
 #include "host/simulate/cpu/huge_pages.hpp"
+#include "host/simulate/cpu/rest_gradients.hpp"
 #include "host/simulate/cpu/vector_stages.hpp"
 #include "host/simulate/stepper.hpp"
 #include "kernels/base/stage_times.hpp"
@@ -102,7 +103,8 @@ class CpuStepExec {
   template <class T>
   using Input = Vector<T>;
 
-  explicit CpuStepExec(int threads) : threads_(threads) {}
+  /// @param rest  for islands that block Jacobi solves slowly; kept by the caller
+  CpuStepExec(int threads, RestGradients& rest) : threads_(threads), rest_(rest) {}
 
   int threads() const { return threads_; }
 
@@ -171,7 +173,8 @@ class CpuStepExec {
     }
   }
 
-  /// Solves all islands and calls take(end) for each. Small islands are one task each.
+  /// Solves all islands and calls take(end) for each. Small islands are one task each. Islands that
+  /// RestGradients can solve and that have not converged after `first_iterations` follow with it.
   /// @param proceed  as of island_cg(); called by this thread only
   template <class T, class Proceed, class Take>
   void solve_islands(const char* label,
@@ -181,25 +184,34 @@ class CpuStepExec {
                      const Proceed& proceed,
                      const Take& take) {
     const Clock clock(times_, label);
-    const auto solve = [&](std::int32_t island, int threads, const auto& go_on) {
+    const auto solve = [&](std::int32_t island, int threads, std::int64_t most, const auto& go_on) {
       const auto i = static_cast<std::size_t>(island);
       const std::int64_t begin = island_start[i], end = island_start[i + 1];
       GradientScalars scalars;
       CpuGradientExec exec(threads, sums_.data() + begin / CpuGradientExec::run_length + i);
-      ends_[i] = island_cg(exec, arrays, begin, end, options, &scalars, go_on);
+      const std::int64_t before = ends_[i].iterations;
+      ends_[i] =
+          island_cg(exec, arrays, begin, end, {options.tolerance, most - before}, &scalars, go_on);
+      ends_[i].iterations += before;
+    };
+    const auto most_at_first = [&](std::int32_t island) {
+      const std::int64_t most = options.max_iterations;
+      return can_follow<T>(island) ? std::min(most, first_iterations) : most;
     };
     for (GradientEnd& end : ends_) end = {};
     bool goes_on = proceed(0);
     if (goes_on) {
       parallel_tasks(threads_, static_cast<std::int64_t>(small_.size()), [&](std::int64_t k) {
-        solve(small_[static_cast<std::size_t>(k)], 1, [](std::int64_t) { return true; });
+        const std::int32_t island = small_[static_cast<std::size_t>(k)];
+        solve(island, 1, most_at_first(island), [](std::int64_t) { return true; });
       });
     }
     for (std::size_t k = 0; k < large_.size() && goes_on; ++k) {
-      solve(large_[k], threads_,
+      solve(large_[k], threads_, most_at_first(large_[k]),
             [&](std::int64_t iterations) { return iterations % 16 != 0 || proceed(iterations); });
       goes_on = !ends_[static_cast<std::size_t>(large_[k])].is_stopped;
     }
+    if (goes_on) follow(island_start, arrays, options, solve);
     for (GradientEnd& end : ends_) {
       end.is_stopped |= !goes_on;
       take(end);
@@ -226,6 +238,37 @@ class CpuStepExec {
     });
   }
 
+  template <class T>
+  bool can_follow(std::int32_t island) const {
+    return std::is_same_v<T, double> && rest_.is_possible(island);
+  }
+
+  /// Improves the islands that have not converged by RestGradients and ends them with
+  /// solve(island, threads, most, proceed), one task each.
+  template <class T, class Solve>
+  void follow(const std::vector<std::int32_t>& island_start,
+              const GradientArrays<T>& arrays,
+              const GradientOptions& options,
+              const Solve& solve) {
+    if constexpr (std::is_same_v<T, double>) {
+      following_.clear();
+      for (std::size_t i = 0; i < ends_.size(); ++i) {
+        const auto island = static_cast<std::int32_t>(i);
+        const bool is_left = !ends_[i].is_converged && ends_[i].iterations >= first_iterations &&
+                             ends_[i].iterations < options.max_iterations;
+        if (is_left && can_follow<T>(island)) following_.push_back(island);
+      }
+      parallel_tasks(threads_, static_cast<std::int64_t>(following_.size()), [&](std::int64_t k) {
+        const std::int32_t island = following_[static_cast<std::size_t>(k)];
+        const auto i = static_cast<std::size_t>(island);
+        const std::int64_t left = options.max_iterations - ends_[i].iterations;
+        ends_[i].iterations += rest_.solve(arrays, island, island_start[i], island_start[i + 1],
+                                           {options.tolerance, left});
+        solve(island, 1, options.max_iterations, [](std::int64_t) { return true; });
+      });
+    }
+  }
+
   class Clock {
    public:
     Clock(StageTimes& times, const char* label)
@@ -246,12 +289,15 @@ class CpuStepExec {
   static constexpr std::int64_t serial_below = 512;  ///< with fewer indices one thread is faster
 
   static constexpr std::int64_t range_length = 1024;
+  static constexpr std::int64_t first_iterations = 16;
 
   int threads_;
+  RestGradients& rest_;
   StageTimes times_;
   std::vector<PlainSums<2>> sums_;
   std::vector<GradientEnd> ends_;
   std::vector<std::int32_t> small_, large_;  ///< islands
+  std::vector<std::int32_t> following_;      ///< islands of follow()
 };
 
 }  // namespace tetwarp

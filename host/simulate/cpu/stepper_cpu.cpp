@@ -10,12 +10,17 @@ template <class T>
 class CpuStepper final : public BodyStepper {
  public:
   CpuStepper(const Model& model, const StepperOptions& options)
-      : exec_(thread_count(options.threads)), pipeline_(exec_, model, options) {}
+      : rest_(model, options.factors),
+        exec_(thread_count(options.threads), rest_),
+        pipeline_(exec_, model, options) {}
 
   std::string device() const override { return processor_name(); }
   void set_state(const ModelState& state) override { pipeline_.set_state(state); }
   void get_state(ModelState& state) const override { pipeline_.get_state(state); }
-  StepOutcome solve(const StepInput& input) override { return pipeline_.solve(input); }
+  StepOutcome solve(const StepInput& input) override {
+    rest_.begin(input.time_step, pipeline_.position_of(0));
+    return pipeline_.solve(input);
+  }
   StepSystem system() override { return pipeline_.system(); }
   void get_velocities(std::vector<Point3>& velocity) const override {
     pipeline_.get_velocities(velocity);
@@ -32,6 +37,7 @@ class CpuStepper final : public BodyStepper {
   }
 
  private:
+  RestGradients rest_;
   CpuStepExec exec_;
   BodyPipeline<CpuStepExec, T> pipeline_;
 };

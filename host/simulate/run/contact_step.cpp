@@ -70,6 +70,7 @@ ContactSystemOptions system_options(const Scene& scene,
   of.solver.skip.constant_systems = false;
   if (options.progress) of.solver.progress = std::move(progress);
   of.skips_islands = options.skip.islands;
+  of.factors = options.factors;
   return of;
 }
 

@@ -32,8 +32,9 @@ struct ContactStepOptions {
   int threads = 1;
   int device = 0;
   SimulateSkipOptions skip = {};
-  bool sleeps = false;                  ///< bodies may sleep
-  std::function<bool()> progress = {};  ///< false ends the step
+  bool sleeps = false;                        ///< bodies may sleep
+  std::shared_ptr<RestFactors> factors = {};  ///< of elastic bodies, or null: own ones
+  std::function<bool()> progress = {};        ///< false ends the step
 };
 
 /// What contact did in a step or a part of one.

@@ -35,6 +35,7 @@ Simulator::Impl::Impl(Scene scene_of_caller, const SimulateOptions& options_of_c
       drive(scene, geometry, model),
       state_(model.start),
       loads_(scene, geometry, model),
+      rest_factors_(std::make_shared<RestFactors>(model)),
       sleep_(scene, geometry, model) {
   if (options.max_iterations < 1) {
     throw std::invalid_argument("max_iterations: expected 1 or more, got " +
@@ -69,6 +70,7 @@ std::unique_ptr<BodyStepper> Simulator::Impl::make_stepper() {
   of.device = options.device;
   of.float32_solve = options.float32_solve;
   of.skip = options.skip;
+  of.factors = rest_factors_;
   if (options.progress) {
     of.progress = [this](std::int64_t iterations) {
       const double start = time_of(static_cast<double>(step_index));
@@ -91,6 +93,7 @@ void Simulator::Impl::make_contact() {
   of.device = options.device;
   of.skip = options.skip;
   of.sleeps = sleep_.is_on();
+  of.factors = rest_factors_;
   if (options.progress) {
     of.progress = [this] {
       const double start = time_of(static_cast<double>(step_index));

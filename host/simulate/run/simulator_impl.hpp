@@ -91,6 +91,7 @@ class Simulator::Impl {
   double largest_spin_ = 0;            ///< of a rigid body after the last step [rad/s]
   double kept_spin_ = 0;               ///< largest_spin_ of the kept state
   SceneLoads loads_;
+  std::shared_ptr<RestFactors> rest_factors_;
   ModelState step_start_, part_start_;  ///< kept, so that steps do not allocate them
   StepInput input_;
   StepSums sums_;  ///< of the last step

@@ -21,12 +21,13 @@ class RestFactor {
   RestFactor(const Model& model, std::int32_t body, double time_step);
 
   std::int32_t node_count() const { return static_cast<std::int32_t>(order_.size()); }
-  /// x = A_0^-1 x, [nodes][3].
-  void solve(double* x);
+  /// out = R A_0^-1 R^T push, [nodes][3] each. @param rotation  R, rows first
+  void solve_turned(const std::array<double, 9>& rotation, const double* push, double* out);
   /// The columns of A_0^-1 of a node, [3][nodes][3], rounded; kept once found.
   const float* columns(std::int32_t node);
   /// The rotation of the mean of the deformation gradients, rows first.
-  std::array<double, 9> mean_rotation(const ModelState& state) const;
+  /// @param position  of all nodes of the model, [nodes][3]
+  std::array<double, 9> mean_rotation(const double* position) const;
 
  private:
   struct Entry {

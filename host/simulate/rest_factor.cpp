@@ -1,4 +1,4 @@
-#include "host/simulate/contact/rest_factor.hpp"
+#include "host/simulate/rest_factor.hpp"
 #include "host/base/index_of.hpp"
 
 #include <Eigen/OrderingMethods>
@@ -236,12 +236,25 @@ void RestFactor::substitute(Real* w) const {
   }
 }
 
-void RestFactor::solve(double* x) {
-  const std::size_t count = order_.size();
-  double* const w = work_.data();
-  for (std::size_t n = 0; n < count; ++n) std::copy_n(x + 3 * n, 3, w + 3 * index_of(order_[n]));
-  substitute(w);
-  for (std::size_t n = 0; n < count; ++n) std::copy_n(w + 3 * index_of(order_[n]), 3, x + 3 * n);
+void RestFactor::solve_turned(const std::array<double, 9>& rotation,
+                              const double* push,
+                              double* out) {
+  const auto& r = rotation;
+  for (const std::int32_t place : order_) {
+    double* const w = work_.data() + 3 * index_of(place);
+    for (std::size_t i = 0; i < 3; ++i) {
+      w[i] = r[i] * push[0] + r[3 + i] * push[1] + r[6 + i] * push[2];
+    }
+    push += 3;
+  }
+  substitute(work_.data());
+  for (const std::int32_t place : order_) {
+    const double* const w = work_.data() + 3 * index_of(place);
+    for (std::size_t i = 0; i < 3; ++i) {
+      out[i] = r[3 * i] * w[0] + r[3 * i + 1] * w[1] + r[3 * i + 2] * w[2];
+    }
+    out += 3;
+  }
 }
 
 const float* RestFactor::columns(std::int32_t node) {
@@ -262,13 +275,13 @@ const float* RestFactor::columns(std::int32_t node) {
   return columns_.data() + 3 * size * index_of(place);
 }
 
-std::array<double, 9> RestFactor::mean_rotation(const ModelState& state) const {
+std::array<double, 9> RestFactor::mean_rotation(const double* position) const {
   double sum[9] = {};
   for (const std::int32_t t : tets_) {
     double x[12], f[9];
     for (std::size_t a = 0; a < 4; ++a) {
-      const Point3& corner = state.position[index_of(model_.tets.nodes[index_of(t)][a])];
-      std::copy(corner.begin(), corner.end(), x + 3 * a);
+      const std::int32_t node = model_.tets.nodes[index_of(t)][a];
+      std::copy_n(position + 3 * std::int64_t{node}, 3, x + 3 * a);
     }
     deformation_gradient(x, model_.tets.gradient[index_of(t)].data(), f);
     for (int e = 0; e < 9; ++e) sum[e] += model_.tets.volume[index_of(t)] * f[e];

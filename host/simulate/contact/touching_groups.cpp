@@ -1,0 +1,192 @@
+/// @file touching_groups.cpp
+/// TouchingBlocks: sweeps over groups of contacts between the same elastic bodies.
+#include <algorithm>
+
+#include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
+#include "host/simulate/contact/touching_blocks.hpp"
+#include "host/simulate/cpu/vector_stages.hpp"
+
+namespace tetwarp {
+namespace {
+
+// Passes in a sweep over a group of a few contacts among others: bonds make impulses within a group
+// converge slowly. Passes over one group alone are sweeps without acceleration.
+constexpr int group_passes = 3;
+// Multiplications from which two threads are faster than one.
+constexpr std::int64_t parallel_from = 30'000;
+
+/// u += J v of one part. @param j  three rows of three
+void add_velocity(const double* j, const double* v, double* u) {
+  for (int a = 0; a < 3; ++a) u[a] += j[3 * a] * v[0] + j[3 * a + 1] * v[1] + j[3 * a + 2] * v[2];
+}
+
+}  // namespace
+
+/// Whether the impulses of a group act on each other by a matrix instead of velocities of nodes.
+bool TouchingBlocks::has_matrix(std::int32_t group) const {
+  return groups_.size(group) > 0 && !groups_.is_whole(group) && groups_.is_pure(group);
+}
+
+void TouchingBlocks::set_matrix(std::int32_t group) {
+  const std::vector<std::int32_t>& contacts = groups_.contacts(group);
+  GroupMatrix& own = matrices_[index_of(group)];
+  const std::size_t size = index_of(groups_.size(group));
+  own.stride = (3 * static_cast<std::int64_t>(contacts.size()) + 7) / 8 * 8;
+  own.values.assign(3 * contacts.size() * index_of(own.stride), 0);
+  own.velocity.assign(index_of(own.stride), 0);
+  own.before.resize(3 * contacts.size());
+  std::vector<double> moved(3 * size);  // z for unit impulses
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const std::size_t c = index_of(contacts[k]);
+    matrix_place_[c] = 3 * static_cast<std::int32_t>(k);
+    std::ranges::fill(moved, 0.0);
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const double* const j = turned_.data() + parts_[index_of(p)].value;
+      for (std::size_t a = 0; a < 3; ++a) {
+        groups_.add_velocities(group, groups_.place_of_part(index_of(p)), j + 3 * a,
+                               moved.data() + a * size);
+      }
+    }
+    float* const columns = own.values.data() + 3 * k * index_of(own.stride);
+    for (std::size_t m = k; m < contacts.size(); ++m) {
+      const std::size_t other = index_of(contacts[m]);
+      double block[3][3] = {};
+      for (std::int32_t p = part_start_[other]; p < part_start_[other + 1]; ++p) {
+        const double* const z = moved.data() + groups_.place_of_part(index_of(p));
+        const double* const j = turned_.data() + parts_[index_of(p)].value;
+        for (std::size_t a = 0; a < 3; ++a) add_velocity(j, z + a * size, block[a]);
+      }
+      float* const mirrored = own.values.data() + 3 * m * index_of(own.stride);
+      for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t b = 0; b < 3; ++b) {
+          const auto value = static_cast<float>(block[a][b]);
+          columns[a * index_of(own.stride) + 3 * m + b] = value;
+          if (m != k) mirrored[b * index_of(own.stride) + 3 * k + a] = value;
+        }
+      }
+    }
+  }
+}
+
+void TouchingBlocks::begin_sweeps() {
+  const std::vector<std::int32_t>& changed = groups_.group(working_);
+  matrices_.resize(index_of(groups_.count()));
+  for (const std::int32_t group : changed) {
+    for (const std::int32_t contact : groups_.contacts(group)) {
+      elastic_start_[index_of(contact)] = -1;
+    }
+  }
+  parallel_tasks(threads_, static_cast<std::int64_t>(changed.size()), [&](std::int64_t k) {
+    if (has_matrix(changed[index_of(k)])) set_matrix(changed[index_of(k)]);
+  });
+}
+
+/// The contacts of a group without a matrix.
+void TouchingBlocks::sweep_in_turn(ContactSwitches switches,
+                                   const Range& range,
+                                   const std::vector<std::int32_t>& list,
+                                   double* y,
+                                   double* impulse) {
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    const std::size_t c = index_of(list[k]);
+    if (packed_start_[c] < 0) pack(c);
+    if (elastic_start_[c] < 0) pack_elastic(c);
+  }
+  const bool is_part = groups_.size(range.group) > 0 && !groups_.is_whole(range.group);
+  const int passes = is_part && range.end - range.begin < list.size() ? group_passes : 1;
+  groups_.begin(range.group, y);
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      update(switches, index_of(list[k]), y, impulse + 3 * k);
+    }
+  }
+  operations_ += groups_.finish({&range.group, 1}, y, 1);
+}
+
+/// The contacts of a group with a matrix; leaves their pushes to ElasticGroups::finish().
+void TouchingBlocks::sweep_matrix(ContactSwitches switches,
+                                  const Range& range,
+                                  const std::vector<std::int32_t>& list,
+                                  const double* y,
+                                  double* impulse) {
+  GroupMatrix& own = matrices_[index_of(range.group)];
+  groups_.begin(range.group, y);
+  const double* const z = groups_.velocities(range.group);
+  const std::size_t count = range.end - range.begin;
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    const std::size_t c = index_of(list[k]);
+    double* const u = own.velocity.data() + matrix_place_[c];
+    std::copy_n(offset_.data() + 3 * c, 3, u);
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      add_velocity(turned_.data() + parts_[index_of(p)].value,
+                   z + groups_.place_of_part(index_of(p)), u);
+    }
+  }
+  std::copy_n(impulse + 3 * range.begin, 3 * count, own.before.data());
+  const int passes = count < list.size() ? group_passes : 1;
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+      const std::int64_t place = matrix_place_[index_of(list[k])];
+      const double* const u = own.velocity.data() + place;
+      double* const r = impulse + 3 * k;
+      double free[3] = {u[0], u[1], u[2]}, change[3] = {-r[0], -r[1], -r[2]};
+      solve_contact(constants_[index_of(list[k])], switches, free, r);
+      for (int a = 0; a < 3; ++a) change[a] += r[a];
+      if (change[0] == 0 && change[1] == 0 && change[2] == 0) continue;
+      vector_stages().add_rows(own.values.data() + place * own.stride, own.stride, change,
+                               own.stride, own.velocity.data());
+    }
+  }
+  double* const pushes = groups_.pushes(range.group);
+  for (std::size_t k = range.begin; k < range.end; ++k) {
+    const double* const r = impulse + 3 * k;
+    const double* const before = own.before.data() + 3 * (k - range.begin);
+    const double change[3] = {r[0] - before[0], r[1] - before[1], r[2] - before[2]};
+    const std::size_t c = index_of(list[k]);
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const double* const j = turned_.data() + parts_[index_of(p)].value;
+      double* const push = pushes + groups_.place_of_part(index_of(p));
+      for (int i = 0; i < 3; ++i) {
+        push[i] += j[i] * change[0] + j[3 + i] * change[1] + j[6 + i] * change[2];
+      }
+    }
+  }
+}
+
+void TouchingBlocks::sweep(ContactSwitches switches,
+                           const std::vector<std::int32_t>& list,
+                           double* y,
+                           double* impulse) {
+  ranges_.clear();
+  for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
+    const std::int32_t group = groups_.of_contact(index_of(list[begin]));
+    while (end < list.size() && groups_.of_contact(index_of(list[end])) == group) ++end;
+    if (has_matrix(group)) {
+      ranges_.push_back({group, begin, end});
+    } else {
+      sweep_in_turn(switches, {group, begin, end}, list, y, impulse);
+    }
+  }
+  const std::size_t half = (ranges_.size() + 1) / 2;
+  for (std::size_t k = 0; k < half; ++k) {
+    std::array<std::int32_t, 2> groups{};
+    std::array<Range, 2> pair{};
+    std::size_t count = 0;
+    std::int64_t operations = 0;
+    for (const std::size_t m : {k, k + half}) {
+      if (m >= ranges_.size()) continue;
+      pair[count] = ranges_[m];
+      groups[count++] = ranges_[m].group;
+      const auto size = static_cast<std::int64_t>(ranges_[m].end - ranges_[m].begin);
+      operations += size * (9 * group_passes * matrices_[index_of(ranges_[m].group)].stride + 200);
+    }
+    const int threads = operations < parallel_from ? 1 : threads_;
+    parallel_tasks(threads, static_cast<std::int64_t>(count), [&](std::int64_t m) {
+      sweep_matrix(switches, pair[index_of(m)], list, y, impulse);
+    });
+    operations_ += operations + groups_.finish({groups.data(), count}, y, threads);
+  }
+}
+
+}  // namespace tetwarp
