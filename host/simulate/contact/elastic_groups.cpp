@@ -13,7 +13,7 @@ namespace tetwarp {
 namespace {
 
 // Larger groups touch so many nodes of their bodies that all velocities follow every impulse.
-constexpr std::size_t most_of_part = 64;  // contacts
+constexpr std::size_t most_of_part = 150;  // contacts
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -157,7 +158,8 @@ void TouchingBlocks::set_responses(const SolvedIslands& islands,
   response_.assign(jacobian_.size(), 0);
   turned_.resize(jacobian_.size());
   diagonal_.resize(3 * constants_.size());
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
+  parallel_for(threads(), count(), [&, this](std::int64_t contact) {
+    const std::size_t c = index_of(contact);
     double* const block = constants_[c].block;
     std::fill(block, block + 9, 0.0);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
@@ -190,7 +192,7 @@ void TouchingBlocks::set_responses(const SolvedIslands& islands,
     }
     for (std::size_t a = 0; a < 3; ++a) diagonal_[3 * c + a] = block[4 * a];
     constants_[c].tangent_metric = larger_eigenvalue(block[4], (block[5] + block[7]) / 2, block[8]);
-  }
+  });
 }
 
 }  // namespace tetwarp

@@ -96,6 +96,8 @@ class TouchingBlocks {
     std::int32_t size = 0;   ///< a multiple of 3
   };
 
+  /// Of loops over contacts; few are faster on one.
+  int threads() const { return count() < 256 ? 1 : threads_; }
   void set_laws(const ContactProblem& laws);
   void add_rows(const StepSystem& system, const ContactRows& rows, std::int32_t contact);
   void set_responses(const SolvedIslands& islands,
@@ -113,7 +115,9 @@ class TouchingBlocks {
   struct Range {
     std::int32_t group = 0;
     std::size_t begin = 0, end = 0;
+    std::int64_t operations = 0;
   };
+  int passes_over(const Range& range, const std::vector<std::int32_t>& list) const;
   void sweep_in_turn(ContactSwitches switches,
                      const Range& range,
                      const std::vector<std::int32_t>& list,

@@ -1,6 +1,9 @@
 /// @file touching_groups.cpp
 /// TouchingBlocks: sweeps over groups of contacts between the same elastic bodies.
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <span>
 
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
@@ -11,10 +14,12 @@ namespace tetwarp {
 namespace {
 
 // Passes in a sweep over a group of a few contacts among others: bonds make impulses within a group
-// converge slowly. Passes over one group alone are sweeps without acceleration.
+// converge slowly. Passes over one group alone are sweeps without acceleration, and those over
+// many contacts take longer than they save.
 constexpr int group_passes = 3;
+constexpr std::size_t most_of_passes = 64;  // contacts
 // Multiplications from which two threads are faster than one.
-constexpr std::int64_t parallel_from = 30'000;
+constexpr std::int64_t parallel_from = 5'000;
 
 /// u += J v of one part. @param j  three rows of three
 void add_velocity(const double* j, const double* v, double* u) {
@@ -82,6 +87,12 @@ void TouchingBlocks::begin_sweeps() {
   });
 }
 
+int TouchingBlocks::passes_over(const Range& range, const std::vector<std::int32_t>& list) const {
+  const bool is_alone = range.end - range.begin == list.size();
+  const bool is_small = groups_.contacts(range.group).size() <= most_of_passes;
+  return groups_.size(range.group) > 0 && is_small && !is_alone ? group_passes : 1;
+}
+
 /// The contacts of a group without a matrix.
 void TouchingBlocks::sweep_in_turn(ContactSwitches switches,
                                    const Range& range,
@@ -93,8 +104,7 @@ void TouchingBlocks::sweep_in_turn(ContactSwitches switches,
     if (packed_start_[c] < 0) pack(c);
     if (elastic_start_[c] < 0) pack_elastic(c);
   }
-  const bool is_part = groups_.size(range.group) > 0 && !groups_.is_whole(range.group);
-  const int passes = is_part && range.end - range.begin < list.size() ? group_passes : 1;
+  const int passes = passes_over(range, list);
   groups_.begin(range.group, y);
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
@@ -124,7 +134,7 @@ void TouchingBlocks::sweep_matrix(ContactSwitches switches,
     }
   }
   std::copy_n(impulse + 3 * range.begin, 3 * count, own.before.data());
-  const int passes = count < list.size() ? group_passes : 1;
+  const int passes = passes_over(range, list);
   for (int pass = 0; pass < passes; ++pass) {
     for (std::size_t k = range.begin; k < range.end; ++k) {
       const std::int64_t place = matrix_place_[index_of(list[k])];
@@ -162,30 +172,28 @@ void TouchingBlocks::sweep(ContactSwitches switches,
   for (std::size_t begin = 0, end = 0; begin < list.size(); begin = end) {
     const std::int32_t group = groups_.of_contact(index_of(list[begin]));
     while (end < list.size() && groups_.of_contact(index_of(list[end])) == group) ++end;
-    if (has_matrix(group)) {
-      ranges_.push_back({group, begin, end});
-    } else {
-      sweep_in_turn(switches, {group, begin, end}, list, y, impulse);
+    const Range range{group, begin, end};
+    if (!has_matrix(group)) {
+      sweep_in_turn(switches, range, list, y, impulse);
+      continue;
     }
+    const std::int64_t stride = matrices_[index_of(group)].stride;
+    ranges_.push_back(range);
+    ranges_.back().operations =
+        static_cast<std::int64_t>(end - begin) * (9 * passes_over(range, list) * stride + 200);
   }
-  const std::size_t half = (ranges_.size() + 1) / 2;
-  for (std::size_t k = 0; k < half; ++k) {
-    std::array<std::int32_t, 2> groups{};
-    std::array<Range, 2> pair{};
-    std::size_t count = 0;
-    std::int64_t operations = 0;
-    for (const std::size_t m : {k, k + half}) {
-      if (m >= ranges_.size()) continue;
-      pair[count] = ranges_[m];
-      groups[count++] = ranges_[m].group;
-      const auto size = static_cast<std::int64_t>(ranges_[m].end - ranges_[m].begin);
-      operations += size * (9 * group_passes * matrices_[index_of(ranges_[m].group)].stride + 200);
-    }
-    const int threads = operations < parallel_from ? 1 : threads_;
-    parallel_tasks(threads, static_cast<std::int64_t>(count), [&](std::int64_t m) {
+  // Side by side what takes about as long.
+  std::ranges::stable_sort(ranges_, std::ranges::greater{}, &Range::operations);
+  for (std::size_t k = 0; k < ranges_.size(); k += 2) {
+    const std::span<const Range> pair(ranges_.data() + k,
+                                      std::min(ranges_.size() - k, std::size_t{2}));
+    const int threads = pair.back().operations < parallel_from ? 1 : threads_;
+    parallel_tasks(threads, static_cast<std::int64_t>(pair.size()), [&](std::int64_t m) {
       sweep_matrix(switches, pair[index_of(m)], list, y, impulse);
     });
-    operations_ += operations + groups_.finish({groups.data(), count}, y, threads);
+    std::array<std::int32_t, 2> groups{pair.front().group, pair.back().group};
+    for (const Range& range : pair) operations_ += range.operations;
+    operations_ += groups_.finish({groups.data(), pair.size()}, y, threads);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "host/simulate/cpu/vector_stages.hpp"
 #include "kernels/contact/contact_residual.hpp"
@@ -198,9 +199,10 @@ void TouchingBlocks::velocity_at(std::size_t contact, const double* x, double* v
 }
 
 void TouchingBlocks::velocities_of_rows(const double* x, double* velocity) const {
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
+  parallel_for(threads(), count(), [=, this](std::int64_t contact) {
+    const std::size_t c = index_of(contact);
     velocity_at(c, x, velocity + 3 * c);
-  }
+  });
 }
 
 TouchingSums TouchingBlocks::measure(ContactSwitches switches,

@@ -180,8 +180,7 @@ bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
   const Clock clock(part.contact_seconds);
   velocity_ = free_velocity_;
   if (contacts_->empty()) return false;
-  if (!has_step_system_) step_system_ = stepper.system();
-  has_step_system_ = true;
+  if (!std::exchange(has_step_system_, true)) step_system_ = stepper.system();
   const ContactSolveOutcome outcome =
       system_.solve(step_system_, *start_, tracker_, *contacts_, velocity_, &change_);
   part.converged = outcome.converged;
