@@ -19,7 +19,7 @@ namespace {
 constexpr int group_passes = 3;
 constexpr std::size_t most_of_passes = 64;  // contacts
 // Multiplications from which two threads are faster than one.
-constexpr std::int64_t parallel_from = 5'000;
+constexpr std::int64_t parallel_from = 2'000;
 
 /// u += J v of one part. @param j  three rows of three
 void add_velocity(const double* j, const double* v, double* u) {
@@ -180,7 +180,7 @@ void TouchingBlocks::sweep(ContactSwitches switches,
     const std::int64_t stride = matrices_[index_of(group)].stride;
     ranges_.push_back(range);
     ranges_.back().operations =
-        static_cast<std::int64_t>(end - begin) * (9 * passes_over(range, list) * stride + 200);
+        static_cast<std::int64_t>(end - begin) * (3 * passes_over(range, list) * stride + 200);
   }
   // Side by side what takes about as long.
   std::ranges::stable_sort(ranges_, std::ranges::greater{}, &Range::operations);
