@@ -115,6 +115,7 @@ if(NOT BUILD_SHARED_LIBS)
     )
   set(tetwarp_emulated_simulator_tests  # the Simulator on emulated cuda, its detector and a Warper
     $<TARGET_OBJECTS:tetwarp_emulated_backend>
+    $<TARGET_OBJECTS:tetwarp_emulated_contact>
     $<TARGET_OBJECTS:tetwarp_emulated_detector>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>

@@ -225,13 +225,13 @@ if(NOT BUILD_SHARED_LIBS)
     set_source_files_properties(tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
   endif()
-  foreach(part backend detector primitives stepper)  # compiled once for several programs
+  foreach(part backend contact detector primitives stepper)  # compiled once for several programs
     add_library(tetwarp_emulated_${part} OBJECT tests/emu/emulated_${part}.cpp)
     tetwarp_test_target(tetwarp_emulated_${part})
   endforeach()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
-    $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_primitives>
-    tests/emu/emulated_contact.cpp tests/emu/test_cell_list_emulated.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives> tests/emu/test_cell_list_emulated.cpp
     tests/emu/test_contact_arrays_emulated.cpp tests/emu/test_contact_emulated.cpp
     tests/emu/test_device_errors.cpp tests/emu/test_step_operations.cpp
     tests/emu/test_warp_emulated.cpp tests/emu/test_warp_emulated_copies.cpp

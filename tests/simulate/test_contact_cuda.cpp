@@ -1,6 +1,7 @@
 /// @file test_contact_cuda.cpp
 /// Steps with contact on back end cuda against those on cpu, on a device where there is one, and on
-/// the emulated one: stepper and detector are those of the device, contacts are solved on the host.
+/// the emulated one: stepper and detector are those of the device, and so is the solver of contacts
+/// between rigid bodies; other contacts are solved on the host.
 #include <memory>
 
 #include <tetwarp/error.hpp>

@@ -48,24 +48,26 @@ HandScene stack_scene(double youngs) {
   return scene;
 }
 
-/// Three elastic blocks on a frame: groups of 81, 27 and 41 contacts, of one body or of two.
-HandScene tower_scene() {
+/// Three elastic blocks on a frame: groups of 169, 57 and 85 contacts, of one body or of two.
+/// @param height  of the shape at rest
+HandScene tower_scene(double height = 1) {
   HandScene scene;
   Model& model = scene.model;
   model = empty_model();
   for (int block = 0; block < 3; ++block) {
-    add_block(model, {.cells = {8, 8, 1},
+    add_block(model, {.cells = {12, 12, 1},
                       .edge = 0.005,
                       .origin = {0, 0, 0.005 * block},
                       .youngs = 3e4 * (1 + block),
                       .poisson = 0.4});
   }
+  for (Point3& x : model.start.position) x[2] *= height;
   const std::int32_t frame = add_frame(model, {0, 0, 0});
   scene.make_surfaces(0.02);
   for (std::int32_t block = 0; block < 3; ++block) {
     const std::int32_t stride =
         std::array<std::int32_t, 3>{1, 3, 2}[static_cast<std::size_t>(block)];
-    for (std::int32_t node = 0; node < 81; node += stride) {
+    for (std::int32_t node = 0; node < 169; node += stride) {
       Touch touch;
       touch.body_a = block;
       touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
@@ -74,7 +76,7 @@ HandScene tower_scene() {
         touch.point_b = on_rigid(model.start.position[static_cast<std::size_t>(node)]);
       } else {
         touch.body_b = block - 1;
-        touch.point_b = on_nodes({81 + node, -1, -1}, {1, 0, 0});
+        touch.point_b = on_nodes({169 + node, -1, -1}, {1, 0, 0});
       }
       touch.area = 1e-5;
       scene.touches.push_back(touch);
@@ -172,6 +174,31 @@ TEST(TwoLevelContact, GroupsOfSeveralBodiesMeetTheTolerance) {
         EXPECT_LE(step.residual.eta, 1.5 * tolerance);
         EXPECT_LT(step.outcome.sweeps, 2000) << step.outcome.outer_iterations;
       }
+    }
+  }
+}
+
+TEST(TwoLevelContact, GroupsGiveTheSameBitsOnAnyNumberOfThreads) {
+  const HandScene scene = tower_scene();
+  ContactSystemOptions one, three;
+  one.solver.threads = 1;
+  three.solver.threads = 3;
+
+  const auto a = run_stack(scene, one, 4e7, nullptr), b = run_stack(scene, three, 4e7, nullptr);
+
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_EQ(a[n].velocity, b[n].velocity);
+    EXPECT_EQ(a[n].outcome.sweeps, b[n].outcome.sweeps);
+  }
+}
+
+/// The factors at rest of bodies that are pressed flat are too soft.
+TEST(TwoLevelContact, BodiesPressedFlatMeetTheTolerance) {
+  for (const double height : {0.3, 0.1}) {
+    for (const StackStep& step : run_stack(tower_scene(height), {}, 0, nullptr)) {
+      EXPECT_TRUE(step.outcome.converged);
+      EXPECT_LE(step.residual.eta, 1.5e-6);
+      EXPECT_LT(step.outcome.outer_iterations, 150);
     }
   }
 }

@@ -45,7 +45,6 @@ void TouchingBlocks::set(const StepSystem& system,
   moves_rows_.resize(constants_.size());
   packed_.clear();
   groups_.set(elastic, part_start_, part_row_);
-  matrices_.clear();
   matrix_place_.resize(constants_.size());
   elastic_start_.assign(constants_.size(), -1);
   elastic_response_.clear();

@@ -158,8 +158,9 @@ class TouchingBlocks {
     std::vector<float> values;
     std::vector<double> velocity;  ///< u of its contacts, [stride]
     std::vector<double> before;    ///< impulses
+    std::vector<double> moved;     ///< z for three unit impulses
   };
-  std::vector<GroupMatrix> matrices_;       ///< [groups], empty of those without
+  std::vector<GroupMatrix> matrices_;       ///< [groups] of those that have one
   std::vector<std::int32_t> matrix_place_;  ///< [contacts] in the matrix of its group
   std::vector<Range> ranges_;               ///< groups with a matrix of the present sweep
   const ElasticSpace* elastic_ = nullptr;

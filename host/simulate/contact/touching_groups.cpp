@@ -41,7 +41,8 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
   own.values.assign(3 * contacts.size() * index_of(own.stride), 0);
   own.velocity.assign(index_of(own.stride), 0);
   own.before.resize(3 * contacts.size());
-  std::vector<double> moved(3 * size);  // z for unit impulses
+  std::vector<double>& moved = own.moved;
+  moved.resize(3 * size);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::size_t c = index_of(contacts[k]);
     matrix_place_[c] = 3 * static_cast<std::int32_t>(k);
@@ -76,7 +77,7 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
 
 void TouchingBlocks::begin_sweeps() {
   const std::vector<std::int32_t>& changed = groups_.group(working_);
-  matrices_.resize(index_of(groups_.count()));
+  matrices_.resize(std::max(matrices_.size(), index_of(groups_.count())));
   for (const std::int32_t group : changed) {
     for (const std::int32_t contact : groups_.contacts(group)) {
       elastic_start_[index_of(contact)] = -1;
@@ -191,7 +192,7 @@ void TouchingBlocks::sweep(ContactSwitches switches,
     parallel_tasks(threads, static_cast<std::int64_t>(pair.size()), [&](std::int64_t m) {
       sweep_matrix(switches, pair[index_of(m)], list, y, impulse);
     });
-    std::array<std::int32_t, 2> groups{pair.front().group, pair.back().group};
+    const std::array<std::int32_t, 2> groups{pair.front().group, pair.back().group};
     for (const Range& range : pair) operations_ += range.operations;
     operations_ += groups_.finish({groups.data(), pair.size()}, y, threads);
   }

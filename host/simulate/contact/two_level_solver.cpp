@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -173,7 +172,10 @@ void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
 }
 
 /// Iterates from what prepare() has set.
-TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system, TwoLevelOutcome& outcome) {
+/// @param ends_early  where it diverges
+TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
+                                            bool ends_early,
+                                            TwoLevelOutcome& outcome) {
   const std::int64_t begin = 3 * std::int64_t{chunks_.front().row_begin};
   const std::int64_t size = 3 * std::int64_t{chunks_.back().row_end} - begin;
   CpuContactExec exec(threads_);
@@ -192,12 +194,9 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system, TwoLevelOu
     const double target = options_.tolerance * scale;
     outcome.residual = error.total > 0 ? error.total / scale : 0;
     if (!std::isfinite(error.total)) return End::fails;
-    if (getenv("TWD"))
-      fprintf(stderr, "it %d err/target %.3g laws %.3g sweeps %d\n", (int)outcome.outer_iterations,
-              error.total / target, error.laws / target, (int)outcome.sweeps);
     if (error.total <= target) return End::converges;
     if (!keep_best(outcome.residual, iterations)) return End::fails;
-    if (outcome.residual > divergence * best_.residual) return End::diverges;
+    if (ends_early && outcome.residual > divergence * best_.residual) return End::diverges;
     if (blocks_.operations() > most_operations) return End::fails;
     stepped_ = impulse_;
     outcome.sweeps += sweep(sweep_end.next(error, target, outcome.sweeps));
@@ -236,8 +235,9 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, damping,
                  threads_);
     prepare(system, contacts, rows, laws, velocity, change);
-    if (!chunks_.empty()) end = iterate(system, outcome);
-    if (end != End::diverges || elastic_.bodies().empty()) break;
+    const bool can_be_damped = !elastic_.bodies().empty() && damping > least_damping;
+    if (!chunks_.empty()) end = iterate(system, can_be_damped, outcome);
+    if (end != End::diverges) break;
   }
   change.assign(velocity.size(), Point3{0, 0, 0});
   if (chunks_.empty()) {

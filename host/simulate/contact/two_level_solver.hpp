@@ -111,7 +111,7 @@ class TwoLevelSolver {
   void gather_impulses(const std::vector<std::int32_t>& list);
   void scatter_impulses(const std::vector<std::int32_t>& list);
   bool keep_best(double residual, std::int64_t iterations);
-  End iterate(const StepSystem& system, TwoLevelOutcome& outcome);
+  End iterate(const StepSystem& system, bool ends_early, TwoLevelOutcome& outcome);
   void take_best(TwoLevelOutcome& outcome);
   double step_elastic();
   void add_elastic();

@@ -60,7 +60,8 @@ ContactSystemOptions system_options(const Scene& scene,
   of.solver.tolerance = scene.solver.contact_tolerance;
   of.solver.law = scene.solver.pyramid ? FrictionLaw::pyramid : FrictionLaw::cone;
   of.solver.rule = scene.solver.restrictive ? AdhesionRule::restrictive : AdhesionRule::parallel;
-  of.solver.backend = options.backend == Backend::reference ? Backend::reference : Backend::cpu;
+  of.solver.backend = options.backend;
+  of.solver.device = options.device;
   of.solver.threads = options.threads;
   // A step that these sweeps do not solve is divided, which helps more than Newton's method. Very
   // tight tolerances take many sweeps also where all is well.
