@@ -192,7 +192,7 @@ TEST(TwoLevelContact, GroupsGiveTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-/// The factors at rest of bodies that are pressed flat are too soft.
+/// The factors at rest of bodies that are pressed flat are far from those of their systems.
 TEST(TwoLevelContact, BodiesPressedFlatMeetTheTolerance) {
   for (const double height : {0.3, 0.1}) {
     for (const StackStep& step : run_stack(tower_scene(height), {}, 0, nullptr)) {

@@ -14,8 +14,7 @@ namespace {
 class Clock {
  public:
   explicit Clock(double& seconds) : seconds_(seconds) {}
-  Clock(const Clock&) = delete;
-  Clock& operator=(const Clock&) = delete;
+  Clock(Clock&&) = delete;
   ~Clock() {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
     seconds_ += passed.count();
