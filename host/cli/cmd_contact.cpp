@@ -10,11 +10,11 @@
 #include <tetwarp/contact_analysis.hpp>
 #include <tetwarp/io.hpp>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/contact_arguments.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/file_checks.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "io/finished_file.hpp"
 
 namespace tetwarp::cli {

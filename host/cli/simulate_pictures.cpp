@@ -8,8 +8,8 @@
 #include <limits>
 #include <tetwarp/io.hpp>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/obstacle_surface.hpp"
-#include "host/cli/stopwatch.hpp"
 
 namespace tetwarp::cli {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <tetwarp/simulate.hpp>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/simulate_arguments.hpp"
 #include "host/cli/simulate_bodies.hpp"
@@ -17,7 +18,6 @@
 #include "host/cli/simulate_pictures.hpp"
 #include "host/cli/simulate_series.hpp"
 #include "host/cli/simulate_warp.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "host/cli/warnings.hpp"
 #include "io/simulation_series.hpp"
 

@@ -7,9 +7,9 @@
 #include <tetwarp/io.hpp>
 #include <variant>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/declare.hpp"
 #include "host/cli/interrupt.hpp"
-#include "host/cli/stopwatch.hpp"
 
 namespace tetwarp::cli {
 namespace {

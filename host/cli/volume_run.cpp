@@ -9,12 +9,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/base/stopwatch.hpp"
 #include "host/base/warp_backend.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/memory_plan.hpp"
 #include "host/cli/output_files.hpp"
 #include "host/cli/source_scan.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "io/leftover_files.hpp"
 #include "io/memory.hpp"
 

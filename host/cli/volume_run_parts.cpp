@@ -9,9 +9,9 @@
 #include <memory>
 #include <utility>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/output_files.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {

@@ -2,9 +2,9 @@
 /// Blocks between computing and file: finished, written, or sent to the root.
 #include <utility>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/output_files.hpp"
 #include "host/cli/report_exchange.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "host/cli/volume_run.hpp"
 
 namespace tetwarp::cli {

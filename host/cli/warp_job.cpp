@@ -10,11 +10,11 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/version.hpp>
 
+#include "host/base/stopwatch.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/job_plan.hpp"
 #include "host/cli/job_share.hpp"
 #include "host/cli/progress_bar.hpp"
-#include "host/cli/stopwatch.hpp"
 #include "io/finished_file.hpp"
 #include "io/memory.hpp"
 

@@ -108,6 +108,7 @@ class TouchingBlocks {
   void pack(std::size_t contact);
   void pack_elastic(std::size_t contact);
   void add_push_of_elastic(std::size_t contact, const double* change);
+  void set_unit_velocities(std::size_t contact, std::vector<double>& z);
   void set_matrix(std::int32_t group);
   bool has_matrix(std::int32_t group) const;
   void update(ContactSwitches switches, std::size_t contact, double* y, double* impulse);

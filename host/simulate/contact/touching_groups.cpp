@@ -42,18 +42,10 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
   own.velocity.assign(index_of(own.stride), 0);
   own.before.resize(3 * contacts.size());
   std::vector<double>& moved = own.moved;
-  moved.resize(3 * size);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::size_t c = index_of(contacts[k]);
     matrix_place_[c] = 3 * static_cast<std::int32_t>(k);
-    std::ranges::fill(moved, 0.0);
-    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
-      const double* const j = turned_.data() + parts_[index_of(p)].value;
-      for (std::size_t a = 0; a < 3; ++a) {
-        groups_.add_velocities(group, groups_.place_of_part(index_of(p)), j + 3 * a,
-                               moved.data() + a * size);
-      }
-    }
+    set_unit_velocities(c, moved);
     float* const columns = own.values.data() + 3 * k * index_of(own.stride);
     for (std::size_t m = k; m < contacts.size(); ++m) {
       const std::size_t other = index_of(contacts[m]);

@@ -1,13 +1,13 @@
 /// @file two_level_solver.hpp
 /// Contacts of deformable and coupled bodies: outer iterations over bodies, sweeps over contacts.
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
+#include "host/base/stopwatch.hpp"
 #include "host/simulate/contact/following_motion.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "kernels/contact/anderson.hpp"
@@ -76,15 +76,6 @@ class TwoLevelSolver {
 
  private:
   enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
-  class Clock {
-   public:
-    double seconds() const {
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-   private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  };
   struct Chunk {
     std::int32_t row_begin = 0, row_end = 0;
     std::int32_t island = 0;  ///< in SolvedIslands::list()
@@ -129,7 +120,7 @@ class TwoLevelSolver {
   ContactSwitches switches_;
   int threads_;
   double relaxation_;  ///< omega
-  Clock clock_;        ///< since the start of the solve
+  Stopwatch clock_;    ///< since the start of the solve
   SolvedIslands islands_;
   ElasticSpace elastic_;
   TouchingBlocks blocks_;

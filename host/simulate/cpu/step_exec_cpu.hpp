@@ -97,8 +97,8 @@ class CpuStepExec {
     small_.clear();
     large_.clear();
     for (std::size_t i = 0; i < islands; ++i) {
-      const std::int32_t rows = island_start[i + 1] - island_start[i];
-      (rows < serial_below ? small_ : large_).push_back(static_cast<std::int32_t>(i));
+      const auto island = static_cast<std::int32_t>(i);
+      (is_large(island_start, island) ? large_ : small_).push_back(island);
     }
   }
 
@@ -128,6 +128,7 @@ class CpuStepExec {
       return can_follow<T>(island) ? std::min(most, first_iterations) : most;
     };
     for (GradientEnd& end : ends_) end = {};
+    improved_.clear();
     bool goes_on = proceed(0);
     if (goes_on) {
       parallel_tasks(threads_, static_cast<std::int64_t>(small_.size()), [&](std::int64_t k) {
@@ -135,13 +136,27 @@ class CpuStepExec {
         solve(island, 1, most_at_first(island), [](std::int64_t) { return true; });
       });
     }
-    for (std::size_t k = 0; k < large_.size() && goes_on; ++k) {
-      solve(large_[k], threads_, most_at_first(large_[k]), [&](std::int64_t iterations) {
+    const auto solve_large = [&](std::int32_t island, std::int64_t most) {
+      solve(island, threads_, most, [&](std::int64_t iterations) {
         return iterations % first_iterations != 0 || proceed(iterations);
       });
-      goes_on = !ends_[static_cast<std::size_t>(large_[k])].is_stopped;
+      goes_on = !ends_[static_cast<std::size_t>(island)].is_stopped;
+    };
+    for (std::size_t k = 0; k < large_.size() && goes_on; ++k) {
+      solve_large(large_[k], most_at_first(large_[k]));
     }
-    if (goes_on) follow(island_start, arrays, options, solve);
+    if (goes_on) improve(island_start, arrays, options);
+    if (goes_on) {
+      parallel_tasks(threads_, static_cast<std::int64_t>(improved_.size()), [&](std::int64_t k) {
+        const std::int32_t island = improved_[static_cast<std::size_t>(k)];
+        if (!is_large(island_start, island)) {
+          solve(island, 1, options.max_iterations, [](std::int64_t) { return true; });
+        }
+      });
+    }
+    for (std::size_t k = 0; k < improved_.size() && goes_on; ++k) {
+      if (is_large(island_start, improved_[k])) solve_large(improved_[k], options.max_iterations);
+    }
     for (GradientEnd& end : ends_) {
       end.is_stopped |= !goes_on;
       take(end);
@@ -173,28 +188,29 @@ class CpuStepExec {
     return std::is_same_v<T, double> && rest_.is_possible(island);
   }
 
-  /// Improves the islands that have not converged by RestGradients and ends them with
-  /// solve(island, threads, most, proceed), one task each.
-  template <class T, class Solve>
-  void follow(const std::vector<std::int32_t>& island_start,
-              const GradientArrays<T>& arrays,
-              const GradientOptions& options,
-              const Solve& solve) {
+  static bool is_large(const std::vector<std::int32_t>& island_start, std::int32_t island) {
+    const auto i = static_cast<std::size_t>(island);
+    return island_start[i + 1] - island_start[i] >= serial_below;
+  }
+
+  /// Lists the islands that have not converged, and improves them by RestGradients, one task each.
+  template <class T>
+  void improve(const std::vector<std::int32_t>& island_start,
+               const GradientArrays<T>& arrays,
+               const GradientOptions& options) {
     if constexpr (std::is_same_v<T, double>) {
-      following_.clear();
       for (std::size_t i = 0; i < ends_.size(); ++i) {
         const auto island = static_cast<std::int32_t>(i);
         const bool is_left = !ends_[i].is_converged && ends_[i].iterations >= first_iterations &&
                              ends_[i].iterations < options.max_iterations;
-        if (is_left && can_follow<T>(island)) following_.push_back(island);
+        if (is_left && can_follow<T>(island)) improved_.push_back(island);
       }
-      parallel_tasks(threads_, static_cast<std::int64_t>(following_.size()), [&](std::int64_t k) {
-        const std::int32_t island = following_[static_cast<std::size_t>(k)];
+      parallel_tasks(threads_, static_cast<std::int64_t>(improved_.size()), [&](std::int64_t k) {
+        const std::int32_t island = improved_[static_cast<std::size_t>(k)];
         const auto i = static_cast<std::size_t>(island);
         const std::int64_t left = options.max_iterations - ends_[i].iterations;
         ends_[i].iterations += rest_.solve(arrays, island, island_start[i], island_start[i + 1],
                                            {options.tolerance, left});
-        solve(island, 1, options.max_iterations, [](std::int64_t) { return true; });
       });
     }
   }
@@ -227,7 +243,7 @@ class CpuStepExec {
   std::vector<PlainSums<2>> sums_;
   std::vector<GradientEnd> ends_;
   std::vector<std::int32_t> small_, large_;  ///< islands
-  std::vector<std::int32_t> following_;      ///< islands of follow()
+  std::vector<std::int32_t> improved_;       ///< islands of improve()
 };
 
 }  // namespace tetwarp

@@ -1,8 +1,9 @@
 /// @file stopwatch.hpp
+/// Stopwatch: wall-clock time since it was made.
 #pragma once
 #include <chrono>
 
-namespace tetwarp::cli {
+namespace tetwarp {
 
 class Stopwatch {
  public:
@@ -14,4 +15,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace tetwarp::cli
+}  // namespace tetwarp
