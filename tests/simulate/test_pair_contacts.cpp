@@ -170,6 +170,35 @@ TEST(PairContacts, AVertexOverAnEvenEdgeIsOneContactAndInACornerTwo) {
   EXPECT_EQ(contacts[0].key.feature_a, -2);
 }
 
+/// A vertex in a valley whose sides differ by 30 degrees keeps the number of each side, whichever
+/// is nearer: impulses and bonds follow the numbers.
+TEST(PairContacts, NumbersFollowNormals) {
+  const auto contacts_at = [](double x, const std::vector<ContactRecord>& records) {
+    const double slope = std::tan(std::acos(-1.0) / 12);
+    PairScene valley;
+    valley.add_mesh(
+        {{-1, 0, slope}, {0, 0, 0}, {1, 0, slope}, {-1, 1, slope}, {0, 1, 0}, {1, 1, slope}},
+        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}, still());
+    valley.add_mesh({{x, 0.4, 1.2 * h}, {0.1, 0.4, 1}, {-0.1, 0.5, 1}}, {{0, 1, 2}}, {});
+    return std::vector<ReportedContact>(valley.contacts(records));
+  };
+  std::vector<ContactRecord> records;
+  for (const ReportedContact& contact : contacts_at(0.1 * h, {})) {
+    records.push_back({.key = contact.key, .normal_world = contact.normal});
+  }
+  ASSERT_EQ(records.size(), 2U);
+
+  const auto alone = contacts_at(-0.1 * h, {}), after = contacts_at(-0.1 * h, records);
+
+  ASSERT_EQ(alone.size(), 2U);
+  ASSERT_EQ(after.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(after[k].key, records[k].key);
+    expect_near(after[k].normal, records[k].normal_world, 1e-12);
+    expect_near(alone[k].normal, records[1 - k].normal_world, 1e-12);
+  }
+}
+
 TEST(PairContacts, AreasOfTwoMeshesAddUpToWhatTouches) {
   for (const auto& [m, n] : {std::pair{4, 4}, {8, 8}, {4, 16}, {16, 4}, {12, 9}, {16, 16}}) {
     PairScene scene;

@@ -79,7 +79,8 @@ void PairContacts::choose(std::size_t first, std::size_t end) {
 std::int32_t PairContacts::slot_of(const PairTouch& touch,
                                    std::span<const ContactRecord> records) const {
   constexpr std::int32_t last = -64;
-  std::int32_t free = 0;
+  std::int32_t free = 0, best = 0;
+  double closest = cosine_45;
   for (std::int32_t slot = -1; slot > last; --slot) {
     if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) continue;
     const ContactKey key = key_of(touch.body_a, touch.a, touch.body_b, slot);
@@ -89,10 +90,14 @@ std::int32_t PairContacts::slot_of(const PairTouch& touch,
       if (slot <= lowest_slot_) break;
       continue;
     }
+    if (record->normal_world == Point3{0, 0, 0}) return slot;
     const double sign = key.body_a == touch.body_a && key.feature_a == touch.a ? 1 : -1;
     const double cosine = sign * dot(record->normal_world, touch.normal);
-    if (cosine > cosine_45 || record->normal_world == Point3{0, 0, 0}) return slot;
+    if (cosine <= closest) continue;
+    closest = cosine;
+    best = slot;
   }
+  if (best != 0) return best;
   return free != 0 ? free : last;
 }
 
