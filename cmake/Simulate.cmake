@@ -129,6 +129,7 @@ set(tetwarp_contact_step_sources  # host/simulate: the step with contact
   host/simulate/run/contact_step.cpp
   host/simulate/run/contact_step_end.cpp
   host/simulate/run/contact_step_sleep.cpp
+  host/simulate/run/expected_motion.cpp
   host/simulate/run/simulator_checkpoint.cpp
   host/simulate/run/simulator_record.cpp
   host/simulate/run/simulator_sleep.cpp

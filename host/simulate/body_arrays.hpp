@@ -188,7 +188,8 @@ struct StepArrays {
   Vector<double> position, centre, rotation, velocity, angular_momentum;  ///< of ModelState
   Vector<double> previous;                                                ///< NodeMovedBody
   Vector<double> fraction;  ///< of the step that nodes, then rigid bodies move; or empty: all of it
-  typename Exec::template Input<double> prescribed, force, anchor, anchor_velocity;  ///< StepInput
+  typename Exec::template Input<double> prescribed, force, guess, anchor,
+      anchor_velocity;  ///< StepInput
   typename Exec::template Input<std::uint8_t> is_active, is_asleep;
   Vector<std::uint8_t> has_moved, tet_has_turned, tet_is_skipped, edge_has_turned, block_is_skipped;
   Vector<TetTurned> turned;

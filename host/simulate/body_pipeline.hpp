@@ -85,7 +85,8 @@ class BodyPipeline {
 
   double move(double time_step, std::span<const double> fraction) {
     exec_.clear_times();
-    put_fractions(fraction);
+    fractions_of(model_, fraction, fraction_);
+    put(numbers_of(fraction_), now_.fraction);
     update(time_step);
     StepSeconds seconds;
     exec_.read_times(seconds);
@@ -158,13 +159,14 @@ class BodyPipeline {
     check("states of springs", count_of(input.is_active), springs);
     renew(numbers_of(input.prescribed_velocity), now_.prescribed);
     renew(numbers_of(input.block_force), now_.force);
+    const std::int64_t guesses = count_of(input.guess), flags = count_of(input.is_asleep);
+    if (guesses > 0) check("velocities to start from", guesses, model_.block_count());
+    renew(numbers_of(input.guess), now_.guess);
     renew(numbers_of(input.anchor), now_.anchor);
     renew(numbers_of(input.anchor_velocity), now_.anchor_velocity);
     exec_.renew(input.is_active.data(), springs, now_.is_active);
-    if (!input.is_asleep.empty()) {
-      check("flags of sleep", count_of(input.is_asleep), model_.block_count());
-    }
-    exec_.renew(input.is_asleep.data(), count_of(input.is_asleep), now_.is_asleep);
+    if (flags > 0) check("flags of sleep", flags, model_.block_count());
+    exec_.renew(input.is_asleep.data(), flags, now_.is_asleep);
   }
 
   void forces(const StepInput& input) {
@@ -220,17 +222,13 @@ class BodyPipeline {
         RowLoadBody{rows, from, constants_.scalars, rigid, load, dt, exec_.view(now_.load)});
   }
 
-  void put_fractions(std::span<const double> fraction) {
-    fractions_of(model_, fraction, fraction_);
-    put(numbers_of(fraction_), now_.fraction);
-  }
-
   void solve(StepOutcome& outcome) {
     const SystemRows& rows = pattern_.rows();
     const auto values = const_view(now_.values), x = const_view(now_.x);
+    const auto guess = const_view(now_.guess);
     exec_.for_each(linear_label, rows.count,
-                   RowVelocityBody{rows, const_view(now_.velocity), const_view(now_.prescribed),
-                                   exec_.view(now_.x)});
+                   RowVelocityBody{rows, guess.size > 0 ? guess : const_view(now_.velocity),
+                                   const_view(now_.prescribed), exec_.view(now_.x)});
     exec_.for_each(linear_label, rows.unknown_count,
                    RowPrescribedBody{rows, values, x, exec_.view(now_.load)});
     const GradientArrays<T> a = solve_.views(exec_, rows, model_.node_count, values,

@@ -32,7 +32,9 @@ struct StepInput {
   std::vector<std::uint8_t> is_active;  ///< [springs] 0: lets go
   std::vector<std::uint8_t> is_asleep = {};  ///< [block_count] unknowns that stand still, coupled
                                              ///< to no other unknowns; or empty: none
-  double end_time = 0;                       ///< [s] at which paths and loads have been sampled
+  std::vector<Point3> guess = {};  ///< [block_count] velocities that the solve starts from, or
+                                   ///< empty: those of the state
+  double end_time = 0;             ///< [s] at which paths and loads have been sampled
 };
 
 /// What a step did.

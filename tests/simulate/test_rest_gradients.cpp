@@ -8,7 +8,7 @@
 namespace tetwarp::test {
 namespace {
 
-constexpr std::int64_t without = 10;  // iterations by block Jacobi alone, before the factors
+constexpr std::int64_t without = 3;  // iterations by block Jacobi alone, before the factors
 
 /// A stiff block of which the nodes of one face are held, turned by 2 rad, and a free one.
 Model stiff_model(double flattened = 1) {

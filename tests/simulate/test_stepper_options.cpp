@@ -87,6 +87,7 @@ TEST(StepperOptions, ProgressEndsAStepWithoutEffect) {
   model.start.velocity[3] = {1, -2, 0.5};
   for (const std::int64_t last : {0, 10}) {
     StepperOptions options;
+    options.float32_solve = true;  // more than 10 iterations
     options.progress = [last](std::int64_t iterations) { return iterations < last; };
     const auto stepper = make_cpu_stepper(model, options);
 

@@ -139,6 +139,32 @@ void expect_equal_products() {
   }
 }
 
+TEST(VectorStages, BlocksHaveTheBitsOfSingleSums) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  constexpr std::size_t parts = 7, places = 40;
+  std::vector<double> rows(9 * parts), columns(4 * places);
+  for (double& own : rows) own = normal(random);
+  for (double& own : columns) own = normal(random);
+  std::vector<std::int32_t> place;
+  for (std::size_t p = 0; p < parts; ++p) place.push_back(static_cast<std::int32_t>(random() % 38));
+  const std::vector<double> start{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0};
+  std::vector<double> expected = start;
+  for (std::size_t p = 0; p < parts; ++p) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t n = 0; n < 12; ++n) {
+        expected[n] += rows[9 * p + 3 * (n / 4) + i] *
+                       columns[4 * (static_cast<std::size_t>(place[p]) + i) + n % 4];
+      }
+    }
+  }
+  for (const VectorStages* stages : usable_stages()) {
+    std::vector<double> block = start;
+    stages->add_blocks(rows.data(), place.data(), parts, columns.data(), block.data());
+    EXPECT_EQ(block, expected) << stages->name;
+  }
+}
+
 TEST(VectorStages, ProductsHaveTheBitsOfSingleRows) {
   expect_equal_products<double>();
   expect_equal_products<float>();

@@ -1,5 +1,6 @@
 #include "host/simulate/contact/contact_system.hpp"
 #include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,12 @@ void gather_laws(const std::vector<std::int32_t>& contacts,
   gather(contacts, 1, adhesion.viscosity, to.adhesion.viscosity);
   gather(contacts, 1, adhesion.bonding_rate, to.adhesion.bonding_rate);
   gather(contacts, 1, adhesion.saturation_pressure, to.adhesion.saturation_pressure);
+}
+
+std::vector<Point3> differences(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  std::vector<Point3> all(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) all[i] = minus(a[i], b[i]);
+  return all;
 }
 
 /// Without Newton's steps no method but sweeps, and no search for the reasons why they fail.
@@ -107,7 +114,8 @@ struct ContactSystem::State {
   std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
                                    ///< because only a bond is left
   ContactSolution solution;
-  std::vector<Point3> impulses, no_change;  ///< [block_count]
+  std::vector<Point3> impulses;         ///< [block_count]
+  std::vector<Point3> velocity_before;  ///< without contact, [block_count]
 };
 
 /// Whether the options leave the choice of the method.
@@ -228,7 +236,8 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
                                          std::vector<Point3>& velocity,
                                          std::vector<Point3>* change) {
   State& s = *state_;
-  s.no_change.clear();
+  static const std::vector<Point3> none;
+  s.velocity_before = velocity;
   set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.rows);
   s.islands.join(s.rows);
   s.set_laws(tracker, contacts, velocity);
@@ -242,7 +251,7 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
     gather_laws(s.soft.contacts, s.laws, s.soft_laws);
     const TwoLevelOutcome solved =
         s.two_level.solve(system, state, s.islands, s.rows, s.soft.islands, s.soft.contacts,
-                          s.soft_laws, velocity, change != nullptr ? *change : s.no_change);
+                          s.soft_laws, change != nullptr ? *change : none, velocity);
     outcome.outer_iterations = solved.outer_iterations;
     outcome.sweeps = solved.sweeps;
     if (solved.is_result) {
@@ -266,6 +275,7 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
     outcome.sweeps += solved.report.sweeps;
     outcome.outer_iterations += solved.report.outer_iterations;
   }
+  if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
   // The tracker reads gaps from the velocities: without what slows recovery.
   for (std::size_t c = 0; c < contacts.size(); ++c) s.solution.velocity[3 * c] -= s.recovered[c];

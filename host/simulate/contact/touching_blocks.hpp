@@ -41,6 +41,12 @@ class TouchingBlocks {
            const DiagonalInverse<double>& inverse,
            double relaxation);
 
+  /// Groups of ElasticGroups, and that of a contact of working(); since begin_sweeps().
+  std::int32_t group_count() const { return groups_.count(); }
+  std::int32_t group_of(std::int32_t contact) const {
+    return groups_.of_contact(static_cast<std::size_t>(contact));
+  }
+
   std::int64_t count() const { return static_cast<std::int64_t>(constants_.size()); }
 
   /// Prepares sweeps over contacts of working(), and puts these in the order of sweeps.
@@ -160,6 +166,7 @@ class TouchingBlocks {
     std::vector<double> velocity;  ///< u of its contacts, [stride]
     std::vector<double> before;    ///< impulses
     std::vector<double> moved;     ///< z for three unit impulses
+    std::vector<double> columns;   ///< the same, [size of z][4]
   };
   std::vector<GroupMatrix> matrices_;       ///< [groups] of those that have one
   std::vector<std::int32_t> matrix_place_;  ///< [contacts] in the matrix of its group

@@ -41,24 +41,26 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
   own.values.assign(3 * contacts.size() * index_of(own.stride), 0);
   own.velocity.assign(index_of(own.stride), 0);
   own.before.resize(3 * contacts.size());
-  std::vector<double>& moved = own.moved;
+  own.columns.assign(4 * size, 0);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const std::size_t c = index_of(contacts[k]);
     matrix_place_[c] = 3 * static_cast<std::int32_t>(k);
-    set_unit_velocities(c, moved);
+    set_unit_velocities(c, own.moved);
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t b = 0; b < 3; ++b) own.columns[4 * i + b] = own.moved[b * size + i];
+    }
     float* const columns = own.values.data() + 3 * k * index_of(own.stride);
     for (std::size_t m = k; m < contacts.size(); ++m) {
       const std::size_t other = index_of(contacts[m]);
-      double block[3][3] = {};
-      for (std::int32_t p = part_start_[other]; p < part_start_[other + 1]; ++p) {
-        const double* const z = moved.data() + groups_.place_of_part(index_of(p));
-        const double* const j = turned_.data() + parts_[index_of(p)].value;
-        for (std::size_t a = 0; a < 3; ++a) add_velocity(j, z + a * size, block[a]);
-      }
+      const std::size_t first = index_of(part_start_[other]);
+      double block[3][4] = {};
+      vector_stages().add_blocks(
+          turned_.data() + parts_[first].value, groups_.places_of_parts(first),
+          part_start_[other + 1] - part_start_[other], own.columns.data(), block[0]);
       float* const mirrored = own.values.data() + 3 * m * index_of(own.stride);
       for (std::size_t a = 0; a < 3; ++a) {
         for (std::size_t b = 0; b < 3; ++b) {
-          const auto value = static_cast<float>(block[a][b]);
+          const auto value = static_cast<float>(block[b][a]);
           columns[a * index_of(own.stride) + 3 * m + b] = value;
           if (m != k) mirrored[b * index_of(own.stride) + 3 * k + a] = value;
         }

@@ -227,8 +227,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
                                       const std::vector<std::uint8_t>& takes,
                                       const std::vector<std::int32_t>& contacts,
                                       const ContactProblem& laws,
-                                      std::vector<Point3>& velocity,
-                                      std::vector<Point3>& change) {
+                                      const std::vector<Point3>& change,
+                                      std::vector<Point3>& velocity) {
   clock_ = {};
   elastic_.choose(system.rows, islands, takes, rows, contacts);
   islands_.set(system.rows, islands, takes, elastic_);
@@ -242,7 +242,6 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     if (!chunks_.empty()) end = iterate(system, can_be_damped, outcome);
     if (end != End::diverges) break;
   }
-  change.assign(velocity.size(), Point3{0, 0, 0});
   if (chunks_.empty()) {
     outcome.converged = outcome.is_result = true;
     return outcome;
@@ -258,7 +257,6 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
       const std::size_t block = index_of(system.rows.block_of[row]);
       for (std::size_t i = 0; i < 3; ++i) {
-        change[block][i] = x_[3 * index_of(row) + i] - velocity[block][i];
         velocity[block][i] = x_[3 * index_of(row) + i];
       }
     }

@@ -57,9 +57,8 @@ class TwoLevelSolver {
   /// @param takes     [coupling islands] which are taken
   /// @param contacts  numbers of the contacts in `rows`; they act on these islands
   /// @param laws      friction, offsets, adhesion and guess of these contacts
+  /// @param change    how contacts changed the velocities in the step before, or empty
   /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
-  /// @param change    in: how contacts changed the velocities in the step before, or empty; out: in
-  ///                  this one
   TwoLevelOutcome solve(const StepSystem& system,
                         const ModelState& state,
                         const ContactIslands& islands,
@@ -67,8 +66,8 @@ class TwoLevelSolver {
                         const std::vector<std::uint8_t>& takes,
                         const std::vector<std::int32_t>& contacts,
                         const ContactProblem& laws,
-                        std::vector<Point3>& velocity,
-                        std::vector<Point3>& change);
+                        const std::vector<Point3>& change,
+                        std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
   const std::vector<double>& impulse() const { return impulse_; }
@@ -141,6 +140,7 @@ class TwoLevelSolver {
   std::vector<std::int64_t> moved_places_;
   FollowingMotion motion_;
   std::vector<std::int32_t> pushing_;  ///< contacts with impulses
+  std::vector<double> group_squares_;  ///< [groups] squares of changes
   Best best_;
 };
 

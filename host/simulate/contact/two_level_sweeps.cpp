@@ -2,6 +2,7 @@
 /// The sweeps of an outer iteration of TwoLevelSolver.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "host/base/index_of.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
@@ -36,15 +37,16 @@ double TwoLevelSolver::sweep_working() {
   gather_impulses(list);
   before_ = swept_;
   blocks_.sweep(switches_, list, y_.data(), swept_.data());
-  double square = 0;
+  group_squares_.assign(index_of(blocks_.group_count()), 0.0);
   for (std::size_t k = 0; k < list.size(); ++k) {
+    double& square = group_squares_[index_of(blocks_.group_of(list[k]))];
     for (std::size_t a = 0; a < 3; ++a) {
       square += blocks_.diagonal()[3 * index_of(list[k]) + a] *
                 square_of(swept_[3 * k + a] - before_[3 * k + a]);
     }
   }
   scatter_impulses(list);
-  return std::sqrt(square);
+  return std::sqrt(std::accumulate(group_squares_.begin(), group_squares_.end(), 0.0));
 }
 
 /// Sweeps over `list`, accelerated, until a sweep changes its impulses by at most `enough` or
@@ -109,8 +111,9 @@ void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
 }
 
 /// Sweeps until one over all contacts that work changes their impulses by at most `enough` in the
-/// norm of their energy. Between these, sweeps over those with impulses only: a contact that is
-/// open stays so in most of them. @returns the sweeps
+/// norm of their energy. Between these, sweeps over those with impulses only, as a contact that is
+/// open stays so in most of them, and of these over groups that still change: all others together
+/// by at most the half of `enough`, in squares. @returns the sweeps
 std::int64_t TwoLevelSolver::sweep(double enough) {
   std::int64_t sweeps = 0;
   blocks_.begin_sweeps();
@@ -118,9 +121,11 @@ std::int64_t TwoLevelSolver::sweep(double enough) {
   while (!working.empty() && sweeps < most_sweeps) {
     ++sweeps;
     if (sweep_working() <= enough) break;
+    const double least = square_of(enough) / (2.0 * static_cast<double>(group_squares_.size()));
     pushing_.clear();
     for (const std::int32_t contact : working) {
       const double* const r = impulse_.data() + 3 * std::ptrdiff_t{contact};
+      if (!(group_squares_[index_of(blocks_.group_of(contact))] > least)) continue;
       if (r[0] != 0 || r[1] != 0 || r[2] != 0) pushing_.push_back(contact);
     }
     const bool are_most = 4 * pushing_.size() > 3 * working.size();

@@ -119,8 +119,8 @@ class CpuStepExec {
       GradientScalars scalars;
       CpuGradientExec exec(threads, sums_.data() + begin / CpuGradientExec::run_length + i);
       const std::int64_t before = ends_[i].iterations;
-      ends_[i] =
-          island_cg(exec, arrays, begin, end, {options.tolerance, most - before}, &scalars, go_on);
+      ends_[i] = island_cg(exec, arrays, begin, end, {options.tolerance, most - before}, &scalars,
+                           [&](std::int64_t iterations) { return go_on(before + iterations); });
       ends_[i].iterations += before;
     };
     const auto most_at_first = [&](std::int32_t island) {
@@ -138,7 +138,7 @@ class CpuStepExec {
     }
     const auto solve_large = [&](std::int32_t island, std::int64_t most) {
       solve(island, threads_, most, [&](std::int64_t iterations) {
-        return iterations % first_iterations != 0 || proceed(iterations);
+        return iterations % asked_after != 0 || proceed(iterations);
       });
       goes_on = !ends_[static_cast<std::size_t>(island)].is_stopped;
     };
@@ -235,7 +235,8 @@ class CpuStepExec {
   static constexpr std::int64_t serial_below = 512;  ///< with fewer indices one thread is faster
 
   static constexpr std::int64_t range_length = 1024;
-  static constexpr std::int64_t first_iterations = 10;
+  static constexpr std::int64_t first_iterations = 3;
+  static constexpr std::int64_t asked_after = 10;  ///< iterations between calls of `proceed`
 
   int threads_;
   RestGradients& rest_;

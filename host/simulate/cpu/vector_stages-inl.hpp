@@ -124,13 +124,33 @@ void add_rows_of(
 }
 
 template <int width>
+void add_blocks_of(const double* rows,
+                   const std::int32_t* place,
+                   std::int64_t parts,
+                   const double* columns,
+                   double* block) {
+  typedef double Four __attribute__((vector_size(32)));
+  Four sum[3];
+  __builtin_memcpy(sum, block, sizeof(sum));
+  for (std::int64_t p = 0; p < parts; ++p, rows += 9) {
+    for (int i = 0; i < 3; ++i) {
+      Four column;
+      __builtin_memcpy(&column, columns + 4 * (std::int64_t{place[p]} + i), sizeof(column));
+      for (int a = 0; a < 3; ++a) sum[a] += column * rows[3 * a + i];
+    }
+  }
+  __builtin_memcpy(block, sum, sizeof(sum));
+}
+
+template <int width>
 constexpr VectorStages vector_stages_of(const char* name) {
   return {name,
           tet_forces_of<width>,
           assemble_of<width>,
           product_of<width, double>,
           product_of<width, float>,
-          add_rows_of<width>};
+          add_rows_of<width>,
+          add_blocks_of<width>};
 }
 
 }  // namespace tetwarp

@@ -22,6 +22,15 @@ struct VectorStages {
   /// @param size  a multiple of 8
   void (*add_rows)(
       const float* rows, std::int64_t stride, const double* change, std::int64_t size, double* sum);
+  /// block[a][b] += sum over parts p and i of rows[p][a][i] columns[place[p] + i][b].
+  /// @param rows     [parts][3][3]
+  /// @param columns  [places][4], the last of each is not used
+  /// @param block    [3][4]
+  void (*add_blocks)(const double* rows,
+                     const std::int32_t* place,
+                     std::int64_t parts,
+                     const double* columns,
+                     double* block);
 };
 
 /// The widest that this processor has.

@@ -5,7 +5,9 @@
 #include <tuple>
 #include <utility>
 
+#include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
+#include "host/simulate/run/expected_motion.hpp"
 
 namespace tetwarp {
 namespace {
@@ -193,6 +195,7 @@ bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
 
 void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part) {
   velocity_ = free_velocity_;
+  if (options_.skip.hits && has_change()) expect_contacts(model_, *start_, change_, velocity_);
   for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
     bool is_new = false;
     {
@@ -214,29 +217,6 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
   final_ = &clamped_;
 }
 
-std::int64_t ContactStep::stalled_scripts() const {
-  const auto is_driven = [&](std::int32_t block) {
-    const auto i = static_cast<std::size_t>(block);
-    return model_.prescribed[i] != 0 && velocity_[i] != Point3{0, 0, 0};
-  };
-  std::int64_t count = 0;
-  for (std::size_t b = 0; b < fractions().size(); ++b) {
-    if (fractions()[b] == 1) continue;
-    bool is_script = false;
-    if (b + 1 < model_.body_node.size()) {
-      for (auto n = model_.body_node[b]; n < model_.body_node[b + 1]; ++n) {
-        is_script = is_script || is_driven(n);
-      }
-    }
-    if (const std::int32_t r = surfaces_.body_rigid[b]; r >= 0) {
-      const std::int32_t block = model_.node_count + 2 * r;
-      is_script = is_script || is_driven(block) || is_driven(block + 1);
-    }
-    count += is_script;
-  }
-  return count;
-}
-
 void ContactStep::keep_apart(ContactPart& part) {
   const Clock clock(part.detection_seconds);
   static const std::vector<TrackedContact> none;
@@ -253,6 +233,16 @@ void ContactStep::keep_apart(ContactPart& part) {
   if (groups_.all_move()) return;
   part.clamped_islands = groups_.stopped_islands();
   part.stalled_scripts = stalled_scripts();
+}
+
+bool ContactStep::has_change() const {
+  return change_.size() == index_of(model_.block_count());
+}
+
+std::vector<Point3> ContactStep::guess(const ModelState& start, double time_step) {
+  set_time_step(time_step);
+  if (!has_change()) return {};
+  return free_velocities_before(start, change_);
 }
 
 ContactPart ContactStep::advance(const ModelState& start,

@@ -70,6 +70,10 @@ class ContactStep {
   /// For the start of a simulation.
   Detector& detector() { return *detector_; }
 
+  /// Velocities from which BodyStepper::solve() should start, [block_count], or empty: those of the
+  /// state.
+  std::vector<Point3> guess(const ModelState& start, double time_step);
+
   /// After BodyStepper::solve(): replaces the velocities by those with contact and moves the
   /// bodies.
   /// @param start     state at the start of the part
@@ -119,6 +123,7 @@ class ContactStep {
 
  private:
   void set_time_step(double time_step);
+  bool has_change() const;
   void set_places(const ModelState& state,
                   const SurfacePlaces& of,
                   std::vector<BodyPlace>& places) const;

@@ -72,6 +72,29 @@ bool ContactStep::can_touch(const CollisionSurfaces& surfaces) {
   return false;
 }
 
+std::int64_t ContactStep::stalled_scripts() const {
+  const auto is_driven = [&](std::int32_t block) {
+    const auto i = static_cast<std::size_t>(block);
+    return model_.prescribed[i] != 0 && velocity_[i] != Point3{0, 0, 0};
+  };
+  std::int64_t count = 0;
+  for (std::size_t b = 0; b < fractions().size(); ++b) {
+    if (fractions()[b] == 1) continue;
+    bool is_script = false;
+    if (b + 1 < model_.body_node.size()) {
+      for (auto n = model_.body_node[b]; n < model_.body_node[b + 1]; ++n) {
+        is_script = is_script || is_driven(n);
+      }
+    }
+    if (const std::int32_t r = surfaces_.body_rigid[b]; r >= 0) {
+      const std::int32_t block = model_.node_count + 2 * r;
+      is_script = is_script || is_driven(block) || is_driven(block + 1);
+    }
+    count += is_script;
+  }
+  return count;
+}
+
 void ContactStep::sum_impulses() {
   block_impulses_ = system_.block_impulses();
   const double* impulse = system_.solution().impulse.data();

@@ -81,6 +81,7 @@ void Simulator::Impl::end_part(double time_step) {
 /// Solves and moves.
 /// @returns false if `progress` ended it
 bool Simulator::Impl::advance(int part, double time_step, Attempt& result) {
+  if (contact_) input_.guess = contact_->guess(state_, time_step);
   const StepOutcome outcome = stepper->solve(input_);
   add_outcome(outcome, result.outcome);
   add_seconds(outcome.seconds, result.outcome.seconds);
