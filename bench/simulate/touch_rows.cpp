@@ -194,6 +194,7 @@ void add_touch_rows(Extent extent) {
       {"rotations", &SimulateSkipOptions::rotations},
       {"blocks", &SimulateSkipOptions::blocks},
       {"pairs", &SimulateSkipOptions::pairs},
+      {"hits", &SimulateSkipOptions::hits},
       {"islands", &SimulateSkipOptions::islands}};
   for (const auto& [name, member] : skips) {
     add_row(std::string("skip/") + name + "/candies/size:6", [member = member](auto& state) {

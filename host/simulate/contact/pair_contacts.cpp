@@ -5,12 +5,14 @@
 #include <tuple>
 #include <utility>
 
+#include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/edge_side.hpp"
 
 namespace tetwarp {
 namespace {
-constexpr double same_gap = 0.1;  // thicknesses
+constexpr std::size_t part_size = 256;  // pairs that one task takes
+constexpr double same_gap = 0.1;        // thicknesses
 constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
 
 bool is_of_edges(const PairTouch& touch) {
@@ -53,8 +55,8 @@ const ContactRecord* record_of(std::span<const ContactRecord> records, const Con
 }
 }  // namespace
 
-PairContacts::PairContacts(const SceneSurfaces& scene)
-    : scene_(scene), areas_(scene.surfaces), patches_(scene, areas_) {}
+PairContacts::PairContacts(const SceneSurfaces& scene, int threads)
+    : scene_(scene), threads_(threads), areas_(scene.surfaces), patches_(scene, areas_) {}
 
 /// Whether each of two edges is what is nearest of its surface.
 bool PairContacts::is_nearest_of_edges(const PairTouch& touch,
@@ -153,6 +155,24 @@ void PairContacts::report_vertex(std::size_t first,
   }
 }
 
+void PairContacts::add_touches(const TouchingPair& pair,
+                               const SurfaceMotion& motion,
+                               const SurfaceMotion& first,
+                               std::vector<PairTouch>& touches) const {
+  const PairTouch touch = touch_of(pair, scene_, motion, first);
+  if (const auto ends = end_touches_of(pair, scene_, motion, first)) {
+    touches.insert(touches.end(), ends->begin(), ends->end());
+    // Between ends that are as near a third contact would change nothing.
+    const double nearer = same_gap * scene_.surfaces.thickness;
+    if (std::min((*ends)[0].gap, (*ends)[1].gap) <= touch.gap + nearer) return;
+  }
+  const bool is_hit = pair.time <= 1;
+  if (!is_of_edges(touch) ||
+      (touch.is_inside && (is_hit || is_nearest_of_edges(touch, motion.start.vertices)))) {
+    touches.push_back(touch);
+  }
+}
+
 const std::vector<ReportedContact>& PairContacts::find(const std::vector<TouchingPair>& pairs,
                                                        std::span<const std::int32_t> pass,
                                                        std::span<const SurfaceMotion> motions,
@@ -160,20 +180,17 @@ const std::vector<ReportedContact>& PairContacts::find(const std::vector<Touchin
   touches_.clear();
   contacts_.clear();
   if (pairs.empty()) return contacts_;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const SurfaceMotion& motion = motions[static_cast<std::size_t>(pass[p])];
-    const PairTouch touch = touch_of(pairs[p], scene_, motion, motions[0]);
-    if (const auto ends = end_touches_of(pairs[p], scene_, motion, motions[0])) {
-      touches_.insert(touches_.end(), ends->begin(), ends->end());
-      // Between ends that are as near a third contact would change nothing.
-      const double nearer = same_gap * scene_.surfaces.thickness;
-      if (std::min((*ends)[0].gap, (*ends)[1].gap) <= touch.gap + nearer) continue;
+  parts_.resize((pairs.size() + part_size - 1) / part_size);
+  parallel_tasks(threads_, static_cast<std::int64_t>(parts_.size()), [&](std::int64_t part) {
+    std::vector<PairTouch>& own = parts_[static_cast<std::size_t>(part)];
+    own.clear();
+    const std::size_t begin = part_size * static_cast<std::size_t>(part);
+    for (std::size_t p = begin; p < std::min(begin + part_size, pairs.size()); ++p) {
+      add_touches(pairs[p], motions[static_cast<std::size_t>(pass[p])], motions[0], own);
     }
-    const bool is_hit = pairs[p].time <= 1;
-    if (!is_of_edges(touch) ||
-        (touch.is_inside && (is_hit || is_nearest_of_edges(touch, motions[0].start.vertices)))) {
-      touches_.push_back(touch);
-    }
+  });
+  for (const std::vector<PairTouch>& own : parts_) {
+    touches_.insert(touches_.end(), own.begin(), own.end());
   }
   order_.resize(touches_.size());
   std::iota(order_.begin(), order_.end(), std::size_t{0});

@@ -39,14 +39,15 @@ namespace tetwarp {
 class PairContacts {
  public:
   /// @param scene  kept by the caller
-  explicit PairContacts(const SceneSurfaces& scene);
+  /// @param threads  any number: same contacts
+  explicit PairContacts(const SceneSurfaces& scene, int threads = 1);
   PairContacts(const PairContacts&) = delete;
   PairContacts& operator=(const PairContacts&) = delete;
 
   /// @param pairs    of all detections of the step, sorted, each once
   /// @param pass     [pairs] the detection that found each pair: an index of `motions`. Times of
   ///                 hits are those of its motion
-  /// @param motions  of the detections; all have the same start, the first is without contact
+  /// @param motions  of the detections; all have the same start; tangents follow the first
   /// @param records  of the tracker at the start of the step, sorted by key
   /// @returns sorted by key, as ContactTracker::begin_step() takes them; valid until the next call.
   ///          Bodies are indices of bodies, then obstacles. Features are vertices, edges numbered
@@ -61,6 +62,10 @@ class PairContacts {
 
  private:
   bool is_nearest_of_edges(const PairTouch& touch, const std::vector<Point3>& vertices) const;
+  void add_touches(const TouchingPair& pair,
+                   const SurfaceMotion& motion,
+                   const SurfaceMotion& first,
+                   std::vector<PairTouch>& touches) const;
   void choose(std::size_t first, std::size_t end);
   std::int32_t slot_of(const PairTouch& touch, std::span<const ContactRecord> records) const;
   void report(const PairTouch& touch, std::int32_t feature_a, std::int32_t feature_b, double area);
@@ -70,8 +75,10 @@ class PairContacts {
                      std::span<const ContactRecord> records);
 
   const SceneSurfaces& scene_;
+  int threads_;
   TouchAreas areas_;
   RigidPatches patches_;
+  std::vector<std::vector<PairTouch>> parts_;  ///< touches of runs of pairs
   std::vector<PairTouch> touches_;
   std::vector<std::size_t> order_;   ///< of touches_, by vertex and body touched, then distance
   std::vector<std::size_t> kept_;    ///< of the current vertex and body, in touches_

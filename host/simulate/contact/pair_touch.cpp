@@ -20,8 +20,8 @@ class TouchMaker {
   TouchMaker(const TouchingPair& pair,
              const SceneSurfaces& scene,
              const SurfaceMotion& motion,
-             const SurfaceMotion& free)
-      : scene_(scene), motion_(motion), free_(free), time_(pair.time <= 1 ? pair.time : 0) {
+             const SurfaceMotion& first)
+      : scene_(scene), motion_(motion), first_(first), time_(pair.time <= 1 ? pair.time : 0) {
     touch_.kind = pair.kind;
     touch_.a = pair.a;
     touch_.b = pair.b;
@@ -179,7 +179,7 @@ class TouchMaker {
     touch_.normal = normal_of(apart_, otherwise_, minus(start_a, start_b));
     touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
     touch_.point_b = plus(start_b, times(b_.radius, touch_.normal));
-    touch_.way = minus(way_of(a_, free_), way_of(b_, free_));
+    touch_.way = minus(way_of(a_, first_), way_of(b_, first_));
     touch_.material_b = material_of(b_, scene_, touch_.body_b);
     touch_.part_b = b_.vertex;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -205,9 +205,9 @@ class TouchMaker {
     const Point3 foot = minus(arm, times(dot(arm, touch_.normal), touch_.normal));
     touch_.point_b = plus(before.point, frame != nullptr ? turned(*frame, -time_, foot)
                                                          : turned_back(foot, before.normal));
-    const PlanePlace& free_before = at(free_.start.planes, touch_.b);
-    const PlanePlace& free_after = at(free_.end.planes, touch_.b);
-    touch_.way = minus(way_of(a_, free_), minus(free_after.point, free_before.point));
+    const PlanePlace& first_start = at(first_.start.planes, touch_.b);
+    const PlanePlace& first_end = at(first_.end.planes, touch_.b);
+    touch_.way = minus(way_of(a_, first_), minus(first_end.point, first_start.point));
     set_gap();
   }
 
@@ -247,7 +247,7 @@ class TouchMaker {
 
   const SceneSurfaces& scene_;
   const SurfaceMotion& motion_;
-  const SurfaceMotion& free_;
+  const SurfaceMotion& first_;
   double time_ = 0;  ///< of the hit; 0 where it is near only
   PairTouch touch_;
   SidePoint a_, b_;
@@ -260,19 +260,19 @@ class TouchMaker {
 PairTouch touch_of(const TouchingPair& pair,
                    const SceneSurfaces& scene,
                    const SurfaceMotion& motion,
-                   const SurfaceMotion& free) {
-  return TouchMaker(pair, scene, motion, free).make();
+                   const SurfaceMotion& first) {
+  return TouchMaker(pair, scene, motion, first).make();
 }
 
 std::optional<std::array<PairTouch, 2>> end_touches_of(const TouchingPair& pair,
                                                        const SceneSurfaces& scene,
                                                        const SurfaceMotion& motion,
-                                                       const SurfaceMotion& free) {
-  const TouchMaker maker(pair, scene, motion, free);
+                                                       const SurfaceMotion& first) {
+  const TouchMaker maker(pair, scene, motion, first);
   const auto part = maker.overlap();
   if (!part) return std::nullopt;
-  TouchMaker first = maker, second = maker;
-  return std::array{first.make_at((*part)[0], 1), second.make_at((*part)[1], 2)};
+  TouchMaker at_begin = maker, at_end = maker;
+  return std::array{at_begin.make_at((*part)[0], 1), at_end.make_at((*part)[1], 2)};
 }
 
 }  // namespace tetwarp

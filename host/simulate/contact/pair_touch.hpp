@@ -19,7 +19,7 @@ struct PairTouch {
   std::int32_t body_a = 0, body_b = 0;        ///< bodies, then obstacles
   Point3 point_a{0, 0, 0}, point_b{0, 0, 0};  ///< of the material, at the start; `gap` apart
   Point3 normal{0, 0, 1};                     ///< unit, from b to a
-  Point3 way{0, 0, 0};                   ///< by which a moves relative to b without contact [m]
+  Point3 way{0, 0, 0};                   ///< by which a moves relative to b as first expected [m]
   double gap = 0;                        ///< at the start along the normal, less the thickness [m]
   double distance = 0;                   ///< between the surfaces at the start [m]
   double time = 0;                       ///< of the hit, 0 to 1; 0 where they are near at the start
@@ -31,11 +31,11 @@ struct PairTouch {
 };
 
 /// @param motion  in which the pair was found
-/// @param free    motion without contact
+/// @param first   motion of the first detection of the step
 PairTouch touch_of(const TouchingPair& pair,
                    const SceneSurfaces& scene,
                    const SurfaceMotion& motion,
-                   const SurfaceMotion& free);
+                   const SurfaceMotion& first);
 
 /// Capsules side by side touch along a line: the touches at both ends of their overlap, that at the
 /// start of axis a first. Nothing for other pairs, for axes that differ by 10 degrees or more, and
@@ -43,6 +43,6 @@ PairTouch touch_of(const TouchingPair& pair,
 std::optional<std::array<PairTouch, 2>> end_touches_of(const TouchingPair& pair,
                                                        const SceneSurfaces& scene,
                                                        const SurfaceMotion& motion,
-                                                       const SurfaceMotion& free);
+                                                       const SurfaceMotion& first);
 
 }  // namespace tetwarp

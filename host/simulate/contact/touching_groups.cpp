@@ -70,16 +70,20 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
 }
 
 void TouchingBlocks::begin_sweeps() {
-  const std::vector<std::int32_t>& changed = groups_.group(working_);
-  matrices_.resize(std::max(matrices_.size(), index_of(groups_.count())));
-  for (const std::int32_t group : changed) {
+  std::vector<std::int32_t> made;
+  for (const std::int32_t group : groups_.group(working_)) {
     for (const std::int32_t contact : groups_.contacts(group)) {
       elastic_start_[index_of(contact)] = -1;
     }
+    if (has_matrix(group)) made.push_back(group);
   }
-  parallel_tasks(threads_, static_cast<std::int64_t>(changed.size()), [&](std::int64_t k) {
-    if (has_matrix(changed[index_of(k)])) set_matrix(changed[index_of(k)]);
+  matrices_.resize(std::max(matrices_.size(), index_of(groups_.count())));
+  // The one that takes longest first.
+  std::ranges::stable_sort(made, std::ranges::greater{}, [&](std::int32_t group) {
+    return groups_.contacts(group).size() * index_of(groups_.size(group));
   });
+  parallel_tasks(threads_, static_cast<std::int64_t>(made.size()),
+                 [&](std::int64_t k) { set_matrix(made[index_of(k)]); });
 }
 
 int TouchingBlocks::passes_over(const Range& range, const std::vector<std::int32_t>& list) const {

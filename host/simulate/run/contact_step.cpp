@@ -106,7 +106,7 @@ ContactStep::ContactStep(const Scene& scene,
       material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
       tracker_options_(tracker_options(surfaces)),
-      pair_contacts_(surfaces),
+      pair_contacts_(surfaces, options.threads),
       tracker_(tracker_options_),
       system_(surfaces,
               model,
@@ -196,7 +196,10 @@ bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
 
 void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part) {
   velocity_ = free_velocity_;
-  if (options_.skip.hits && has_change()) expect_contacts(model_, *start_, change_, velocity_);
+  // Axes of the pyramid follow the motion without contact.
+  if (options_.skip.hits && !scene_.solver.pyramid && has_change()) {
+    expect_contacts(model_, *start_, change_, velocity_);
+  }
   for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
     bool is_new = false;
     {

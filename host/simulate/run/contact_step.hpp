@@ -1,7 +1,7 @@
 /// @file contact_step.hpp
 /// ContactStep: the part of a time step that keeps bodies apart.
 ///
-/// Detection along the free motion, contacts, their solution, detection along the motion that
+/// Detection along the expected motion, contacts, their solution, detection along the motion that
 /// results, until nothing new is hit; then a check that no pair comes too near, which shortens the
 /// ways of those that do. A scene that starts apart never intersects.
 #pragma once
