@@ -72,6 +72,24 @@ ContactTrackerOptions materials(double friction, double stiffness) {
   return options;
 }
 
+HandScene box_on_frame() {
+  HandScene scene;
+  scene.model = empty_model();
+  add_rigid(scene.model, 1, {0.0125 / 3, 0.0125 / 3, 0.02 / 3}, {0, 0, 0.05});
+  add_frame(scene.model, {0, 0, 0});
+  scene.make_surfaces(0.2);
+  for (const double x : {-0.1, 0.1}) {
+    for (const double y : {-0.1, 0.1}) {
+      Touch touch;
+      touch.body_b = 1;
+      touch.point_a = on_rigid({x, y, -0.05});
+      touch.point_b = on_rigid({x, y, 0});
+      scene.touches.push_back(touch);
+    }
+  }
+  return scene;
+}
+
 ContactSystemOptions exact(Backend backend) {
   ContactSystemOptions options;
   options.solver.tolerance = 1e-11;

@@ -15,6 +15,9 @@ constexpr double mixed_step = 5e-3;  // [s]
 /// frame, with random contacts between all of them; the last block touches nothing.
 HandScene mixed_scene(unsigned seed, double adhesion_area = 0);
 
+/// A box of half edges 0.1, 0.1, 0.05 m and 1 kg on a frame, touching at four corners.
+HandScene box_on_frame();
+
 /// All contacts are near; with a stiffness they are bonded.
 ContactTrackerOptions materials(double friction, double stiffness = 0);
 

@@ -5,30 +5,11 @@
 
 #include "host/base/point3.hpp"
 #include "tests/simulate/body_models.hpp"
-#include "tests/simulate/hand_contacts.hpp"
+#include "tests/simulate/mixed_contacts.hpp"
 
 namespace tetwarp::test {
 namespace {
 constexpr double block_step = 8e-3;
-
-/// A box of half edges 0.1, 0.1, 0.05 m and 1 kg on a frame, touching at four corners.
-HandScene box_scene() {
-  HandScene scene;
-  scene.model = empty_model();
-  add_rigid(scene.model, 1, {0.0125 / 3, 0.0125 / 3, 0.02 / 3}, {0, 0, 0.05});
-  add_frame(scene.model, {0, 0, 0});
-  scene.make_surfaces(0.2);
-  for (const double x : {-0.1, 0.1}) {
-    for (const double y : {-0.1, 0.1}) {
-      Touch touch;
-      touch.body_b = 1;
-      touch.point_a = on_rigid({x, y, -0.05});
-      touch.point_b = on_rigid({x, y, 0});
-      scene.touches.push_back(touch);
-    }
-  }
-  return scene;
-}
 
 struct BlockRun {
   ModelState state;
@@ -76,7 +57,7 @@ ContactTrackerOptions with_friction(double friction) {
 constexpr double slope = 0.5, g = 9.81;
 
 TEST(ContactBlock, SticksBelowTheThresholdOfFriction) {
-  const HandScene scene = box_scene();
+  const HandScene scene = box_on_frame();
   const double c = 1 / std::sqrt(1 + slope * slope), s = slope * c;
   const StepInput input = input_for(scene.model, block_step, {g * s, 0, -g * c});
 
@@ -87,7 +68,7 @@ TEST(ContactBlock, SticksBelowTheThresholdOfFriction) {
 }
 
 TEST(ContactBlock, SlidesAboveTheThresholdOfFriction) {
-  const HandScene scene = box_scene();
+  const HandScene scene = box_on_frame();
   const double c = 1 / std::sqrt(1 + slope * slope), s = slope * c, mu = slope / 1.001;
   const StepInput input = input_for(scene.model, block_step, {g * s, 0, -g * c});
 
@@ -99,7 +80,7 @@ TEST(ContactBlock, SlidesAboveTheThresholdOfFriction) {
 
 /// The frame carries the weight: its support takes up the impulses of the contacts.
 TEST(ContactBlock, SupportOfAFrameHoldsTheWeight) {
-  const HandScene scene = box_scene();
+  const HandScene scene = box_on_frame();
   const StepInput input = input_for(scene.model, block_step, {0, 0, -g});
 
   const BlockRun rest = run(scene, with_friction(0.3), input, 5);
@@ -111,7 +92,7 @@ TEST(ContactBlock, SupportOfAFrameHoldsTheWeight) {
 
 /// A rising frame lifts the block, a sliding one drags it with friction.
 TEST(ContactBlock, FollowsAMovingFrame) {
-  const HandScene scene = box_scene();
+  const HandScene scene = box_on_frame();
   StepInput input = input_for(scene.model, block_step, {0, 0, -g});
   input.prescribed_velocity[2] = {1, 0, 0.5};
 
@@ -124,7 +105,7 @@ TEST(ContactBlock, FollowsAMovingFrame) {
 /// Penetration of 1 m is undone at 0.2 of the body's size per second, while the velocities that the
 /// tracker gets are those of the gaps.
 TEST(ContactBlock, RecoversFromPenetrationSlowly) {
-  HandScene scene = box_scene();
+  HandScene scene = box_on_frame();
   scene.model.start.position[0][2] = -0.95;
   const StepInput input = input_for(scene.model, block_step, {0, 0, -g});
 
@@ -136,7 +117,7 @@ TEST(ContactBlock, RecoversFromPenetrationSlowly) {
 
 /// A bonded block hangs below its frame at the gap m g / (area C), in traction all springs alike.
 TEST(ContactBlock, HangsOnItsBonds) {
-  HandScene scene = box_scene();
+  HandScene scene = box_on_frame();
   constexpr double area = 1e-3, stiffness = 1e6;
   for (Touch& touch : scene.touches) touch.area = area;
   ContactTrackerOptions tracking = with_friction(0.3);
