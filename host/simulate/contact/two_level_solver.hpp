@@ -90,6 +90,7 @@ class TwoLevelSolver {
   double step(const StepSystem& system);
   void step_chunk(std::int64_t chunk);
   TwoLevelError find_error(double defect);
+  std::int64_t most_of_iteration() const;
   std::int64_t sweep(double enough);
   double sweep_working();
   template <class Accelerator, class Follow>

@@ -11,9 +11,14 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::int64_t most_sweeps = 50;  // in an outer iteration
+// In an outer iteration; with single elastic bodies most sweeps are over few groups.
+constexpr std::int64_t most_sweeps = 50, most_elastic_sweeps = 200;
 
 }  // namespace
+
+std::int64_t TwoLevelSolver::most_of_iteration() const {
+  return elastic_.bodies().empty() ? most_sweeps : most_elastic_sweeps;
+}
 
 /// Copies the impulses of `list`.
 void TwoLevelSolver::gather_impulses(const std::vector<std::int32_t>& list) {
@@ -68,15 +73,16 @@ void TwoLevelSolver::sweep_accelerated(const std::vector<std::int32_t>& list,
   Accelerator accelerator(exec, {listed_diagonal_.data(), size},
                           {accelerated_.data(), Accelerator::columns * size});
   gather_impulses(list);
+  const std::int64_t most = most_of_iteration();
   const View<double> image{swept_.data(), size};
-  while (sweeps < most_sweeps) {
+  while (sweeps < most) {
     before_ = swept_;
     motion_.keep(y_.data());
     const View<const double> before{before_.data(), size};
     blocks_.sweep(switches_, list, y_.data(), swept_.data());
     ++sweeps;
     accelerator.observe(before, image);
-    if (accelerator.defect() <= enough || sweeps == most_sweeps) break;
+    if (accelerator.defect() <= enough || sweeps == most) break;
     unaccelerated_ = swept_;
     if (accelerator.advance(before, image)) follow(accelerator);
   }
@@ -118,7 +124,7 @@ std::int64_t TwoLevelSolver::sweep(double enough) {
   std::int64_t sweeps = 0;
   blocks_.begin_sweeps();
   const std::vector<std::int32_t>& working = blocks_.working();
-  while (!working.empty() && sweeps < most_sweeps) {
+  while (!working.empty() && sweeps < most_of_iteration()) {
     ++sweeps;
     if (sweep_working() <= enough) break;
     const double least = square_of(enough) / (2.0 * static_cast<double>(group_squares_.size()));

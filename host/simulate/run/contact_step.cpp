@@ -68,7 +68,7 @@ ContactSystemOptions system_options(const Scene& scene,
   // friction between two bodies, as of a stone on an edge, may take thousands of sweeps. A step
   // that is not solved is divided. Very tight tolerances take many sweeps also where all is well.
   of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? 5000 : 300;
-  of.solver.max_newton = 1000;
+  of.solver.max_newton = 20000;
   // A solver that remembers systems would not go on from a checkpoint bit for bit.
   of.solver.skip.constant_systems = false;
   if (options.progress) of.solver.progress = std::move(progress);
