@@ -96,6 +96,8 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_two_level.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
+    tests/simulate/body_models.cpp
+    tests/simulate/test_expected_motion.cpp
     tests/simulate/test_touch_capsules.cpp
     tests/simulate/test_touch_edges.cpp
     tests/simulate/test_touch_fall.cpp

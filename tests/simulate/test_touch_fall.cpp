@@ -28,6 +28,24 @@ TEST(Falling, RigidSphereRestsAtTheThickness) {
   EXPECT_NEAR(record.obstacle_forces[0][2], -9.81 * simulator.body(0).mass, 1e-9);
 }
 
+/// A plate under a box is pulled away within a step; the box then falls to the floor.
+TEST(Falling, ABoxWhoseSupportIsPulledAwayIsStopped) {
+  Scene scene = falling(rigid_box("box", {0.05, 0.05, 0.05}, {}), 0.0502);
+  Body plate = rigid_box("plate", {0.05, 0.05, 2e-5}, {0, 0, 1.1e-4});
+  plate.kind = BodyKind::scripted;
+  plate.motion = Path{{0.05, Point3{0, 0, 0}}, {0.055, Point3{0.11, 0, 0}}};
+  scene.bodies.push_back(plate);
+  scene.thickness = 1e-5;
+  scene.contact.material.friction = 0;
+  Simulator simulator(scene);
+  for (int n = 0; n < 20; ++n) {
+    simulator.step();
+    EXPECT_GT(lowest(simulator.surface_positions(0)), 0) << n;
+    EXPECT_GT(simulator.record().smallest_distance, 0) << n;
+  }
+  EXPECT_NEAR(simulator.record().bodies[0].centre[2], 0.05 + 1e-5, 1e-6);
+}
+
 TEST(Falling, RigidBoxRestsAtTheThickness) {
   Simulator simulator(falling(rigid_box("box", {0.05, 0.04, 0.03}, {}), 0.05));
   run(simulator, 100);

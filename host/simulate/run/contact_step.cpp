@@ -196,10 +196,11 @@ bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
 
 void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part) {
   velocity_ = free_velocity_;
-  // Axes of the pyramid follow the motion without contact.
-  if (options_.skip.hits && !scene_.solver.pyramid && has_change()) {
-    expect_contacts(model_, *start_, change_, velocity_);
-  }
+  // Axes of the pyramid follow the motion without contact. The expected motion is not the final
+  // one, so that it takes a second detection.
+  const bool is_expected =
+      options_.skip.hits && !scene_.solver.pyramid && has_change() && motions_.size() > 1;
+  if (is_expected) expect_contacts(model_, *start_, change_, velocity_);
   for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
     bool is_new = false;
     {
@@ -210,11 +211,13 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
                                           static_cast<std::int32_t>(pass));
       ++part.passes;
       if (!woken_.empty()) return;
-      is_new = added > 0 || (pass == 0 && !tracker_.records().empty());
+      is_new = added > 0 || (pass == 0 && (is_expected || !tracker_.records().empty()));
       if (!is_new) return;
       report(is_first);
     }
-    if (!solve(stepper, part)) return;
+    const bool is_solved = solve(stepper, part);
+    const bool lets_go = is_expected && pass == 0 && contacts_->empty();
+    if (!is_solved && !lets_go) return;
   }
   const Clock clock(part.detection_seconds);
   move_surfaces({}, clamped_);
