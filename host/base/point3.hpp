@@ -18,6 +18,12 @@ inline Point3 plus(const Point3& a, const Point3& b) {
 inline Point3 minus(const Point3& a, const Point3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+/// a - b of lists of the same size.
+inline std::vector<Point3> differences(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  std::vector<Point3> all(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) all[i] = minus(a[i], b[i]);
+  return all;
+}
 inline Point3 times(double factor, const Point3& a) {
   return {factor * a[0], factor * a[1], factor * a[2]};
 }

@@ -27,9 +27,9 @@ struct SimulateSkipOptions {
   bool blocks = true;     ///< of the system whose tetrahedra did not turn and whose springs rest
   bool pairs = true;      ///< broad phase of a detection whose boxes lie inside those of an earlier
                           ///< one of the same step
-  bool hits = true;       ///< contacts of what bodies would only hit if contacts of the step before
-                          ///< let go
-  bool islands = true;    ///< coupling islands without contacts are not solved again with contacts
+  bool hits = true;     ///< contacts with surfaces that bodies would hit only without the contacts
+                        ///< of the step before
+  bool islands = true;  ///< coupling islands without contacts are not solved again with contacts
 };
 
 /// How far a running step is.

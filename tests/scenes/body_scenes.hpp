@@ -3,7 +3,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +11,7 @@
 
 #include "host/reference/simulate/bodies.hpp"
 #include "host/scene/scene_geometry.hpp"
+#include "tests/scenes/largest_distance.hpp"
 
 namespace tetwarp::test {
 
@@ -88,16 +88,6 @@ std::vector<std::int32_t> nodes_where(const BodyGeometry& geometry, const Predic
     if (is_chosen(geometry.nodes[n])) chosen.push_back(static_cast<std::int32_t>(n));
   }
   return chosen;
-}
-
-/// Largest distance of corresponding points.
-inline double largest_distance(const std::vector<Point3>& a, const std::vector<Point3>& b) {
-  double largest = a.size() == b.size() ? 0 : std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i) {
-    largest =
-        std::max(largest, std::hypot(a[i][0] - b[i][0], a[i][1] - b[i][1], a[i][2] - b[i][2]));
-  }
-  return largest;
 }
 
 /// Evenly distributed numbers from -1 to 1, the same in every run.

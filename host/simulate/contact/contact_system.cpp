@@ -45,19 +45,6 @@ void gather_laws(const std::vector<std::int32_t>& contacts,
   gather(contacts, 1, adhesion.saturation_pressure, to.adhesion.saturation_pressure);
 }
 
-std::vector<Point3> differences(const std::vector<Point3>& a, const std::vector<Point3>& b) {
-  std::vector<Point3> all(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) all[i] = minus(a[i], b[i]);
-  return all;
-}
-
-/// Without Newton's steps no method but sweeps, and no search for the reasons why they fail.
-ContactOptions sweeping(ContactOptions options) {
-  const bool is_automatic = options.method == ContactMethod::automatic;
-  if (is_automatic && options.max_newton == 0) options.method = ContactMethod::nonlinear_cg;
-  return options;
-}
-
 }  // namespace
 
 struct ContactSystem::State {
@@ -85,7 +72,7 @@ struct ContactSystem::State {
         frames(frames_of_bodies(surfaces, of)),
         islands(of),
         two_level(of, given.solver, given.factors),
-        solver(sweeping(given.solver)) {}
+        solver(given.solver) {}
 
   void set_laws(const ContactTracker& tracker,
                 const std::vector<TrackedContact>& contacts,

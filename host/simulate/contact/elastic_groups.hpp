@@ -38,6 +38,7 @@ class ElasticGroups {
   std::int32_t of_contact(std::size_t contact) const { return group_of_[contact]; }
   /// Place in z and in the pushes of a part, -1: of no elastic body.
   std::int32_t place_of_part(std::size_t part) const { return place_of_part_[part]; }
+  /// The places of a part and of those that follow it.
   const std::int32_t* places_of_parts(std::size_t first) const {
     return place_of_part_.data() + first;
   }

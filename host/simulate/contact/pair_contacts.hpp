@@ -53,7 +53,8 @@ class PairContacts {
   ///          Bodies are indices of bodies, then obstacles. Features are vertices, edges numbered
   ///          from the vertex count on (at the first and second end of an overlap plus the number
   ///          of edges once and twice), and below zero what a vertex touches: -1 the first such
-  ///          contact of the vertex and the body, -2 the second. Vertices of material points are
+  ///          contact of the vertex and the body, -2 the second; a contact takes the number of the
+  ///          record whose normal is nearest. Vertices of material points are
   ///          counted from the first of the body.
   const std::vector<ReportedContact>& find(const std::vector<TouchingPair>& pairs,
                                            std::span<const std::int32_t> pass,

@@ -1,12 +1,12 @@
 #include "host/simulate/run/contact_step.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <tuple>
 #include <utility>
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
+#include "host/base/stopwatch.hpp"
 #include "host/simulate/run/expected_motion.hpp"
 
 namespace tetwarp {
@@ -17,14 +17,11 @@ class Clock {
  public:
   explicit Clock(double& seconds) : seconds_(seconds) {}
   Clock(Clock&&) = delete;
-  ~Clock() {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
-    seconds_ += passed.count();
-  }
+  ~Clock() { seconds_ += stopwatch_.seconds(); }
 
  private:
   double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch stopwatch_;
 };
 
 bool are_finite(const std::vector<Point3>& list) {
@@ -249,7 +246,7 @@ bool ContactStep::has_change() const {
 std::vector<Point3> ContactStep::guess(const ModelState& start, double time_step) {
   set_time_step(time_step);
   if (!has_change()) return {};
-  return free_velocities_before(start, change_);
+  return differences(start.velocity, change_);
 }
 
 ContactPart ContactStep::advance(const ModelState& start,

@@ -70,8 +70,10 @@ class ContactStep {
   /// For the start of a simulation.
   Detector& detector() { return *detector_; }
 
-  /// Velocities from which BodyStepper::solve() should start, [block_count], or empty: those of the
-  /// state.
+  /// Velocities from which BodyStepper::solve() should start, [block_count] [m/s, rad/s]: those
+  /// without contact of the step before. Empty: those of the state.
+  /// @param start      state at the start of the part
+  /// @param time_step  of the part [s]
   std::vector<Point3> guess(const ModelState& start, double time_step);
 
   /// After BodyStepper::solve(): replaces the velocities by those with contact and moves the

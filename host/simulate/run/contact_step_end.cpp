@@ -1,7 +1,7 @@
 // What a step with contact leaves: impulses on bodies, contacts at its end, records, energies.
 #include <algorithm>
-#include <chrono>
 
+#include "host/base/stopwatch.hpp"
 #include "host/simulate/rotations.hpp"
 #include "host/simulate/run/contact_step.hpp"
 
@@ -152,7 +152,7 @@ void ContactStep::end(const ModelState& after, ContactPart& part) {
     merge_points();
     return;
   }
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   surface_places(surfaces_, model_, after, options_.threads, end_surfaces_);
   set_places(after, end_surfaces_, end_places_);
   static const ContactSolution nothing;
@@ -166,8 +166,7 @@ void ContactStep::end(const ModelState& after, ContactPart& part) {
   }
   merge_points();
   if (options_.sleeps) note_rest(before);
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-  part.contact_seconds += passed.count();
+  part.contact_seconds += stopwatch.seconds();
 }
 
 /// Impulses of another step are a guess for those of this one, in proportion to its time.

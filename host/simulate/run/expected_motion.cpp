@@ -13,13 +13,6 @@ constexpr double holding = 0.3;
 
 }  // namespace
 
-std::vector<Point3> free_velocities_before(const ModelState& start,
-                                           const std::vector<Point3>& change) {
-  std::vector<Point3> velocity = start.velocity;
-  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = minus(velocity[i], change[i]);
-  return velocity;
-}
-
 void expect_contacts(const Model& model,
                      const ModelState& start,
                      const std::vector<Point3>& change,

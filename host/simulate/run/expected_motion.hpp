@@ -7,16 +7,13 @@
 
 namespace tetwarp {
 
-/// The velocities without contact of the step before: where solves of the next ones start.
-/// @param start   state at the start of the step
-/// @param change  by how much contacts changed the velocities in the step before, [block_count]
-std::vector<Point3> free_velocities_before(const ModelState& start,
-                                           const std::vector<Point3>& change);
-
-/// Adds the changes to the velocities of bodies whose contacts hold: they would otherwise leave
-/// the velocity of the step before, and with the changes they about keep it. What such a body would
-/// hit if its contacts let go it does not hit.
-/// @param velocity  in: without contact, [block_count]; out: as expected
+/// Adds the changes of the step before to the velocities of bodies whose contacts are expected to
+/// act as in that step. These are the bodies that keep their velocity better with the changes than
+/// without: those at rest or sliding, not those that have just had an impact.
+/// @param start     state at the start of the step
+/// @param change    by how much contacts changed the velocities in the step before, [block_count]
+///                  [m/s, rad/s]
+/// @param velocity  in: without contact, [block_count] [m/s, rad/s]; out: expected
 void expect_contacts(const Model& model,
                      const ModelState& start,
                      const std::vector<Point3>& change,
