@@ -14,6 +14,7 @@ namespace {
 
 // Larger groups touch so many nodes of their bodies that all velocities follow every impulse.
 constexpr std::size_t most_of_part = 150;  // contacts
+constexpr std::int64_t piece_size = 160;   // numbers of a body, a multiple of 8
 
 }  // namespace
 
@@ -155,20 +156,26 @@ void ElasticGroups::begin(std::int32_t group, const double* y) {
   std::ranges::fill(all.push, 0.0);
 }
 
-/// Of one body of a group.
-std::int64_t ElasticGroups::finish(const Group& group, const Body& own, double* y) const {
+/// Of a piece of one body of a group.
+std::int64_t ElasticGroups::finish(const Group& group,
+                                   const Body& own,
+                                   const Piece& piece,
+                                   double* y) const {
   const ElasticBody& body = space_->bodies()[index_of(own.body)];
+  const std::int64_t size = piece.end - piece.begin;
+  double* const out = y + body.first + piece.begin;
   if (group.is_whole) {
-    std::copy_n(group.z.begin() + own.first, own.size, y + body.first);
+    std::copy_n(group.z.data() + own.first + piece.begin, size, out);
     return 0;
   }
   std::int64_t operations = 0;
   const double* push = group.push.data() + own.first;
   for (const std::int32_t slot : own.slots) {
     if (push[0] != 0 || push[1] != 0 || push[2] != 0) {
-      vector_stages().add_rows(body.compliance.data() + 3 * std::int64_t{slot} * body.size,
-                               body.size, push, body.size, y + body.first);
-      operations += 3 * body.size;
+      const float* const columns =
+          body.compliance.data() + 3 * std::int64_t{slot} * body.size + piece.begin;
+      vector_stages().add_rows(columns, body.size, push, size, out);
+      operations += 3 * size;
     }
     push += 3;
   }
@@ -178,16 +185,22 @@ std::int64_t ElasticGroups::finish(const Group& group, const Body& own, double* 
 std::int64_t ElasticGroups::finish(std::span<const std::int32_t> groups, double* y, int threads) {
   finished_.clear();
   for (const std::int32_t group : groups) {
-    for (const Body& own : groups_[index_of(group)].bodies) finished_.push_back(own.body);
+    for (const Body& own : groups_[index_of(group)].bodies) {
+      const std::int64_t size = space_->bodies()[index_of(own.body)].size;
+      for (std::int64_t begin = 0; begin < size; begin += piece_size) {
+        finished_.push_back({own.body, begin, std::min(begin + piece_size, size)});
+      }
+    }
   }
   std::ranges::sort(finished_);
   finished_.erase(std::unique(finished_.begin(), finished_.end()), finished_.end());
   std::atomic<std::int64_t> operations = 0;
   parallel_tasks(threads, static_cast<std::int64_t>(finished_.size()), [&](std::int64_t k) {
+    const Piece& piece = finished_[index_of(k)];
     for (const std::int32_t group : groups) {
       const Group& all = groups_[index_of(group)];
       for (const Body& own : all.bodies) {
-        if (own.body == finished_[index_of(k)]) operations += finish(all, own, y);
+        if (own.body == piece.body) operations += finish(all, own, piece, y);
       }
     }
   });

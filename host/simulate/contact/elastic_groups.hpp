@@ -64,7 +64,7 @@ class ElasticGroups {
   /// Copies z from y, and sets the pushes to zero.
   void begin(std::int32_t group, const double* y);
   /// Adds the velocities of the pushes to y, one group after the other.
-  /// @param threads  that share the bodies
+  /// @param threads  that share the numbers of the bodies
   /// @returns multiplications
   std::int64_t finish(std::span<const std::int32_t> groups, double* y, int threads);
 
@@ -100,9 +100,16 @@ class ElasticGroups {
     std::vector<double> z = {}, push = {};
   };
 
+  /// Numbers of a body that one task takes.
+  struct Piece {
+    std::int32_t body = 0;  ///< in ElasticSpace::bodies()
+    std::int64_t begin = 0, end = 0;
+    auto operator<=>(const Piece&) const = default;
+  };
+
   void list_slots(Group& group);
   std::array<std::int32_t, 2> bodies_of(std::int32_t contact) const;
-  std::int64_t finish(const Group& group, const Body& own, double* y) const;
+  std::int64_t finish(const Group& group, const Body& own, const Piece& piece, double* y) const;
   void copy_compliance(Body& own) const;
 
   const ElasticSpace* space_ = nullptr;
@@ -110,7 +117,7 @@ class ElasticGroups {
   std::vector<Group> groups_;
   std::vector<std::int32_t> changed_;  ///< by the last group()
   std::map<std::array<std::int32_t, 2>, std::int32_t> group_of_bodies_;
-  std::vector<std::int32_t> finished_;  ///< bodies of finish()
+  std::vector<Piece> finished_;  ///< of finish()
   std::vector<std::int32_t> group_of_, place_of_part_;
 };
 

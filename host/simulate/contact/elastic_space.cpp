@@ -78,13 +78,22 @@ void ElasticSpace::set(
   }
   if (bodies_.empty()) return;
   factors_->set_time_step(time_step);
-  parallel_tasks(threads, static_cast<std::int64_t>(bodies_.size()),
-                 [&](std::int64_t b) { set_body(bodies_[index_of(b)], state); });
+  parallel_tasks(threads, static_cast<std::int64_t>(bodies_.size()), [&](std::int64_t b) {
+    ElasticBody& own = bodies_[index_of(b)];
+    own.factor = &factors_->of_body(own.body);
+    own.rotation = own.factor->mean_rotation(state.position.front().data());
+    set_compliance(own, time_step);
+  });
 }
 
-void ElasticSpace::set_body(ElasticBody& own, const ModelState& state) {
-  RestFactor* const factor = own.factor = &factors_->of_body(own.body);
-  own.rotation = factor->mean_rotation(state.position.front().data());
+void ElasticSpace::set_compliance(ElasticBody& own, double time_step) const {
+  ElasticBody::Source& source = own.source;
+  if (source.body == own.body && source.time_step == time_step && source.damping == damping_ &&
+      source.touched == own.touched) {
+    return;
+  }
+  source = {own.body, time_step, damping_, own.touched};
+  RestFactor* const factor = own.factor;
   own.compliance.assign(index_of(own.size) * 3 * own.touched.size(), 0);
   float* out = own.compliance.data();
   for (const std::int32_t node : own.touched) {

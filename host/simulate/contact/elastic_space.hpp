@@ -21,6 +21,14 @@ struct ElasticBody {
   std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded to
                                       ///< a multiple of 8
   std::vector<float> compliance;      ///< [3 touched][size] of M^-1, a column at a time
+
+  /// Of what the compliance is: it stays as long as contacts touch the same nodes.
+  struct Source {
+    std::int32_t body = -1;
+    double time_step = 0, damping = 0;
+    std::vector<std::int32_t> touched;
+  };
+  Source source;
 };
 
 /// Which bodies are solved by their factors at rest, M^-1 = R A_0^-1 R^T, and their compliance at
@@ -58,7 +66,7 @@ class ElasticSpace {
   void gather(std::size_t body, const double* rows, double* y) const;
 
  private:
-  void set_body(ElasticBody& own, const ModelState& state);
+  void set_compliance(ElasticBody& own, double time_step) const;
 
   std::shared_ptr<RestFactors> factors_;
   std::vector<ElasticBody> bodies_;

@@ -31,15 +31,8 @@ void TouchingBlocks::set(const StepSystem& system,
   for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
     if (islands.of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
   }
-  part_start_.assign(1, 0);
-  parts_.clear();
-  part_row_.clear();
-  jacobian_.clear();
-  touched_.clear();
-  for (const std::int32_t contact : contacts) add_rows(system, rows, contact);
-  std::sort(touched_.begin(), touched_.end());
-  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-  set_responses(islands, elastic, inverse, relaxation);
+  set_parts(system, rows, contacts);
+  set_responses(rows, islands, elastic, inverse, relaxation);
   packed_start_.assign(constants_.size(), -1);
   packed_size_.resize(constants_.size());
   moves_rows_.resize(constants_.size());
@@ -77,37 +70,58 @@ void TouchingBlocks::set_laws(const ContactProblem& laws) {
   }
 }
 
-/// Appends the parts of a contact.
-void TouchingBlocks::add_rows(const StepSystem& system,
-                              const ContactRows& rows,
-                              std::int32_t contact) {
-  const std::int32_t end = rows.start[index_of(contact) + 1];
-  for (std::int32_t e = rows.start[index_of(contact)]; e < end; ++e) {
-    const std::int32_t row = row_of_block_[index_of(rows.block[index_of(e)])];
-    if (row < 0) continue;
-    const bool is_rigid = system.rows.pair[row] == 1;
-    const std::int32_t size = is_rigid ? 6 : 3;
-    const std::int64_t first = 3 * std::int64_t{row};
-    const std::int32_t body = elastic_->body_of_row(row);
-    const std::int64_t place = body < 0 ? first
-                                        : elastic_->bodies()[index_of(body)].first +
-                                              3 * std::int64_t{elastic_->slot_of_row(row)};
-    parts_.push_back({first, place, static_cast<std::int64_t>(jacobian_.size()), size});
-    part_row_.push_back(row);
-    touched_.push_back(row);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double* const linear = rows.value[index_of(e)].data() + 3 * k;
-      jacobian_.insert(jacobian_.end(), linear, linear + 3);
+/// The parts of all contacts, and the rows that they touch.
+void TouchingBlocks::set_parts(const StepSystem& system,
+                               const ContactRows& rows,
+                               const std::vector<std::int32_t>& contacts) {
+  part_start_.assign(1, 0);
+  parts_.clear();
+  part_row_.clear();
+  part_entry_.clear();
+  is_touched_.assign(index_of(system.rows.unknown_count), 0);
+  std::int64_t numbers = 0;
+  for (const std::int32_t contact : contacts) {
+    const std::int32_t end = rows.start[index_of(contact) + 1];
+    for (std::int32_t e = rows.start[index_of(contact)]; e < end; ++e) {
+      const std::int32_t row = row_of_block_[index_of(rows.block[index_of(e)])];
+      if (row < 0) continue;
+      const bool is_rigid = system.rows.pair[row] == 1;
+      const std::int32_t size = is_rigid ? 6 : 3;
+      const std::int64_t first = 3 * std::int64_t{row};
+      const std::int32_t body = elastic_->body_of_row(row);
+      const std::int64_t place = body < 0 ? first
+                                          : elastic_->bodies()[index_of(body)].first +
+                                                3 * std::int64_t{elastic_->slot_of_row(row)};
+      parts_.push_back({first, place, numbers, size});
+      part_row_.push_back(row);
+      part_entry_.push_back(e);
+      numbers += 3 * std::int64_t{size};
+      is_touched_[index_of(row)] = 1;
       if (!is_rigid) continue;
-      const double* const angular = rows.value[index_of(e) + 1].data() + 3 * k;
-      jacobian_.insert(jacobian_.end(), angular, angular + 3);
-    }
-    if (is_rigid) {
-      touched_.push_back(row + 1);
+      is_touched_[index_of(row) + 1] = 1;
       ++e;
     }
+    part_start_.push_back(static_cast<std::int32_t>(parts_.size()));
   }
-  part_start_.push_back(static_cast<std::int32_t>(parts_.size()));
+  touched_.clear();
+  for (std::size_t row = 0; row < is_touched_.size(); ++row) {
+    if (is_touched_[row] != 0) touched_.push_back(static_cast<std::int32_t>(row));
+  }
+  for (auto* values : {&jacobian_, &response_, &turned_}) values->resize(index_of(numbers));
+}
+
+/// Copies J of a contact: of rigid bodies, which have two entries, with rows of six.
+void TouchingBlocks::set_jacobian(const ContactRows& rows, std::size_t contact) {
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    const Part& part = parts_[index_of(p)];
+    const std::size_t entry = index_of(part_entry_[index_of(p)]);
+    for (std::int32_t i = 0; i < part.size; ++i) {
+      const std::array<double, 9>& value = rows.value[entry + index_of(i / 3)];
+      for (std::int32_t a = 0; a < 3; ++a) {
+        jacobian_[index_of(part.value + a * part.size + i)] = value[index_of(3 * a + i % 3)];
+      }
+    }
+  }
 }
 
 /// Turns J of a row of an elastic body, and adds its products with the rows of the same body before
@@ -149,16 +163,16 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
   }
 }
 
-/// Velocities for unit impulses, and the block of each contact.
-void TouchingBlocks::set_responses(const SolvedIslands& islands,
+/// J, velocities for unit impulses, and the block of each contact.
+void TouchingBlocks::set_responses(const ContactRows& rows,
+                                   const SolvedIslands& islands,
                                    const ElasticSpace& elastic,
                                    const DiagonalInverse<double>& inverse,
                                    double relaxation) {
-  response_.assign(jacobian_.size(), 0);
-  turned_.resize(jacobian_.size());
   diagonal_.resize(3 * constants_.size());
   parallel_for(threads(), count(), [&, this](std::int64_t contact) {
     const std::size_t c = index_of(contact);
+    set_jacobian(rows, c);
     double* const block = constants_[c].block;
     std::fill(block, block + 9, 0.0);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {

@@ -105,8 +105,12 @@ class TouchingBlocks {
   /// Of loops over contacts; few are faster on one.
   int threads() const { return count() < 256 ? 1 : threads_; }
   void set_laws(const ContactProblem& laws);
-  void add_rows(const StepSystem& system, const ContactRows& rows, std::int32_t contact);
-  void set_responses(const SolvedIslands& islands,
+  void set_parts(const StepSystem& system,
+                 const ContactRows& rows,
+                 const std::vector<std::int32_t>& contacts);
+  void set_jacobian(const ContactRows& rows, std::size_t contact);
+  void set_responses(const ContactRows& rows,
+                     const SolvedIslands& islands,
                      const ElasticSpace& elastic,
                      const DiagonalInverse<double>& inverse,
                      double relaxation);
@@ -144,9 +148,10 @@ class TouchingBlocks {
   std::vector<double> offset_, preload_, diagonal_;
   std::vector<std::int32_t> part_start_;  ///< [contacts + 1]
   std::vector<Part> parts_;
-  std::vector<std::int32_t> part_row_;  ///< [parts]
-  std::vector<double> jacobian_, response_;
+  std::vector<std::int32_t> part_row_, part_entry_;  ///< [parts] row; entry of ContactRows
+  std::vector<double> jacobian_, response_;  ///< response_: of rows of other than elastic bodies
   std::vector<std::int32_t> touched_;       ///< rows, ascending
+  std::vector<std::uint8_t> is_touched_;    ///< [unknown rows]
   std::vector<std::int64_t> packed_start_;  ///< [contacts] in packed_, -1: not there yet
   std::vector<std::int32_t> packed_size_;   ///< [contacts]
   std::vector<std::uint8_t> moves_rows_;    ///< [contacts] not elastic bodies alone, of packed ones

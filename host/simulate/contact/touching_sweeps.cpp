@@ -30,7 +30,7 @@ void TouchingBlocks::pack(std::size_t contact) {
     for (std::int32_t a = 0; a < 3; ++a) {
       const std::int64_t from = part.value + a * part.size;
       std::copy_n((is_elastic ? turned_ : jacobian_).data() + from, part.size, out + a * size);
-      std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
+      if (!is_elastic) std::copy_n(response_.data() + from, part.size, out + (3 + a) * size);
     }
     out += part.size;
   }
