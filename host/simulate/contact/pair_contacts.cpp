@@ -12,7 +12,7 @@
 namespace tetwarp {
 namespace {
 constexpr std::size_t part_size = 256;  // pairs that one task takes
-constexpr double same_gap = 0.1;        // thicknesses
+constexpr double same_gap = 0.1, level_gap = 0.25;  // thicknesses
 constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
 
 bool is_of_edges(const PairTouch& touch) {
@@ -67,12 +67,15 @@ bool PairContacts::is_nearest_of_edges(const PairTouch& touch,
 }
 
 void PairContacts::choose(std::size_t first, std::size_t end) {
+  const double level = level_gap * scene_.surfaces.thickness;
   kept_.assign(1, order_[first]);
   for (std::size_t i = first + 1; i < end; ++i) {
     const PairTouch& touch = touches_[order_[i]];
-    const double limit = touch.is_inside ? cosine_5 : cosine_45;
     const bool is_new = std::all_of(kept_.begin(), kept_.end(), [&](std::size_t k) {
-      return dot(touch.normal, touches_[k].normal) < limit && !is_edge_of(touch, touches_[k]);
+      const PairTouch& nearer = touches_[k];
+      const bool is_alone = touch.is_inside || touch.gap <= nearer.gap + level;
+      return dot(touch.normal, nearer.normal) < (is_alone ? cosine_5 : cosine_45) &&
+             !is_edge_of(touch, nearer);
     });
     if (is_new) kept_.push_back(order_[i]);
   }
