@@ -39,7 +39,10 @@ set(tetwarp_model_sources
   host/simulate/model/triangle_cloth.cpp)
 set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cuda
   host/simulate/cell_fields.cpp
+  host/simulate/cpu/rest_factor.cpp
+  host/simulate/cpu/rest_factors.cpp
   host/simulate/cpu/rest_gradients.cpp
+  host/simulate/cpu/rest_matrix.cpp
   host/simulate/cpu/stepper_cpu.cpp
   host/simulate/cpu/vector_stages.cpp
   host/simulate/cpu/vector_stages_base.cpp
@@ -47,8 +50,6 @@ set(tetwarp_step_sources        # host/simulate: the steps, on the cpu and on cu
   host/simulate/run/fingerprint.cpp
   host/simulate/reference_rows.cpp
   host/simulate/reference_stepper.cpp
-  host/simulate/rest_factor.cpp
-  host/simulate/rest_factors.cpp
   host/simulate/scene_drive.cpp
   host/simulate/scene_loads.cpp
   host/simulate/scene_record.cpp

@@ -83,6 +83,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_pair_contacts.cpp
     tests/simulate/test_rigid_patches.cpp
     tests/simulate/test_tracker_places.cpp
+    tests/simulate/test_vertex_contacts.cpp
     )
   set(tetwarp_contact_system_tests  # contact problems of steps and their solutions
     tests/simulate/body_measures.cpp

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -143,25 +146,89 @@ TEST(VectorStages, BlocksHaveTheBitsOfSingleSums) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   constexpr std::size_t parts = 7, places = 40;
-  std::vector<double> rows(9 * parts), columns(4 * places);
-  for (double& own : rows) own = normal(random);
-  for (double& own : columns) own = normal(random);
+  std::vector<float> rows(9 * parts), columns(8 * places), start(24);
+  for (auto* values : {&rows, &columns, &start}) {
+    for (float& own : *values) own = static_cast<float>(normal(random));
+  }
   std::vector<std::int32_t> place;
   for (std::size_t p = 0; p < parts; ++p) place.push_back(static_cast<std::int32_t>(random() % 38));
-  const std::vector<double> start{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0};
-  std::vector<double> expected = start;
+  std::vector<float> expected = start;
   for (std::size_t p = 0; p < parts; ++p) {
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t n = 0; n < 12; ++n) {
-        expected[n] += rows[9 * p + 3 * (n / 4) + i] *
-                       columns[4 * (static_cast<std::size_t>(place[p]) + i) + n % 4];
+      for (std::size_t n = 0; n < 24; ++n) {
+        expected[n] += rows[9 * p + 3 * (n / 8) + i] *
+                       columns[8 * (static_cast<std::size_t>(place[p]) + i) + n % 8];
       }
     }
   }
   for (const VectorStages* stages : usable_stages()) {
-    std::vector<double> block = start;
+    std::vector<float> block = start;
     stages->add_blocks(rows.data(), place.data(), parts, columns.data(), block.data());
     EXPECT_EQ(block, expected) << stages->name;
+  }
+}
+
+TEST(VectorStages, SumsOfRowsHaveTheBitsOfSingleNumbers) {
+  constexpr std::int64_t size = 24, stride = 40;
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  std::vector<float> rows(3 * stride), start(size);
+  for (auto* values : {&rows, &start}) {
+    for (float& own : *values) own = static_cast<float>(normal(random));
+  }
+  const float change[3] = {0.3F, -2, 7};
+  std::vector<float> expected = start;
+  for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) expected[k] += rows[a * stride + k] * change[a];
+  }
+  for (const VectorStages* stages : usable_stages()) {
+    std::vector<float> sum = start;
+    stages->add_rows_float(rows.data(), stride, change, size, sum.data());
+    EXPECT_EQ(sum, expected) << stages->name;
+  }
+}
+
+/// L L^T w = b of random blocks, against Eigen, on all instruction sets in the same bits.
+TEST(VectorStages, SubstitutionSolves) {
+  constexpr std::int32_t count = 30;
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  std::vector<std::int32_t> start{0}, row;
+  std::vector<float> block, diagonal;
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  for (std::int32_t j = 0; j < count; ++j) {
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k <= i; ++k) {
+        diagonal.push_back(static_cast<float>(i == k ? 1 + std::abs(normal(random)) : 0.3));
+        inverse(i, k) = diagonal.back();
+      }
+    }
+    lower.block<3, 3>(3 * j, 3 * j) = inverse.inverse();
+    for (std::int32_t r = j + 1; r < count; r += 1 + j % 4) {
+      row.push_back(r);
+      for (int e = 0; e < 9; ++e) {
+        block.push_back(static_cast<float>(0.1 * normal(random)));
+        lower(3 * r + e % 3, 3 * j + e / 3) = block.back();
+      }
+    }
+    start.push_back(static_cast<std::int32_t>(row.size()));
+  }
+  block.push_back(0);
+  const Eigen::VectorXd load = Eigen::VectorXd::Random(3 * count);
+  const Eigen::VectorXd exact = (lower * lower.transpose()).llt().solve(load);
+  std::vector<double> first;
+  for (const VectorStages* stages : usable_stages()) {
+    std::vector<double> w(4 * count, 0.0), solved;
+    for (std::size_t n = 0; n < 3 * count; ++n) w[n / 3 * 4 + n % 3] = load[static_cast<int>(n)];
+    stages->substitute(
+        {const_view(start), const_view(row), const_view(block), const_view(diagonal)}, w.data());
+    for (std::size_t n = 0; n < 3 * count; ++n) {
+      solved.push_back(w[n / 3 * 4 + n % 3]);
+      EXPECT_NEAR(solved.back(), exact[static_cast<int>(n)], 1e-9 * exact.norm()) << stages->name;
+    }
+    if (first.empty()) first = solved;
+    EXPECT_EQ(solved, first) << stages->name;
   }
 }
 

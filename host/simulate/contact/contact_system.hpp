@@ -10,7 +10,7 @@
 #include <tetwarp/contact_tracker.hpp>
 
 #include "host/simulate/contact/scene_surfaces.hpp"
-#include "host/simulate/rest_factors.hpp"
+#include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {

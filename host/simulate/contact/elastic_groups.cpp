@@ -128,8 +128,8 @@ void ElasticGroups::copy_compliance(Body& own) const {
 
 void ElasticGroups::add_velocities(std::int32_t group,
                                    std::int32_t place,
-                                   const double* push,
-                                   double* z) {
+                                   const float* push,
+                                   float* z) {
   Group& all = groups_[index_of(group)];
   for (Body& own : all.bodies) {
     if (place < own.first || place >= own.first + own.size) continue;
@@ -137,8 +137,8 @@ void ElasticGroups::add_velocities(std::int32_t group,
     const float* const compliance =
         (all.is_whole ? space_->bodies()[index_of(own.body)].compliance : own.compliance).data();
     const std::int64_t column = std::int64_t{place} - own.first;
-    vector_stages().add_rows(compliance + column * own.size, own.size, push, own.size,
-                             z + own.first);
+    vector_stages().add_rows_float(compliance + column * own.size, own.size, push, own.size,
+                                   z + own.first);
   }
 }
 

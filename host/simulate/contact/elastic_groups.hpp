@@ -59,7 +59,7 @@ class ElasticGroups {
 
   /// Adds the velocities of a push on one node. @param place  place_of_part()
   /// @param push  impulse [N s], three. @param z  in and out [m/s], [size]
-  void add_velocities(std::int32_t group, std::int32_t place, const double* push, double* z);
+  void add_velocities(std::int32_t group, std::int32_t place, const float* push, float* z);
 
   /// Copies z from y, and sets the pushes to zero.
   void begin(std::int32_t group, const double* y);

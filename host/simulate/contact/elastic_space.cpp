@@ -2,6 +2,7 @@
 #include "host/base/index_of.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "host/base/parallel.hpp"
 
@@ -31,7 +32,6 @@ void ElasticSpace::choose(const SystemRows& rows,
       if (count == bodies_.size()) bodies_.emplace_back();
       bodies_[count].body = factors_->body_of_island(island);
       bodies_[count].row_begin = row;
-      bodies_[count].touched.clear();
       ++count;
       last = island;
     }
@@ -47,10 +47,13 @@ void ElasticSpace::choose(const SystemRows& rows,
     }
   }
   for (ElasticBody& own : bodies_) {
+    needed_.clear();
     for (std::int32_t row = own.row_begin; row < own.row_end; ++row) {
-      if (slot_of_row_[index_of(row)] < 0) continue;
-      slot_of_row_[index_of(row)] = static_cast<std::int32_t>(own.touched.size());
-      own.touched.push_back(row - own.row_begin);
+      if (slot_of_row_[index_of(row)] == 0) needed_.push_back(row - own.row_begin);
+    }
+    set_touched(own);
+    for (std::size_t k = 0; k < own.touched.size(); ++k) {
+      slot_of_row_[index_of(own.row_begin + own.touched[k])] = static_cast<std::int32_t>(k);
     }
   }
   const auto is_left = [&](const ElasticBody& own) {
@@ -65,6 +68,18 @@ void ElasticSpace::choose(const SystemRows& rows,
       body_of_row_[index_of(row)] = static_cast<std::int32_t>(b);
     }
   }
+}
+
+/// The nodes that are needed, and those of the compliance that is there as long as these are few
+/// more: contacts that come and go then do not change it. Nodes that are not needed change no
+/// result.
+void ElasticSpace::set_touched(ElasticBody& own) const {
+  own.touched.clear();
+  if (own.source.body == own.body) {
+    std::ranges::set_union(own.source.touched, needed_, std::back_inserter(own.touched));
+  }
+  const std::size_t most = std::min(most_touched, needed_.size() + needed_.size() / 4);
+  if (own.source.body != own.body || own.touched.size() > most) own.touched = needed_;
 }
 
 void ElasticSpace::set(

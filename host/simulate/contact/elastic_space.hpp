@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/simulate/contact/contact_islands.hpp"
-#include "host/simulate/rest_factors.hpp"
+#include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -17,12 +17,12 @@ struct ElasticBody {
   std::int32_t body = -1, row_begin = 0, row_end = 0;
   RestFactor* factor = nullptr;
   std::array<double, 9> rotation{};   ///< R, of the mean of the body; rows first
-  std::vector<std::int32_t> touched;  ///< nodes, from row_begin
+  std::vector<std::int32_t> touched;  ///< nodes, from row_begin, ascending; of the last steps
   std::int64_t first = 0, size = 0;   ///< its numbers of y: three of each touched node, padded to
                                       ///< a multiple of 8
   std::vector<float> compliance;      ///< [3 touched][size] of M^-1, a column at a time
 
-  /// Of what the compliance is: it stays as long as contacts touch the same nodes.
+  /// Of what the compliance is: it stays as long as contacts touch no other nodes.
   struct Source {
     std::int32_t body = -1;
     double time_step = 0, damping = 0;
@@ -54,7 +54,7 @@ class ElasticSpace {
   std::int32_t body_of_row(std::int64_t row) const {
     return body_of_row_[static_cast<std::size_t>(row)];
   }
-  /// Place of a touched row in ElasticBody::touched.
+  /// Place of a row in ElasticBody::touched, or -1.
   std::int32_t slot_of_row(std::int64_t row) const {
     return slot_of_row_[static_cast<std::size_t>(row)];
   }
@@ -66,11 +66,13 @@ class ElasticSpace {
   void gather(std::size_t body, const double* rows, double* y) const;
 
  private:
+  void set_touched(ElasticBody& own) const;
   void set_compliance(ElasticBody& own, double time_step) const;
 
   std::shared_ptr<RestFactors> factors_;
   std::vector<ElasticBody> bodies_;
   std::vector<std::int32_t> body_of_row_, slot_of_row_, row_of_block_;
+  std::vector<std::int32_t> needed_;  ///< nodes of a body that contacts touch
   std::int64_t size_ = 0;
   double damping_ = 1;
 };

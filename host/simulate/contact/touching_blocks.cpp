@@ -108,6 +108,7 @@ void TouchingBlocks::set_parts(const StepSystem& system,
     if (is_touched_[row] != 0) touched_.push_back(static_cast<std::int32_t>(row));
   }
   for (auto* values : {&jacobian_, &response_, &turned_}) values->resize(index_of(numbers));
+  rounded_.resize(index_of(numbers));
 }
 
 /// Copies J of a contact: of rigid bodies, which have two entries, with rows of six.
@@ -137,6 +138,7 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
   for (std::size_t e = 0; e < 9; ++e) {
     const double* const from = j + e / 3 * 3;
     turned[e] = from[0] * r[e % 3] + from[1] * r[3 + e % 3] + from[2] * r[6 + e % 3];
+    rounded_[index_of(parts_[index_of(part)].value) + e] = static_cast<float>(turned[e]);
   }
   double* const block = constants_[contact].block;
   for (std::int32_t q = part_start_[contact]; q <= part; ++q) {

@@ -118,7 +118,9 @@ class TouchingBlocks {
   void pack(std::size_t contact);
   void pack_elastic(std::size_t contact);
   void add_push_of_elastic(std::size_t contact, const double* change);
-  void set_unit_velocities(std::size_t contact, std::vector<double>& z);
+  void set_unit_velocities(std::size_t contact, float* z);
+  struct GroupMatrix;
+  static void set_entries(GroupMatrix& matrix, std::size_t k, std::size_t m, const float* block);
   void set_matrix(std::int32_t group);
   bool has_matrix(std::int32_t group) const;
   void update(ContactSwitches switches, std::size_t contact, double* y, double* impulse);
@@ -150,28 +152,28 @@ class TouchingBlocks {
   std::vector<Part> parts_;
   std::vector<std::int32_t> part_row_, part_entry_;  ///< [parts] row; entry of ContactRows
   std::vector<double> jacobian_, response_;  ///< response_: of rows of other than elastic bodies
-  std::vector<std::int32_t> touched_;       ///< rows, ascending
-  std::vector<std::uint8_t> is_touched_;    ///< [unknown rows]
-  std::vector<std::int64_t> packed_start_;  ///< [contacts] in packed_, -1: not there yet
-  std::vector<std::int32_t> packed_size_;   ///< [contacts]
-  std::vector<std::uint8_t> moves_rows_;    ///< [contacts] not elastic bodies alone, of packed ones
-  std::vector<double> packed_;              ///< of contacts three rows of J, three of responses
-  std::vector<double> gathered_;            ///< velocities of one contact
-  std::vector<double> turned_;              ///< J of rows of elastic bodies, in their frames
+  std::vector<std::int32_t> touched_;        ///< rows, ascending
+  std::vector<std::uint8_t> is_touched_;     ///< [unknown rows]
+  std::vector<std::int64_t> packed_start_;   ///< [contacts] in packed_, -1: not there yet
+  std::vector<std::int32_t> packed_size_;    ///< [contacts]
+  std::vector<std::uint8_t> moves_rows_;  ///< [contacts] not elastic bodies alone, of packed ones
+  std::vector<double> packed_;            ///< of contacts three rows of J, three of responses
+  std::vector<double> gathered_;          ///< velocities of one contact
+  std::vector<double> turned_;            ///< J of rows of elastic bodies, in their frames
+  std::vector<float> rounded_;            ///< the same
   ElasticGroups groups_;
   std::vector<std::int64_t> elastic_start_;  ///< [contacts] in elastic_response_, -1: not there yet
   std::vector<float> elastic_response_;  ///< of contacts 3 x size of their group, rounded: z for
                                          ///< unit impulses
   std::vector<std::array<std::int64_t, 2>> moved_;
-  std::vector<double> summed_;  ///< before they are rounded
   /// J M^-1 J^T of the contacts of a group, rounded; three columns of each contact.
   struct GroupMatrix {
     std::int64_t stride = 0;
     std::vector<float> values;
     std::vector<double> velocity;  ///< u of its contacts, [stride]
     std::vector<double> before;    ///< impulses
-    std::vector<double> moved;     ///< z for three unit impulses
-    std::vector<double> columns;   ///< the same, [size of z][4]
+    std::vector<float> moved;      ///< z for unit impulses of two contacts, [2][3][size of z]
+    std::vector<float> columns;    ///< the same, [size of z][2][4]
   };
   std::vector<GroupMatrix> matrices_;       ///< [groups] of those that have one
   std::vector<std::int32_t> matrix_place_;  ///< [contacts] in the matrix of its group

@@ -33,6 +33,21 @@ bool TouchingBlocks::has_matrix(std::int32_t group) const {
   return groups_.size(group) > 0 && !groups_.is_whole(group) && groups_.is_pure(group);
 }
 
+/// The block of the m-th and the k-th contact of a group, which is symmetric. @param block  [3][8]
+void TouchingBlocks::set_entries(GroupMatrix& matrix,
+                                 std::size_t k,
+                                 std::size_t m,
+                                 const float* block) {
+  const std::size_t stride = index_of(matrix.stride);
+  float* const column = matrix.values.data() + 3 * k * stride + 3 * m;
+  float* const mirrored = matrix.values.data() + 3 * m * stride + 3 * k;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t b = 0; b < 3; ++b) column[b * stride + a] = block[8 * a + b];
+    if (m == k) continue;
+    for (std::size_t b = 0; b < 3; ++b) mirrored[a * stride + b] = block[8 * a + b];
+  }
+}
+
 void TouchingBlocks::set_matrix(std::int32_t group) {
   const std::vector<std::int32_t>& contacts = groups_.contacts(group);
   GroupMatrix& own = matrices_[index_of(group)];
@@ -41,29 +56,27 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
   own.values.assign(3 * contacts.size() * index_of(own.stride), 0);
   own.velocity.assign(index_of(own.stride), 0);
   own.before.resize(3 * contacts.size());
-  own.columns.assign(4 * size, 0);
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const std::size_t c = index_of(contacts[k]);
-    matrix_place_[c] = 3 * static_cast<std::int32_t>(k);
-    set_unit_velocities(c, own.moved);
-    for (std::size_t i = 0; i < size; ++i) {
-      for (std::size_t b = 0; b < 3; ++b) own.columns[4 * i + b] = own.moved[b * size + i];
+  own.moved.assign(6 * size, 0);
+  own.columns.assign(8 * size, 0);
+  for (std::size_t k = 0; k < contacts.size(); k += 2) {
+    const std::size_t columns = std::min<std::size_t>(2, contacts.size() - k);
+    for (std::size_t s = 0; s < columns; ++s) {
+      matrix_place_[index_of(contacts[k + s])] = 3 * static_cast<std::int32_t>(k + s);
+      set_unit_velocities(index_of(contacts[k + s]), own.moved.data() + 3 * s * size);
     }
-    float* const columns = own.values.data() + 3 * k * index_of(own.stride);
+    for (std::size_t n = 0; n < 3 * columns; ++n) {
+      float* const column = own.columns.data() + n / 3 * 4 + n % 3;
+      for (std::size_t i = 0; i < size; ++i) column[8 * i] = own.moved[n * size + i];
+    }
     for (std::size_t m = k; m < contacts.size(); ++m) {
       const std::size_t other = index_of(contacts[m]);
       const std::size_t first = index_of(part_start_[other]);
-      double block[3][4] = {};
+      float block[3][8] = {};
       vector_stages().add_blocks(
-          turned_.data() + parts_[first].value, groups_.places_of_parts(first),
+          rounded_.data() + parts_[first].value, groups_.places_of_parts(first),
           part_start_[other + 1] - part_start_[other], own.columns.data(), block[0]);
-      float* const mirrored = own.values.data() + 3 * m * index_of(own.stride);
-      for (std::size_t a = 0; a < 3; ++a) {
-        for (std::size_t b = 0; b < 3; ++b) {
-          const auto value = static_cast<float>(block[b][a]);
-          columns[a * index_of(own.stride) + 3 * m + b] = value;
-          if (m != k) mirrored[b * index_of(own.stride) + 3 * k + a] = value;
-        }
+      for (std::size_t s = 0; s < std::min(columns, m - k + 1); ++s) {
+        set_entries(own, k + s, m, block[0] + 4 * s);
       }
     }
   }

@@ -37,24 +37,25 @@ void TouchingBlocks::pack(std::size_t contact) {
 }
 
 /// Velocities of the nodes of the contact's group for unit impulses. @param z  out, [3][size]
-void TouchingBlocks::set_unit_velocities(std::size_t contact, std::vector<double>& z) {
+void TouchingBlocks::set_unit_velocities(std::size_t contact, float* z) {
   const std::int32_t group = groups_.of_contact(contact);
   const std::size_t size = index_of(groups_.size(group));
-  z.assign(3 * size, 0.0);
+  std::fill_n(z, 3 * size, 0.0F);
   for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
     const std::int32_t place = groups_.place_of_part(index_of(p));
     if (place < 0) continue;
-    const double* const j = turned_.data() + parts_[index_of(p)].value;
+    const float* const j = rounded_.data() + parts_[index_of(p)].value;
     for (std::size_t a = 0; a < 3; ++a) {
-      groups_.add_velocities(group, place, j + 3 * a, z.data() + a * size);
+      groups_.add_velocities(group, place, j + 3 * a, z + a * size);
     }
   }
 }
 
 void TouchingBlocks::pack_elastic(std::size_t contact) {
   elastic_start_[contact] = static_cast<std::int64_t>(elastic_response_.size());
-  set_unit_velocities(contact, summed_);
-  elastic_response_.insert(elastic_response_.end(), summed_.begin(), summed_.end());
+  const std::int64_t size = groups_.size(groups_.of_contact(contact));
+  elastic_response_.resize(elastic_response_.size() + 3 * index_of(size));
+  set_unit_velocities(contact, elastic_response_.data() + elastic_start_[contact]);
 }
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "host/simulate/rest_factors.hpp"
+#include "host/simulate/cpu/rest_factors.hpp"
 #include "kernels/body/island_cg.hpp"
 
 namespace tetwarp {

@@ -124,22 +124,84 @@ void add_rows_of(
 }
 
 template <int width>
-void add_blocks_of(const double* rows,
+void add_rows_float_of(
+    const float* rows, std::int64_t stride, const float* change, std::int64_t size, float* sum) {
+  typedef float Eight __attribute__((vector_size(32)));
+  for (std::int64_t k = 0; k < size; k += 8) {
+    Eight own;
+    __builtin_memcpy(&own, sum + k, sizeof(own));
+    for (int a = 0; a < 3; ++a) {
+      Eight row;
+      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
+      own += row * change[a];
+    }
+    __builtin_memcpy(sum + k, &own, sizeof(own));
+  }
+}
+
+template <int width>
+void add_blocks_of(const float* rows,
                    const std::int32_t* place,
                    std::int64_t parts,
-                   const double* columns,
-                   double* block) {
-  typedef double Four __attribute__((vector_size(32)));
-  Four sum[3];
+                   const float* columns,
+                   float* block) {
+  typedef float Eight __attribute__((vector_size(32)));
+  Eight sum[3];
   __builtin_memcpy(sum, block, sizeof(sum));
   for (std::int64_t p = 0; p < parts; ++p, rows += 9) {
     for (int i = 0; i < 3; ++i) {
-      Four column;
-      __builtin_memcpy(&column, columns + 4 * (std::int64_t{place[p]} + i), sizeof(column));
+      Eight column;
+      __builtin_memcpy(&column, columns + 8 * (std::int64_t{place[p]} + i), sizeof(column));
       for (int a = 0; a < 3; ++a) sum[a] += column * rows[3 * a + i];
     }
   }
   __builtin_memcpy(block, sum, sizeof(sum));
+}
+
+template <int width>
+void substitute_of(const BlockFactor& l, double* w) {
+  typedef double Four __attribute__((vector_size(32)));
+  typedef float FourFloats __attribute__((vector_size(16)));
+  const auto load = [&](std::int64_t entry, Four* columns) {
+    for (int i = 0; i < 3; ++i) {
+      FourFloats column;
+      __builtin_memcpy(&column, l.block.data + 9 * entry + 3 * i, sizeof(column));
+      columns[i] = __builtin_convertvector(column, Four);
+    }
+  };
+  const std::int64_t count = l.start.size - 1;
+  for (std::int64_t j = 0; j < count; ++j) {
+    double* const own = w + 4 * j;
+    if (own[0] == 0 && own[1] == 0 && own[2] == 0) continue;
+    const float* const d = l.diagonal.data + 6 * j;
+    const double a = double{d[0]} * own[0], b = double{d[1]} * own[0] + double{d[2]} * own[1];
+    const double c = double{d[3]} * own[0] + double{d[4]} * own[1] + double{d[5]} * own[2];
+    own[0] = a, own[1] = b, own[2] = c;
+    for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
+      double* const out = w + 4 * std::int64_t{l.row[k]};
+      Four sum, columns[3];
+      __builtin_memcpy(&sum, out, sizeof(sum));
+      load(k, columns);
+      sum -= columns[0] * a + columns[1] * b + columns[2] * c;
+      __builtin_memcpy(out, &sum, sizeof(sum));
+    }
+  }
+  for (std::int64_t j = count; j-- > 0;) {
+    Four sum[3] = {};
+    for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
+      Four in, columns[3];
+      load(k, columns);
+      __builtin_memcpy(&in, w + 4 * std::int64_t{l.row[k]}, sizeof(in));
+      for (int i = 0; i < 3; ++i) sum[i] += columns[i] * in;
+    }
+    double* const own = w + 4 * j;
+    double rest[3];
+    for (int i = 0; i < 3; ++i) rest[i] = own[i] - (sum[i][0] + sum[i][1] + sum[i][2]);
+    const float* const d = l.diagonal.data + 6 * j;
+    own[0] = double{d[0]} * rest[0] + double{d[1]} * rest[1] + double{d[3]} * rest[2];
+    own[1] = double{d[2]} * rest[1] + double{d[4]} * rest[2];
+    own[2] = double{d[5]} * rest[2];
+  }
 }
 
 template <int width>
@@ -150,7 +212,9 @@ constexpr VectorStages vector_stages_of(const char* name) {
           product_of<width, double>,
           product_of<width, float>,
           add_rows_of<width>,
-          add_blocks_of<width>};
+          add_rows_float_of<width>,
+          add_blocks_of<width>,
+          substitute_of<width>};
 }
 
 }  // namespace tetwarp

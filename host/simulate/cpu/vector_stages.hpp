@@ -9,6 +9,14 @@
 
 namespace tetwarp {
 
+/// L of L L^T in blocks of 3 x 3, a column at a time.
+struct BlockFactor {
+  View<const std::int32_t> start;  ///< [columns + 1]
+  View<const std::int32_t> row;    ///< [entries] below the diagonal
+  View<const float> block;         ///< [entries][9] columns first, and one number beyond the last
+  View<const float> diagonal;      ///< [columns][6] inverses of the lower triangles, rows first
+};
+
 /// Each function does the indices [begin, end) of its stage.
 struct VectorStages {
   const char* name;  ///< of the instruction set
@@ -22,15 +30,20 @@ struct VectorStages {
   /// @param size  a multiple of 8
   void (*add_rows)(
       const float* rows, std::int64_t stride, const double* change, std::int64_t size, double* sum);
+  /// The same in float32.
+  void (*add_rows_float)(
+      const float* rows, std::int64_t stride, const float* change, std::int64_t size, float* sum);
   /// block[a][b] += sum over parts p and i of rows[p][a][i] columns[place[p] + i][b].
   /// @param rows     [parts][3][3]
-  /// @param columns  [places][4], the last of each is not used
-  /// @param block    [3][4]
-  void (*add_blocks)(const double* rows,
+  /// @param columns  [places][8]
+  /// @param block    [3][8]
+  void (*add_blocks)(const float* rows,
                      const std::int32_t* place,
                      std::int64_t parts,
-                     const double* columns,
-                     double* block);
+                     const float* columns,
+                     float* block);
+  /// w = L^-T L^-1 w. @param w  [columns][4], the last of each is not used
+  void (*substitute)(const BlockFactor& l, double* w);
 };
 
 /// The widest that this processor has.

@@ -1,4 +1,4 @@
-#include "host/simulate/rest_factors.hpp"
+#include "host/simulate/cpu/rest_factors.hpp"
 
 #include <algorithm>
 

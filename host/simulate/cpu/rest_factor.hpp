@@ -25,28 +25,28 @@ class RestFactor {
   void solve_turned(const std::array<double, 9>& rotation, const double* push, double* out);
   /// The columns of A_0^-1 of a node, [3][nodes][3], rounded; kept once found.
   const float* columns(std::int32_t node);
-  /// The rotation of the mean of the deformation gradients, rows first.
+  /// The rotation of the mean of the deformation gradients, rows first: that of
+  /// sum_n x_n (sum_t V_t g_tn)^T.
   /// @param position  of all nodes of the model, [nodes][3]
   std::array<double, 9> mean_rotation(const double* position) const;
 
  private:
-  struct Entry {
-    std::int32_t row;  ///< below the diagonal
-    float block[9];    ///< rows first
+  /// What the place of a node adds to the integral of the deformation gradient.
+  struct NodeGradient {
+    std::int32_t node = 0;  ///< of the model
+    Point3 sum{0, 0, 0};    ///< of volumes times gradients of its shape functions [m^2]
   };
 
-  template <class Real>
-  void substitute(Real* w) const;
+  void substitute();  ///< work_ = A_0^-1 work_, in the order of L
+  void set_gradients(const Model& model, std::int32_t body, const std::vector<std::size_t>& tets);
 
-  const Model& model_;
-  std::vector<std::int32_t> tets_;
-  std::vector<std::int32_t> order_;  ///< [nodes] place in L
-  std::vector<std::int32_t> start_;  ///< [nodes + 1] entries of the columns of L
-  std::vector<Entry> entries_;
-  std::vector<std::array<float, 6>> diagonal_;  ///< inverses of the lower triangles L_jj
-  std::vector<std::int32_t> column_of_;         ///< [nodes] place in columns_, or -1
-  std::vector<float> columns_;                  ///< [found][3][nodes][3]
-  std::vector<double> work_;
+  std::vector<NodeGradient> gradients_;
+  std::vector<std::int32_t> order_;        ///< [nodes] place in L
+  std::vector<std::int32_t> start_, row_;  ///< of BlockFactor
+  std::vector<float> block_, diagonal_;    ///< of BlockFactor
+  std::vector<std::int32_t> column_of_;    ///< [nodes] place in columns_, or -1
+  std::vector<float> columns_;             ///< [found][3][nodes][3]
+  std::vector<double> work_;               ///< [nodes][4]
 };
 
 }  // namespace tetwarp

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "host/simulate/rest_factor.hpp"
+#include "host/simulate/cpu/rest_factor.hpp"
 
 namespace tetwarp {
 
