@@ -1,5 +1,7 @@
 #include "tests/simulate/pair_scene.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <map>
 
@@ -198,6 +200,10 @@ double area_of(const std::vector<ReportedContact>& contacts) {
   double sum = 0;
   for (const ReportedContact& contact : contacts) sum += contact.area;
   return sum;
+}
+
+void expect_near(const Point3& a, const Point3& b, double tolerance) {
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
 }
 
 }  // namespace tetwarp::test

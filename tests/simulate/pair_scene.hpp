@@ -62,4 +62,6 @@ Square fine_box(const Point3& low, const Point3& high, std::int32_t cells);
 
 double area_of(const std::vector<ReportedContact>& contacts);
 
+void expect_near(const Point3& a, const Point3& b, double tolerance);
+
 }  // namespace tetwarp::test

@@ -8,10 +8,6 @@
 
 namespace tetwarp::test {
 namespace {
-void expect_near(const Point3& a, const Point3& b, double tolerance) {
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << i;
-}
-
 TEST(PairContacts, AnElasticBoxOnAPlaneHasTheAreaOfItsBottom) {
   PairScene scene;
   const Square body = box({0, 0, 1.5 * h}, {2, 3, 1});
@@ -138,65 +134,6 @@ TEST(PairContacts, EdgesWithinAnEvenFaceDoNotHoldUpWhatLeans) {
   ASSERT_EQ(contacts.size(), 1U);
   EXPECT_EQ(contacts[0].normal, (Point3{0, 0, -1}));
   EXPECT_EQ(contacts[0].key.feature_a, -1);
-}
-
-TEST(PairContacts, AVertexOverAnEvenEdgeIsOneContactAndInACornerTwo) {
-  for (const auto& [x, y] : {std::pair{0.25, 0.25}, {0.37, 0.37}, {0.37, 0.37 + 0.2 * h}}) {
-    PairScene scene;
-    const Square ground = square(2, 0, true);
-    scene.add_mesh(ground.vertices, ground.triangles, still());
-    scene.add_mesh({{x, y, 1.2 * h}, {x + 0.1, y, 1}, {x, y + 0.1, 1}}, {{0, 1, 2}},
-                   {.is_rigid = false});
-
-    const auto& contacts = scene.contacts();
-
-    ASSERT_EQ(contacts.size(), 1U) << x;
-    EXPECT_EQ(contacts[0].key.feature_a, -1);
-    expect_near(contacts[0].normal, {0, 0, -1}, 1e-14);
-    EXPECT_EQ(contacts[0].material_b.vertex[0], 0);
-  }
-  PairScene corner;
-  const std::vector<Point3> floor_and_wall = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0},
-                                              {0, 1, 0}, {0, 0, 1}, {0, 1, 1}};
-  corner.add_mesh(floor_and_wall, {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {0, 5, 4}}, still());
-  corner.add_mesh({{1.5 * h, 0.6, 1.2 * h}, {1, 0.5, 1}, {1, 0.7, 1}}, {{0, 1, 2}}, {});
-
-  const auto& contacts = corner.contacts();
-
-  ASSERT_EQ(contacts.size(), 2U);
-  expect_near(contacts[1].normal, {0, 0, -1}, 1e-14);  // the nearer one has the first number
-  expect_near(contacts[0].normal, {-1, 0, 0}, 1e-14);
-  EXPECT_EQ(contacts[1].key.feature_a, -1);
-  EXPECT_EQ(contacts[0].key.feature_a, -2);
-}
-
-/// A vertex in a valley whose sides differ by 30 degrees keeps the number of each side, whichever
-/// is nearer: impulses and bonds follow the numbers.
-TEST(PairContacts, NumbersFollowNormals) {
-  const auto contacts_at = [](double x, const std::vector<ContactRecord>& records) {
-    const double slope = std::tan(std::acos(-1.0) / 12);
-    PairScene valley;
-    valley.add_mesh(
-        {{-1, 0, slope}, {0, 0, 0}, {1, 0, slope}, {-1, 1, slope}, {0, 1, 0}, {1, 1, slope}},
-        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}, still());
-    valley.add_mesh({{x, 0.4, 1.2 * h}, {0.1, 0.4, 1}, {-0.1, 0.5, 1}}, {{0, 1, 2}}, {});
-    return std::vector<ReportedContact>(valley.contacts(records));
-  };
-  std::vector<ContactRecord> records;
-  for (const ReportedContact& contact : contacts_at(0.1 * h, {})) {
-    records.push_back({.key = contact.key, .normal_world = contact.normal});
-  }
-  ASSERT_EQ(records.size(), 2U);
-
-  const auto alone = contacts_at(-0.1 * h, {}), after = contacts_at(-0.1 * h, records);
-
-  ASSERT_EQ(alone.size(), 2U);
-  ASSERT_EQ(after.size(), 2U);
-  for (std::size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ(after[k].key, records[k].key);
-    expect_near(after[k].normal, records[k].normal_world, 1e-12);
-    expect_near(alone[k].normal, records[1 - k].normal_world, 1e-12);
-  }
 }
 
 TEST(PairContacts, AreasOfTwoMeshesAddUpToWhatTouches) {

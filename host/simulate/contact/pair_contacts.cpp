@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 namespace {
-constexpr std::size_t part_size = 256;  // pairs that one task takes
+constexpr std::size_t part_size = 256;              // pairs that one task takes
 constexpr double same_gap = 0.1, level_gap = 0.25;  // thicknesses
 constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
 
@@ -68,14 +68,15 @@ bool PairContacts::is_nearest_of_edges(const PairTouch& touch,
 
 void PairContacts::choose(std::size_t first, std::size_t end) {
   const double level = level_gap * scene_.surfaces.thickness;
+  const bool is_round = at(scene_.surfaces.vertex_radius, touches_[order_[first]].a) > 0;
   kept_.assign(1, order_[first]);
   for (std::size_t i = first + 1; i < end; ++i) {
     const PairTouch& touch = touches_[order_[i]];
     const bool is_new = std::all_of(kept_.begin(), kept_.end(), [&](std::size_t k) {
       const PairTouch& nearer = touches_[k];
-      const bool is_alone = touch.is_inside || touch.gap <= nearer.gap + level;
-      return dot(touch.normal, nearer.normal) < (is_alone ? cosine_5 : cosine_45) &&
-             !is_edge_of(touch, nearer);
+      const bool is_as_near = is_round && touch.time == 0 && touch.gap <= nearer.gap + level;
+      const double limit = touch.is_inside || is_as_near ? cosine_5 : cosine_45;
+      return dot(touch.normal, nearer.normal) < limit && !is_edge_of(touch, nearer);
     });
     if (is_new) kept_.push_back(order_[i]);
   }
@@ -84,26 +85,49 @@ void PairContacts::choose(std::size_t first, std::size_t end) {
 std::int32_t PairContacts::slot_of(const PairTouch& touch,
                                    std::span<const ContactRecord> records) const {
   constexpr std::int32_t last = -64;
-  std::int32_t free = 0, best = 0;
+  const auto own = std::ranges::equal_range(
+      vertex_records_, std::pair(touch.a, touch.body_b), {},
+      [](const VertexRecord& record) { return std::pair(record.vertex, record.body); });
+  const auto is_taken = [&](std::int32_t slot) {
+    return std::find(slots_.begin(), slots_.end(), slot) != slots_.end();
+  };
+  std::int32_t best = 0;
   double closest = cosine_45;
-  for (std::int32_t slot = -1; slot > last; --slot) {
-    if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) continue;
-    const ContactKey key = key_of(touch.body_a, touch.a, touch.body_b, slot);
-    const ContactRecord* record = record_of(records, key);
-    if (record == nullptr) {
-      if (free == 0) free = slot;
-      if (slot <= lowest_slot_) break;
-      continue;
-    }
-    if (record->normal_world == Point3{0, 0, 0}) return slot;
-    const double sign = key.body_a == touch.body_a && key.feature_a == touch.a ? 1 : -1;
-    const double cosine = sign * dot(record->normal_world, touch.normal);
+  for (const VertexRecord& of : own) {
+    if (is_taken(of.slot)) continue;
+    const ContactRecord& record = records[of.record];
+    if (record.normal_world == Point3{0, 0, 0}) return of.slot;
+    const double sign = record.key.feature_a == touch.a ? 1 : -1;
+    const double cosine = sign * dot(record.normal_world, touch.normal);
     if (cosine <= closest) continue;
     closest = cosine;
-    best = slot;
+    best = of.slot;
   }
   if (best != 0) return best;
-  return free != 0 ? free : last;
+  const auto has_record = [&](std::int32_t slot) {
+    return std::ranges::find(own, slot, &VertexRecord::slot) != own.end();
+  };
+  std::int32_t free = -1;
+  while (free > last && (is_taken(free) || has_record(free))) --free;
+  return free;
+}
+
+/// Lists the records of contacts of vertices.
+void PairContacts::list_records(std::span<const ContactRecord> records) {
+  vertex_records_.clear();
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const ContactKey& key = records[r].key;
+    const bool is_second = key.feature_a < 0;  // the vertex
+    const VertexRecord own{is_second ? key.feature_b : key.feature_a,
+                           is_second ? key.body_a : key.body_b,
+                           is_second ? key.feature_a : key.feature_b, r};
+    if (own.vertex >= 0 && own.slot < 0 && own.slot > RigidPatches::first_feature) {
+      vertex_records_.push_back(own);
+    }
+  }
+  std::ranges::sort(vertex_records_, {}, [](const VertexRecord& own) {
+    return std::tuple(own.vertex, own.body, -own.slot);
+  });
 }
 
 void PairContacts::report(const PairTouch& touch,
@@ -199,11 +223,7 @@ const std::vector<ReportedContact>& PairContacts::find(const std::vector<Touchin
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::sort(order_.begin(), order_.end(),
             [&](std::size_t i, std::size_t k) { return comes_before(touches_[i], touches_[k]); });
-  lowest_slot_ = -1;
-  for (const ContactRecord& record : records) {
-    const std::int32_t lowest = std::min(record.key.feature_a, record.key.feature_b);
-    if (lowest > RigidPatches::first_feature) lowest_slot_ = std::min(lowest_slot_, lowest);
-  }
+  list_records(records);
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
   const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());
   for (std::size_t first = 0; first < order_.size();) {

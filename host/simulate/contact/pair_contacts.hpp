@@ -25,7 +25,8 @@ namespace tetwarp {
 /// Which pairs become contacts:
 /// - A vertex touches another body once, at the nearest face, plane or round part. Other parts of
 ///   the body count, too, where they face elsewhere: by more than 45 degrees, or by more than 5 at
-///   a point inside a face; but not at an edge or corner that they share with a nearer one. A
+///   a point inside a face or, of a round part, as near at the start, as all
+///   that holds a ball in a ring; but not at an edge or corner that they share with a nearer one. A
 ///   vertex next to an edge between even faces so has one contact, and slides over the edge.
 /// - Two edges touch where they cross. Where an end of one is nearest, its vertex touches already.
 ///   Edges that are near without a hit must be what is nearest of their surfaces: an edge within an
@@ -69,6 +70,7 @@ class PairContacts {
                    std::vector<PairTouch>& touches) const;
   void choose(std::size_t first, std::size_t end);
   std::int32_t slot_of(const PairTouch& touch, std::span<const ContactRecord> records) const;
+  void list_records(std::span<const ContactRecord> records);
   void report(const PairTouch& touch, std::int32_t feature_a, std::int32_t feature_b, double area);
   void report_vertex(std::size_t first,
                      std::size_t end,
@@ -84,7 +86,11 @@ class PairContacts {
   std::vector<std::size_t> order_;   ///< of touches_, by vertex and body touched, then distance
   std::vector<std::size_t> kept_;    ///< of the current vertex and body, in touches_
   std::vector<std::int32_t> slots_;  ///< taken by them
-  std::int32_t lowest_slot_ = -1;    ///< of the records
+  struct VertexRecord {
+    std::int32_t vertex, body, slot;  ///< what touches, and what it touches
+    std::size_t record;
+  };
+  std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted
   std::vector<ReportedContact> contacts_;
 };
 
