@@ -147,5 +147,27 @@ TEST(Apart, ScenesWithoutPairsDetectNothing) {
   EXPECT_TRUE(simulator.contacts().empty());
 }
 
+/// At rest the impulses of a step are those of the next, so that steps take few sweeps: the ball
+/// touches all of the ring in every step, not other parts each time.
+TEST(Falling, ABallInASoftRingComesToRest) {
+  Body ring = elastic_ball("ring", 1, {0, 0, 0.00605});
+  ring.geometry = Shape{TorusShape{0.014, 0.006}};
+  ring.lattice = Lattice{.tets = 475};
+  ring.surface = std::int64_t{1280};
+  Scene scene = scene_of({ring, rigid_ball("ball", 0.01, {0.001, 0, 0.02})}, 0.008);
+  scene.gravity = {0, 0, -9.81};
+  scene.thickness = 5e-5;
+  scene.obstacles = {plane_at(0)};
+  Simulator simulator(scene);
+  run(simulator, 150);
+  std::int64_t sweeps = 0;
+  for (int step = 0; step < 20; ++step) {
+    simulator.step();
+    sweeps += simulator.record().sweeps;
+  }
+  EXPECT_LE(sweeps, 60);
+  EXPECT_LT(norm(simulator.record().bodies[1].velocity), 1e-4);
+}
+
 }  // namespace
 }  // namespace tetwarp::test
