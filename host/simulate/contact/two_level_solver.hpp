@@ -24,8 +24,9 @@ struct TwoLevelOutcome {
 
 /// Of an iterate; square roots of energies.
 struct TwoLevelError {
-  double total = 0, laws = 0;  ///< of equations and laws together; of the laws
-  double work = 0;             ///< of the impulses
+  double equations = 0, laws = 0;  ///< of A v = b + J^T r; of the laws
+  double total = 0;                ///< of both
+  double work = 0;                 ///< of the impulses
 };
 
 /// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
@@ -36,11 +37,12 @@ struct TwoLevelError {
 ///     sweeps change r in  u = J v_f + J M^-1 J^T (r - r before) + w
 ///     v = v_f + M^-1 J^T (r - r before)
 ///
-/// with Anderson acceleration of v, with elastic bodies from the second iteration on, and
-/// acceleration of r in the sweeps. It has converged where the defect of A v = b + J^T r in the
-/// norm of M^-1 and the natural map of the laws are together at most `tolerance` times the sum of
-/// the square root of the work of the impulses and of the natural map without impulses, or as small
-/// as the error of the velocities without contact.
+/// with Anderson acceleration of v, with elastic bodies from the second iteration on and as long as
+/// the equations are further from their solution than the laws, and acceleration of r in the
+/// sweeps. It has converged where the defect of A v = b + J^T r in the norm of M^-1 and the natural
+/// map of the laws are together at most `tolerance` times the sum of the square root of the work of
+/// the impulses and of the natural map without impulses, or as small as the error of the velocities
+/// without contact.
 ///
 /// It ends, without having converged, after a number of operations, and where its residual no
 /// longer shrinks, as of bodies that are squeezed so that no velocities satisfy all contacts. The
