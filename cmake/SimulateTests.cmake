@@ -80,6 +80,7 @@ if(NOT BUILD_SHARED_LIBS)
     )
   set(tetwarp_pair_contact_tests  # contacts of pairs, reduction, tracker of deformable bodies
     tests/simulate/pair_scene.cpp
+    tests/simulate/test_flat_edges.cpp
     tests/simulate/test_pair_contacts.cpp
     tests/simulate/test_rigid_patches.cpp
     tests/simulate/test_tracker_places.cpp

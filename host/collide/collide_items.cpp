@@ -24,7 +24,9 @@ void check_range(const char* what, std::int32_t first, std::int32_t past, std::s
 
 void check_sizes(const CollisionSurfaces& s) {
   const std::size_t vertices = s.vertex_body.size();
-  if (s.vertex_radius.size() != vertices || s.edge_radius.size() != s.edges.size()) {
+  const bool has_flat_edges = !s.edge_is_flat.empty();
+  if (s.vertex_radius.size() != vertices || s.edge_radius.size() != s.edges.size() ||
+      (has_flat_edges && s.edge_is_flat.size() != s.edges.size())) {
     fail("lists of vertices or edges have different lengths");
   }
   if (!(s.thickness > 0)) fail("thickness must be positive");
@@ -72,7 +74,9 @@ class ItemMaker {
       : s_(surfaces),
         made_(made),
         vertex_is_owned_(s_.vertex_body.size()),
-        edge_is_owned_(s_.edges.size()) {}
+        edge_is_owned_(s_.edge_is_flat) {
+    edge_is_owned_.resize(s_.edges.size());
+  }
 
   void add_body(std::int32_t b) {
     const CollisionBody& body = s_.bodies[static_cast<std::size_t>(b)];
@@ -116,7 +120,7 @@ class ItemMaker {
     }
     return item;
   }
-  /// @returns the edge, or -1 if another item owns it
+  /// @returns the edge, or -1 if another item owns it or none does
   std::int32_t own_edge(std::int32_t edge) {
     auto& is_owned = edge_is_owned_[static_cast<std::size_t>(edge)];
     return std::exchange(is_owned, std::uint8_t{1}) != 0 ? -1 : edge;

@@ -35,6 +35,8 @@ struct CollisionSurfaces {
   std::vector<std::array<std::int32_t, 2>> edges;  ///< vertices; of triangles, each edge once, and
                                                    ///< axes of capsules
   std::vector<double> edge_radius;                 ///< [edges] [m]
+  std::vector<std::uint8_t> edge_is_flat;  ///< [edges] within a flat face of a rigid body: in no
+                                           ///< pair of edges; or empty: none
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< vertices, counter-clockwise from outside
   std::vector<std::int32_t> plane_body;                ///< [planes]
 

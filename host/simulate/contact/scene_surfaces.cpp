@@ -12,6 +12,7 @@
 
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/contact/contact_thickness.hpp"
+#include "host/simulate/contact/flat_edges.hpp"
 #include "host/simulate/contact/pair_materials.hpp"
 #include "host/simulate/contact/round_shape.hpp"
 #include "host/simulate/rotations.hpp"
@@ -255,6 +256,25 @@ void add_forbidden(const Scene& scene, CollisionSurfaces& surfaces) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
+/// Far below the distances that detection tells apart.
+constexpr double flat_share = 1e-3;  // thicknesses
+
+void mark_flat_faces(SceneSurfaces& result) {
+  CollisionSurfaces& surfaces = result.surfaces;
+  surfaces.edge_is_flat.assign(surfaces.edges.size(), 0);
+  std::vector<Point3> position;
+  for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
+    const CollisionBody& body = surfaces.bodies[b];
+    if (result.is_rigid[b] == 0) continue;
+    position.clear();
+    for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
+      position.push_back(at(result.vertex_point, v).local);
+    }
+    mark_flat_edges(surfaces, body, position, flat_share * surfaces.thickness,
+                    surfaces.edge_is_flat);
+  }
+}
+
 }  // namespace
 
 SceneSurfaces make_scene_surfaces(const Scene& scene,
@@ -269,6 +289,7 @@ SceneSurfaces make_scene_surfaces(const Scene& scene,
   for (std::int32_t b = 0; b < bodies; ++b) parts.add_body(b);
   for (std::int32_t o = 0; o < obstacles; ++o) parts.add_obstacle(bodies + o);
   result.surfaces.thickness = contact_thickness(scene, model, result);
+  mark_flat_faces(result);
   return result;
 }
 
