@@ -9,6 +9,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
 #include "host/contact/problem/vectors.hpp"
+#include "host/contact/structure/structure.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_numbers.hpp"
 #include "kernels/contact/resident_results.hpp"
@@ -32,8 +33,10 @@ class ResidentArrays {
     } else {
       rows_ = rows_of(problem.jacobian);
       system_rows_ = rows_of(problem.system);
-      std::vector<std::uint8_t> is_zero;
-      for (const double value : problem.system.value) is_zero.push_back(value == 0 ? 1 : 0);
+      std::vector<Zero> is_zero(problem.system.value.size(), Zero::either);
+      for_each_deciding_number(problem, [&](std::size_t e) {
+        is_zero[e] = problem.system.value[e] == 0 ? Zero::yes : Zero::no;
+      });
       is_zero_ = put(is_zero);
       put_columns(problem.jacobian, problem.dof_count(), put);
     }
@@ -158,8 +161,8 @@ class ResidentArrays {
 
   std::int64_t serial_ = 0;  ///< of the structure that the pattern belongs to
   DeviceArrays arrays_;
-  RowsView rows_, system_rows_;       ///< of J or W; of A
-  View<const std::uint8_t> is_zero_;  ///< [stored numbers of A]: 1 where it is zero
+  RowsView rows_, system_rows_;                        ///< of J or W; of A
+  View<const Zero> is_zero_;                           ///< [stored numbers of A]
   View<const std::int64_t> push_start_, push_number_;  ///< see BalanceSumsBody
   View<const std::int32_t> push_row_;
   DeviceVector<double> recovered_, impulse_, velocity_, body_velocity_;
