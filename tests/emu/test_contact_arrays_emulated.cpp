@@ -49,6 +49,39 @@ TEST(ContactArraysEmulated, ASolveCopiesCountsAndNoArray) {
   }
 }
 
+/// Which numbers of a block of A are zero does not matter where the problem names its blocks: only
+/// zeros outside of them say what A couples.
+TEST(ContactArraysEmulated, ZerosWithinBlocksChangeNothing) {
+  ContactProblem problem = global_problem(64, 9, 0);
+  ContactSolver host({.backend = Backend::cuda}), solver({.backend = Backend::cuda});
+  solver.set_structure(problem);
+  copied_by(solver, DeviceProblem(problem));
+  uncouple_first_dof(problem.system);
+  const DeviceProblem device(problem);
+
+  const Copied copied = copied_by(solver, device);
+
+  EXPECT_LE(copied.calls.count(DeviceCall::copy_to_host), 8);
+  EXPECT_LE(copied.calls.count(DeviceCall::copy_to_device), 1);
+  EXPECT_EQ(device.impulse.get(), host.solve(problem).impulse);
+}
+
+/// Where the device stops the host goes on, which sends back results and no numbers of the problem.
+TEST(ContactArraysEmulated, IslandsThatDoNotConvergeAreNotSentAgain) {
+  const ContactProblem problem = scenes::sphere_packing({.seed = 65, .edge = 4, .kept = 0.4});
+  ContactOptions options{.tolerance = 1e-13, .max_sweeps = 40, .backend = Backend::cuda};
+  options.skip.converged_islands = false;
+  ContactSolver solver(options);
+  solver.set_structure(problem);
+  const DeviceProblem device(problem);
+  copied_by(solver, device);
+
+  const Copied again = copied_by(solver, device);
+
+  const std::size_t results = 6 * problem.friction.size() + problem.load.size();
+  EXPECT_LE(again.to_device, results * sizeof(double) + 400);
+}
+
 TEST(ContactArraysEmulated, AFailedAllocationLeavesTheSolverUsable) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 62, .edge = 3, .kept = 0.4});
   const DeviceProblem device(problem);

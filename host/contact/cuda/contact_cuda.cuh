@@ -93,9 +93,9 @@ class CudaContactDevice final : public ContactDevice {
       get(runs_.body_velocity(), end.body_velocity);
       return end;
     }
-    const ResultSums sums =
-        resident_.write_results(grid_, problem, indices_, view_of(std::as_const(runs_.impulse())),
-                                view_of(std::as_const(runs_.body_velocity())));
+    const ResultSums sums = resident_.write_results(grid_, problem, indices_, runs_.numbers(),
+                                                    view_of(std::as_const(runs_.impulse())),
+                                                    view_of(std::as_const(runs_.body_velocity())));
     end.is_solved = sums.bad() == 0;
     end.has_run = end.is_solved;
     end.balance = structure.is_local ? 0 : sums.balance();
