@@ -124,10 +124,19 @@ TEST(ContactSystemEmulated, OnlyNumbersOfContactsAndVelocitiesCross) {
   }
 }
 
-TEST(ContactSystemEmulated, TheSamePatternAllocatesNothing) {
+/// Places and structure are made where bodies or contacts have changed.
+TEST(ContactSystemEmulated, TheSamePatternIsCopiedOnce) {
   const HandScene scene = stack_on_frame(3);
-  const Course found = course_of(scene, Backend::cuda, exact(Backend::cuda));
-  EXPECT_EQ(found.calls.count(DeviceCall::allocate), 0);
+  ContactSystemOptions options = exact(Backend::cuda);
+  options.solver.tolerance = 1e-3;
+  const Course first = course_of(scene, Backend::cuda, options, materials(0.3), 1);
+  const Course later = course_of(scene, Backend::cuda, options);
+  EXPECT_GT(first.calls.count(DeviceCall::copy_to_device), 20);
+  EXPECT_LE(first.copied.to_device - later.copied.to_device, 12u * 580 + 3 * 440 + 400);
+  EXPECT_EQ(later.calls.count(DeviceCall::allocate), 0);
+  EXPECT_LE(later.calls.count(DeviceCall::copy_to_device), 2);
+  EXPECT_LE(later.calls.count(DeviceCall::copy_to_host), 8);
+  EXPECT_LE(later.calls.count(DeviceCall::launch), 40);
 }
 
 /// What sweeps do not solve is solved on the host from what the device has found.

@@ -74,13 +74,18 @@ Scene tied_boxes() {
   return scene;
 }
 
-void expect_parity(const Scene& scene, int steps, double tolerance) {
-  std::unique_ptr<Simulator> cuda;
+/// On back end cuda; null where no device can be used.
+std::unique_ptr<Simulator> on_cuda(const Scene& scene) {
   try {
-    cuda = std::make_unique<Simulator>(scene, SimulateOptions{.backend = Backend::cuda});
-  } catch (const CudaError& error) {
-    GTEST_SKIP() << error.what();
+    return std::make_unique<Simulator>(scene, SimulateOptions{.backend = Backend::cuda});
+  } catch (const CudaError&) {
+    return nullptr;
   }
+}
+
+void expect_parity(const Scene& scene, int steps, double tolerance) {
+  const std::unique_ptr<Simulator> cuda = on_cuda(scene);
+  if (cuda == nullptr) GTEST_SKIP() << "no usable device";
   Simulator cpu(scene, {.backend = Backend::cpu, .threads = 1});
   std::int64_t most_contacts = 0;
   for (int n = 0; n < steps && !testing::Test::HasFailure(); ++n) {
@@ -115,6 +120,19 @@ TEST(ContactCuda, ARigidPileAndASoftBoxRideOnATrayAsOnTheCpu) {
 
 TEST(ContactCuda, TiedBoxesAndAFreeOneSlideAsOnTheCpu) {
   expect_parity(tied_boxes(), 25, 1e-6);
+}
+
+TEST(ContactCuda, ContactsGoOnFromACheckpointBitForBit) {
+  const std::unique_ptr<Simulator> whole = on_cuda(mixed_on_tray());
+  const std::unique_ptr<Simulator> resumed = on_cuda(mixed_on_tray());
+  if (whole == nullptr) GTEST_SKIP() << "no usable device";
+  run(*whole, 12);
+  resumed->restore(whole->checkpoint());
+  run(*whole, 5);
+  run(*resumed, 5);
+
+  EXPECT_GT(whole->record().contacts, 2);
+  EXPECT_EQ(resumed->checkpoint(), whole->checkpoint());
 }
 
 TEST(ContactCuda, ASoftBoxSlidesOnAPlaneAsOnTheCpu) {
