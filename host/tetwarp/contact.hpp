@@ -241,8 +241,7 @@ class TETWARP_EXPORT ContactSolver {
   /// Arrays on a device stay there: counts and sums are copied, no array. Through the host go, with
   /// all arrays copied in both directions: islands whose bodies A couples, problems with an island
   /// that sweeps do not converge, normal springs with another gap than dt w_n, blocks of A of more
-  /// than 12 dofs, and numbers that check_problem() may refuse. Returns when the results are
-  /// written.
+  /// than 12 dofs, numbers that check_problem() may refuse. Returns when the results are written.
   /// @return  the report; ContactResidual::balance is summed in another order
   /// @throws std::invalid_argument  set_structure() was not called, a size differs from that of its
   ///                                problem, device memory without back end cuda, an address that

@@ -82,6 +82,24 @@ TEST(ContactArraysEmulated, IslandsThatDoNotConvergeAreNotSentAgain) {
   EXPECT_LE(again.to_device, results * sizeof(double) + 400);
 }
 
+/// A large island is swept stage by stage, so that its solve can be ended.
+TEST(ContactArraysEmulated, ProgressEndsASolve) {
+  const ContactProblem problem =
+      scenes::random_local({.seed = 46, .contacts = 2100, .neighbors = 2});
+  int left = 5;
+  ContactOptions options{.tolerance = 1e-12, .backend = Backend::cuda};
+  options.skip.converged_islands = false;
+  options.progress = [&](const ContactProgress&) { return left-- > 0; };
+  ContactSolver solver(options);
+  solver.set_structure(problem);
+  const DeviceProblem device(problem);
+
+  const ContactReport report = solver.solve(device.arrays, device.target());
+
+  EXPECT_EQ(report.status, ContactStatus::not_converged);
+  EXPECT_NE(report.status_reason.find("cancelled"), std::string::npos) << report.status_reason;
+}
+
 TEST(ContactArraysEmulated, AFailedAllocationLeavesTheSolverUsable) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 62, .edge = 3, .kept = 0.4});
   const DeviceProblem device(problem);

@@ -1,7 +1,7 @@
 #include "host/simulate/contact/solver_islands.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <vector>
 
 #include "host/simulate/contact/contact_laws.hpp"
 
@@ -51,9 +51,11 @@ ContactReport SolverIslands::solve_on_device(bool is_other_pattern, std::vector<
   const bool adheres = std::any_of(adhesion.intensity.begin(), adhesion.intensity.end(),
                                    [](double intensity) { return intensity > 0; });
   if (!adheres) {
-    const double time_step = adhesion.time_step;
-    adhesion = {};
-    adhesion.time_step = time_step;
+    for (std::vector<double>* const array :
+         {&adhesion.area, &adhesion.stiffness, &adhesion.tangential_stiffness, &adhesion.intensity,
+          &adhesion.gap}) {
+      array->clear();
+    }
   }
   if (is_other_pattern || with_pattern_ != resident_) {
     with_pattern_ = nullptr;
@@ -63,7 +65,7 @@ ContactReport SolverIslands::solve_on_device(bool is_other_pattern, std::vector<
     with_pattern_ = resident_;
   }
   const ResidentStepProblem problem = resident_->set_contacts(part_.arms(), part_.problem());
-  ContactReport report = solver_.solve(problem.arrays, problem.target);
+  const ContactReport report = solver_.solve(problem.arrays, problem.target);
   const ResidentResults results = resident_->results();
   part_.scatter(results.body_velocity, velocity);
   impulse_ = results.impulse;
