@@ -95,6 +95,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/cage_growth.cpp
   host/simulate/contact/cage_pose.cpp
   host/simulate/contact/contact_islands.cpp
+  host/simulate/contact/contact_laws.cpp
   host/simulate/contact/contact_rows.cpp
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
@@ -115,6 +116,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/round_shape.cpp
   host/simulate/contact/scene_surfaces.cpp
   host/simulate/contact/solved_islands.cpp
+  host/simulate/contact/solver_islands.cpp
   host/simulate/contact/start_check.cpp
   host/simulate/contact/start_shrink.cpp
   host/simulate/contact/step_problem.cpp

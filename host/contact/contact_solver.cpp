@@ -60,9 +60,10 @@ EngineResult solve_with_rows(ContactEngine& engine,
                              const ContactProblem& problem,
                              const ContactOptions& options,
                              SolveBudget& budget,
+                             DeviceRun* found,
                              ContactSolution& solution) {
   if (!needs_blocks(problem)) {
-    EngineResult result = engine.solve(problem, budget);
+    EngineResult result = engine.solve(problem, budget, found);
     solution.impulse = std::move(result.impulse);
     solution.body_velocity = std::move(result.body_velocity);
     return result;
@@ -80,12 +81,13 @@ EngineResult solve_with_springs(ContactEngine& engine,
                                 const ContactProblem& problem,
                                 const ContactOptions& options,
                                 SolveBudget& budget,
+                                DeviceRun* found,
                                 ContactSolution& solution) {
   if (problem.contact_count() == 0 && problem.dof_count() == 0) return {};
   const std::vector<double> preloads = spring_preloads(problem);
-  if (preloads.empty()) return solve_with_rows(engine, problem, options, budget, solution);
+  if (preloads.empty()) return solve_with_rows(engine, problem, options, budget, found, solution);
   EngineResult result =
-      solve_with_rows(engine, with_preloads(problem, preloads), options, budget, solution);
+      solve_with_rows(engine, with_preloads(problem, preloads), options, budget, nullptr, solution);
   add_preloads(preloads, -1, solution.impulse);
   return result;
 }
@@ -127,21 +129,27 @@ ContactSolver::~ContactSolver() = default;
 ContactSolution ContactSolver::solve(const ContactProblem& problem) {
   State& s = *state_;
   if (s.backend == Backend::reference) return solve_contacts_reference(problem, s.options);
-  const auto start = Clock::now();
   SolveBudget budget(s.options, problem);
+  return s.solve(problem, budget, nullptr);
+}
+
+ContactSolution ContactSolver::State::solve(const ContactProblem& problem,
+                                            SolveBudget& budget,
+                                            DeviceRun* found) {
+  const auto start = Clock::now();
   check_problem(problem);
   ContactSolution solution;
-  EngineResult result = solve_with_springs(s.engine, problem, s.options, budget, solution);
+  EngineResult result = solve_with_springs(engine, problem, options, budget, found, solution);
   budget.rethrow();
   ContactReport& report = solution.report;
-  s.describe(problem, report);
+  describe(problem, report);
   const WholeResidual whole = whole_residual(result.outcomes);
-  fill_report(result, whole, s.options.measure, report);
+  fill_report(result, whole, options.measure, report);
   solution.velocity = contact_velocity(problem, solution);
   if (!needs_blocks(problem)) {
     report.residual.balance = imbalance(problem, solution.impulse, solution.body_velocity);
   }
-  set_status(result, whole, s.options, budget, solution);
+  set_status(result, whole, options, budget, solution);
   report.setup_seconds = result.setup_seconds;
   report.total_seconds = seconds_since(start);
   report.solve_seconds = report.total_seconds - report.setup_seconds;

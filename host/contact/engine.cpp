@@ -34,7 +34,9 @@ ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)
     : options_(options), threads_(threads), device_(device), islands_(options, threads, device) {}
 
-EngineResult ContactEngine::solve(const ContactProblem& given, SolveBudget& budget) {
+EngineResult ContactEngine::solve(const ContactProblem& given,
+                                  SolveBudget& budget,
+                                  DeviceRun* found) {
   const auto start = Clock::now();
   budget_ = &budget;
   islands_.set_budget(&budget);
@@ -48,7 +50,7 @@ EngineResult ContactEngine::solve(const ContactProblem& given, SolveBudget& budg
     budget.is_over();
     reset_cache_if_changed(problem);
     EngineResult result = make_result(problem, islands_.structure());
-    result.savings = islands_.set_problem(problem);
+    result.savings = islands_.set_problem(problem, std::exchange(found, nullptr));
     result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     islands_.solve_uncoupled(result);
     solve_coupled(problem, result);

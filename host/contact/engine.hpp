@@ -35,9 +35,13 @@ class ContactEngine {
   ContactEngine(const ContactOptions& options, int threads, ContactDevice* device);
 
   /// @param budget  limits of this solve
+  /// @param found   what the device has found for this problem with the present structure; taken;
+  ///                null: nothing
   /// @pre check_problem(problem) has passed
   /// @throws ContactProblemError  A as a whole is not positive definite
-  EngineResult solve(const ContactProblem& problem, SolveBudget& budget);
+  EngineResult solve(const ContactProblem& problem,
+                     SolveBudget& budget,
+                     DeviceRun* found = nullptr);
 
   /// Makes the structure of a problem, unless it is the present one.
   /// @pre check_problem(problem) has passed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "host/contact/block_jacobi/block_jacobi.hpp"
 #include "host/contact/structure/extract.hpp"
@@ -11,10 +12,15 @@ namespace tetwarp {
 IslandSolver::IslandSolver(const ContactOptions& options, int threads, ContactDevice* device)
     : options_(options), threads_(threads), device_(device) {}
 
-ContactSavings IslandSolver::set_problem(const ContactProblem& problem) {
+ContactSavings IslandSolver::set_problem(const ContactProblem& problem, DeviceRun* found) {
   problem_ = &problem;
+  found_ = found;
   has_host_system_ = has_device_system_ = false;
   contradiction_memory_.bare.reset();
+  if (found != nullptr) {
+    has_device_system_ = true;
+    return found->end.savings;
+  }
   if (device_ != nullptr) return set_device_problem();
   ContactSavings savings;
   fill_system(problem, options_, structure_, system_, savings, threads_);
@@ -77,11 +83,20 @@ void IslandSolver::solve_on_host(EngineResult& result) {
 
 /// Islands that do not converge on the device continue on the host from its impulses.
 void IslandSolver::solve_on_device(EngineResult& result) {
-  std::vector<double> impulse = guess();
-  impulse.resize(3 * structure_.contact_of_slot.size(), 0.0);
-  free_motion_.resize(structure_.dof_of_place.size());
-  result.updates_skipped =
-      device_->solve_uncoupled(options_, impulse, free_motion_, result.outcomes);
+  std::vector<double> impulse;
+  if (found_ != nullptr) {
+    DeviceRun& found = *std::exchange(found_, nullptr);
+    impulse = std::move(found.end.impulse);
+    free_motion_ = std::move(found.end.body_velocity);
+    result.outcomes = std::move(found.outcomes);
+    result.updates_skipped = found.end.updates_skipped;
+  } else {
+    impulse = guess();
+    impulse.resize(3 * structure_.contact_of_slot.size(), 0.0);
+    free_motion_.resize(structure_.dof_of_place.size());
+    result.updates_skipped =
+        device_->solve_uncoupled(options_, impulse, free_motion_, result.outcomes);
+  }
   std::optional<ContactRun<double>> run;
   for (std::int64_t i = 0; i < structure_.contact_islands; ++i) {
     const ContactIsland& island = structure_.islands[index_of(i)];

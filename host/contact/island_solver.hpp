@@ -22,6 +22,12 @@ namespace tetwarp {
 template <class Exec>
 struct BlockJacobiMemory;
 
+/// What a device has found for a problem whose arrays it has, where an island has not converged.
+struct DeviceRun {
+  ResidentEnd end;  ///< has run, is not solved
+  std::vector<IslandOutcome> outcomes;
+};
+
 /// Holds one structure and, on the host, on a device or on both, the numbers of one problem.
 class IslandSolver {
  public:
@@ -36,8 +42,10 @@ class IslandSolver {
 
   /// Sets the numbers from a problem that has the pattern of the structure.
   /// @param problem  kept by the caller, unchanged, for the calls below
+  /// @param found    of the same problem on the device, which is not asked again; taken by
+  ///                 solve_uncoupled(); null: none
   /// @return rows and springs that were left out
-  ContactSavings set_problem(const ContactProblem& problem);
+  ContactSavings set_problem(const ContactProblem& problem, DeviceRun* found = nullptr);
 
   /// Call before another solver uses the device; the next use copies the problem again.
   void forget_device() { has_device_system_ = false; }
@@ -98,6 +106,7 @@ class IslandSolver {
   SolveBudget* budget_ = nullptr;
   ContactStructure structure_;
   const ContactProblem* problem_ = nullptr;
+  DeviceRun* found_ = nullptr;                ///< see set_problem()
   ContactSystem<double> system_;              ///< kept, so that its memory is reused
   bool has_host_system_ = false;              ///< system_ has the numbers of the problem
   bool has_device_system_ = false;            ///< the device has them

@@ -2,7 +2,6 @@
 /// Solves of problems whose numbers are in arrays of the caller, in host memory or on a device.
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -115,9 +114,8 @@ ResidentProblem resident_problem(const ContactArrays& given,
 }
 
 /// Whether no island needs the host, as far as the structure says.
-bool can_stay_on_device(const ContactStructure& structure, const ContactOptions& options) {
-  return structure.contact_islands > 0 && !options.progress &&
-         options.max_seconds == std::numeric_limits<double>::infinity() &&
+bool can_stay_on_device(const ContactStructure& structure) {
+  return structure.contact_islands > 0 &&
          std::none_of(structure.islands.begin(), structure.islands.end(),
                       [](const ContactIsland& island) { return island.is_coupled; });
 }
@@ -165,22 +163,26 @@ ContactReport ContactSolver::solve(const ContactArrays& arrays, const ContactTar
   }
   const bool is_on_device = arrays.memory == Memory::device;
   const ContactStructure& structure = s.engine.structure();
-  if (is_on_device && can_stay_on_device(structure, s.options)) {
-    SolveBudget budget(s.options, pattern);
-    EngineResult result;
-    result.outcomes.resize(index_of(structure.contact_islands));
+  SolveBudget budget(s.options, pattern);
+  DeviceRun found;
+  if (is_on_device && can_stay_on_device(structure)) {
+    found.outcomes.resize(index_of(structure.contact_islands));
     s.device->budget = &budget;
-    const ResidentEnd end = s.device->solve_resident(
-        s.options, structure, resident_problem(arrays, target, pattern), result.outcomes);
-    if (end.is_solved) {
-      result.savings = end.savings;
-      result.updates_skipped = end.updates_skipped;
+    budget.is_over();
+    found.end = s.device->solve_resident(s.options, structure,
+                                         resident_problem(arrays, target, pattern), found.outcomes);
+    if (found.end.is_solved) {
+      budget.rethrow();
+      EngineResult result;
+      result.outcomes = std::move(found.outcomes);
+      result.savings = found.end.savings;
+      result.updates_skipped = found.end.updates_skipped;
       complete(structure, result);
       ContactSolution solution;
       s.describe(pattern, solution.report);
       const WholeResidual whole = whole_residual(result.outcomes);
       fill_report(result, whole, s.options.measure, solution.report);
-      solution.report.residual.balance = end.balance;
+      solution.report.residual.balance = found.end.balance;
       set_status(result, whole, s.options, budget, solution);
       solution.report.total_seconds = solution.report.solve_seconds = seconds_since(start);
       return solution.report;
@@ -196,7 +198,10 @@ ContactReport ContactSolver::solve(const ContactArrays& arrays, const ContactTar
     }
   });
   pattern.adhesion.time_step = arrays.time_step;
-  const ContactSolution solution = solve(pattern);
+  const ContactSolution solution =
+      s.backend == Backend::reference
+          ? solve(pattern)
+          : s.solve(pattern, budget, found.end.has_run ? &found : nullptr);
   s.pattern_serial = s.engine.structure().serial;
   const auto put = [&](const std::vector<double>& from, std::span<double> to) {
     if (to.empty()) return;

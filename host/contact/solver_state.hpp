@@ -21,6 +21,9 @@ struct ContactSolver::State {
   std::unique_ptr<ContactProblem> pattern = {};  ///< of set_structure(); null: not called
   std::int64_t pattern_serial = 0;               ///< of the structure made for it
 
+  /// Solves on the host or by the device.
+  /// @param found  what the device has found for this problem already; null: nothing
+  ContactSolution solve(const ContactProblem& problem, SolveBudget& budget, DeviceRun* found);
   /// Sets what a report says of the solver and of the sizes of a problem.
   void describe(const ContactProblem& problem, ContactReport& report) const;
 };

@@ -62,6 +62,7 @@ class BodyPipeline {
 
   StepOutcome solve(const StepInput& input) {
     StepOutcome outcome;
+    system_.forget();
     exec_.clear_times();
     upload(input);
     forces(input);
@@ -73,6 +74,8 @@ class BodyPipeline {
     return outcome;
   }
 
+  /// Rows of the system in memory of the host.
+  SystemRows host_rows() { return system_.rows(model_, pattern_.rows()); }
   StepSystem system() {
     return system_.get(exec_, model_, pattern_.rows(), const_view(now_.values),
                        const_view(now_.load), const_view(now_.x));

@@ -68,6 +68,7 @@ class ReferenceStepper final : public BodyStepper {
       outcome.completed = false;
       return outcome;
     }
+    has_rows_ = false;
     put_state();
     drive_now_.time_step = input.time_step;
     drive_now_.end_time = input.end_time;
@@ -84,7 +85,7 @@ class ReferenceStepper final : public BodyStepper {
     return outcome;
   }
   StepSystem system() override {
-    rows_.set(linear_, free_velocity_);
+    if (!std::exchange(has_rows_, true)) rows_.set(linear_, free_velocity_);
     return rows_.system();
   }
   void get_velocities(std::vector<Point3>& velocity) const override {
@@ -201,6 +202,7 @@ class ReferenceStepper final : public BodyStepper {
   reference::State twin_;
   std::vector<std::size_t> frame_;  ///< [rigids of the model] frames of the reference
   ReferenceRows rows_;
+  bool has_rows_ = false;           ///< rows_ are those of the present step
   reference::StepDrive drive_now_;  ///< of the running step, like the next members
   reference::LinearSystem linear_;
   reference::VectorXd velocity_, free_velocity_;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "host/simulate/stepper.hpp"
@@ -84,10 +85,20 @@ inline void fractions_of(const Model& model,
 }
 
 /// The system of a step as BodyStepper::system() returns it. In memory of a device it is copied,
-/// and the pattern is made a second time.
+/// once per step, and the pattern is made a second time.
 template <class Exec>
 class HostSystem {
  public:
+  /// To be called before the system changes.
+  void forget() { has_values_ = false; }
+  SystemRows rows(const Model& model, const SystemRows& own) {
+    if constexpr (Exec::is_on_host) {
+      return own;
+    } else {
+      if (!pattern_) pattern_ = make_system_pattern(model);
+      return rows_of(*pattern_);
+    }
+  }
   StepSystem get(Exec& exec,
                  const Model& model,
                  const SystemRows& rows,
@@ -98,23 +109,26 @@ class HostSystem {
     if constexpr (Exec::is_on_host) {
       return {rows, {values.data, numbers}, load, x};
     } else {
-      if (!pattern_) pattern_ = make_system_pattern(model);
-      StepSystem system;
-      system.rows = rows_of(*pattern_);
-      system.values = copy(exec, View<const double>{values.data, numbers}, values_);
-      system.load = copy(exec, load, load_);
-      system.velocity = copy(exec, x, x_);
-      return system;
+      const SystemRows own = this->rows(model, rows);
+      if (!std::exchange(has_values_, true)) {
+        copy(exec, View<const double>{values.data, numbers}, values_);
+        copy(exec, load, load_);
+        copy(exec, x, x_);
+      }
+      return {own, numbers_in(values_), numbers_in(load_), numbers_in(x_)};
     }
   }
 
  private:
-  static View<const double> copy(Exec& exec, View<const double> own, std::vector<double>& host) {
+  static void copy(Exec& exec, View<const double> own, std::vector<double>& host) {
     host.resize(static_cast<std::size_t>(own.size));
     exec.get(own, host.data());
-    return {host.data(), own.size};
+  }
+  static View<const double> numbers_in(const std::vector<double>& host) {
+    return {host.data(), static_cast<std::int64_t>(host.size())};
   }
 
+  bool has_values_ = false;  ///< of the present step
   std::optional<SystemPattern> pattern_;
   std::vector<double> values_, load_, x_;
 };

@@ -67,6 +67,7 @@ struct StepSystem {
   View<const double> velocity;  ///< v without contact, [rows][3]
 };
 
+class ResidentContacts;
 class ResidentState;
 
 class BodyStepper {
@@ -77,7 +78,7 @@ class BodyStepper {
   virtual void get_state(ModelState& state) const = 0;
   /// Solves for the velocities at the end of the step, without contact. Nothing moves.
   virtual StepOutcome solve(const StepInput& input) = 0;
-  /// The system that solve() solved; valid until move().
+  /// The system that solve() solved, copied at the first call after it; valid until move().
   virtual StepSystem system() = 0;
   /// Velocities of all blocks after solve(), [block_count].
   virtual void get_velocities(std::vector<Point3>& velocity) const = 0;
@@ -104,6 +105,9 @@ class BodyStepper {
   virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;
   /// What allows to take steps without get_state(); null where the state is in memory of the host.
   virtual ResidentState* resident_state() { return nullptr; }
+  /// What builds contact problems in memory of a device; null where the state is in that of the
+  /// host.
+  virtual ResidentContacts* resident_contacts() { return nullptr; }
 };
 
 /// @param model  kept by the caller

@@ -228,7 +228,8 @@ class TETWARP_EXPORT ContactSolver {
   ContactSolution solve(const ContactProblem& problem);
 
   /// Makes islands and colors for the problems that solve(ContactArrays) gets from now on: those
-  /// with the index arrays of this one and zeros among the stored numbers of A in the same places.
+  /// with the index arrays of this one and zeros among the stored numbers of A in the same places,
+  /// with block_start only among those outside of its blocks.
   /// @throws ContactProblemError    as solve()
   /// @throws std::invalid_argument  the problem has second_friction, bilateral rows or rolling
   ///                                friction
@@ -240,8 +241,7 @@ class TETWARP_EXPORT ContactSolver {
   /// Arrays on a device stay there: counts and sums are copied, no array. Through the host go, with
   /// all arrays copied in both directions: islands whose bodies A couples, problems with an island
   /// that sweeps do not converge, normal springs with another gap than dt w_n, blocks of A of more
-  /// than 12 dofs, numbers that check_problem() may refuse, and solves with max_seconds or
-  /// progress. Returns when the results are written.
+  /// than 12 dofs, numbers that check_problem() may refuse. Returns when the results are written.
   /// @return  the report; ContactResidual::balance is summed in another order
   /// @throws std::invalid_argument  set_structure() was not called, a size differs from that of its
   ///                                problem, device memory without back end cuda, an address that

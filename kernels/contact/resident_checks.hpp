@@ -57,13 +57,18 @@ struct RangeCheckBody {
   }
 };
 
-/// One index = one stored number of A: 1 where it has become zero, or is zero no longer.
+/// What the pattern of a problem asks of a stored number of A.
+enum class Zero : std::uint8_t { no, yes, either };
+
+/// One index = one stored number of A: 1 where it has become zero, or is zero no longer, and blocks
+/// or couplings follow from that.
 struct ZeroPatternBody {
   View<const double> system;
-  View<const std::uint8_t> is_zero;
+  View<const Zero> is_zero;
 
   TETWARP_HD BadCount operator()(std::int64_t e) const {
-    return {{(system[e] == 0) == (is_zero[e] != 0) ? 0.0 : 1.0}};
+    const Zero now = system[e] == 0 ? Zero::yes : Zero::no;
+    return {{is_zero[e] == Zero::either || is_zero[e] == now ? 0.0 : 1.0}};
   }
 };
 
@@ -155,19 +160,20 @@ struct BlockCheckBody {
     constexpr int most = 12;
     constexpr double smallest_pivot = 1e-13, asymmetry = 0.5e-9;
     const std::int64_t first = diagonal_value[b];
-    const std::int64_t size = dof_start[b + 1] - dof_start[b];
-    if (size > most) return {{1}};
+    const std::int64_t dofs = dof_start[b + 1] - dof_start[b];
+    if (dofs > most) return {{1}};
     double factor[most][most];
-    for (int j = 0; j < size; ++j) {
-      double pivot = system[first + j * size + j];
+    for (int j = 0; j < dofs; ++j) {
+      double pivot = system[first + j * dofs + j];
       const double diagonal = pivot;
       for (int k = 0; k < j; ++k) pivot -= factor[j][k] * factor[j][k];
       if (!(pivot > smallest_pivot * diagonal && diagonal > 0)) return {{1}};
       factor[j][j] = sqrt(pivot);
-      for (int i = j + 1; i < size; ++i) {
-        double sum = system[first + i * size + j];
-        const double mirrored = system[first + j * size + i];
-        if (!(fabs(sum - mirrored) <= asymmetry * max_of(fabs(sum), fabs(mirrored)))) return {{1}};
+      for (int i = j + 1; i < dofs; ++i) {
+        double sum = system[first + i * dofs + j];
+        const double mirrored = system[first + j * dofs + i];
+        const double size = max_of(diagonal, system[first + i * dofs + i]);
+        if (!(fabs(sum - mirrored) <= asymmetry * size)) return {{1}};
         for (int k = 0; k < j; ++k) sum -= factor[i][k] * factor[j][k];
         factor[i][j] = sum / factor[j][j];
       }

@@ -1,11 +1,12 @@
 /// @file resident_results.hpp
 /// Results of a problem in the order of its own arrays, and sums that check them. Products and sums
-/// are rounded one by one, so that velocities have the bits of the host.
+/// of velocities are rounded one by one, so that they have the bits of the host.
 #pragma once
 #include <cstdint>
 
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/base/view.hpp"
+#include "kernels/contact/body_relax.hpp"
 #include "kernels/contact/resident_checks.hpp"
 
 namespace tetwarp {
@@ -80,25 +81,36 @@ struct ContactResultBody {
   }
 };
 
-/// One index = one dof of the problem.
+/// One index = one block of dofs.
 struct BalanceSumsBody {
-  RowsView system_rows;
-  View<const double> system, load, body_velocity;
-  View<const std::int64_t> push_start;   ///< [dofs + 1]: stored numbers of J by column
-  View<const std::int64_t> push_number;  ///< which number
-  View<const std::int32_t> push_row;     ///< its row
-  View<const double> jacobian, impulse;
+  SystemView<double> system;
+  BlockContacts contacts;
+  View<const double> jacobian;  ///< by pairs
+  View<const double> load;      ///< [dofs], by places like the velocities
+  View<const double> impulse;   ///< [3 slots]
+  View<const double> body_velocity;
 
-  TETWARP_HD ResultSums operator()(std::int64_t dof) const {
-    double product = 0, push = 0;
-    for (std::int64_t e = system_rows.row_start[dof]; e < system_rows.row_start[dof + 1]; ++e) {
-      product = add_rn(product, mul_rn(system[e], body_velocity[system_rows.column[e]]));
+  TETWARP_HD ResultSums operator()(std::int64_t b) const {
+    const std::int64_t first = system.dof_start[b], size = system.dof_start[b + 1] - first;
+    ResultSums sums;
+    for (std::int64_t k = 0; k < size; ++k) {
+      double product = 0, push = 0;
+      for (std::int64_t e = system.row_start[b]; e < system.row_start[b + 1]; ++e) {
+        const std::int64_t from = system.dof_start[system.column[e]];
+        const std::int64_t columns = system.dof_start[system.column[e] + 1] - from;
+        const double* const row = system.values.data + system.value_start[e] + k * columns;
+        for (std::int64_t j = 0; j < columns; ++j) product += row[j] * body_velocity[from + j];
+      }
+      for (std::int64_t p = contacts.start[b]; p < contacts.start[b + 1]; ++p) {
+        const double* const r = impulse.data + 3 * std::int64_t{contacts.contact[p]};
+        const double* const j = jacobian.data + contacts.value[p] + k;
+        push += j[0] * r[0] + j[size] * r[1] + j[2 * size] * r[2];
+      }
+      const double own = load[first + k], left = product - push - own;
+      sums +=
+          ResultSums{{{not_finite(body_velocity[first + k]), left * left, push * push, own * own}}};
     }
-    for (std::int64_t e = push_start[dof]; e < push_start[dof + 1]; ++e) {
-      push = add_rn(push, mul_rn(jacobian[push_number[e]], impulse[push_row[e]]));
-    }
-    const double left = product - push - load[dof];
-    return {{{not_finite(body_velocity[dof]), left * left, push * push, load[dof] * load[dof]}}};
+    return sums;
   }
 };
 

@@ -49,6 +49,57 @@ TEST(ContactArraysEmulated, ASolveCopiesCountsAndNoArray) {
   }
 }
 
+/// Which numbers of a block of A are zero does not matter where the problem names its blocks: only
+/// zeros outside of them say what A couples.
+TEST(ContactArraysEmulated, ZerosWithinBlocksChangeNothing) {
+  ContactProblem problem = global_problem(64, 9, 0);
+  ContactSolver host({.backend = Backend::cuda}), solver({.backend = Backend::cuda});
+  solver.set_structure(problem);
+  copied_by(solver, DeviceProblem(problem));
+  uncouple_first_dof(problem.system);
+  const DeviceProblem device(problem);
+
+  const Copied copied = copied_by(solver, device);
+
+  EXPECT_LE(copied.calls.count(DeviceCall::copy_to_host), 8);
+  EXPECT_LE(copied.calls.count(DeviceCall::copy_to_device), 1);
+  EXPECT_EQ(device.impulse.get(), host.solve(problem).impulse);
+}
+
+/// Where the device stops the host goes on, which sends back results and no numbers of the problem.
+TEST(ContactArraysEmulated, IslandsThatDoNotConvergeAreNotSentAgain) {
+  const ContactProblem problem = scenes::sphere_packing({.seed = 65, .edge = 4, .kept = 0.4});
+  ContactOptions options{.tolerance = 1e-13, .max_sweeps = 40, .backend = Backend::cuda};
+  options.skip.converged_islands = false;
+  ContactSolver solver(options);
+  solver.set_structure(problem);
+  const DeviceProblem device(problem);
+  copied_by(solver, device);
+
+  const Copied again = copied_by(solver, device);
+
+  const std::size_t results = 6 * problem.friction.size() + problem.load.size();
+  EXPECT_LE(again.to_device, results * sizeof(double) + 400);
+}
+
+/// A large island is swept stage by stage, so that its solve can be ended.
+TEST(ContactArraysEmulated, ProgressEndsASolve) {
+  const ContactProblem problem =
+      scenes::random_local({.seed = 46, .contacts = 2100, .neighbors = 2});
+  int left = 5;
+  ContactOptions options{.tolerance = 1e-12, .backend = Backend::cuda};
+  options.skip.converged_islands = false;
+  options.progress = [&](const ContactProgress&) { return left-- > 0; };
+  ContactSolver solver(options);
+  solver.set_structure(problem);
+  const DeviceProblem device(problem);
+
+  const ContactReport report = solver.solve(device.arrays, device.target());
+
+  EXPECT_EQ(report.status, ContactStatus::not_converged);
+  EXPECT_NE(report.status_reason.find("cancelled"), std::string::npos) << report.status_reason;
+}
+
 TEST(ContactArraysEmulated, AFailedAllocationLeavesTheSolverUsable) {
   const ContactProblem problem = scenes::sphere_packing({.seed = 62, .edge = 3, .kept = 0.4});
   const DeviceProblem device(problem);

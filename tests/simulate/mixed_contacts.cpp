@@ -72,19 +72,25 @@ ContactTrackerOptions materials(double friction, double stiffness) {
   return options;
 }
 
-HandScene box_on_frame() {
+HandScene stack_on_frame(std::int32_t count) {
   HandScene scene;
   scene.model = empty_model();
-  add_rigid(scene.model, 1, {0.0125 / 3, 0.0125 / 3, 0.02 / 3}, {0, 0, 0.05});
+  for (std::int32_t b = 0; b < count; ++b) {
+    add_rigid(scene.model, 1, {0.0125 / 3, 0.0125 / 3, 0.02 / 3}, {0, 0, 0.05 + 0.1 * b});
+  }
   add_frame(scene.model, {0, 0, 0});
   scene.make_surfaces(0.2);
-  for (const double x : {-0.1, 0.1}) {
-    for (const double y : {-0.1, 0.1}) {
-      Touch touch;
-      touch.body_b = 1;
-      touch.point_a = on_rigid({x, y, -0.05});
-      touch.point_b = on_rigid({x, y, 0});
-      scene.touches.push_back(touch);
+  for (std::int32_t b = 0; b < count; ++b) {
+    for (const double x : {-0.1, 0.1}) {
+      for (const double y : {-0.1, 0.1}) {
+        Touch touch;
+        touch.body_a = b == 0 ? 0 : b - 1;
+        touch.body_b = b == 0 ? count : b;
+        touch.point_a = on_rigid({x, y, b == 0 ? -0.05 : 0.05});
+        touch.point_b = on_rigid({x, y, b == 0 ? 0 : -0.05});
+        touch.normal = {0, 0, b == 0 ? 1.0 : -1.0};
+        scene.touches.push_back(touch);
+      }
     }
   }
   return scene;
@@ -118,8 +124,8 @@ Solved solve(const HandScene& scene,
   solved.contacts = tracker.begin_step(reports, scene.places(scene.model.start), mixed_step);
   ContactSystem system(scene.surfaces, scene.model, options);
   solved.velocity = solved.free;
-  solved.outcome = system.solve(solved.stepper->system(), scene.model.start, tracker,
-                                solved.contacts, solved.velocity);
+  solved.outcome =
+      system.solve(*solved.stepper, scene.model.start, tracker, solved.contacts, solved.velocity);
   solved.solution = system.solution();
   solved.impulses = system.block_impulses();
   return solved;

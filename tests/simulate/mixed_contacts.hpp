@@ -15,8 +15,9 @@ constexpr double mixed_step = 5e-3;  // [s]
 /// frame, with random contacts between all of them; the last block touches nothing.
 HandScene mixed_scene(unsigned seed, double adhesion_area = 0);
 
-/// A box of half edges 0.1, 0.1, 0.05 m and 1 kg on a frame, touching at four corners.
-HandScene box_on_frame();
+/// Boxes of half edges 0.1, 0.1, 0.05 m and 1 kg one on the other, the first on a frame; each
+/// touches what it stands on at its four corners.
+HandScene stack_on_frame(std::int32_t count);
 
 /// All contacts are near; with a stiffness they are bonded.
 ContactTrackerOptions materials(double friction, double stiffness = 0);

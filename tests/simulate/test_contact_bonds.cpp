@@ -45,7 +45,7 @@ Point3 impulse_after(const Point3& way) {
   ContactSystemOptions options;
   options.solver.tolerance = 1e-12;
   ContactSystem system(scene.surfaces, scene.model, options);
-  system.solve(stepper->system(), state, tracker, contacts, velocity);
+  system.solve(*stepper, state, tracker, contacts, velocity);
   return system.block_impulses()[0];
 }
 

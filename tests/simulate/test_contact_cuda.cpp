@@ -1,7 +1,7 @@
 /// @file test_contact_cuda.cpp
 /// Steps with contact on back end cuda against those on cpu, on a device where there is one, and on
-/// the emulated one: stepper and detector are those of the device, and so is the solver of contacts
-/// between rigid bodies; other contacts are solved on the host.
+/// the emulated one: stepper and detector are those of the device, and so are the problem of
+/// contacts between rigid bodies and its solver; other contacts are solved on the host.
 #include <memory>
 
 #include <tetwarp/error.hpp>
@@ -43,13 +43,49 @@ Scene cloth_on_ball() {
   return on_floor({rigid_ball("ball", 0.05, {0, 0, 0.0503}), cloth});
 }
 
-void expect_parity(const Scene& scene, int steps, double tolerance) {
-  std::unique_ptr<Simulator> cuda;
+/// The pile beside a soft box, and a tray that rises below both.
+Scene mixed_on_tray() {
+  Scene scene = rigid_pile();
+  Body soft = elastic_box("soft", {0.02, 0.02, 0.02}, {2, 2, 2});
+  soft.pose.position = {0.15, 0, 0.0203};
+  scene.bodies.push_back(soft);
+  Obstacle tray;
+  tray.name = "tray";
+  tray.geometry = Surface{{{-0.3, -0.3, 0}, {0.3, -0.3, 0}, {0.3, 0.3, 0}, {-0.3, 0.3, 0}},
+                          {{0, 1, 2}, {0, 2, 3}}};
+  tray.path = Path{{0, Point3{0, 0, 0}}, {1, Point3{0.1, 0, 0.05}}};
+  scene.obstacles = {tray};
+  return scene;
+}
+
+/// Two boxes that a coupling ties together, beside a free one.
+Scene tied_boxes() {
+  Scene scene = on_floor({rigid_box("a", {0.02, 0.02, 0.02}, {0, 0, 0.022}),
+                          rigid_box("b", {0.02, 0.02, 0.02}, {0.05, 0, 0.022}),
+                          rigid_box("c", {0.02, 0.02, 0.02}, {0.2, 0, 0.022})});
+  for (Body& body : scene.bodies) body.velocity = {0.2, 0, -0.5};
+  Coupling tie;
+  tie.a = "a";
+  tie.b = "b";
+  tie.points = {{0.025, 0.01, 0.022}, {0.025, -0.01, 0.022}};
+  tie.stiffness = 400;
+  tie.damping = 0.5;
+  scene.couplings = {tie};
+  return scene;
+}
+
+/// On back end cuda; null where no device can be used.
+std::unique_ptr<Simulator> on_cuda(const Scene& scene) {
   try {
-    cuda = std::make_unique<Simulator>(scene, SimulateOptions{.backend = Backend::cuda});
-  } catch (const CudaError& error) {
-    GTEST_SKIP() << error.what();
+    return std::make_unique<Simulator>(scene, SimulateOptions{.backend = Backend::cuda});
+  } catch (const CudaError&) {
+    return nullptr;
   }
+}
+
+void expect_parity(const Scene& scene, int steps, double tolerance) {
+  const std::unique_ptr<Simulator> cuda = on_cuda(scene);
+  if (cuda == nullptr) GTEST_SKIP() << "no usable device";
   Simulator cpu(scene, {.backend = Backend::cpu, .threads = 1});
   std::int64_t most_contacts = 0;
   for (int n = 0; n < steps && !testing::Test::HasFailure(); ++n) {
@@ -76,6 +112,27 @@ void expect_parity(const Scene& scene, int steps, double tolerance) {
 
 TEST(ContactCuda, ARigidPileFallsAsOnTheCpu) {
   expect_parity(rigid_pile(), 40, 1e-6);
+}
+
+TEST(ContactCuda, ARigidPileAndASoftBoxRideOnATrayAsOnTheCpu) {
+  expect_parity(mixed_on_tray(), 30, 1e-6);
+}
+
+TEST(ContactCuda, TiedBoxesAndAFreeOneSlideAsOnTheCpu) {
+  expect_parity(tied_boxes(), 25, 1e-6);
+}
+
+TEST(ContactCuda, ContactsGoOnFromACheckpointBitForBit) {
+  const std::unique_ptr<Simulator> whole = on_cuda(mixed_on_tray());
+  const std::unique_ptr<Simulator> resumed = on_cuda(mixed_on_tray());
+  if (whole == nullptr) GTEST_SKIP() << "no usable device";
+  run(*whole, 12);
+  resumed->restore(whole->checkpoint());
+  run(*whole, 5);
+  run(*resumed, 5);
+
+  EXPECT_GT(whole->record().contacts, 2);
+  EXPECT_EQ(resumed->checkpoint(), whole->checkpoint());
 }
 
 TEST(ContactCuda, ASoftBoxSlidesOnAPlaneAsOnTheCpu) {

@@ -35,7 +35,7 @@ BlockRun run(const HandScene& scene,
     stepper->solve(input);
     const std::vector<TrackedContact> contacts = scene.begin(tracker, result.state, block_step);
     stepper->get_velocities(velocity);
-    system.solve(stepper->system(), result.state, tracker, contacts, velocity);
+    system.solve(*stepper, result.state, tracker, contacts, velocity);
     stepper->set_velocities(velocity);
     stepper->move(block_step, {});
     stepper->get_state(result.state);
@@ -57,7 +57,7 @@ ContactTrackerOptions with_friction(double friction) {
 constexpr double slope = 0.5, g = 9.81;
 
 TEST(ContactBlock, SticksBelowTheThresholdOfFriction) {
-  const HandScene scene = box_on_frame();
+  const HandScene scene = stack_on_frame(1);
   const double c = 1 / std::sqrt(1 + slope * slope), s = slope * c;
   const StepInput input = input_for(scene.model, block_step, {g * s, 0, -g * c});
 
@@ -68,7 +68,7 @@ TEST(ContactBlock, SticksBelowTheThresholdOfFriction) {
 }
 
 TEST(ContactBlock, SlidesAboveTheThresholdOfFriction) {
-  const HandScene scene = box_on_frame();
+  const HandScene scene = stack_on_frame(1);
   const double c = 1 / std::sqrt(1 + slope * slope), s = slope * c, mu = slope / 1.001;
   const StepInput input = input_for(scene.model, block_step, {g * s, 0, -g * c});
 
@@ -80,7 +80,7 @@ TEST(ContactBlock, SlidesAboveTheThresholdOfFriction) {
 
 /// The frame carries the weight: its support takes up the impulses of the contacts.
 TEST(ContactBlock, SupportOfAFrameHoldsTheWeight) {
-  const HandScene scene = box_on_frame();
+  const HandScene scene = stack_on_frame(1);
   const StepInput input = input_for(scene.model, block_step, {0, 0, -g});
 
   const BlockRun rest = run(scene, with_friction(0.3), input, 5);
@@ -92,7 +92,7 @@ TEST(ContactBlock, SupportOfAFrameHoldsTheWeight) {
 
 /// A rising frame lifts the block, a sliding one drags it with friction.
 TEST(ContactBlock, FollowsAMovingFrame) {
-  const HandScene scene = box_on_frame();
+  const HandScene scene = stack_on_frame(1);
   StepInput input = input_for(scene.model, block_step, {0, 0, -g});
   input.prescribed_velocity[2] = {1, 0, 0.5};
 
@@ -105,7 +105,7 @@ TEST(ContactBlock, FollowsAMovingFrame) {
 /// Penetration of 1 m is undone at 0.2 of the body's size per second, while the velocities that the
 /// tracker gets are those of the gaps.
 TEST(ContactBlock, RecoversFromPenetrationSlowly) {
-  HandScene scene = box_on_frame();
+  HandScene scene = stack_on_frame(1);
   scene.model.start.position[0][2] = -0.95;
   const StepInput input = input_for(scene.model, block_step, {0, 0, -g});
 
@@ -117,7 +117,7 @@ TEST(ContactBlock, RecoversFromPenetrationSlowly) {
 
 /// A bonded block hangs below its frame at the gap m g / (area C), in traction all springs alike.
 TEST(ContactBlock, HangsOnItsBonds) {
-  HandScene scene = box_on_frame();
+  HandScene scene = stack_on_frame(1);
   constexpr double area = 1e-3, stiffness = 1e6;
   for (Touch& touch : scene.touches) touch.area = area;
   ContactTrackerOptions tracking = with_friction(0.3);

@@ -111,7 +111,7 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     const std::vector<TrackedContact> contacts = scene.begin(tracker, state, stack_step);
     stepper->get_velocities(step.velocity);
     const StepSystem rows = stepper->system();
-    step.outcome = system.solve(rows, state, tracker, contacts, step.velocity, change);
+    step.outcome = system.solve(*stepper, state, tracker, contacts, step.velocity, change);
 
     ContactIslands islands(scene.model);
     ContactRows jacobian;
@@ -120,8 +120,10 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     std::vector<std::int32_t> all;
     for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
     StepProblem part;
-    part.set(rows, islands, jacobian,
-             std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
+    part.set_pattern(
+        rows.rows, islands, jacobian,
+        std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
+    part.set_numbers(rows);
     tracker.fill(part.problem());
     std::vector<double> dofs;
     for (std::int32_t row = 0; row < rows.rows.unknown_count; ++row) {
@@ -235,7 +237,7 @@ TEST(TwoLevelContact, KeepsVelocitiesWhereContactsStayOpen) {
   const std::vector<Point3> free = velocity;
 
   const ContactSolveOutcome outcome =
-      system.solve(stepper->system(), scene.model.start, tracker, contacts, velocity);
+      system.solve(*stepper, scene.model.start, tracker, contacts, velocity);
 
   EXPECT_TRUE(outcome.converged);
   EXPECT_EQ(outcome.outer_iterations, 0);

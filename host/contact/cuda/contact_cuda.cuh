@@ -84,14 +84,20 @@ class CudaContactDevice final : public ContactDevice {
           GatherBody<3>{indices_.contact_of_slot, problem.guess, view_of(runs_.impulse())});
     };
     end.updates_skipped = runs_.solve(options, start, budget, outcomes);
+    end.has_run = true;
     const auto converged = [](const IslandOutcome& outcome) {
       return outcome.reason == StopReason::converged;
     };
-    if (!std::all_of(outcomes.begin(), outcomes.end(), converged)) return end;
-    const ResultSums sums =
-        resident_.write_results(grid_, problem, indices_, view_of(std::as_const(runs_.impulse())),
-                                view_of(std::as_const(runs_.body_velocity())));
+    if (!std::all_of(outcomes.begin(), outcomes.end(), converged)) {
+      get(runs_.impulse(), end.impulse);
+      get(runs_.body_velocity(), end.body_velocity);
+      return end;
+    }
+    const ResultSums sums = resident_.write_results(grid_, problem, indices_, runs_.numbers(),
+                                                    view_of(std::as_const(runs_.impulse())),
+                                                    view_of(std::as_const(runs_.body_velocity())));
     end.is_solved = sums.bad() == 0;
+    end.has_run = end.is_solved;
     end.balance = structure.is_local ? 0 : sums.balance();
     return end;
   }

@@ -29,6 +29,8 @@ struct ResidentProblem {
 /// How the solve of such a problem ended.
 struct ResidentEnd {
   bool is_solved = false;  ///< false: the host must solve it; nothing useful was written
+  bool has_run = false;    ///< the islands were solved as solve_uncoupled() does
+  std::vector<double> impulse, body_velocity;  ///< of a run that is not solved, as there
   ContactSavings savings;
   std::int64_t updates_skipped = 0;
   double balance = 0;  ///< ContactResidual::balance
@@ -87,7 +89,7 @@ class ContactDevice : public StructureStages {
   /// null they wait for the default stream. Returns when the results are written.
   /// @param outcomes  out, [islands with contacts]
   /// @return  not solved: an island has not converged, the numbers fail a check or need more than
-  ///          sweeps (springs with other gaps than dt w_n)
+  ///          sweeps (springs with other gaps than dt w_n), or the budget is over
   virtual ResidentEnd solve_resident(const ContactOptions& options,
                                      const ContactStructure& structure,
                                      const ResidentProblem& problem,

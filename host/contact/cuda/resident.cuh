@@ -9,6 +9,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/cuda/device_memory.cuh"
 #include "host/contact/problem/vectors.hpp"
+#include "host/contact/structure/structure.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/contact/contact_numbers.hpp"
 #include "kernels/contact/resident_results.hpp"
@@ -31,11 +32,12 @@ class ResidentArrays {
       rows_ = rows_of(problem.delassus);
     } else {
       rows_ = rows_of(problem.jacobian);
-      system_rows_ = rows_of(problem.system);
-      std::vector<std::uint8_t> is_zero;
-      for (const double value : problem.system.value) is_zero.push_back(value == 0 ? 1 : 0);
+      std::vector<Zero> is_zero;
+      for_each_deciding_number(problem, [&](std::size_t e) {
+        is_zero.resize(problem.system.value.size(), Zero::either);
+        is_zero[e] = problem.system.value[e] == 0 ? Zero::yes : Zero::no;
+      });
       is_zero_ = put(is_zero);
-      put_columns(problem.jacobian, problem.dof_count(), put);
     }
     serial_ = structure_serial;
   }
@@ -85,7 +87,7 @@ class ResidentArrays {
     if (indices.is_local) {
       grid.sum_to(label, 0, 3 * contacts, SemidefiniteCheckBody{scales, largest}, &checks[2]);
     } else {
-      grid.sum_to(label, 0, in.matrix.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
+      grid.sum_to(label, 0, is_zero_.size, ZeroPatternBody{in.matrix, is_zero_}, &checks[2]);
       grid.sum_to(
           label, 0, indices.blocks(),
           BlockCheckBody{indices.pairs.dof_start, indices.diagonal_value, numbers.system.values},
@@ -97,12 +99,14 @@ class ResidentArrays {
   }
 
   /// Writes impulses and velocities to the arrays of the caller.
+  /// @param numbers        of the problem, filled
   /// @param impulse        [3 slots]
   /// @param body_velocity  by places, [dofs]
   /// @return  sums over them
   ResultSums write_results(GridContactExec& grid,
                            const ResidentProblem& problem,
                            const ContactIndices& indices,
+                           const ContactNumbers<double>& numbers,
                            View<const double> impulse,
                            View<const double> body_velocity) {
     constexpr const char* label = "contact/result";
@@ -125,9 +129,9 @@ class ResidentArrays {
     sums_.resize(2);
     const View<ResultSums> sums = view_of(sums_);
     grid.sum_to(label, 0, r.size, ContactResultBody{r, u}, &sums[0]);
-    grid.sum_to(label, 0, indices.dofs(),
-                BalanceSumsBody{system_rows_, in.matrix, in.load, v, push_start_, push_number_,
-                                push_row_, in.jacobian, r},
+    grid.sum_to(label, 0, indices.blocks(),
+                BalanceSumsBody{numbers.system, numbers.block_contacts, numbers.bodies.jacobian,
+                                numbers.load, impulse, body_velocity},
                 &sums[1]);
     return grid.sum<ResultSums>(label, 0, 2, ReadySums<ResultSums>{View<const ResultSums>(sums)});
   }
@@ -135,33 +139,10 @@ class ResidentArrays {
  private:
   static constexpr std::int64_t check_count = 4;
 
-  /// Stored numbers of J by column, in the order of rows.
-  template <class Put>
-  void put_columns(const SparseMatrix& jacobian, std::int64_t columns, const Put& put) {
-    std::vector<std::int64_t> start(index_of(columns) + 1, 0), number(jacobian.column.size());
-    std::vector<std::int32_t> row(jacobian.column.size());
-    for (const std::int32_t column : jacobian.column) ++start[index_of(column) + 1];
-    for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
-    std::vector<std::int64_t> next = start;
-    for (std::int64_t r = 0; r < jacobian.rows; ++r) {
-      for (std::int64_t e = jacobian.row_start[index_of(r)];
-           e < jacobian.row_start[index_of(r) + 1]; ++e) {
-        const std::int64_t place = next[index_of(jacobian.column[index_of(e)])]++;
-        number[index_of(place)] = e;
-        row[index_of(place)] = static_cast<std::int32_t>(r);
-      }
-    }
-    push_start_ = put(start);
-    push_number_ = put(number);
-    push_row_ = put(row);
-  }
-
   std::int64_t serial_ = 0;  ///< of the structure that the pattern belongs to
   DeviceArrays arrays_;
-  RowsView rows_, system_rows_;       ///< of J or W; of A
-  View<const std::uint8_t> is_zero_;  ///< [stored numbers of A]: 1 where it is zero
-  View<const std::int64_t> push_start_, push_number_;  ///< see BalanceSumsBody
-  View<const std::int32_t> push_row_;
+  RowsView rows_;             ///< of J or W
+  View<const Zero> is_zero_;  ///< [stored numbers of A], or empty: they may all be zero or not
   DeviceVector<double> recovered_, impulse_, velocity_, body_velocity_;
   DeviceVector<BadCount> checks_;
   DeviceVector<LargestOf<2>> largest_;

@@ -9,11 +9,11 @@
 
 namespace tetwarp {
 namespace {
-std::vector<std::int64_t> zeros_of(const SparseMatrix& matrix) {
+std::vector<std::int64_t> zeros_of(const ContactProblem& problem) {
   std::vector<std::int64_t> zeros;
-  for (std::size_t e = 0; e < matrix.value.size(); ++e) {
-    if (matrix.value[e] == 0) zeros.push_back(static_cast<std::int64_t>(e));
-  }
+  for_each_deciding_number(problem, [&](std::size_t e) {
+    if (problem.system.value[e] == 0) zeros.push_back(static_cast<std::int64_t>(e));
+  });
   return zeros;
 }
 
@@ -86,8 +86,8 @@ ContactStructure make_dense_structure(std::int64_t contacts) {
 }
 
 ContactPattern pattern_of(const ContactProblem& problem) {
-  return {problem.delassus.row_start, problem.delassus.column,  problem.system.row_start,
-          problem.system.column,      zeros_of(problem.system), problem.jacobian.row_start,
+  return {problem.delassus.row_start, problem.delassus.column, problem.system.row_start,
+          problem.system.column,      zeros_of(problem),       problem.jacobian.row_start,
           problem.jacobian.column,    problem.block_start};
 }
 
@@ -96,7 +96,7 @@ bool has_pattern(const ContactProblem& problem, const ContactPattern& pattern) {
          problem.delassus.column == pattern.delassus_column &&
          problem.system.row_start == pattern.system_row &&
          problem.system.column == pattern.system_column &&
-         zeros_of(problem.system) == pattern.system_zeros &&
+         zeros_of(problem) == pattern.system_zeros &&
          problem.jacobian.row_start == pattern.jacobian_row &&
          problem.jacobian.column == pattern.jacobian_column &&
          problem.block_start == pattern.block_start;

@@ -73,14 +73,34 @@ ContactStructure make_structure(const ContactProblem& problem,
 /// @param contacts  1 or more
 ContactStructure make_dense_structure(std::int64_t contacts);
 
-/// The data of a problem that determine its structure: the index arrays, and which stored numbers
-/// of A are zero, since blocks and couplings follow from the others.
+/// Calls visit(number) for the stored numbers of A from which blocks and couplings follow, by
+/// whether they are zero: all of them, or where the problem names its blocks those outside of the
+/// blocks.
+template <class Visit>
+void for_each_deciding_number(const ContactProblem& problem, const Visit& visit) {
+  const SparseMatrix& a = problem.system;
+  std::size_t end = 0;  // block after that of the row
+  for (std::size_t row = 0; row + 1 < a.row_start.size(); ++row) {
+    std::int32_t first = 0, last = 0;
+    if (!problem.block_start.empty()) {
+      while (index_of(problem.block_start[end]) <= row) ++end;
+      first = problem.block_start[end - 1], last = problem.block_start[end];
+    }
+    for (std::int64_t e = a.row_start[row]; e < a.row_start[row + 1]; ++e) {
+      const std::int32_t column = a.column[index_of(e)];
+      if (column < first || column >= last) visit(index_of(e));
+    }
+  }
+}
+
+/// The data of a problem that determine its structure: the index arrays, and which of the deciding
+/// numbers of A are zero.
 struct ContactPattern {
   std::vector<std::int64_t> delassus_row;
   std::vector<std::int32_t> delassus_column;
   std::vector<std::int64_t> system_row;
   std::vector<std::int32_t> system_column;
-  std::vector<std::int64_t> system_zeros;  ///< stored entries that are zero
+  std::vector<std::int64_t> system_zeros;  ///< deciding numbers that are zero
   std::vector<std::int64_t> jacobian_row;
   std::vector<std::int32_t> jacobian_column;
   std::vector<std::int32_t> block_start;

@@ -2,14 +2,13 @@
 #include "host/base/index_of.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {
 
-/// Appends the blocks of contacts, one contact after the other.
+/// Appends the arms of contacts, one contact after the other.
 class RowMaker {
  public:
   RowMaker(const SceneSurfaces& scene,
@@ -20,15 +19,33 @@ class RowMaker {
       : scene_(scene), model_(model), frames_(frames), state_(state), rows_(rows) {}
 
   void add(const TrackedContact& contact) {
-    first_ = rows_.block.size();
-    axes_ = &contact.axes;
+    arms_.clear();
     add_side(contact.key.body_a, contact.material_a, contact.point_a_world, 1);
     add_side(contact.key.body_b, contact.material_b, contact.point_b_world, -1);
-    sort();
+    std::sort(arms_.begin(), arms_.end(),
+              [](const BlockArm& a, const BlockArm& b) { return a.block < b.block; });
+    const auto number = static_cast<std::int32_t>(rows_.start.size()) - 1;
+    for (const BlockArm& own : arms_) {
+      const bool is_frame = own.block >= model_.node_count;
+      const auto first = static_cast<std::int32_t>(9 * rows_.block.size());
+      rows_.arms.push_back(own.arm);
+      rows_.places.push_back({number, first, 3, is_frame ? 9 : 0});
+      rows_.block.push_back(own.block);
+      if (is_frame) rows_.block.push_back(own.block + 1);
+    }
+    for (const Point3& axis : contact.axes) {
+      rows_.axes.insert(rows_.axes.end(), axis.begin(), axis.end());
+    }
     rows_.start.push_back(static_cast<std::int32_t>(rows_.block.size()));
+    rows_.arm_start.push_back(static_cast<std::int32_t>(rows_.arms.size()));
   }
 
  private:
+  struct BlockArm {
+    std::int32_t block = 0;  ///< of a frame the first one
+    ContactArm arm;
+  };
+
   void add_side(std::int32_t body,
                 const MaterialPoint& material,
                 const Point3& point,
@@ -47,49 +64,23 @@ class RowMaker {
         continue;
       }
       for (std::size_t n = 0; n < 4; ++n) {
-        if (vertex.node[n] >= 0) add_linear(vertex.node[n], weight * vertex.weight[n]);
+        if (vertex.node[n] >= 0) arm_of(vertex.node[n]).weight += weight * vertex.weight[n];
       }
     }
   }
 
   void add_frame(std::int32_t frame, const Point3& point, double weight) {
-    const std::int32_t linear = model_.node_count + 2 * frame;
     const Point3& centre = state_.position[index_of(model_.node_count + frame)];
-    Point3 arm;
-    for (std::size_t i = 0; i < 3; ++i) arm[i] = point[i] - centre[i];
-    add_linear(linear, weight);
-    std::array<double, 9>& value = value_of(linear + 1);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Point3 lever = cross(arm, (*axes_)[k]);
-      for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += weight * lever[i];
-    }
+    ContactArm& arm = arm_of(model_.node_count + 2 * frame);
+    arm.weight += weight;
+    for (std::size_t i = 0; i < 3; ++i) arm.lever[i] += weight * (point[i] - centre[i]);
   }
 
-  void add_linear(std::int32_t block, double weight) {
-    std::array<double, 9>& value = value_of(block);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += weight * (*axes_)[k][i];
-    }
-  }
-
-  std::array<double, 9>& value_of(std::int32_t block) {
-    const auto begin = rows_.block.begin() + static_cast<std::ptrdiff_t>(first_);
-    const auto found = std::find(begin, rows_.block.end(), block);
-    const auto place = static_cast<std::size_t>(found - rows_.block.begin());
-    if (found == rows_.block.end()) {
-      rows_.block.push_back(block);
-      rows_.value.push_back({});
-    }
-    return rows_.value[place];
-  }
-
-  void sort() {
-    for (std::size_t i = first_ + 1; i < rows_.block.size(); ++i) {
-      for (std::size_t k = i; k > first_ && rows_.block[k] < rows_.block[k - 1]; --k) {
-        std::swap(rows_.block[k], rows_.block[k - 1]);
-        std::swap(rows_.value[k], rows_.value[k - 1]);
-      }
-    }
+  ContactArm& arm_of(std::int32_t block) {
+    const auto found = std::find_if(arms_.begin(), arms_.end(),
+                                    [&](const BlockArm& arm) { return arm.block == block; });
+    if (found != arms_.end()) return found->arm;
+    return arms_.emplace_back(BlockArm{block, {}}).arm;
   }
 
   const SceneSurfaces& scene_;
@@ -97,8 +88,7 @@ class RowMaker {
   std::span<const std::int32_t> frames_;
   const ModelState& state_;
   ContactRows& rows_;
-  std::size_t first_ = 0;                        ///< entry of the current contact
-  const std::array<Point3, 3>* axes_ = nullptr;  ///< of the current contact
+  std::vector<BlockArm> arms_;  ///< of the current contact, each block once
 };
 
 }  // namespace
@@ -119,10 +109,21 @@ void set_contact_rows(const SceneSurfaces& scene,
                       const std::vector<TrackedContact>& contacts,
                       ContactRows& rows) {
   rows.start.assign(1, 0);
+  rows.arm_start.assign(1, 0);
   rows.block.clear();
-  rows.value.clear();
+  rows.axes.clear();
+  rows.arms.clear();
+  rows.places.clear();
   RowMaker maker(scene, model, frames, state, rows);
   for (const TrackedContact& contact : contacts) maker.add(contact);
+  rows.value.resize(rows.block.size());
+  const auto count = static_cast<std::int64_t>(rows.arms.size());
+  const ContactRowsBody body = {{rows.axes.data(), static_cast<std::int64_t>(rows.axes.size())},
+                                {rows.arms.data(), count},
+                                {rows.places.data(), count},
+                                {reinterpret_cast<double*>(rows.value.data()),
+                                 9 * static_cast<std::int64_t>(rows.value.size())}};
+  for (std::int64_t a = 0; a < count; ++a) body(a);
 }
 
 }  // namespace tetwarp

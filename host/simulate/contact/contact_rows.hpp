@@ -9,6 +9,7 @@
 #include <tetwarp/contact_tracker.hpp>
 
 #include "host/simulate/contact/scene_surfaces.hpp"
+#include "kernels/body/problem_rows.hpp"
 
 namespace tetwarp {
 
@@ -19,9 +20,20 @@ struct ContactRows {
   std::vector<std::array<double, 9>> value;  ///< [entries] row k: velocity along axis k of the
                                              ///< contact per velocity of the block
 
+  // What the numbers are made of; see ContactRowsBody.
+  std::vector<double> axes;             ///< [contacts][9]
+  std::vector<std::int32_t> arm_start;  ///< [contacts + 1]
+  std::vector<ContactArm> arms;         ///< of nodes and frames, in the order of the blocks
+  std::vector<ArmPlace> places;         ///< [arms] in `value`
+
   std::span<const std::int32_t> blocks_of(std::size_t contact) const {
     return std::span(block).subspan(static_cast<std::size_t>(start[contact]),
                                     static_cast<std::size_t>(start[contact + 1] - start[contact]));
+  }
+  /// The node of an arm, or the first block of its frame, which either has unknowns in both or in
+  /// none.
+  std::int32_t block_of_arm(std::int32_t arm) const {
+    return block[static_cast<std::size_t>(places[static_cast<std::size_t>(arm)].first / 9)];
   }
 };
 

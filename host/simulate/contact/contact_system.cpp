@@ -6,46 +6,13 @@
 #include <cmath>
 
 #include "host/simulate/contact/contact_islands.hpp"
+#include "host/simulate/contact/contact_laws.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
-#include "host/simulate/contact/step_problem.hpp"
+#include "host/simulate/contact/solver_islands.hpp"
 #include "host/simulate/contact/two_level_solver.hpp"
+#include "host/simulate/resident_contacts.hpp"
 
 namespace tetwarp {
-namespace {
-
-/// Copies the entries of some contacts, `width` numbers of each.
-void gather(const std::vector<std::int32_t>& contacts,
-            std::size_t width,
-            const std::vector<double>& from,
-            std::vector<double>& to) {
-  to.clear();
-  for (const std::int32_t contact : contacts) {
-    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(width * index_of(contact));
-    to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
-  }
-}
-
-/// Copies friction, offsets, adhesion and guess of some contacts.
-void gather_laws(const std::vector<std::int32_t>& contacts,
-                 const ContactProblem& from,
-                 ContactProblem& to) {
-  const AdhesionState& adhesion = from.adhesion;
-  gather(contacts, 1, from.friction, to.friction);
-  gather(contacts, 3, from.velocity_offset, to.velocity_offset);
-  gather(contacts, 3, from.impulse_guess, to.impulse_guess);
-  to.adhesion.time_step = adhesion.time_step;
-  gather(contacts, 1, adhesion.area, to.adhesion.area);
-  gather(contacts, 1, adhesion.stiffness, to.adhesion.stiffness);
-  gather(contacts, 1, adhesion.tangential_stiffness, to.adhesion.tangential_stiffness);
-  gather(contacts, 1, adhesion.intensity, to.adhesion.intensity);
-  gather(contacts, 3, adhesion.gap, to.adhesion.gap);
-  gather(contacts, 1, adhesion.energy, to.adhesion.energy);
-  gather(contacts, 1, adhesion.viscosity, to.adhesion.viscosity);
-  gather(contacts, 1, adhesion.bonding_rate, to.adhesion.bonding_rate);
-  gather(contacts, 1, adhesion.saturation_pressure, to.adhesion.saturation_pressure);
-}
-
-}  // namespace
 
 struct ContactSystem::State {
   /// Coupling islands and contacts that one solver takes.
@@ -72,7 +39,7 @@ struct ContactSystem::State {
         frames(frames_of_bodies(surfaces, of)),
         islands(of),
         two_level(of, given.solver, given.factors),
-        solver(given.solver) {}
+        solver_islands(given.solver) {}
 
   void set_laws(const ContactTracker& tracker,
                 const std::vector<TrackedContact>& contacts,
@@ -80,8 +47,8 @@ struct ContactSystem::State {
   void set_bond(const TrackedContact& contact, std::size_t c);
   void divide();
   void take_impulses(const Share& share,
-                     const std::vector<double>& impulse,
-                     const std::vector<double>& velocity);
+                     std::span<const double> impulse,
+                     std::span<const double> velocity);
   void add_block_impulses();
   double recovery_speed(const ContactKey& key) const;
   bool iterates_two_levels() const;
@@ -95,11 +62,11 @@ struct ContactSystem::State {
   ContactProblem laws, soft_laws;  ///< friction, offsets, adhesion, guess; no matrices
   Share soft, other;               ///< of the two-level iteration, of the contact solver
   TwoLevelSolver two_level;
-  StepProblem part;
-  ContactSolver solver;
-  std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
-  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
-                                   ///< because only a bond is left
+  SolverIslands solver_islands;
+  ResidentContacts* resident = nullptr;  ///< has all velocities that contacts have changed, or null
+  std::vector<double> prescribed;        ///< [3 contacts] J_p v_p of prescribed velocities v_p
+  std::vector<double> recovered;  ///< [contacts] normal offset that was added to slow recovery, or
+                                  ///< because only a bond is left
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
@@ -184,8 +151,8 @@ void ContactSystem::State::divide() {
 }
 
 void ContactSystem::State::take_impulses(const Share& share,
-                                         const std::vector<double>& impulse,
-                                         const std::vector<double>& velocity) {
+                                         std::span<const double> impulse,
+                                         std::span<const double> velocity) {
   for (std::size_t k = 0; k < share.contacts.size(); ++k) {
     const std::size_t c = index_of(share.contacts[k]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -216,7 +183,7 @@ ContactSystem::ContactSystem(const SceneSurfaces& scene,
 
 ContactSystem::~ContactSystem() = default;
 
-ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
+ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
                                          const ModelState& state,
                                          const ContactTracker& tracker,
                                          const std::vector<TrackedContact>& contacts,
@@ -229,6 +196,7 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
   s.islands.join(s.rows);
   s.set_laws(tracker, contacts, velocity);
   s.divide();
+  s.resident = nullptr;
   s.solution.report = {};
   s.solution.impulse.assign(3 * contacts.size(), 0);
   s.solution.velocity = s.laws.velocity_offset;  // of contacts that act on no unknown
@@ -236,9 +204,9 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
   outcome.islands = s.islands.contact_island_count();
   if (!s.soft.is_empty()) {
     gather_laws(s.soft.contacts, s.laws, s.soft_laws);
-    const TwoLevelOutcome solved =
-        s.two_level.solve(system, state, s.islands, s.rows, s.soft.islands, s.soft.contacts,
-                          s.soft_laws, change != nullptr ? *change : none, velocity);
+    const TwoLevelOutcome solved = s.two_level.solve(stepper.system(), state, s.islands, s.rows,
+                                                     s.soft.islands, s.soft.contacts, s.soft_laws,
+                                                     change != nullptr ? *change : none, velocity);
     outcome.outer_iterations = solved.outer_iterations;
     outcome.sweeps = solved.sweeps;
     if (solved.is_result) {
@@ -250,23 +218,27 @@ ContactSolveOutcome ContactSystem::solve(const StepSystem& system,
     }
   }
   if (!s.other.is_empty()) {
-    s.part.set(system, s.islands, s.rows, s.other.islands, s.other.contacts);
-    ContactProblem& problem = s.part.problem();
-    gather_laws(s.other.contacts, s.laws, problem);
-    const ContactSolution solved = s.solver.solve(problem);
-    s.part.scatter(solved.body_velocity, velocity);
-    s.take_impulses(s.other, solved.impulse, solved.velocity);
-    s.solution.report = solved.report;
-    outcome.converged = outcome.converged && solved.converged();
-    outcome.residual = std::max(outcome.residual, solved.report.residual.eta);
-    outcome.sweeps += solved.report.sweeps;
-    outcome.outer_iterations += solved.report.outer_iterations;
+    s.solution.report = s.solver_islands.solve(stepper, s.islands, s.rows, s.other.islands,
+                                               s.other.contacts, s.laws, velocity);
+    s.take_impulses(s.other, s.solver_islands.impulse(), s.solver_islands.contact_velocity());
+    if (s.soft.is_empty()) s.resident = s.solver_islands.resident();
+    const ContactReport& report = s.solution.report;
+    outcome.converged = outcome.converged && s.solution.converged();
+    outcome.residual = std::max(outcome.residual, report.residual.eta);
+    outcome.sweeps += report.sweeps;
+    outcome.outer_iterations += report.outer_iterations;
   }
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
   // The tracker reads gaps from the velocities: without what slows recovery.
   for (std::size_t c = 0; c < contacts.size(); ++c) s.solution.velocity[3 * c] -= s.recovered[c];
   return outcome;
+}
+
+void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
+                                   BodyStepper& stepper) const {
+  state_->resident != nullptr ? state_->resident->set_velocities()
+                              : stepper.set_velocities(velocity);
 }
 
 const ContactSolution& ContactSystem::solution() const {

@@ -40,7 +40,8 @@ class ContactSystem {
 
   /// Solves the coupling islands that have contacts, together with their contacts; the others keep
   /// their velocities.
-  /// @param system    of the step, from BodyStepper::system()
+  /// @param stepper   after its solve(); its system is copied to the host only if an island is
+  ///                  solved from it there
   /// @param state     at the start of the step
   /// @param tracker   its step has begun; contacts in the order of its last begin_step()
   /// @param contacts  what begin_step() returned
@@ -49,12 +50,16 @@ class ContactSystem {
   ///                  empty; out: the same of this one, [block_count]. It saves outer iterations;
   ///                  the results depend on it within the tolerance, so it is part of the state of
   ///                  a simulation. Null: not used
-  ContactSolveOutcome solve(const StepSystem& system,
+  ContactSolveOutcome solve(BodyStepper& stepper,
                             const ModelState& state,
                             const ContactTracker& tracker,
                             const std::vector<TrackedContact>& contacts,
                             std::vector<Point3>& velocity,
                             std::vector<Point3>* change = nullptr);
+
+  /// Gives the velocities of the last solve() to the stepper; those that its device has already are
+  /// not copied there.
+  void set_velocities(const std::vector<Point3>& velocity, BodyStepper& stepper) const;
 
   /// Impulses and velocities of all contacts of the last solve(), in their order; for
   /// ContactTracker::end_step().

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cuda/resident_contacts_cuda.cuh"
 #include "host/simulate/cuda/resident_state_cuda.cuh"
 #include "host/simulate/cuda/step_exec_cuda.cuh"
 
@@ -17,6 +18,7 @@ class CudaStepper final : public BodyStepper {
       : exec_(options.device),
         pipeline_(exec_, model, options),
         resident_(exec_, model, pipeline_),
+        contacts_(exec_, pipeline_),
         name_(std::move(name)) {}
 
   std::string device() const override { return name_; }
@@ -58,11 +60,13 @@ class CudaStepper final : public BodyStepper {
     return {pipeline_.position_of(first_node), count, Memory::device};
   }
   ResidentState* resident_state() override { return &resident_; }
+  ResidentContacts* resident_contacts() override { return &contacts_; }
 
  private:
   mutable CudaStepExec exec_;  ///< reads need its stream
   BodyPipeline<CudaStepExec, T> pipeline_;
   CudaResidentState<T> resident_;
+  CudaResidentContacts<T> contacts_;
   std::string name_;
 };
 

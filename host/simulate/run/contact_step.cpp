@@ -180,9 +180,8 @@ bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
   const Clock clock(part.contact_seconds);
   velocity_ = free_velocity_;
   if (contacts_->empty()) return false;
-  if (!std::exchange(has_step_system_, true)) step_system_ = stepper.system();
   const ContactSolveOutcome outcome =
-      system_.solve(step_system_, *start_, tracker_, *contacts_, velocity_, &change_);
+      system_.solve(stepper, *start_, tracker_, *contacts_, velocity_, &change_);
   part.converged = outcome.converged;
   part.residual = outcome.residual;
   part.sweeps += outcome.sweeps;
@@ -258,7 +257,6 @@ ContactPart ContactStep::advance(const ModelState& start,
   start_ = &start;
   set_time_step(time_step);
   was_ended_ = false;
-  has_step_system_ = false;
   contacts_ = nullptr;
   pairs_.clear();
   pass_of_.clear();
@@ -281,7 +279,7 @@ ContactPart ContactStep::advance(const ModelState& start,
       change_.clear();
     } else {
       part.contacts = static_cast<std::int64_t>(contacts_->size());
-      stepper.set_velocities(velocity_);
+      system_.set_velocities(velocity_, stepper);
       sum_impulses();
     }
   }

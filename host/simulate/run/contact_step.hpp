@@ -164,8 +164,6 @@ class ContactStep {
   // Of the running part; kept, so that steps do not allocate them.
   const ModelState* start_ = nullptr;
   double time_step_ = 0;
-  StepSystem step_system_;  ///< read when contacts need it
-  bool has_step_system_ = false;
   std::vector<Point3> free_velocity_, velocity_;
   std::vector<Point3> change_;          ///< see ContactMemory
   std::vector<SurfaceMotion> motions_;  ///< of the detections

@@ -1,0 +1,17 @@
+/// @file contact_laws.hpp
+/// Friction, offsets, adhesion and guess of some of the contacts of a step.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+namespace tetwarp {
+
+/// Copies the laws of some contacts; nothing else of the problems is read or changed.
+/// @param contacts  numbers of contacts of `from`
+void gather_laws(const std::vector<std::int32_t>& contacts,
+                 const ContactProblem& from,
+                 ContactProblem& to);
+
+}  // namespace tetwarp
