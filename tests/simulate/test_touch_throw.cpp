@@ -68,6 +68,29 @@ TEST(Squeezing, OfARigidBodyHoldsThePaths) {
   EXPECT_GE(simulator.record().bodies[1].centre[2], 0.105);
 }
 
+/// However a box lies between walls that close, contact does not throw it.
+TEST(Squeezing, LeavesARigidBodySlow) {
+  for (const double tilt : {1e-3, 0.6}) {
+    Body box = rigid_box("box", {0.05, 0.04, 0.03}, {0, 0, 0.08});
+    const double length = std::hypot(1, tilt, 0.3);
+    box.pose.rotation = {1 / length, tilt / length, 0, 0.3 / length};
+    Body lid = elastic_box("lid", {0.1, 0.1, 0.005}, {1, 1, 1});
+    lid.kind = BodyKind::scripted;
+    lid.pose.position = {0, 0, 0.17};
+    lid.motion = Path{{0, Point3{0, 0, 0}}, {0.1, Point3{0, 0, -0.16}}};
+    Scene scene = scene_of({box, lid}, 0.005);
+    scene.obstacles = {plane_at(0)};
+    scene.thickness = 2e-4;
+    Simulator simulator(scene);
+    double fastest = 0;
+    for (int n = 0; n < 25; ++n) {
+      ASSERT_TRUE(simulator.step());
+      fastest = std::max(fastest, norm(simulator.record().bodies[0].velocity));
+    }
+    EXPECT_LT(fastest, 20) << tilt;
+  }
+}
+
 /// A moving obstacle takes a body with it.
 TEST(Obstacles, PushBodies) {
   Obstacle wall = plate_at(0, 0.1);

@@ -50,6 +50,7 @@ struct ContactSystem::State {
                      std::span<const double> impulse,
                      std::span<const double> velocity);
   void add_block_impulses();
+  bool stop_wild_turns(std::vector<Point3>& velocity);
   double recovery_speed(const ContactKey& key) const;
   bool iterates_two_levels() const;
 
@@ -176,6 +177,33 @@ void ContactSystem::State::add_block_impulses() {
   }
 }
 
+/// Contacts are linear in the velocities of a step. A body with corners that has no room between
+/// others can satisfy them by turning many times within the step, at any speed. One that contacts
+/// turn by more than half a turn stands still instead, without impulses. @returns whether one does
+bool ContactSystem::State::stop_wild_turns(std::vector<Point3>& velocity) {
+  const double most = std::acos(-1.0) / laws.adhesion.time_step;
+  std::vector<std::uint8_t> is_stopped;
+  for (std::int32_t r = 0; r < model.rigid_count; ++r) {
+    const std::size_t block = index_of(model.node_count + 2 * r);
+    const CollisionBody& parts = scene.surfaces.bodies[index_of(model.rigid.body[index_of(r)])];
+    const Point3 &turn = velocity[block + 1], &before = velocity_before[block + 1];
+    if (model.prescribed[block] != 0 || parts.first_triangle == parts.triangle_end) continue;
+    if (!(norm(turn) > most && norm(minus(turn, before)) > most)) continue;
+    velocity[block] = velocity[block + 1] = {0, 0, 0};
+    is_stopped.resize(velocity.size(), 0);
+    is_stopped[block] = 1;
+  }
+  if (is_stopped.empty()) return false;
+  resident = nullptr;
+  for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
+    const auto blocks = rows.blocks_of(c);
+    if (std::ranges::any_of(blocks, [&](std::int32_t b) { return is_stopped[index_of(b)] != 0; })) {
+      std::fill_n(solution.impulse.begin() + static_cast<std::ptrdiff_t>(3 * c), 3, 0.0);
+    }
+  }
+  return true;
+}
+
 ContactSystem::ContactSystem(const SceneSurfaces& scene,
                              const Model& model,
                              const ContactSystemOptions& options)
@@ -228,6 +256,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
     outcome.sweeps += report.sweeps;
     outcome.outer_iterations += report.outer_iterations;
   }
+  if (s.stop_wild_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
   // The tracker reads gaps from the velocities: without what slows recovery.

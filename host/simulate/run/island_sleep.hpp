@@ -31,15 +31,15 @@ struct SleepState {
   std::vector<std::uint64_t> inputs;  ///< hash of the loads and anchors of the last step
 };
 
-/// A coupling island sleeps when, for 0.5 s, its points have moved by less than a thousandth of the
-/// size of its smallest body per second, loads, anchors and supports have not changed, and the same
-/// holds for all islands that it touches, with contacts that stick. It then stands still, without
-/// velocity. It wakes, with all that touches it, when its loads, anchors or supports change, and
-/// when something that moves reaches it.
+/// A coupling island sleeps when, for 0.5 s, its points have moved by less than two thousandths of
+/// the size of its smallest body per second, loads, anchors and supports have not changed, and the
+/// same holds for all islands that it touches, with contacts that stick. It then stands still,
+/// without velocity. It wakes, with all that touches it, when its loads, anchors or supports
+/// change, and when something that moves reaches it.
 class IslandSleep {
  public:
   static constexpr double rest_time = 0.5;    ///< [s]
-  static constexpr double rest_speed = 1e-3;  ///< [body sizes / s]
+  static constexpr double rest_speed = 2e-3;  ///< [body sizes / s]
 
   /// @param model  kept by the caller
   IslandSleep(const Scene& scene, const SceneGeometry& geometry, const Model& model);
