@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <vector>
+
+#include "host/base/disjoint_sets.hpp"
 
 namespace tetwarp {
 namespace {
@@ -77,28 +78,6 @@ std::vector<std::uint8_t> touched_tets(const TetMesh& mesh,
   }
   return is_touched;
 }
-
-/// Sets of nodes, each named by its lowest.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  std::int32_t root_of(std::int32_t item) {
-    while (at(parent_, item) != item) {
-      const std::int32_t above = at(parent_, item);
-      item = parent_[static_cast<std::size_t>(item)] = at(parent_, above);
-    }
-    return item;
-  }
-  void unite(std::int32_t a, std::int32_t b) {
-    const auto [low, high] = std::minmax({root_of(a), root_of(b)});
-    parent_[static_cast<std::size_t>(high)] = low;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 }  // namespace
 
 bool may_touch(const std::array<Point3, 4>& tet, const std::array<Point3, 3>& triangle) {
@@ -145,17 +124,19 @@ TetMesh make_surface_lattice(const std::string& place, const Surface& surface, s
   std::vector<std::uint8_t> is_kept = touched_tets(mesh, frame, surface);
   // No triangle touches the nodes of the other tetrahedra: those that share one are inside or
   // outside together.
-  Sets sets(mesh.nodes.size());
+  DisjointSets sets(mesh.nodes.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (is_kept[t]) continue;
-    for (const std::int32_t node : mesh.tets[t]) sets.unite(mesh.tets[t][0], node);
+    for (const std::int32_t node : mesh.tets[t]) {
+      sets.unite(static_cast<std::size_t>(mesh.tets[t][0]), static_cast<std::size_t>(node));
+    }
   }
   std::vector<std::int8_t> is_inside(mesh.nodes.size(), -1);  // of the lowest node of a set
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (is_kept[t]) continue;
-    const std::int32_t root = sets.root_of(mesh.tets[t][0]);
-    std::int8_t& inside = is_inside[static_cast<std::size_t>(root)];
-    if (inside < 0) inside = winding_number(surface, at(mesh.nodes, root)) > 0.5;
+    const std::size_t root = sets.root_of(static_cast<std::size_t>(mesh.tets[t][0]));
+    std::int8_t& inside = is_inside[root];
+    if (inside < 0) inside = winding_number(surface, mesh.nodes[root]) > 0.5;
     is_kept[t] = inside != 0;
   }
   keep_tets(mesh, is_kept);

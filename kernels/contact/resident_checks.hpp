@@ -57,7 +57,8 @@ struct RangeCheckBody {
   }
 };
 
-/// What the pattern of a problem asks of a stored number of A.
+/// Whether a stored number of A was zero when the structure was made; `either`: the structure does
+/// not depend on it.
 enum class Zero : std::uint8_t { no, yes, either };
 
 /// One index = one stored number of A: 1 where it has become zero, or is zero no longer, and blocks

@@ -1,5 +1,6 @@
 /// @file test_flat_edges.cpp
-/// Edges within flat faces of rigid bodies: which they are, and that pairs of them decide nothing.
+/// Edges within flat faces of rigid bodies: which edges are marked, and that distances and hits are
+/// the same without them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -42,20 +42,21 @@ TEST(Throws, ASoftBallStaysAboveAPlate) {
   }
 }
 
-/// A rigid box between walls cannot give way: the walls end where the box is.
-TEST(Squeezing, OfARigidBodyHoldsThePaths) {
-  Body box = rigid_box("box", {0.05, 0.05, 0.05}, {0, 0, 0.06});
-  Body lid;
-  lid.name = "lid";
+/// A body on a floor and a lid at a height, which goes down by `way` within 0.1 s.
+Scene under_a_lid(const Body& body, double height, double way) {
+  Body lid = elastic_box("lid", {0.1, 0.1, 0.005}, {1, 1, 1});
   lid.kind = BodyKind::scripted;
-  lid.geometry = Shape{BoxShape{{0.1, 0.1, 0.005}}};
-  lid.lattice = Lattice{.cells = {{1, 1, 1}}};
-  lid.pose.position = {0, 0, 0.13};
-  lid.motion = Path{{0, Point3{0, 0, 0}}, {0.1, Point3{0, 0, -0.1}}};
-  Scene scene = scene_of({box, lid}, 0.005);
+  lid.pose.position = {0, 0, height};
+  lid.motion = Path{{0, Point3{0, 0, 0}}, {0.1, Point3{0, 0, -way}}};
+  Scene scene = scene_of({body, lid}, 0.005);
   scene.obstacles = {plane_at(0)};
   scene.thickness = 2e-4;
-  Simulator simulator(scene);
+  return scene;
+}
+
+/// A rigid box between walls cannot give way: the walls end where the box is.
+TEST(Squeezing, OfARigidBodyHoldsThePaths) {
+  Simulator simulator(under_a_lid(rigid_box("box", {0.05, 0.05, 0.05}, {0, 0, 0.06}), 0.13, 0.1));
   Judge judge(simulator);
   std::int64_t stalled = 0;
   for (int n = 0; n < 25; ++n) {
@@ -74,14 +75,7 @@ TEST(Squeezing, LeavesARigidBodySlow) {
     Body box = rigid_box("box", {0.05, 0.04, 0.03}, {0, 0, 0.08});
     const double length = std::hypot(1, tilt, 0.3);
     box.pose.rotation = {1 / length, tilt / length, 0, 0.3 / length};
-    Body lid = elastic_box("lid", {0.1, 0.1, 0.005}, {1, 1, 1});
-    lid.kind = BodyKind::scripted;
-    lid.pose.position = {0, 0, 0.17};
-    lid.motion = Path{{0, Point3{0, 0, 0}}, {0.1, Point3{0, 0, -0.16}}};
-    Scene scene = scene_of({box, lid}, 0.005);
-    scene.obstacles = {plane_at(0)};
-    scene.thickness = 2e-4;
-    Simulator simulator(scene);
+    Simulator simulator(under_a_lid(box, 0.17, 0.16));
     double fastest = 0;
     for (int n = 0; n < 25; ++n) {
       ASSERT_TRUE(simulator.step());

@@ -50,7 +50,7 @@ struct ContactSystem::State {
                      std::span<const double> impulse,
                      std::span<const double> velocity);
   void add_block_impulses();
-  bool stop_wild_turns(std::vector<Point3>& velocity);
+  bool stop_fast_turns(std::vector<Point3>& velocity);
   double recovery_speed(const ContactKey& key) const;
   bool iterates_two_levels() const;
 
@@ -180,7 +180,7 @@ void ContactSystem::State::add_block_impulses() {
 /// Contacts are linear in the velocities of a step. A body with corners that has no room between
 /// others can satisfy them by turning many times within the step, at any speed. One that contacts
 /// turn by more than half a turn stands still instead, without impulses. @returns whether one does
-bool ContactSystem::State::stop_wild_turns(std::vector<Point3>& velocity) {
+bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
   const double most = std::acos(-1.0) / laws.adhesion.time_step;
   std::vector<std::uint8_t> is_stopped;
   for (std::int32_t r = 0; r < model.rigid_count; ++r) {
@@ -256,7 +256,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
     outcome.sweeps += report.sweeps;
     outcome.outer_iterations += report.outer_iterations;
   }
-  if (s.stop_wild_turns(velocity)) outcome.converged = false;
+  if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
   // The tracker reads gaps from the velocities: without what slows recovery.

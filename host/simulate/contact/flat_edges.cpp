@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "host/base/disjoint_sets.hpp"
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 
@@ -25,8 +26,6 @@ class FlatFaces {
       area_.push_back(norm(normal));
       normal_.push_back(area_.back() > 0 ? unit(normal) : Point3{0, 0, 0});
     }
-    face_.resize(area_.size());
-    std::iota(face_.begin(), face_.end(), std::size_t{0});
     list_sides();
     join();
     check();
@@ -35,7 +34,7 @@ class FlatFaces {
   void mark(std::vector<std::uint8_t>& is_flat) const {
     for (const auto& [edge, sides] : sides_) {
       const std::size_t face = face_[sides[0]];
-      if (sides[1] < area_.size() && face == face_[sides[1]] && is_even_[face] != 0) {
+      if (sides[1] != none && face == face_[sides[1]] && is_flat_[face] != 0) {
         is_flat[index_of(edge)] = 1;
       }
     }
@@ -86,22 +85,16 @@ class FlatFaces {
                                [&](const Point3& x) { return height(x, of) <= tolerance_; });
   }
 
-  std::size_t face_of(std::size_t triangle) {
-    while (face_[triangle] != triangle) {
-      triangle = face_[triangle] = face_[face_[triangle]];
-    }
-    return triangle;
-  }
-
+  /// Joins neighbors on one plane to faces.
   void join() {
+    DisjointSets faces(area_.size());
     for (const auto& [edge, sides] : sides_) {
       const auto [a, b] = sides;
       if (b == none || !(dot(normal_[a], normal_[b]) > 0)) continue;
       if (!is_on_plane(a, b) || !is_on_plane(b, a)) continue;
-      const std::size_t p = face_of(a), q = face_of(b);
-      face_[std::max(p, q)] = std::min(p, q);
+      faces.unite(a, b);
     }
-    for (std::size_t t = 0; t < face_.size(); ++t) face_[t] = face_of(t);
+    for (std::size_t t = 0; t < area_.size(); ++t) face_.push_back(faces.root_of(t));
   }
 
   /// A face of many triangles that bend by little each is not flat as a whole.
@@ -111,10 +104,10 @@ class FlatFaces {
     for (std::size_t t = 0; t < face_.size(); ++t) {
       if (area_[t] > area_[largest[face_[t]]]) largest[face_[t]] = t;
     }
-    is_even_.assign(face_.size(), 1);
+    is_flat_.assign(face_.size(), 1);
     for (std::size_t t = 0; t < face_.size(); ++t) {
       const std::size_t plane = largest[face_[t]];
-      if (!is_on_plane(t, plane) || !(dot(normal_[t], normal_[plane]) > 0)) is_even_[face_[t]] = 0;
+      if (!is_on_plane(t, plane) || !(dot(normal_[t], normal_[plane]) > 0)) is_flat_[face_[t]] = 0;
     }
   }
 
@@ -126,7 +119,7 @@ class FlatFaces {
   std::vector<Point3> normal_;  ///< [triangles] unit, or 0 of one without area
   std::vector<std::pair<std::int32_t, std::array<std::size_t, 2>>> sides_;
   std::vector<std::size_t> face_;      ///< [triangles] first triangle of the face
-  std::vector<std::uint8_t> is_even_;  ///< [triangles] of first ones
+  std::vector<std::uint8_t> is_flat_;  ///< [triangles] of first ones
 };
 
 }  // namespace

@@ -25,8 +25,9 @@ namespace tetwarp {
 /// Which pairs become contacts:
 /// - A vertex touches another body once, at the nearest face, plane or round part. Other parts of
 ///   the body count, too, where they face elsewhere: by more than 45 degrees, or by more than 5 at
-///   a point inside a face or, of a round part, as near at the start, as all
-///   that holds a ball in a ring; but not at an edge or corner that they share with a nearer one. A
+///   a point inside a face. A round part touches by more than 5 degrees elsewhere also what is at
+///   most a quarter of the thickness further at the start: a ball in a ring touches the whole ring.
+///   No part counts at an edge or corner that they share with a nearer one. A
 ///   vertex next to an edge between even faces so has one contact, and slides over the edge.
 /// - Two edges touch where they cross. Where an end of one is nearest, its vertex touches already.
 ///   Edges that are near without a hit must be what is nearest of their surfaces: an edge within an
@@ -63,6 +64,13 @@ class PairContacts {
                                            std::span<const ContactRecord> records = {});
 
  private:
+  /// A record of the tracker of a vertex.
+  struct VertexRecord {
+    std::int32_t vertex = 0, body = 0;  ///< what touches, and the body that it touches
+    std::int32_t slot = 0;              ///< its number, below 0
+    std::size_t record = 0;             ///< in the records
+  };
+
   bool is_nearest_of_edges(const PairTouch& touch, const std::vector<Point3>& vertices) const;
   void add_touches(const TouchingPair& pair,
                    const SurfaceMotion& motion,
@@ -86,11 +94,7 @@ class PairContacts {
   std::vector<std::size_t> order_;   ///< of touches_, by vertex and body touched, then distance
   std::vector<std::size_t> kept_;    ///< of the current vertex and body, in touches_
   std::vector<std::int32_t> slots_;  ///< taken by them
-  struct VertexRecord {
-    std::int32_t vertex, body, slot;  ///< what touches, and what it touches
-    std::size_t record;
-  };
-  std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted
+  std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted by all but the record
   std::vector<ReportedContact> contacts_;
 };
 

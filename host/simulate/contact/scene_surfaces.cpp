@@ -256,7 +256,7 @@ void add_forbidden(const Scene& scene, CollisionSurfaces& surfaces) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// Far below the distances that detection tells apart.
+// Largest distance of a flat face's vertices from its plane; the end check has a slack of 0.05.
 constexpr double flat_share = 1e-3;  // thicknesses
 
 void mark_flat_faces(SceneSurfaces& result) {

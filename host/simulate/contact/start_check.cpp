@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "host/base/disjoint_sets.hpp"
 #include "host/base/parallel.hpp"
 #include "host/scene/scene_checks.hpp"
 #include "host/scene/surface_lattice.hpp"
@@ -123,21 +123,15 @@ class StartSearch {
   /// inside or outside of a closed surface.
   std::vector<std::int32_t> representatives(const CollisionBody& body) const {
     const auto count = static_cast<std::size_t>(body.vertex_end - body.first_vertex);
-    std::vector<std::size_t> parent(count);
-    std::iota(parent.begin(), parent.end(), std::size_t{0});
-    const auto root_of = [&](std::int32_t vertex) {
-      auto v = static_cast<std::size_t>(vertex - body.first_vertex);
-      while (parent[v] != v) v = parent[v] = parent[parent[v]];
-      return v;
-    };
+    DisjointSets parts(count);
     for (std::int32_t e = body.first_edge; e < body.edge_end; ++e) {
       const auto [a, b] = at(surfaces_.edges, e);
-      const std::size_t root_a = root_of(a), root_b = root_of(b);
-      parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
+      parts.unite(static_cast<std::size_t>(a - body.first_vertex),
+                  static_cast<std::size_t>(b - body.first_vertex));
     }
     std::vector<std::int32_t> list;
     for (std::size_t v = 0; v < count; ++v) {
-      if (parent[v] == v) list.push_back(body.first_vertex + static_cast<std::int32_t>(v));
+      if (parts.root_of(v) == v) list.push_back(body.first_vertex + static_cast<std::int32_t>(v));
     }
     return list;
   }

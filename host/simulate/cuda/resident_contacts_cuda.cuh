@@ -1,6 +1,6 @@
 /// @file resident_contacts_cuda.cuh
-/// ResidentContacts on a device: one copy to it brings what the host knows of contacts, kernels
-/// compute the numbers of their problem, one copy brings the results.
+/// ResidentContacts on a device: contacts and laws are copied there together, kernels compute A, J
+/// and b, and all results are copied back together.
 #pragma once
 #include <cstdint>
 #include <span>
