@@ -94,13 +94,17 @@ set(tetwarp_collide_sources  # host/collide: which features touch during a motio
 set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their solution
   host/simulate/contact/cage_growth.cpp
   host/simulate/contact/cage_pose.cpp
+  host/simulate/contact/contact_constants.cpp
   host/simulate/contact/contact_islands.cpp
   host/simulate/contact/contact_laws.cpp
   host/simulate/contact/contact_rows.cpp
+  host/simulate/contact/contact_shares.cpp
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
   host/simulate/contact/edge_side.cpp
   host/simulate/contact/elastic_groups.cpp
+  host/simulate/contact/elastic_islands.cpp
+  host/simulate/contact/elastic_list_maker.cpp
   host/simulate/contact/elastic_space.cpp
   host/simulate/contact/flat_edges.cpp
   host/simulate/contact/medial_node.cpp

@@ -106,6 +106,8 @@ class BodyPipeline {
   }
   const ConstantArrays<Exec>& constants() const { return constants_; }
   StepArrays<Exec>& arrays() { return now_; }
+  /// Of the system, in memory of the executor.
+  const SystemRows& rows() const { return pattern_.rows(); }
 
  private:
   static constexpr const char* forces_label = "body/forces";

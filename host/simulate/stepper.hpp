@@ -68,6 +68,7 @@ struct StepSystem {
 };
 
 class ResidentContacts;
+class ResidentElastic;
 class ResidentState;
 
 class BodyStepper {
@@ -108,6 +109,8 @@ class BodyStepper {
   /// What builds contact problems in memory of a device; null where the state is in that of the
   /// host.
   virtual ResidentContacts* resident_contacts() { return nullptr; }
+  /// What solves contacts of elastic bodies there; null where the state is in memory of the host.
+  virtual ResidentElastic* resident_elastic() { return nullptr; }
 };
 
 /// @param model  kept by the caller

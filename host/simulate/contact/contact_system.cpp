@@ -8,47 +8,52 @@
 #include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/contact/contact_laws.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/contact_shares.hpp"
+#include "host/simulate/contact/elastic_islands.hpp"
 #include "host/simulate/contact/solver_islands.hpp"
 #include "host/simulate/contact/two_level_solver.hpp"
 #include "host/simulate/resident_contacts.hpp"
+#include "host/simulate/resident_elastic.hpp"
 
 namespace tetwarp {
 
 struct ContactSystem::State {
-  /// Coupling islands and contacts that one solver takes.
-  struct Share {
-    std::vector<std::uint8_t> islands;
-    std::vector<std::int32_t> contacts;  ///< ascending
-
-    void clear(std::int32_t island_count) {
-      islands.assign(index_of(island_count), 0);
-      contacts.clear();
-    }
-    bool is_empty() const { return std::find(islands.begin(), islands.end(), 1) == islands.end(); }
-    void take(const Share& other) {
-      for (std::size_t i = 0; i < islands.size(); ++i) islands[i] |= other.islands[i];
-      contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
-      std::sort(contacts.begin(), contacts.end());
-    }
-  };
-
   State(const SceneSurfaces& surfaces, const Model& of, const ContactSystemOptions& given)
       : scene(surfaces),
         model(of),
         options(given),
         frames(frames_of_bodies(surfaces, of)),
         islands(of),
-        two_level(of, given.solver, given.factors),
+        factors(given.factors ? given.factors : std::make_shared<RestFactors>(of)),
+        two_level(of, given.solver, factors),
+        elastic_islands(of, given.solver, factors),
         solver_islands(given.solver) {}
 
   void set_laws(const ContactTracker& tracker,
                 const std::vector<TrackedContact>& contacts,
                 const std::vector<Point3>& velocity);
   void set_bond(const TrackedContact& contact, std::size_t c);
-  void divide();
-  void take_impulses(const Share& share,
+  void take_impulses(const ContactShare& share,
                      std::span<const double> impulse,
                      std::span<const double> velocity);
+  void solve_elastic(BodyStepper& stepper,
+                     const ModelState& state,
+                     const std::vector<Point3>& change,
+                     std::vector<Point3>& velocity,
+                     ContactSolveOutcome& outcome);
+  void solve_soft(BodyStepper& stepper,
+                  const ModelState& state,
+                  const std::vector<Point3>& change,
+                  std::vector<Point3>& velocity,
+                  ContactSolveOutcome& outcome);
+  void solve_other(BodyStepper& stepper,
+                   std::vector<Point3>& velocity,
+                   ContactSolveOutcome& outcome);
+  bool take(const TwoLevelOutcome& solved,
+            const ContactShare& share,
+            std::span<const double> impulse,
+            std::span<const double> velocity,
+            ContactSolveOutcome& outcome);
   void add_block_impulses();
   bool stop_fast_turns(std::vector<Point3>& velocity);
   double recovery_speed(const ContactKey& key) const;
@@ -61,13 +66,18 @@ struct ContactSystem::State {
   ContactRows rows;
   ContactIslands islands;
   ContactProblem laws, soft_laws;  ///< friction, offsets, adhesion, guess; no matrices
-  Share soft, other;               ///< of the two-level iteration, of the contact solver
+  ContactShares shares;
+  std::shared_ptr<RestFactors> factors;
   TwoLevelSolver two_level;
+  ElasticIslands elastic_islands;
   SolverIslands solver_islands;
-  ResidentContacts* resident = nullptr;  ///< has all velocities that contacts have changed, or null
-  std::vector<double> prescribed;        ///< [3 contacts] J_p v_p of prescribed velocities v_p
-  std::vector<double> recovered;  ///< [contacts] normal offset that was added to slow recovery, or
-                                  ///< because only a bond is left
+  // Where velocities that contacts have changed are, if all of them are in memory of a device.
+  bool is_resident = false;
+  ResidentContacts* resident = nullptr;         ///< or null: none there
+  ResidentElastic* resident_elastic = nullptr;  ///< or null: none there
+  std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
+  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
+                                   ///< because only a bond is left
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
@@ -133,25 +143,7 @@ void ContactSystem::State::set_laws(const ContactTracker& tracker,
   }
 }
 
-/// Contact islands of bodies that A couples go to the two-level iteration, all others to the
-/// contact solver.
-void ContactSystem::State::divide() {
-  soft.clear(islands.count());
-  other.clear(islands.count());
-  const bool divides = iterates_two_levels();
-  for (std::int32_t i = 0; i < islands.count(); ++i) {
-    if (!islands.has_contacts(i) && options.skips_islands) continue;
-    (divides && islands.is_soft(i) ? soft : other).islands[index_of(i)] = 1;
-  }
-  for (std::size_t c = 0; c < islands.of_contact().size(); ++c) {
-    const std::int32_t island = islands.of_contact()[c];
-    if (island < 0) continue;
-    (soft.islands[index_of(island)] != 0 ? soft : other)
-        .contacts.push_back(static_cast<std::int32_t>(c));
-  }
-}
-
-void ContactSystem::State::take_impulses(const Share& share,
+void ContactSystem::State::take_impulses(const ContactShare& share,
                                          std::span<const double> impulse,
                                          std::span<const double> velocity) {
   for (std::size_t k = 0; k < share.contacts.size(); ++k) {
@@ -161,6 +153,70 @@ void ContactSystem::State::take_impulses(const Share& share,
       solution.velocity[3 * c + axis] = velocity[3 * k + axis];
     }
   }
+}
+
+/// @returns whether there is a result, which is taken
+bool ContactSystem::State::take(const TwoLevelOutcome& solved,
+                                const ContactShare& share,
+                                std::span<const double> impulse,
+                                std::span<const double> velocity,
+                                ContactSolveOutcome& outcome) {
+  outcome.outer_iterations += solved.outer_iterations;
+  outcome.sweeps += solved.sweeps;
+  if (!solved.is_result) return false;
+  outcome.converged = outcome.converged && solved.converged;
+  outcome.residual = std::max(outcome.residual, solved.residual);
+  take_impulses(share, impulse, velocity);
+  return true;
+}
+
+void ContactSystem::State::solve_elastic(BodyStepper& stepper,
+                                         const ModelState& state,
+                                         const std::vector<Point3>& change,
+                                         std::vector<Point3>& velocity,
+                                         ContactSolveOutcome& outcome) {
+  resident_elastic = nullptr;
+  if (shares.elastic.is_empty()) return;
+  const TwoLevelOutcome solved =
+      elastic_islands.solve(stepper, state, islands, rows, shares.elastic.islands,
+                            shares.elastic.contacts, laws, change, velocity);
+  if (take(solved, shares.elastic, elastic_islands.impulse(), elastic_islands.contact_velocity(),
+           outcome)) {
+    resident_elastic = stepper.resident_elastic();
+  } else {
+    shares.soft.take(shares.elastic);
+  }
+}
+
+void ContactSystem::State::solve_soft(BodyStepper& stepper,
+                                      const ModelState& state,
+                                      const std::vector<Point3>& change,
+                                      std::vector<Point3>& velocity,
+                                      ContactSolveOutcome& outcome) {
+  if (shares.soft.is_empty()) return;
+  gather_laws(shares.soft.contacts, laws, soft_laws);
+  const TwoLevelOutcome solved =
+      two_level.solve(stepper.system(), state, islands, rows, shares.soft.islands,
+                      shares.soft.contacts, soft_laws, change, velocity);
+  if (!take(solved, shares.soft, two_level.impulse(), two_level.contact_velocity(), outcome)) {
+    shares.other.take(shares.soft);
+  }
+}
+
+void ContactSystem::State::solve_other(BodyStepper& stepper,
+                                       std::vector<Point3>& velocity,
+                                       ContactSolveOutcome& outcome) {
+  resident = nullptr;
+  if (shares.other.is_empty()) return;
+  solution.report = solver_islands.solve(stepper, islands, rows, shares.other.islands,
+                                         shares.other.contacts, laws, velocity);
+  take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
+  resident = solver_islands.resident();
+  const ContactReport& report = solution.report;
+  outcome.converged = outcome.converged && solution.converged();
+  outcome.residual = std::max(outcome.residual, report.residual.eta);
+  outcome.sweeps += report.sweeps;
+  outcome.outer_iterations += report.outer_iterations;
 }
 
 void ContactSystem::State::add_block_impulses() {
@@ -194,7 +250,7 @@ bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
     is_stopped[block] = 1;
   }
   if (is_stopped.empty()) return false;
-  resident = nullptr;
+  is_resident = false;
   for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
     const auto blocks = rows.blocks_of(c);
     if (std::ranges::any_of(blocks, [&](std::int32_t b) { return is_stopped[index_of(b)] != 0; })) {
@@ -223,39 +279,21 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.rows);
   s.islands.join(s.rows);
   s.set_laws(tracker, contacts, velocity);
-  s.divide();
-  s.resident = nullptr;
+  s.shares.divide(
+      s.islands, {.iterates_two_levels = s.iterates_two_levels(),
+                  .skips_islands = s.options.skips_islands,
+                  .compliant = stepper.resident_elastic() != nullptr ? &s.elastic_islands.possible()
+                                                                     : nullptr});
   s.solution.report = {};
   s.solution.impulse.assign(3 * contacts.size(), 0);
   s.solution.velocity = s.laws.velocity_offset;  // of contacts that act on no unknown
   ContactSolveOutcome outcome;
   outcome.islands = s.islands.contact_island_count();
-  if (!s.soft.is_empty()) {
-    gather_laws(s.soft.contacts, s.laws, s.soft_laws);
-    const TwoLevelOutcome solved = s.two_level.solve(stepper.system(), state, s.islands, s.rows,
-                                                     s.soft.islands, s.soft.contacts, s.soft_laws,
-                                                     change != nullptr ? *change : none, velocity);
-    outcome.outer_iterations = solved.outer_iterations;
-    outcome.sweeps = solved.sweeps;
-    if (solved.is_result) {
-      outcome.converged = solved.converged;
-      outcome.residual = solved.residual;
-      s.take_impulses(s.soft, s.two_level.impulse(), s.two_level.contact_velocity());
-    } else {
-      s.other.take(s.soft);
-    }
-  }
-  if (!s.other.is_empty()) {
-    s.solution.report = s.solver_islands.solve(stepper, s.islands, s.rows, s.other.islands,
-                                               s.other.contacts, s.laws, velocity);
-    s.take_impulses(s.other, s.solver_islands.impulse(), s.solver_islands.contact_velocity());
-    if (s.soft.is_empty()) s.resident = s.solver_islands.resident();
-    const ContactReport& report = s.solution.report;
-    outcome.converged = outcome.converged && s.solution.converged();
-    outcome.residual = std::max(outcome.residual, report.residual.eta);
-    outcome.sweeps += report.sweeps;
-    outcome.outer_iterations += report.outer_iterations;
-  }
+  const std::vector<Point3>& last_change = change != nullptr ? *change : none;
+  s.solve_elastic(stepper, state, last_change, velocity, outcome);
+  s.solve_soft(stepper, state, last_change, velocity, outcome);
+  s.solve_other(stepper, velocity, outcome);
+  s.is_resident = s.shares.soft.is_empty() && (s.shares.other.is_empty() || s.resident != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
@@ -266,8 +304,10 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
 
 void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
                                    BodyStepper& stepper) const {
-  state_->resident != nullptr ? state_->resident->set_velocities()
-                              : stepper.set_velocities(velocity);
+  const State& s = *state_;
+  if (!s.is_resident) return stepper.set_velocities(velocity);
+  if (s.resident != nullptr) s.resident->set_velocities();
+  if (s.resident_elastic != nullptr) s.resident_elastic->set_velocities();
 }
 
 const ContactSolution& ContactSystem::solution() const {

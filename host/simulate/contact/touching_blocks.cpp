@@ -3,20 +3,8 @@
 #include "host/base/parallel.hpp"
 
 #include <algorithm>
-#include <numeric>
-
-#include "kernels/contact/contact_fill.hpp"
 
 namespace tetwarp {
-namespace {
-
-template <class T>
-View<const T> view_of(const std::vector<T>& own) {
-  return {own.data(), static_cast<std::int64_t>(own.size())};
-}
-
-}  // namespace
-
 void TouchingBlocks::set(const StepSystem& system,
                          const SolvedIslands& islands,
                          const ElasticSpace& elastic,
@@ -25,7 +13,8 @@ void TouchingBlocks::set(const StepSystem& system,
                          const ContactProblem& laws,
                          const DiagonalInverse<double>& inverse,
                          double relaxation) {
-  set_laws(laws);
+  laws_.set(laws);
+  offset_ = laws.velocity_offset;
   elastic_ = &elastic;
   row_of_block_.assign(index_of(system.rows.block_of.size), -1);
   for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
@@ -33,41 +22,15 @@ void TouchingBlocks::set(const StepSystem& system,
   }
   set_parts(system, rows, contacts);
   set_responses(rows, islands, elastic, inverse, relaxation);
-  packed_start_.assign(constants_.size(), -1);
-  packed_size_.resize(constants_.size());
-  moves_rows_.resize(constants_.size());
+  packed_start_.assign(laws_.constants.size(), -1);
+  packed_size_.resize(laws_.constants.size());
+  moves_rows_.resize(laws_.constants.size());
   packed_.clear();
   groups_.set(elastic, part_start_, part_row_);
-  matrix_place_.resize(constants_.size());
-  elastic_start_.assign(constants_.size(), -1);
+  matrix_place_.resize(laws_.constants.size());
+  elastic_start_.assign(laws_.constants.size(), -1);
   elastic_response_.clear();
   operations_ = 0;
-}
-
-void TouchingBlocks::set_laws(const ContactProblem& laws) {
-  const AdhesionState& adhesion = laws.adhesion;
-  const std::size_t count = laws.friction.size();
-  slots_.resize(count);
-  std::iota(slots_.begin(), slots_.end(), 0);
-  constants_.resize(count);
-  ContactInput input;
-  input.friction = view_of(laws.friction);
-  input.has_adhesion = true;
-  input.time_step = adhesion.time_step;
-  input.area = view_of(adhesion.area);
-  input.stiffness = view_of(adhesion.stiffness);
-  input.tangential_stiffness = view_of(adhesion.tangential_stiffness);
-  input.intensity = view_of(adhesion.intensity);
-  input.gap = view_of(adhesion.gap);
-  const ContactConstantsBody body{
-      input, view_of(slots_), {}, {constants_.data(), static_cast<std::int64_t>(count)}};
-  offset_ = laws.velocity_offset;
-  preload_.resize(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    body(static_cast<std::int64_t>(c));
-    preload_[c] = constants_[c].normal_spring *
-                  (adhesion.gap[3 * c] / adhesion.time_step - laws.velocity_offset[3 * c]);
-  }
 }
 
 /// The parts of all contacts, and the rows that they touch.
@@ -140,7 +103,7 @@ void TouchingBlocks::add_elastic_block(const ElasticSpace& elastic,
     turned[e] = from[0] * r[e % 3] + from[1] * r[3 + e % 3] + from[2] * r[6 + e % 3];
     rounded_[index_of(parts_[index_of(part)].value) + e] = static_cast<float>(turned[e]);
   }
-  double* const block = constants_[contact].block;
+  double* const block = laws_.constants[contact].block;
   for (std::int32_t q = part_start_[contact]; q <= part; ++q) {
     const std::int32_t other = part_row_[index_of(q)];
     if (elastic.body_of_row(other) != body) continue;
@@ -171,11 +134,11 @@ void TouchingBlocks::set_responses(const ContactRows& rows,
                                    const ElasticSpace& elastic,
                                    const DiagonalInverse<double>& inverse,
                                    double relaxation) {
-  diagonal_.resize(3 * constants_.size());
+  diagonal_.resize(3 * laws_.constants.size());
   parallel_for(threads(), count(), [&, this](std::int64_t contact) {
     const std::size_t c = index_of(contact);
     set_jacobian(rows, c);
-    double* const block = constants_[c].block;
+    double* const block = laws_.constants[c].block;
     std::fill(block, block + 9, 0.0);
     for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
       const Part& part = parts_[index_of(p)];
@@ -206,7 +169,8 @@ void TouchingBlocks::set_responses(const ContactRows& rows,
       }
     }
     for (std::size_t a = 0; a < 3; ++a) diagonal_[3 * c + a] = block[4 * a];
-    constants_[c].tangent_metric = larger_eigenvalue(block[4], (block[5] + block[7]) / 2, block[8]);
+    laws_.constants[c].tangent_metric =
+        larger_eigenvalue(block[4], (block[5] + block[7]) / 2, block[8]);
   });
 }
 

@@ -7,11 +7,11 @@
 
 #include <tetwarp/contact_problem.hpp>
 
+#include "host/simulate/contact/contact_constants.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/elastic_groups.hpp"
 #include "host/simulate/contact/solved_islands.hpp"
 #include "kernels/body/row_product.hpp"
-#include "kernels/contact/contact_law.hpp"
 
 namespace tetwarp {
 
@@ -47,7 +47,7 @@ class TouchingBlocks {
     return groups_.of_contact(static_cast<std::size_t>(contact));
   }
 
-  std::int64_t count() const { return static_cast<std::int64_t>(constants_.size()); }
+  std::int64_t count() const { return static_cast<std::int64_t>(laws_.constants.size()); }
 
   /// Prepares sweeps over contacts of working(), and puts these in the order of sweeps.
   void begin_sweeps();
@@ -89,9 +89,8 @@ class TouchingBlocks {
   /// force = J^T (after - before) in the rows that contacts touch.
   void set_changes(const double* before, const double* after, double* force) const;
 
-  /// Springs whose gap is not dt w_n push by this at u_n = 0: impulses of the laws here are those
-  /// of the contacts plus it, [contacts].
-  const std::vector<double>& preload() const { return preload_; }
+  /// ContactConstantsList::preload.
+  const std::vector<double>& preload() const { return laws_.preload; }
 
  private:
   /// Numbers of y that a contact moves.
@@ -104,7 +103,6 @@ class TouchingBlocks {
 
   /// Of loops over contacts; few are faster on one.
   int threads() const { return count() < 256 ? 1 : threads_; }
-  void set_laws(const ContactProblem& laws);
   void set_parts(const StepSystem& system,
                  const ContactRows& rows,
                  const std::vector<std::int32_t>& contacts);
@@ -146,8 +144,8 @@ class TouchingBlocks {
   void add_push(std::size_t contact, const double* r, double* force) const;
   void velocity_at(std::size_t contact, const double* x, double* velocity) const;
 
-  std::vector<ContactConstants<double>> constants_;
-  std::vector<double> offset_, preload_, diagonal_;
+  ContactConstantsList laws_;
+  std::vector<double> offset_, diagonal_;
   std::vector<std::int32_t> part_start_;  ///< [contacts + 1]
   std::vector<Part> parts_;
   std::vector<std::int32_t> part_row_, part_entry_;  ///< [parts] row; entry of ContactRows
@@ -182,7 +180,7 @@ class TouchingBlocks {
   std::vector<std::int32_t> working_;
   std::int64_t operations_ = 0;
   int threads_;
-  std::vector<std::int32_t> row_of_block_, slots_;
+  std::vector<std::int32_t> row_of_block_;
 };
 
 }  // namespace tetwarp

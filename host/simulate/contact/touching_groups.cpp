@@ -153,7 +153,7 @@ void TouchingBlocks::sweep_matrix(ContactSwitches switches,
       const double* const u = own.velocity.data() + place;
       double* const r = impulse + 3 * k;
       double free[3] = {u[0], u[1], u[2]}, change[3] = {-r[0], -r[1], -r[2]};
-      solve_contact(constants_[index_of(list[k])], switches, free, r);
+      solve_contact(laws_.constants[index_of(list[k])], switches, free, r);
       for (int a = 0; a < 3; ++a) change[a] += r[a];
       if (change[0] == 0 && change[1] == 0 && change[2] == 0) continue;
       vector_stages().add_rows(own.values.data() + place * own.stride, own.stride, change,

@@ -135,7 +135,7 @@ void TouchingBlocks::update(ContactSwitches switches, std::size_t c, double* y, 
   double u[3] = {offset_[3 * c], offset_[3 * c + 1], offset_[3 * c + 2]};
   add_products(jacobian, size, v, u);
   const double before[3] = {impulse[0], impulse[1], impulse[2]};
-  solve_contact(constants_[c], switches, u, impulse);
+  solve_contact(laws_.constants[c], switches, u, impulse);
   const double change[3] = {impulse[0] - before[0], impulse[1] - before[1], impulse[2] - before[2]};
   if (change[0] == 0 && change[1] == 0 && change[2] == 0) return;
   if (moves_rows_[c] != 0) {
@@ -216,8 +216,8 @@ TouchingSums TouchingBlocks::measure(ContactSwitches switches,
                                      const double* free) {
   TouchingSums sums;
   working_.clear();
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    const ContactConstants<double>& own = constants_[c];
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
+    const ContactConstants<double>& own = laws_.constants[c];
     const double* const r = impulse + 3 * c;
     const double square =
         natural_square(own, switches, normal_weight(own), tangent_weight(own), r, velocity + 3 * c);
@@ -245,7 +245,7 @@ void TouchingBlocks::add_push(std::size_t contact, const double* r, double* forc
 
 void TouchingBlocks::set_changes(const double* before, const double* after, double* force) const {
   for (const std::int32_t row : touched_) std::fill_n(force + 3 * std::int64_t{row}, 3, 0.0);
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
     const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
                          after[3 * c + 2] - before[3 * c + 2]};
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
@@ -261,8 +261,8 @@ void TouchingBlocks::add_impulses(View<const double> load,
       force[i] = load[i];
     }
   }
-  for (std::size_t c = 0; c < constants_.size(); ++c) {
-    const double r[3] = {impulse[3 * c] - preload_[c], impulse[3 * c + 1], impulse[3 * c + 2]};
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
+    const double r[3] = {impulse[3 * c] - laws_.preload[c], impulse[3 * c + 1], impulse[3 * c + 2]};
     add_push(c, r, force);
   }
 }

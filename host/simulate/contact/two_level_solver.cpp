@@ -12,50 +12,7 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::int64_t most_iterations = 1000;
-// An iteration ends whose least residual has not shrunk to `least_progress` times in so many
-// iterations.
-constexpr std::int64_t patience = 150;
-constexpr double least_progress = 0.9;
-// Multiplications of all sweeps of a solve, after which it ends: about a second.
-constexpr std::int64_t most_operations = 1'000'000'000;
-// Up to these sizes the contact solver is quick where the iteration fails.
-constexpr std::int64_t small_contacts = 256, small_rows = 128;
 constexpr std::int32_t chunk_rows = 64;
-// Of the error before an outer iteration, left by its sweeps; with single elastic bodies.
-constexpr double inner_share = 0.002, elastic_share = 0.005;
-// Of the error at which the solve ends: with single elastic bodies sweeps leave as much, as less
-// would gain nothing. Cloth takes as many sweeps without it.
-constexpr double final_share = 0.4;
-// The factors of bodies that are bent much are too soft: the iteration then diverges, and is begun
-// anew with half their compliance. Errors of iterations that converge grow by less than
-// `divergence` at times.
-constexpr double divergence = 30, least_damping = 1.0 / 16;
-// The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors the
-// error was an upper bound of eta, by a factorization of A, on bodies of some hundred nodes with E
-// of 1e4 to 1e8 Pa, with and without adhesion.
-constexpr double defect_factor = 8;
-constexpr double law_factor = 2;
-
-/// At which change of the impulses the sweeps of an outer iteration end.
-class SweepEnd {
- public:
-  explicit SweepEnd(bool has_elastic)
-      : share_(has_elastic ? elastic_share : inner_share), final_(has_elastic ? final_share : 0) {}
-
-  /// @param target  error at which the solve ends
-  /// @param sweeps  of all outer iterations before
-  double next(const TwoLevelError& error, double target, std::int64_t sweeps) {
-    // The change of a sweep is no bound of the error of the laws.
-    if (iterations_++ > 0 && sweeps - before_ <= 2 && error.laws > 0.9 * target) final_ /= 2;
-    before_ = sweeps;
-    return std::max(share_ * error.total, final_ * target);
-  }
-
- private:
-  double share_, final_;
-  std::int64_t iterations_ = 0, before_ = 0;
-};
 
 }  // namespace
 
@@ -129,7 +86,7 @@ void TwoLevelSolver::prepare(const StepSystem& system,
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
   blocks_.velocities_of_rows(x_.data(), free_.data());
-  least_error_ = 1.01 * defect_factor * std::sqrt(std::max(step(system), 0.0));
+  least_error_ = TwoLevelError::least(step(system));
   if (change.size() != velocity.size()) return;
   for (const Chunk& chunk : chunks_) {
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
@@ -144,26 +101,7 @@ TwoLevelError TwoLevelSolver::find_error(double defect) {
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   const TouchingSums sums =
       blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data());
-  TwoLevelError error;
-  error.equations = defect_factor * std::sqrt(std::max(defect, 0.0));
-  error.laws = law_factor * std::sqrt(sums.natural);
-  error.total = std::hypot(error.equations, error.laws);
-  error.work = std::sqrt(std::max(sums.work, 0.0));
-  return error;
-}
-
-/// Copies the iterate with the least residual. @returns false if it no longer shrinks
-bool TwoLevelSolver::keep_best(double residual, std::int64_t iterations) {
-  if (residual < best_.residual) {
-    best_.residual = residual;
-    best_.x = x_;
-    best_.impulse = impulse_;
-  }
-  if (iterations == 0 || best_.residual <= least_progress * best_.mark) {
-    best_.mark = best_.residual;
-    best_.marked_at = iterations;
-  }
-  return iterations - best_.marked_at < patience;
+  return TwoLevelError::of(defect, sums.natural, sums.work);
 }
 
 void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
@@ -185,24 +123,29 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
   mixed_.resize(index_of(Mixer::columns * size));
   Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
-  const double alone = std::sqrt(
-      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural);
+  TwoLevelControl control(
+      {.has_elastic = !elastic_.bodies().empty(),
+       .ends_early = ends_early,
+       .tolerance = options_.tolerance,
+       .natural_alone =
+           blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural,
+       .least_error = least_error_});
   best_.residual = std::numeric_limits<double>::infinity();
-  const bool has_elastic = !elastic_.bodies().empty();
-  SweepEnd sweep_end(has_elastic);
-  for (std::int64_t iterations = 0; outcome.outer_iterations < most_iterations; ++iterations) {
+  while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
     blocks_.add_impulses(system.load, impulse_.data(), force_.data());
-    const TwoLevelError error = find_error(step(system));
-    const double scale = std::max(alone + error.work, least_error_ / options_.tolerance);
-    const double target = options_.tolerance * scale;
-    outcome.residual = error.total > 0 ? error.total / scale : 0;
-    if (!std::isfinite(error.total)) return End::fails;
-    if (error.total <= target) return End::converges;
-    if (!keep_best(outcome.residual, iterations)) return End::fails;
-    if (ends_early && outcome.residual > divergence * best_.residual) return End::diverges;
-    if (blocks_.operations() > most_operations) return End::fails;
+    const TwoLevelControl::Next next = control.next(find_error(step(system)), outcome.sweeps);
+    outcome.residual = control.residual();
+    if (control.is_best()) {
+      best_.residual = control.residual();
+      best_.x = x_;
+      best_.impulse = impulse_;
+    }
+    if (next == TwoLevelControl::Next::fails) return End::fails;
+    if (next == TwoLevelControl::Next::converges) return End::converges;
+    if (next == TwoLevelControl::Next::diverges) return End::diverges;
+    if (blocks_.operations() > TwoLevelControl::most_operations) return End::fails;
     stepped_ = impulse_;
-    outcome.sweeps += sweep(sweep_end.next(error, target, outcome.sweeps));
+    outcome.sweeps += sweep(control.enough());
     ++outcome.outer_iterations;
     if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
       return End::is_stopped;
@@ -210,9 +153,7 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     add_elastic();
     const View<const double> before{x_.data() + begin, size};
     const View<double> image{y_.data() + begin, size};
-    // With elastic bodies what the first iteration leaves is far from what the next ones do; and
-    // mixed velocities fit the impulses less well than those of the last iteration alone.
-    if (!has_elastic || (iterations > 0 && error.equations > error.laws)) {
+    if (control.mixes()) {
       mixer.observe(before, image);
       mixer.advance(before, image);
     }
@@ -235,11 +176,12 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   islands_.set(system.rows, islands, takes, elastic_);
   TwoLevelOutcome outcome;
   End end = End::converges;
-  for (double damping = 1; damping >= least_damping; damping /= 2) {
+  for (double damping = 1; damping >= TwoLevelControl::least_damping; damping /= 2) {
     elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, damping,
                  threads_);
     prepare(system, contacts, rows, laws, velocity, change);
-    const bool can_be_damped = !elastic_.bodies().empty() && damping > least_damping;
+    const bool can_be_damped =
+        !elastic_.bodies().empty() && damping > TwoLevelControl::least_damping;
     if (!chunks_.empty()) end = iterate(system, can_be_damped, outcome);
     if (end != End::diverges) break;
   }
@@ -249,8 +191,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   }
   if (end == End::is_stopped) return outcome;
   outcome.converged = end == End::converges;
-  const bool is_small = blocks_.count() <= small_contacts &&
-                        chunks_.back().row_end - chunks_.front().row_begin <= small_rows;
+  const bool is_small = TwoLevelControl::is_small(
+      blocks_.count(), chunks_.back().row_end - chunks_.front().row_begin);
   outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);

@@ -10,24 +10,10 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/contact/following_motion.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
+#include "host/simulate/contact/two_level_control.hpp"
 #include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
-
-struct TwoLevelOutcome {
-  bool converged = false;
-  bool is_result = false;  ///< velocities and impulses are set: converged, or those of the iterate
-                           ///< with the least residual where another solver would take too long
-  double residual = 0;
-  std::int64_t outer_iterations = 0, sweeps = 0;
-};
-
-/// Of an iterate; square roots of energies.
-struct TwoLevelError {
-  double equations = 0, laws = 0;  ///< of A v = b + J^T r; of the laws
-  double total = 0;                ///< of both
-  double work = 0;                 ///< of the impulses
-};
 
 /// Solves A v = b + J^T r with the laws of contact, from the velocities without contact. With
 /// M^-1 = omega D^-1, D the diagonal blocks of A, or R A_0^-1 R^T for single elastic bodies
@@ -103,7 +89,6 @@ class TwoLevelSolver {
   void sweep_listed(const std::vector<std::int32_t>& list, double enough, std::int64_t& sweeps);
   void gather_impulses(const std::vector<std::int32_t>& list);
   void scatter_impulses(const std::vector<std::int32_t>& list);
-  bool keep_best(double residual, std::int64_t iterations);
   End iterate(const StepSystem& system, bool ends_early, TwoLevelOutcome& outcome);
   void take_best(TwoLevelOutcome& outcome);
   double step_elastic();
@@ -112,8 +97,6 @@ class TwoLevelSolver {
   /// The iterate with the least residual.
   struct Best {
     double residual = 0;
-    double mark = 0;  ///< residual at the iteration `marked_at`, when it had last shrunk enough
-    std::int64_t marked_at = 0;
     std::vector<double> x, impulse;
   };
 

@@ -116,24 +116,36 @@ void RestFactor::solve_turned(const std::array<double, 9>& rotation,
   }
 }
 
+/// @param out  [3][nodes][3]
+void RestFactor::find_columns(std::int32_t node, float* out) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::ranges::fill(work_, 0.0);
+    work_[4 * index_of(order_[index_of(node)]) + i] = 1;
+    substitute();
+    for (const std::int32_t own : order_) {
+      const double* const w = work_.data() + 4 * index_of(own);
+      for (std::size_t k = 0; k < 3; ++k) *out++ = static_cast<float>(w[k]);
+    }
+  }
+}
+
 const float* RestFactor::columns(std::int32_t node) {
   const std::size_t size = 3 * order_.size();
   std::int32_t& place = column_of_[index_of(node)];
   if (place < 0) {
     place = static_cast<std::int32_t>(columns_.size() / (3 * size));
     columns_.resize(columns_.size() + 3 * size);
-    float* out = columns_.data() + 3 * size * index_of(place);
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::ranges::fill(work_, 0.0);
-      work_[4 * index_of(order_[index_of(node)]) + i] = 1;
-      substitute();
-      for (const std::int32_t own : order_) {
-        const double* const w = work_.data() + 4 * index_of(own);
-        for (std::size_t k = 0; k < 3; ++k) *out++ = static_cast<float>(w[k]);
-      }
-    }
+    find_columns(node, columns_.data() + 3 * size * index_of(place));
   }
   return columns_.data() + 3 * size * index_of(place);
+}
+
+void RestFactor::inverse(std::vector<float>& out) {
+  const std::size_t size = 3 * order_.size();
+  out.resize(size * size);
+  for (std::int32_t node = 0; node < node_count(); ++node) {
+    find_columns(node, out.data() + 3 * size * index_of(node));
+  }
 }
 
 /// Gradients of a node within the body add up to zero: such nodes are left out.

@@ -25,6 +25,8 @@ class RestFactor {
   void solve_turned(const std::array<double, 9>& rotation, const double* push, double* out);
   /// The columns of A_0^-1 of a node, [3][nodes][3], rounded; kept once found.
   const float* columns(std::int32_t node);
+  /// All of A_0^-1, as columns() of all nodes; not kept.
+  void inverse(std::vector<float>& out);
   /// The rotation of the mean of the deformation gradients, rows first: that of
   /// sum_n x_n (sum_t V_t g_tn)^T.
   /// @param position  of all nodes of the model, [nodes][3]
@@ -38,6 +40,7 @@ class RestFactor {
   };
 
   void substitute();  ///< work_ = A_0^-1 work_, in the order of L
+  void find_columns(std::int32_t node, float* out);
   void set_gradients(const Model& model, std::int32_t body, const std::vector<std::size_t>& tets);
 
   std::vector<NodeGradient> gradients_;

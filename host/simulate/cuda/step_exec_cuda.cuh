@@ -92,6 +92,8 @@ class CudaStepExec {
                "cudaMemcpyAsync on the device");
   }
   cudaStream_t stream() const { return exec_.stream(); }
+  /// What launches on its stream.
+  CudaExec& device_exec() { return exec_; }
   /// Waits for all that has been enqueued.
   void wait() { check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize"); }
   template <class T>

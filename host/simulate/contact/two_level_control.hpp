@@ -1,0 +1,147 @@
+/// @file two_level_control.hpp
+/// When outer iterations over bodies that touch end, and when the sweeps of each of them do.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace tetwarp {
+
+struct TwoLevelOutcome {
+  bool converged = false;
+  bool is_result = false;  ///< velocities and impulses are set: converged, or those of the iterate
+                           ///< with the least residual where another solver would take too long
+  double residual = 0;
+  std::int64_t outer_iterations = 0, sweeps = 0;
+};
+
+/// Of an iterate; square roots of energies.
+struct TwoLevelError {
+  double equations = 0, laws = 0;  ///< of A v = b + J^T r; of the laws
+  double total = 0;                ///< of both
+  double work = 0;                 ///< of the impulses
+
+  // The norms of M^-1 and of the blocks J M^-1 J^T differ from those of A^-1. With these factors
+  // the error was an upper bound of eta, by a factorization of A, on bodies of some hundred nodes
+  // with E of 1e4 to 1e8 Pa, with and without adhesion.
+  static constexpr double defect_factor = 8;
+  static constexpr double law_factor = 2;
+
+  /// @param defect   d . M^-1 d, d = b + J^T r - A v
+  /// @param natural  sum of natural_square()
+  /// @param work     r . (u - u without impulses)
+  static TwoLevelError of(double defect, double natural, double work) {
+    TwoLevelError error;
+    error.equations = defect_factor * std::sqrt(std::max(defect, 0.0));
+    error.laws = law_factor * std::sqrt(natural);
+    error.total = std::hypot(error.equations, error.laws);
+    error.work = std::sqrt(std::max(work, 0.0));
+    return error;
+  }
+  /// As small as the error of the velocities without contact, of this defect.
+  static double least(double defect) {
+    return 1.01 * defect_factor * std::sqrt(std::max(defect, 0.0));
+  }
+};
+
+/// Decides from the errors of successive iterates.
+class TwoLevelControl {
+ public:
+  enum class Next : std::uint8_t { proceeds, converges, diverges, fails };
+  static constexpr std::int64_t most_iterations = 1000;
+  /// The factors of bodies that are bent much are too soft: the iteration then diverges, and is
+  /// begun anew with half their compliance, down to this part of it.
+  static constexpr double least_damping = 1.0 / 16;
+
+  /// Multiplications of all sweeps of a solve, after which it ends: about a second on a CPU.
+  static constexpr std::int64_t most_operations = 1'000'000'000;
+  /// Up to these sizes the contact solver is quick where the iteration fails.
+  static bool is_small(std::int64_t contacts, std::int64_t rows) {
+    return contacts <= 256 && rows <= 128;
+  }
+
+  struct Options {
+    bool has_elastic = false;  ///< bodies that are solved by their factors at rest
+    bool ends_early = false;   ///< where it diverges
+    double tolerance = 0;      ///< of the error, relative
+    double natural_alone = 0;  ///< sum of natural_square() without impulses
+    double least_error = 0;    ///< TwoLevelError::least()
+  };
+
+  explicit TwoLevelControl(const Options& options)
+      : options_(options),
+        share_(options.has_elastic ? elastic_share : inner_share),
+        final_share_(options.has_elastic ? final_share : 0) {}
+
+  /// @param sweeps  of all outer iterations before
+  Next next(const TwoLevelError& error, std::int64_t sweeps) {
+    const double scale = std::max(std::sqrt(options_.natural_alone) + error.work,
+                                  options_.least_error / options_.tolerance);
+    const double target = options_.tolerance * scale;
+    residual_ = error.total > 0 ? error.total / scale : 0;
+    is_best_ = false;
+    if (!std::isfinite(error.total)) return Next::fails;
+    if (error.total <= target) return Next::converges;
+    if (!note_residual()) return Next::fails;
+    if (options_.ends_early && residual_ > divergence * best_) return Next::diverges;
+    // With elastic bodies what the first iteration leaves is far from what the next ones do; and
+    // mixed velocities fit the impulses less well than those of the last iteration alone.
+    mixes_ = !options_.has_elastic || (iterations_ > 0 && error.equations > error.laws);
+    set_enough(error, target, sweeps);
+    ++iterations_;
+    return Next::proceeds;
+  }
+
+  /// Of the last iterate; relative.
+  double residual() const { return residual_; }
+  /// Whether it had the least residual so far, and that residual.
+  bool is_best() const { return is_best_; }
+  double best() const { return best_; }
+  /// Whether velocities of this iteration are mixed with those before by Anderson's method.
+  bool mixes() const { return mixes_; }
+  /// The change of impulses in a sweep at which the sweeps of this iteration end.
+  double enough() const { return enough_; }
+
+ private:
+  // An iteration ends whose least residual has not shrunk to `least_progress` times in so many
+  // iterations.
+  static constexpr std::int64_t patience = 150;
+  static constexpr double least_progress = 0.9;
+  // Errors of iterations that converge grow by less than this at times.
+  static constexpr double divergence = 30;
+  // Of the error before an outer iteration, left by its sweeps; with single elastic bodies.
+  static constexpr double inner_share = 0.002, elastic_share = 0.005;
+  // Of the error at which the solve ends: with single elastic bodies sweeps leave as much, as less
+  // would gain nothing. Cloth takes as many sweeps without it.
+  static constexpr double final_share = 0.4;
+
+  /// @returns false if the least residual no longer shrinks
+  bool note_residual() {
+    is_best_ = residual_ < best_;
+    if (is_best_) best_ = residual_;
+    if (iterations_ == 0 || best_ <= least_progress * mark_) {
+      mark_ = best_;
+      marked_at_ = iterations_;
+    }
+    return iterations_ - marked_at_ < patience;
+  }
+
+  void set_enough(const TwoLevelError& error, double target, std::int64_t sweeps) {
+    // The change of a sweep is no bound of the error of the laws.
+    if (iterations_ > 0 && sweeps - sweeps_before_ <= 2 && error.laws > 0.9 * target) {
+      final_share_ /= 2;
+    }
+    sweeps_before_ = sweeps;
+    enough_ = std::max(share_ * error.total, final_share_ * target);
+  }
+
+  Options options_;
+  double share_, final_share_;
+  double residual_ = 0, best_ = std::numeric_limits<double>::infinity(), enough_ = 0;
+  double mark_ = 0;  ///< residual at the iteration `marked_at_`, when it had last shrunk enough
+  bool is_best_ = false, mixes_ = false;
+  std::int64_t iterations_ = 0, sweeps_before_ = 0, marked_at_ = 0;
+};
+
+}  // namespace tetwarp

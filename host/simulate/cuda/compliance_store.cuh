@@ -1,0 +1,61 @@
+/// @file compliance_store.cuh
+/// Dense inverses of the systems of elastic bodies at rest, in memory of a device.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <vector>
+
+#include "host/simulate/cpu/rest_factors.hpp"
+#include "host/simulate/cuda/step_exec_cuda.cuh"
+#include "kernels/elastic/compliant_body.hpp"
+
+namespace tetwarp {
+
+/// Keeps those of the last few lengths of a step.
+class ComplianceStore {
+ public:
+  /// Sets CompliantBody::inverse of elastic bodies; computes what is not there yet.
+  /// @param model_body  [bodies] their numbers in the model; -1: rigid
+  void set_inverses(CudaStepExec& exec,
+                    RestFactors& factors,
+                    double time_step,
+                    const std::vector<std::int32_t>& model_body,
+                    std::vector<CompliantBody>& bodies) {
+    Inverses& own = of_time_step(time_step);
+    factors.set_time_step(time_step);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (model_body[b] < 0) continue;
+      const auto [found, is_new] = own.of_body.try_emplace(model_body[b]);
+      if (is_new) {
+        factors.of_body(model_body[b]).inverse(host_);
+        exec.put(host_.data(), static_cast<std::int64_t>(host_.size()), found->second);
+        exec.wait();  // for the copy, before the next one
+      }
+      bodies[b].inverse = found->second.view().data;
+    }
+  }
+
+ private:
+  struct Inverses {
+    double time_step = 0;
+    std::map<std::int32_t, DeviceVector<float>> of_body;
+  };
+  static constexpr std::size_t most_time_steps = 3;
+
+  Inverses& of_time_step(double time_step) {
+    const auto found = std::ranges::find(kept_, time_step, &Inverses::time_step);
+    if (found != kept_.end()) return *found;
+    if (kept_.size() == most_time_steps) kept_.pop_front();
+    kept_.emplace_back();
+    kept_.back().time_step = time_step;
+    return kept_.back();
+  }
+
+  std::list<Inverses> kept_;
+  std::vector<float> host_;
+};
+
+}  // namespace tetwarp

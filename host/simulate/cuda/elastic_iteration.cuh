@@ -1,0 +1,248 @@
+/// @file elastic_iteration.cuh
+/// ElasticIteration: the two-level iteration over compliant bodies and their contacts on a device.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "host/base/stopwatch.hpp"
+#include "host/simulate/cuda/elastic_numbers.cuh"
+#include "kernels/contact/anderson.hpp"
+#include "kernels/contact/contact_accelerators.hpp"
+
+namespace tetwarp {
+
+/// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and a sweep visits
+/// all contacts, groups of a color side by side. The host reads the sums of an error per outer
+/// iteration, and the size of a change per sweep.
+class ElasticIteration {
+ public:
+  /// @param exec                     kept by the caller
+  /// @param node_count, rigid_count  of the model
+  ElasticIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
+      : exec_(exec),
+        mixing_(exec.device_exec()),
+        grid_(exec.device_exec()),
+        numbers_(node_count, rigid_count) {}
+
+  /// @param rows    of the system, in memory of the device
+  /// @param arrays  of the step
+  TwoLevelOutcome solve(const SystemRows& rows,
+                        const StepArrays<CudaStepExec>& arrays,
+                        const ElasticLists& lists,
+                        const ElasticStart& start,
+                        RestFactors& factors,
+                        const ContactOptions& options) {
+    clock_ = {};
+    lists_ = &lists;
+    options_ = &options;
+    switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
+    numbers_.set(exec_, grid_, rows, arrays, lists, start, factors);
+    resize();
+    TwoLevelOutcome outcome;
+    End end = End::diverges;
+    for (double damping = 1; end == End::diverges; damping /= 2) {
+      prepare(damping);
+      end = iterate(damping > TwoLevelControl::least_damping, outcome);
+    }
+    if (end == End::is_stopped) return outcome;
+    outcome.converged = end == End::converges;
+    const bool is_small = TwoLevelControl::is_small(lists.contact_count(), lists.row_count());
+    outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_residual_));
+    if (outcome.is_result && !outcome.converged) take_best(outcome);
+    return outcome;
+  }
+
+  /// Impulses and velocities of contacts, [3 contacts] each, then velocities of rows, [rows][3].
+  View<const double> results() const { return results_.view(); }
+  View<const double> row_velocities() const { return View<const double>(velocity()); }
+  View<const std::int32_t> model_block() const { return numbers_.model_block(); }
+
+ private:
+  enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
+  using Mixer = AndersonMixer<GridContactExec, double>;
+  using Directions = ConjugateDirection<GridContactExec, double>;
+  using Vector = DeviceVector<double>;
+  /// Sums that the host reads together.
+  struct Sums {
+    PlainSums<1> defect;
+    PlainSums<2> error;
+  };
+  static constexpr std::int64_t most_sweeps = 200;  ///< of an outer iteration
+  static constexpr const char* label = "body/contact";
+
+  static View<const double> const_view(const Vector& values) { return values.view(); }
+  View<double> part(std::int64_t first, std::int64_t size) const {
+    return {results_data_ + first, size};
+  }
+  View<double> impulse() const { return part(0, contact_numbers_); }
+  View<double> contact_velocity() const { return part(contact_numbers_, contact_numbers_); }
+  View<double> velocity() const { return part(2 * contact_numbers_, row_numbers_); }
+  const CompliantBodies& bodies() const { return numbers_.groups().bodies; }
+  const TouchingRows& touching() const { return numbers_.groups().touching; }
+
+  template <class Body>
+  void for_each(std::int64_t count, const Body& body) {
+    grid_.for_each(label, count, body);
+  }
+
+  void resize() {
+    contact_numbers_ = 3 * lists_->contact_count();
+    row_numbers_ = 3 * lists_->row_count();
+    const auto nodes = 3 * static_cast<std::int64_t>(lists_->row_of_node.size());
+    results_.resize(2 * contact_numbers_ + row_numbers_);
+    results_data_ = results_.view().data;
+    for (Vector* v : {&free_velocity_, &before_, &stepped_, &direction_, &best_impulse_}) {
+      v->resize(contact_numbers_);
+    }
+    for (Vector* v : {&image_, &defect_, &moved_, &best_velocity_}) v->resize(row_numbers_);
+    for (Vector* v : {&node_velocity_, &node_before_, &node_direction_}) v->resize(nodes);
+    mixed_.resize(Mixer::columns * row_numbers_);
+    sums_.resize(1);
+  }
+
+  /// Starts from the velocities without contact.
+  void prepare(double damping) {
+    numbers_.set_damping(exec_, grid_, damping);
+    grid_.copy(label, numbers_.start_velocity(), velocity());
+    for_each(contact_numbers_ / 3,
+             TouchVelocityBody{touching(), numbers_.start_velocity(), free_velocity_.view()});
+    step(numbers_.preload());
+    least_error_ = TwoLevelError::least(grid_.load(&sums_.view().data->defect).value[0]);
+    if (numbers_.change().size > 0) {
+      for_each(row_numbers_, AddNumbersBody{numbers_.change(), velocity()});
+    }
+    grid_.copy(label, numbers_.start_impulse(), impulse());
+  }
+
+  /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
+  void step(View<const double> r) {
+    for_each(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
+    move(velocity());
+    grid_.sum_to(label, 0, row_numbers_, DefectSquareBody{const_view(defect_), const_view(moved_)},
+                 &sums_.view().data->defect);
+  }
+  /// image = from + M^-1 of what is in `defect_`.
+  void move(View<const double> from) {
+    for_each(row_numbers_, ComplianceBody{bodies(), const_view(defect_), moved_.view()});
+    for_each(row_numbers_ / 3, RowMoveBody{bodies(), const_view(moved_), from, image_.view()});
+  }
+  void sum_error(View<const double> r, View<const double> u) {
+    grid_.sum_to(label, 0, contact_numbers_ / 3,
+                 TouchErrorBody{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
+                 &sums_.view().data->error);
+  }
+  /// The error of impulses and velocities.
+  TwoLevelError find_error() {
+    step(impulse());
+    for_each(node_velocity_.view().size / 3,
+             NodeVelocityBody{bodies(), const_view(image_), node_velocity_.view()});
+    for_each(contact_numbers_ / 3, TouchVelocityBody{touching(), velocity(), contact_velocity()});
+    sum_error(impulse(), contact_velocity());
+    const Sums sums = grid_.load(sums_.view().data);
+    return TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+  }
+
+  /// @param ends_early  where it diverges
+  End iterate(bool ends_early, TwoLevelOutcome& outcome) {
+    using Next = TwoLevelControl::Next;
+    Mixer mixer(mixing_, numbers_.weight(), mixed_.view());
+    grid_.resize(before_, contact_numbers_);  // zero impulses
+    sum_error(const_view(before_), const_view(free_velocity_));
+    TwoLevelControl control({.has_elastic = true,
+                             .ends_early = ends_early,
+                             .tolerance = options_->tolerance,
+                             .natural_alone = grid_.load(sums_.view().data).error.value[0],
+                             .least_error = least_error_});
+    best_residual_ = std::numeric_limits<double>::infinity();
+    std::int64_t operations = 0;
+    while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
+      const Next next = control.next(find_error(), outcome.sweeps);
+      outcome.residual = control.residual();
+      if (control.is_best()) keep_best(control.residual());
+      if (next == Next::fails) return End::fails;
+      if (next == Next::converges) return End::converges;
+      if (next == Next::diverges) return End::diverges;
+      if (operations > TwoLevelControl::most_operations) return End::fails;
+      grid_.copy(label, View<const double>(impulse()), stepped_.view());
+      const std::int64_t sweeps = sweep(control.enough());
+      outcome.sweeps += sweeps;
+      operations += sweeps * lists_->sweep_operations;
+      ++outcome.outer_iterations;
+      if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
+        return End::is_stopped;
+      }
+      for_each(row_numbers_ / 3,
+               RowPushBody{bodies(), touching(), impulse(), const_view(stepped_), defect_.view()});
+      move(const_view(image_));
+      if (control.mixes()) {
+        mixer.observe(velocity(), const_view(image_));
+        mixer.advance(velocity(), image_.view());
+      }
+      grid_.copy(label, const_view(image_), velocity());
+    }
+    return End::fails;
+  }
+
+  /// Sweeps until one changes the impulses by at most `enough` in the norm of their energy.
+  /// @returns the sweeps
+  std::int64_t sweep(double enough) {
+    Directions directions(grid_, numbers_.diagonal(), direction_.view());
+    for (std::int64_t sweeps = 1;; ++sweeps) {
+      grid_.copy(label, const_view(node_velocity_), node_before_.view());
+      sweep_groups();
+      directions.observe(const_view(before_), impulse());
+      if (directions.defect() <= enough || sweeps == most_sweeps) return sweeps;
+      directions.advance(const_view(before_), impulse());
+      grid_.for_runs(label, node_velocity_.view().size,
+                     Directions::AdvanceBody{directions.state(), const_view(node_before_),
+                                             node_velocity_.view(), node_direction_.view().data});
+    }
+  }
+
+  void sweep_groups() {
+    const GroupSweep job = {numbers_.groups(), numbers_.constants(),  switches_, numbers_.units(),
+                            numbers_.matrix(), node_velocity_.view(), impulse(), before_.view()};
+    const std::size_t shared =
+        (3 + 3 * static_cast<std::size_t>(lists_->largest_group)) * sizeof(double);
+    for (std::size_t color = 0; color + 1 < lists_->color_start.size(); ++color) {
+      const std::int32_t first = lists_->color_start[color];
+      launch(exec_.stream(), group_sweep_kernel,
+             dim3(static_cast<unsigned>(lists_->color_start[color + 1] - first)), dim3(sum_threads),
+             shared, job, std::int64_t{first});
+    }
+  }
+
+  void keep_best(double residual) {
+    best_residual_ = residual;
+    grid_.copy(label, View<const double>(impulse()), best_impulse_.view());
+    grid_.copy(label, View<const double>(velocity()), best_velocity_.view());
+  }
+  void take_best(TwoLevelOutcome& outcome) {
+    outcome.residual = best_residual_;
+    grid_.copy(label, const_view(best_impulse_), impulse());
+    grid_.copy(label, const_view(best_velocity_), velocity());
+    for_each(contact_numbers_ / 3, TouchVelocityBody{touching(), velocity(), contact_velocity()});
+  }
+
+  CudaStepExec& exec_;
+  GridContactExec mixing_, grid_;  ///< each has the state of one accelerator
+  ElasticNumbers numbers_;
+  const ElasticLists* lists_ = nullptr;      ///< of the present solve
+  const ContactOptions* options_ = nullptr;  ///< of the present solve
+  ContactSwitches switches_;
+  Stopwatch clock_;
+  std::int64_t contact_numbers_ = 0, row_numbers_ = 0;  ///< 3 per contact, per row
+  double least_error_ = 0;                              ///< of the velocities without contact
+  double best_residual_ = 0;
+  Vector results_;
+  double* results_data_ = nullptr;
+  Vector free_velocity_, before_, stepped_, direction_, best_impulse_;
+  Vector image_, defect_, moved_, best_velocity_;
+  Vector node_velocity_, node_before_, node_direction_;
+  Vector mixed_;
+  DeviceVector<Sums> sums_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,58 @@
+/// @file resident_elastic_cuda.cuh
+/// ResidentElastic on a device.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cuda/elastic_iteration.cuh"
+
+namespace tetwarp {
+
+template <class T>
+class CudaResidentElastic final : public ResidentElastic {
+ public:
+  /// @param exec, model, pipeline  kept by the caller
+  CudaResidentElastic(CudaStepExec& exec,
+                      const Model& model,
+                      BodyPipeline<CudaStepExec, T>& pipeline)
+      : exec_(exec), pipeline_(pipeline), iteration_(exec, model.node_count, model.rigid_count) {}
+
+  SystemRows rows() override { return pipeline_.host_rows(); }
+
+  TwoLevelOutcome solve(const ElasticLists& lists,
+                        const ElasticStart& start,
+                        RestFactors& factors,
+                        const ContactOptions& options) override {
+    const DeviceScope scope = exec_.enter();
+    contact_numbers_ = 3 * lists.contacts.size();
+    return iteration_.solve(pipeline_.rows(), pipeline_.arrays(), lists, start, factors, options);
+  }
+
+  ResidentResults results() override {
+    const DeviceScope scope = exec_.enter();
+    const View<const double> all = iteration_.results();
+    host_results_.resize(static_cast<std::size_t>(all.size));
+    exec_.get(all, host_results_.data());
+    const std::span<const double> host = host_results_;
+    return {host.first(contact_numbers_), host.subspan(contact_numbers_, contact_numbers_),
+            host.subspan(2 * contact_numbers_)};
+  }
+
+  void set_velocities() override {
+    const DeviceScope scope = exec_.enter();
+    exec_.for_each("body/contact", iteration_.model_block().size,
+                   ScatterThreeBody{iteration_.model_block(), iteration_.row_velocities(),
+                                    pipeline_.arrays().velocity.view()});
+  }
+
+ private:
+  CudaStepExec& exec_;
+  BodyPipeline<CudaStepExec, T>& pipeline_;
+  ElasticIteration iteration_;
+  std::size_t contact_numbers_ = 0;
+  std::vector<double> host_results_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,115 @@
+/// @file compliant_body.hpp
+/// Bodies that give way to contacts by dense matrices: elastic ones by the inverse of their system
+/// at rest, M^-1 = R A_0^-1 R^T, and single rigid ones by their own, M^-1 = A^-1.
+///
+/// A solve numbers the rows of its bodies one body after the other. Vectors [rows][3] are in the
+/// world; vectors "in frames" have the numbers of elastic bodies turned by R^T. The rows that
+/// contacts touch, both rows of a rigid body, are also numbered: nodes.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/view.hpp"
+#include "kernels/body/row_product.hpp"
+
+namespace tetwarp {
+
+struct CompliantBody {
+  const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: a rigid body
+  std::int32_t system_row = 0;        ///< its first row of the system
+  std::int32_t first = 0, count = 0;  ///< its rows
+  std::int32_t first_node = 0, node_count = 0;       ///< its nodes, in the order of their rows
+  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R, rows first
+
+  /// out = R^T v
+  TETWARP_HD void to_frame(const double* v, double* out) const {
+    for (int i = 0; i < 3; ++i) {
+      out[i] = rotation[i] * v[0] + rotation[3 + i] * v[1] + rotation[6 + i] * v[2];
+    }
+  }
+  /// out = R v
+  TETWARP_HD void to_world(const double* v, double* out) const {
+    for (int i = 0; i < 3; ++i) {
+      out[i] = rotation[3 * i] * v[0] + rotation[3 * i + 1] * v[1] + rotation[3 * i + 2] * v[2];
+    }
+  }
+};
+
+struct CompliantBodies {
+  View<const CompliantBody> bodies;
+  View<const std::int32_t> body_of_row;  ///< [rows]
+  View<const std::int32_t> row_of_node;  ///< [nodes]
+  DiagonalInverse<double> diagonal;      ///< of rigid bodies
+  double damping = 1;                    ///< factor of the compliance of elastic bodies
+
+  TETWARP_HD const CompliantBody& of_row(std::int64_t row) const {
+    return bodies[body_of_row[row]];
+  }
+  /// Numbers of M^-1 for unit forces on the three numbers of `source`, in the frame of the body.
+  /// @param target, source  rows of the same body
+  /// @param block           out, [3][3], row by row
+  TETWARP_HD void block(std::int64_t target, std::int64_t source, double* block) const {
+    const CompliantBody& own = of_row(target);
+    const std::int64_t i = 3 * (target - own.first), j = 3 * (source - own.first);
+    if (own.inverse == nullptr) {
+      const double* const a = diagonal.at(own.system_row);
+      for (int e = 0; e < 9; ++e) block[e] = a[6 * (i + e / 3) + j + e % 3];
+      return;
+    }
+    const std::int64_t size = 3 * std::int64_t{own.count};
+    for (int e = 0; e < 9; ++e) {
+      block[e] = damping * double{own.inverse[(j + e % 3) * size + i + e / 3]};
+    }
+  }
+};
+
+/// One index = one number of `moved`: M^-1 push, both in frames. Neighbors read neighboring numbers
+/// of the inverse.
+struct ComplianceBody {
+  CompliantBodies of;
+  View<const double> push;
+  View<double> moved;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t number) const {
+    const CompliantBody& own = of.of_row(number / 3);
+    const double* const p = push.data + 3 * std::int64_t{own.first};
+    const std::int64_t size = 3 * std::int64_t{own.count}, i = number - 3 * std::int64_t{own.first};
+    double sum = 0;
+    if (own.inverse == nullptr) {
+      const double* const a = of.diagonal.at(own.system_row) + 6 * i;
+      for (int j = 0; j < 6; ++j) sum += a[j] * p[j];
+      moved[number] = sum;
+      return;
+    }
+    const float* a = own.inverse + i;
+    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * p[j];
+    moved[number] = of.damping * sum;
+  }
+};
+
+/// One index = one row: to = from + moved.
+struct RowMoveBody {
+  CompliantBodies of;
+  View<const double> moved;  ///< in frames
+  View<const double> from;
+  View<double> to;  ///< out; may be `from`
+
+  TETWARP_HD void operator()(std::int64_t row) const {
+    double turned[3];
+    of.of_row(row).to_world(moved.data + 3 * row, turned);
+    for (int i = 0; i < 3; ++i) to[3 * row + i] = from[3 * row + i] + turned[i];
+  }
+};
+
+/// One index = one node: its velocity in the frame of its body.
+struct NodeVelocityBody {
+  CompliantBodies of;
+  View<const double> velocity;  ///< [rows][3]
+  View<double> node_velocity;   ///< out, [nodes][3]
+
+  TETWARP_HD void operator()(std::int64_t node) const {
+    const std::int64_t row = of.row_of_node[node];
+    of.of_row(row).to_frame(velocity.data + 3 * row, node_velocity.data + 3 * node);
+  }
+};
+
+}  // namespace tetwarp

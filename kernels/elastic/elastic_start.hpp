@@ -1,0 +1,43 @@
+/// @file elastic_start.hpp
+/// What the iteration over compliant bodies starts from, out of the system of a step.
+#pragma once
+#include <cstdint>
+
+#include "kernels/body/row_product.hpp"
+
+namespace tetwarp {
+
+/// One index = one rigid body: the inverse of its block, by its first row of the system.
+struct RigidInvertBody {
+  View<const std::int32_t> first_row;
+  RowInvertBody<double> invert;
+
+  TETWARP_HD void operator()(std::int64_t i) const { invert(first_row[i]); }
+};
+
+/// One index = one row: velocities without contact, and the metric in which velocities are mixed.
+struct RowStartBody {
+  View<const std::int32_t> system_row;  ///< [rows]
+  SystemRows rows;
+  View<const double> values, without_contact;  ///< of the system: A, [rows of the system][3]
+  View<double> velocity, weight;               ///< out, [rows][3]
+
+  TETWARP_HD void operator()(std::int64_t row) const {
+    const std::int64_t place = system_row[row];
+    const double* const own = values.data + 9 * std::int64_t{rows.diagonal[place]};
+    for (int i = 0; i < 3; ++i) {
+      velocity[3 * row + i] = without_contact[3 * place + i];
+      weight[3 * row + i] = own[4 * i];
+    }
+  }
+};
+
+/// One index = one number.
+struct AddNumbersBody {
+  View<const double> more;
+  View<double> sum;  ///< in and out
+
+  TETWARP_HD void operator()(std::int64_t i) const { sum[i] += more[i]; }
+};
+
+}  // namespace tetwarp
