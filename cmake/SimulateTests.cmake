@@ -91,6 +91,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
+    tests/simulate/stack_scenes.cpp
     tests/simulate/test_contact_bonds.cpp
     tests/simulate/test_contact_system.cpp
     tests/simulate/test_contact_system_blocks.cpp
@@ -124,10 +125,12 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_contact_system_emulated.cpp
+    tests/emu/test_elastic_contacts_emulated.cpp
     tests/emu/test_simulator_emulated.cpp
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
+    tests/simulate/stack_scenes.cpp
     tests/simulate/test_contact_cuda.cpp)
   foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces
                pair_contact contact_system touch contact_law)

@@ -4,7 +4,8 @@
 ///
 /// A solve numbers the rows of its bodies one body after the other. Vectors [rows][3] are in the
 /// world; vectors "in frames" have the numbers of elastic bodies turned by R^T. The rows that
-/// contacts touch, both rows of a rigid body, are also numbered: nodes.
+/// contacts touch, both rows of a rigid body, are also numbered: nodes. Between the nodes of a body
+/// acts its compliance, a part of M^-1.
 #pragma once
 #include <cstdint>
 
@@ -18,6 +19,8 @@ struct CompliantBody {
   std::int32_t system_row = 0;        ///< its first row of the system
   std::int32_t first = 0, count = 0;  ///< its rows
   std::int32_t first_node = 0, node_count = 0;       ///< its nodes, in the order of their rows
+  std::int32_t contact_count = 0;                    ///< contacts that act on it
+  std::int64_t compliance = 0;                       ///< first number of its compliance
   double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R, rows first
 
   /// out = R^T v
@@ -38,6 +41,7 @@ struct CompliantBodies {
   View<const CompliantBody> bodies;
   View<const std::int32_t> body_of_row;  ///< [rows]
   View<const std::int32_t> row_of_node;  ///< [nodes]
+  View<const float> compliance;          ///< of each body [3 nodes][3 nodes], columns first
   DiagonalInverse<double> diagonal;      ///< of rigid bodies
   double damping = 1;                    ///< factor of the compliance of elastic bodies
 
@@ -59,6 +63,41 @@ struct CompliantBodies {
     for (int e = 0; e < 9; ++e) {
       block[e] = damping * double{own.inverse[(j + e % 3) * size + i + e / 3]};
     }
+  }
+};
+
+/// (node, other, item): one block of the compliance of their body; `other` counts from its first
+/// node.
+struct ComplianceBlockBody {
+  CompliantBodies of;
+  View<float> compliance;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t node, std::int64_t other, std::int64_t) const {
+    const CompliantBody& own = of.of_row(of.row_of_node[node]);
+    double block[9];
+    of.block(of.row_of_node[node], of.row_of_node[own.first_node + other], block);
+    const std::int64_t size = 3 * std::int64_t{own.node_count};
+    float* const out = compliance.data + own.compliance + 3 * other * size +
+                       3 * (node - std::int64_t{own.first_node});
+    for (int e = 0; e < 9; ++e) out[e % 3 * size + e / 3] = static_cast<float>(block[e]);
+  }
+};
+
+/// One index = one number of a node: velocities that pushes on the nodes cause. Neighbors read
+/// neighboring numbers of the compliance.
+struct NodeMoveBody {
+  CompliantBodies of;
+  View<const double> push, from;  ///< [nodes][3] in frames; `from` may be empty: zero
+  View<double> velocity;          ///< out: from + compliance push
+
+  TETWARP_HD void operator()(std::int64_t number) const {
+    const CompliantBody& own = of.of_row(of.row_of_node[number / 3]);
+    const std::int64_t first = 3 * std::int64_t{own.first_node};
+    const std::int64_t size = 3 * std::int64_t{own.node_count};
+    const float* a = of.compliance.data + own.compliance + number - first;
+    double sum = from.size == 0 ? 0 : from[number];
+    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * push[first + j];
+    velocity[number] = sum;
   }
 };
 

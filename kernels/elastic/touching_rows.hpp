@@ -10,13 +10,13 @@
 namespace tetwarp {
 
 /// J of the contacts in 3x3 blocks, row by row: velocities along the axes of a contact per velocity
-/// of a row.
+/// of a row. The blocks of a contact on the same body are its side 0 or 1, one after the other.
 struct TouchingRows {
-  View<const std::int32_t> block_start;         ///< [contacts + 1]
-  View<const std::int32_t> row, node, contact;  ///< [blocks]
-  View<const double> jacobian;                  ///< [blocks][9]
-  View<const std::int32_t> touch_start, touch;  ///< of each row its blocks, ascending
-  View<const double> offset;                    ///< w, [3 contacts]
+  View<const std::int32_t> block_start;               ///< [contacts + 1]
+  View<const std::int32_t> row, node, contact, side;  ///< [blocks]
+  View<const double> jacobian;                        ///< [blocks][9]
+  View<const std::int32_t> touch_start, touch;        ///< of each row its blocks, ascending
+  View<const double> offset;                          ///< w, [3 contacts]
 
   /// force += J^T (impulse - minus) of all contacts on a row.
   /// @param minus  [3 contacts]

@@ -1,89 +1,16 @@
 /// The two-level iteration of contacts of deformable bodies.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/step_problem.hpp"
 #include "tests/simulate/body_models.hpp"
-#include "tests/simulate/hand_contacts.hpp"
+#include "tests/simulate/stack_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {
-constexpr double stack_step = 8e-3;
-
-/// A stiff elastic block on a frame and a rigid box on it, all touching at many points.
-HandScene stack_scene(double youngs) {
-  HandScene scene;
-  Model& model = scene.model;
-  model = empty_model();
-  add_block(model, {.cells = {4, 4, 3}, .edge = 0.005, .youngs = youngs, .poisson = 0.4});
-  const std::int32_t box = add_rigid(model, 0.02, {1e-6, 1e-6, 1e-6}, {0.01, 0.01, 0.02});
-  const std::int32_t frame = add_frame(model, {0, 0, 0});
-  scene.make_surfaces(0.02);
-  const auto body_of = [&](std::int32_t rigid) {
-    return model.rigid.body[static_cast<std::size_t>(rigid)];
-  };
-  for (std::int32_t node = 0; node < 25; node += 2) {
-    const Point3& place = model.start.position[static_cast<std::size_t>(node)];
-    Touch touch;
-    touch.body_b = body_of(frame);
-    touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
-    touch.point_b = on_rigid(place);
-    touch.area = 1e-5;
-    scene.touches.push_back(touch);
-  }
-  for (std::int32_t node = 75; node < 100; node += 3) {
-    const Point3& place = model.start.position[static_cast<std::size_t>(node)];
-    Touch touch;
-    touch.body_b = body_of(box);
-    touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
-    touch.point_b = on_rigid({place[0] - 0.01, place[1] - 0.01, -0.005});
-    touch.normal = {0, 0, -1};
-    touch.area = 1e-5;
-    scene.touches.push_back(touch);
-  }
-  return scene;
-}
-
-/// Three elastic blocks on a frame: groups of 169, 57 and 85 contacts, of one body or of two.
-/// @param height  of the shape at rest
-HandScene tower_scene(double height = 1) {
-  HandScene scene;
-  Model& model = scene.model;
-  model = empty_model();
-  for (int block = 0; block < 3; ++block) {
-    add_block(model, {.cells = {12, 12, 1},
-                      .edge = 0.005,
-                      .origin = {0, 0, 0.005 * block},
-                      .youngs = 3e4 * (1 + block),
-                      .poisson = 0.4});
-  }
-  for (Point3& x : model.start.position) x[2] *= height;
-  const std::int32_t frame = add_frame(model, {0, 0, 0});
-  scene.make_surfaces(0.02);
-  for (std::int32_t block = 0; block < 3; ++block) {
-    const std::int32_t stride =
-        std::array<std::int32_t, 3>{1, 3, 2}[static_cast<std::size_t>(block)];
-    for (std::int32_t node = 0; node < 169; node += stride) {
-      Touch touch;
-      touch.body_a = block;
-      touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
-      if (block == 0) {
-        touch.body_b = model.rigid.body[static_cast<std::size_t>(frame)];
-        touch.point_b = on_rigid(model.start.position[static_cast<std::size_t>(node)]);
-      } else {
-        touch.body_b = block - 1;
-        touch.point_b = on_nodes({169 + node, -1, -1}, {1, 0, 0});
-      }
-      touch.area = 1e-5;
-      scene.touches.push_back(touch);
-    }
-  }
-  return scene;
-}
 
 struct StackStep {
   ContactSolveOutcome outcome;

@@ -9,12 +9,9 @@
 namespace tetwarp {
 namespace {
 
-// Inverses of 3 n x 3 n numbers of float32: of one body up to 81 MB, of all up to 1 GiB; and the
-// numbers of a solve, in all its groups.
+// Inverses of 3 n x 3 n numbers of float32: of one body up to 81 MB, of all up to 1 GiB.
 constexpr std::int64_t most_nodes = 1500;
-constexpr std::int64_t most_inverse_numbers = std::int64_t{1} << 28;
-constexpr std::int64_t most_group_numbers = std::int64_t{1} << 28;
-constexpr std::int64_t most_contacts_of_group = 1024;
+constexpr std::int64_t most_numbers = std::int64_t{1} << 28;
 
 }  // namespace
 
@@ -33,7 +30,7 @@ ElasticIslands::ElasticIslands(const Model& model,
     is_possible_[index_of(island)] = model.body_rigid[body] >= 0;
     if (factors_->body_of_island(island) < 0) continue;
     const std::int64_t nodes = model.body_node[body + 1] - model.body_node[body];
-    if (nodes > most_nodes || numbers + 9 * nodes * nodes > most_inverse_numbers) continue;
+    if (nodes > most_nodes || numbers + 9 * nodes * nodes > most_numbers) continue;
     numbers += 9 * nodes * nodes;
     is_possible_[index_of(island)] = 1;
   }
@@ -52,29 +49,26 @@ TwoLevelOutcome ElasticIslands::solve(BodyStepper& stepper,
                                       const std::vector<Point3>& change,
                                       std::vector<Point3>& velocity) {
   ResidentElastic& resident = *stepper.resident_elastic();
-  const ElasticLists& lists =
-      maker_.make(resident.rows(), islands, *factors_, rows, takes, contacts);
-  if (lists.largest_group > most_contacts_of_group ||
-      lists.unit_count + lists.matrix_count > most_group_numbers) {
-    return {};
-  }
-  set_start(state, laws, change.size() == velocity.size() ? change : std::vector<Point3>{});
-  const TwoLevelOutcome outcome = resident.solve(lists, start_, *factors_, options_);
-  if (outcome.is_result) take_results(resident.results(), contacts, velocity);
+  maker_.make(resident.rows(), islands, *factors_, rows, takes, contacts);
+  set_start(state, contacts, laws,
+            change.size() == velocity.size() ? change : std::vector<Point3>{});
+  const TwoLevelOutcome outcome = resident.solve(maker_.lists(), start_, *factors_, options_);
+  if (outcome.is_result) take_results(resident.results(), velocity);
   return outcome;
 }
 
-/// The laws in the order of the lists, and the rotations of the bodies.
+/// The laws of the contacts, and the rotations of the bodies.
 void ElasticIslands::set_start(const ModelState& state,
+                               const std::vector<std::int32_t>& contacts,
                                const ContactProblem& laws,
                                const std::vector<Point3>& change) {
   ElasticLists& lists = maker_.lists();
-  gather_laws(lists.contacts, laws, laws_);
+  gather_laws(contacts, laws, laws_);
   start_.time_step = laws.adhesion.time_step;
   start_.laws.set(laws_);
   start_.offset = laws_.velocity_offset;
   start_.impulse = laws_.impulse_guess;
-  for (std::size_t c = 0; c < lists.contacts.size(); ++c) {
+  for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {
     start_.impulse[3 * c] += start_.laws.preload[c];
   }
   start_.change.clear();
@@ -93,20 +87,12 @@ void ElasticIslands::set_start(const ModelState& state,
   }
 }
 
-void ElasticIslands::take_results(const ResidentResults& results,
-                                  const std::vector<std::int32_t>& contacts,
-                                  std::vector<Point3>& velocity) {
+void ElasticIslands::take_results(const ResidentResults& results, std::vector<Point3>& velocity) {
   const ElasticLists& lists = maker_.lists();
-  impulse_.resize(3 * contacts.size());
-  contact_velocity_.resize(3 * contacts.size());
-  for (std::size_t c = 0; c < lists.contacts.size(); ++c) {
-    const auto place = std::ranges::lower_bound(contacts, lists.contacts[c]) - contacts.begin();
-    const std::size_t to = 3 * static_cast<std::size_t>(place);
-    for (std::size_t a = 0; a < 3; ++a) {
-      impulse_[to + a] = results.impulse[3 * c + a];
-      contact_velocity_[to + a] = results.velocity[3 * c + a];
-    }
-    impulse_[to] -= start_.laws.preload[c];
+  impulse_.assign(results.impulse.begin(), results.impulse.end());
+  contact_velocity_.assign(results.velocity.begin(), results.velocity.end());
+  for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {
+    impulse_[3 * c] -= start_.laws.preload[c];
   }
   for (std::size_t row = 0; row < lists.model_block.size(); ++row) {
     Point3& own = velocity[index_of(lists.model_block[row])];

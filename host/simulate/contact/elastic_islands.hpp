@@ -36,7 +36,6 @@ class ElasticIslands {
   /// @param laws      of all contacts
   /// @param change    how contacts changed the velocities in the step before, or empty
   /// @param velocity  out, if there is a result: with contact in the islands, [block_count]
-  /// @returns         without a result also where the contacts take too much memory
   TwoLevelOutcome solve(BodyStepper& stepper,
                         const ModelState& state,
                         const ContactIslands& islands,
@@ -53,17 +52,16 @@ class ElasticIslands {
 
  private:
   void set_start(const ModelState& state,
+                 const std::vector<std::int32_t>& contacts,
                  const ContactProblem& laws,
                  const std::vector<Point3>& change);
-  void take_results(const ResidentResults& results,
-                    const std::vector<std::int32_t>& contacts,
-                    std::vector<Point3>& velocity);
+  void take_results(const ResidentResults& results, std::vector<Point3>& velocity);
 
   ContactOptions options_;
   std::shared_ptr<RestFactors> factors_;
   std::vector<std::uint8_t> is_possible_;
   ElasticListMaker maker_;
-  ContactProblem laws_;  ///< in the order of the lists
+  ContactProblem laws_;  ///< of its contacts
   ElasticStart start_;
   std::vector<double> impulse_, contact_velocity_;
 };

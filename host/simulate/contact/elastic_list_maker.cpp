@@ -6,30 +6,22 @@
 namespace tetwarp {
 namespace {
 
-// As in sweeps on the host: bonds make impulses within a group converge slowly, and passes over
-// many contacts, or over a group alone, take longer than they save.
-constexpr std::int32_t group_passes = 3;
-constexpr std::int64_t most_of_passes = 64;  // contacts
-
 std::int32_t size_of(const std::vector<std::int32_t>& list) {
   return static_cast<std::int32_t>(list.size());
 }
 
 }  // namespace
 
-const ElasticLists& ElasticListMaker::make(const SystemRows& rows,
-                                           const ContactIslands& islands,
-                                           const RestFactors& factors,
-                                           const ContactRows& contact_rows,
-                                           const std::vector<std::uint8_t>& takes,
-                                           const std::vector<std::int32_t>& contacts) {
+void ElasticListMaker::make(const SystemRows& rows,
+                            const ContactIslands& islands,
+                            const RestFactors& factors,
+                            const ContactRows& contact_rows,
+                            const std::vector<std::uint8_t>& takes,
+                            const std::vector<std::int32_t>& contacts) {
   list_bodies(rows, islands, factors, takes);
-  list_groups(contact_rows, contacts);
-  list_nodes(contact_rows);
-  list_blocks(contact_rows);
+  list_nodes(contact_rows, contacts);
+  list_blocks(contact_rows, contacts);
   list_touching();
-  set_sizes();
-  return lists_;
 }
 
 void ElasticListMaker::list_bodies(const SystemRows& rows,
@@ -62,94 +54,18 @@ void ElasticListMaker::list_bodies(const SystemRows& rows,
   }
 }
 
-/// The bodies of the two sides of a contact, the smaller number first; -1 last: does not move.
-ElasticListMaker::BodyPair ElasticListMaker::bodies_of(const ContactRows& contact_rows,
-                                                       std::int32_t contact) const {
-  std::int32_t first = -1, second = -1;
-  for (const std::int32_t block : contact_rows.blocks_of(index_of(contact))) {
-    const std::int32_t row = row_of_block_[index_of(block)];
-    if (row < 0) continue;
-    const std::int32_t body = lists_.body_of_row[index_of(row)];
-    if (body != first) (first < 0 ? first : second) = body;
-  }
-  if (second >= 0 && second < first) std::swap(first, second);
-  return {first, second};
-}
-
-/// The first color that no group of the same bodies has.
-std::int32_t ElasticListMaker::color_of(const ContactGroup& group) {
-  const auto is_taken = [&](std::size_t color) {
-    return std::ranges::any_of(group.body, [&](std::int32_t body) {
-      return body >= 0 && color < has_color_[index_of(body)].size() &&
-             has_color_[index_of(body)][color] != 0;
-    });
-  };
-  std::size_t color = 0;
-  while (is_taken(color)) ++color;
-  for (const std::int32_t body : group.body) {
-    if (body < 0) continue;
-    std::vector<std::uint8_t>& own = has_color_[index_of(body)];
-    if (own.size() <= color) own.resize(color + 1, 0);
-    own[color] = 1;
-  }
-  return static_cast<std::int32_t>(color);
-}
-
-/// Large groups are colored first: groups of a color run side by side, and the largest of them
-/// takes longest.
-void ElasticListMaker::list_groups(const ContactRows& contact_rows,
-                                   const std::vector<std::int32_t>& contacts) {
-  for (auto& [bodies, list] : contacts_of_) list.clear();
-  for (const std::int32_t contact : contacts) {
-    contacts_of_[bodies_of(contact_rows, contact)].push_back(contact);
-  }
-  std::erase_if(contacts_of_, [](const auto& entry) { return entry.second.empty(); });
-  std::vector<std::pair<BodyPair, const std::vector<std::int32_t>*>> by_size;
-  for (const auto& [bodies, list] : contacts_of_) by_size.emplace_back(bodies, &list);
-  std::ranges::stable_sort(by_size, std::ranges::greater{},
-                           [](const auto& entry) { return entry.second->size(); });
-  has_color_.assign(lists_.bodies.size(), {});
-  made_.clear();
-  colored_.clear();
-  for (const auto& [bodies, list] : by_size) {
-    ContactGroup group;
-    group.body[0] = bodies.first;
-    group.body[1] = bodies.second;
-    const auto size = static_cast<std::int64_t>(list->size());
-    group.passes = size <= most_of_passes && contacts_of_.size() > 1 ? group_passes : 1;
-    colored_.emplace_back(color_of(group), list);
-    made_.push_back(group);
-  }
-  std::int32_t colors = 0;
-  for (const auto& [color, list] : colored_) colors = std::max(colors, color + 1);
-  lists_.groups.clear();
-  lists_.contacts.clear();
-  lists_.group_of_contact.clear();
-  lists_.color_start.assign(1, 0);
-  for (std::int32_t color = 0; color < colors; ++color) {
-    for (std::size_t g = 0; g < made_.size(); ++g) {
-      if (colored_[g].first != color) continue;
-      ContactGroup& group = lists_.groups.emplace_back(made_[g]);
-      const std::vector<std::int32_t>& own = *colored_[g].second;
-      group.contact_begin = size_of(lists_.contacts);
-      lists_.contacts.insert(lists_.contacts.end(), own.begin(), own.end());
-      group.contact_end = size_of(lists_.contacts);
-      lists_.group_of_contact.resize(lists_.contacts.size(),
-                                     static_cast<std::int32_t>(lists_.groups.size()) - 1);
-    }
-    lists_.color_start.push_back(static_cast<std::int32_t>(lists_.groups.size()));
-  }
-}
-
-void ElasticListMaker::list_nodes(const ContactRows& contact_rows) {
+void ElasticListMaker::list_nodes(const ContactRows& contact_rows,
+                                  const std::vector<std::int32_t>& contacts) {
   node_of_row_.assign(lists_.body_of_row.size(), -1);
-  for (const std::int32_t contact : lists_.contacts) {
+  for (const std::int32_t contact : contacts) {
     for (const std::int32_t block : contact_rows.blocks_of(index_of(contact))) {
       const std::int32_t row = row_of_block_[index_of(block)];
       if (row >= 0) node_of_row_[index_of(row)] = 0;
     }
   }
   lists_.row_of_node.clear();
+  lists_.pair_start.assign(1, 0);
+  lists_.compliance_size = 0;
   for (CompliantBody& own : lists_.bodies) {
     own.first_node = size_of(lists_.row_of_node);
     for (std::int32_t row = own.first; row < own.first + own.count; ++row) {
@@ -158,32 +74,55 @@ void ElasticListMaker::list_nodes(const ContactRows& contact_rows) {
       lists_.row_of_node.push_back(row);
     }
     own.node_count = size_of(lists_.row_of_node) - own.first_node;
+    own.compliance = lists_.compliance_size;
+    lists_.compliance_size += 9 * std::int64_t{own.node_count} * own.node_count;
+    for (std::int32_t n = 0; n < own.node_count; ++n) {
+      lists_.pair_start.push_back(lists_.pair_start.back() + own.node_count);
+    }
   }
 }
 
-void ElasticListMaker::list_blocks(const ContactRows& contact_rows) {
-  for (auto* list : {&lists_.block_row, &lists_.block_node, &lists_.block_contact}) list->clear();
+/// Appends a block of the last contact, and its body to the sides of the contact. The rows of a
+/// body follow each other, and so do its blocks.
+void ElasticListMaker::add_block(std::int32_t row) {
+  const std::int32_t body = lists_.body_of_row[index_of(row)];
+  std::int32_t* const sides = lists_.sides.data() + lists_.sides.size() - 2;
+  const bool is_second = sides[0] >= 0 && sides[0] != body;
+  if (sides[is_second ? 1 : 0] < 0) {
+    sides[is_second ? 1 : 0] = body;
+    ++lists_.bodies[index_of(body)].contact_count;
+  }
+  lists_.block_row.push_back(row);
+  lists_.block_node.push_back(node_of_row_[index_of(row)]);
+  lists_.block_contact.push_back(static_cast<std::int32_t>(lists_.sides.size() / 2) - 1);
+  lists_.block_side.push_back(is_second ? 1 : 0);
+}
+
+void ElasticListMaker::list_blocks(const ContactRows& contact_rows,
+                                   const std::vector<std::int32_t>& contacts) {
+  for (auto* list : {&lists_.block_row, &lists_.block_node, &lists_.block_contact,
+                     &lists_.block_side, &lists_.sides}) {
+    list->clear();
+  }
   lists_.block_start.assign(1, 0);
   lists_.axes.clear();
   lists_.arms.clear();
   lists_.places.clear();
-  for (std::size_t k = 0; k < lists_.contacts.size(); ++k) {
-    const std::size_t contact = index_of(lists_.contacts[k]);
+  for (const std::int32_t number : contacts) {
+    const std::size_t contact = index_of(number);
     const auto axes = contact_rows.axes.begin() + static_cast<std::ptrdiff_t>(9 * contact);
     lists_.axes.insert(lists_.axes.end(), axes, axes + 9);
+    lists_.sides.insert(lists_.sides.end(), {-1, -1});
+    const auto place = static_cast<std::int32_t>(lists_.sides.size() / 2) - 1;
     const std::int32_t end = contact_rows.arm_start[contact + 1];
     for (std::int32_t a = contact_rows.arm_start[contact]; a < end; ++a) {
       const std::int32_t row = row_of_block_[index_of(contact_rows.block_of_arm(a))];
       if (row < 0) continue;
       const bool is_frame = contact_rows.places[index_of(a)].angular != 0;
       lists_.arms.push_back(contact_rows.arms[index_of(a)]);
-      lists_.places.push_back(
-          {static_cast<std::int32_t>(k), 9 * size_of(lists_.block_row), 3, is_frame ? 9 : 0});
-      for (std::int32_t own = row; own <= row + (is_frame ? 1 : 0); ++own) {
-        lists_.block_row.push_back(own);
-        lists_.block_node.push_back(node_of_row_[index_of(own)]);
-        lists_.block_contact.push_back(static_cast<std::int32_t>(k));
-      }
+      lists_.places.push_back({place, 9 * size_of(lists_.block_row), 3, is_frame ? 9 : 0});
+      add_block(row);
+      if (is_frame) add_block(row + 1);
     }
     lists_.block_start.push_back(size_of(lists_.block_row));
   }
@@ -204,29 +143,6 @@ void ElasticListMaker::list_touching() {
   }
   std::shift_right(lists_.touch_start.begin(), lists_.touch_start.end(), 1);
   lists_.touch_start.front() = 0;
-}
-
-void ElasticListMaker::set_sizes() {
-  lists_.unit_count = lists_.matrix_count = lists_.largest_group = lists_.sweep_operations = 0;
-  lists_.unit_start.assign(1, 0);
-  lists_.matrix_start.assign(1, 0);
-  for (ContactGroup& group : lists_.groups) {
-    group.node_count = 0;
-    for (const std::int32_t body : group.body) {
-      if (body >= 0) group.node_count += lists_.bodies[index_of(body)].node_count;
-    }
-    const std::int64_t count = group.contact_count();
-    group.units = lists_.unit_count;
-    group.matrix = lists_.matrix_count;
-    lists_.unit_count += 9 * count * group.node_count;
-    lists_.matrix_count += 9 * count * count;
-    lists_.sweep_operations += 9 * group.passes * count * count;
-    lists_.largest_group = std::max(lists_.largest_group, count);
-    for (std::int64_t k = 0; k < count; ++k) {
-      lists_.unit_start.push_back(lists_.unit_start.back() + group.node_count);
-      lists_.matrix_start.push_back(lists_.matrix_start.back() + count);
-    }
-  }
 }
 
 }  // namespace tetwarp

@@ -9,22 +9,19 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/cuda/elastic_numbers.cuh"
 #include "kernels/contact/anderson.hpp"
-#include "kernels/contact/contact_accelerators.hpp"
+#include "kernels/elastic/proximal_step.hpp"
 
 namespace tetwarp {
 
-/// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and a sweep visits
-/// all contacts, groups of a color side by side. The host reads the sums of an error per outer
-/// iteration, and the size of a change per sweep.
+/// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and instead of
+/// sweeps, which visit contacts one after the other, accelerated proximal steps move all contacts
+/// at once. The host reads the sums of an error once per outer iteration and per eight steps.
 class ElasticIteration {
  public:
   /// @param exec                     kept by the caller
   /// @param node_count, rigid_count  of the model
   ElasticIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
-      : exec_(exec),
-        mixing_(exec.device_exec()),
-        grid_(exec.device_exec()),
-        numbers_(node_count, rigid_count) {}
+      : exec_(exec), grid_(exec.device_exec()), numbers_(node_count, rigid_count) {}
 
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
@@ -62,14 +59,14 @@ class ElasticIteration {
  private:
   enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
   using Mixer = AndersonMixer<GridContactExec, double>;
-  using Directions = ConjugateDirection<GridContactExec, double>;
   using Vector = DeviceVector<double>;
   /// Sums that the host reads together.
   struct Sums {
     PlainSums<1> defect;
     PlainSums<2> error;
   };
-  static constexpr std::int64_t most_sweeps = 200;  ///< of an outer iteration
+  static constexpr std::int64_t most_steps = 1000;  ///< of an outer iteration
+  static constexpr std::int64_t most_of_solve = 20000;
   static constexpr const char* label = "body/contact";
 
   static View<const double> const_view(const Vector& values) { return values.view(); }
@@ -79,8 +76,8 @@ class ElasticIteration {
   View<double> impulse() const { return part(0, contact_numbers_); }
   View<double> contact_velocity() const { return part(contact_numbers_, contact_numbers_); }
   View<double> velocity() const { return part(2 * contact_numbers_, row_numbers_); }
-  const CompliantBodies& bodies() const { return numbers_.groups().bodies; }
-  const TouchingRows& touching() const { return numbers_.groups().touching; }
+  const CompliantBodies& bodies() const { return numbers_.touching().bodies; }
+  const TouchingRows& rows() const { return numbers_.touching().rows; }
 
   template <class Body>
   void for_each(std::int64_t count, const Body& body) {
@@ -93,13 +90,15 @@ class ElasticIteration {
     const auto nodes = 3 * static_cast<std::int64_t>(lists_->row_of_node.size());
     results_.resize(2 * contact_numbers_ + row_numbers_);
     results_data_ = results_.view().data;
-    for (Vector* v : {&free_velocity_, &before_, &stepped_, &direction_, &best_impulse_}) {
+    for (Vector* v : {&free_velocity_, &none_, &stepped_, &ahead_, &best_impulse_}) {
       v->resize(contact_numbers_);
     }
     for (Vector* v : {&image_, &defect_, &moved_, &best_velocity_}) v->resize(row_numbers_);
-    for (Vector* v : {&node_velocity_, &node_before_, &node_direction_}) v->resize(nodes);
+    for (Vector* v : {&node_start_, &node_velocity_, &push_}) v->resize(nodes);
     mixed_.resize(Mixer::columns * row_numbers_);
+    terms_.resize(contact_numbers_ / 3);
     sums_.resize(1);
+    state_.resize(1);
   }
 
   /// Starts from the velocities without contact.
@@ -107,7 +106,7 @@ class ElasticIteration {
     numbers_.set_damping(exec_, grid_, damping);
     grid_.copy(label, numbers_.start_velocity(), velocity());
     for_each(contact_numbers_ / 3,
-             TouchVelocityBody{touching(), numbers_.start_velocity(), free_velocity_.view()});
+             TouchVelocityBody{rows(), numbers_.start_velocity(), free_velocity_.view()});
     step(numbers_.preload());
     least_error_ = TwoLevelError::least(grid_.load(&sums_.view().data->defect).value[0]);
     if (numbers_.change().size > 0) {
@@ -136,9 +135,9 @@ class ElasticIteration {
   /// The error of impulses and velocities.
   TwoLevelError find_error() {
     step(impulse());
-    for_each(node_velocity_.view().size / 3,
-             NodeVelocityBody{bodies(), const_view(image_), node_velocity_.view()});
-    for_each(contact_numbers_ / 3, TouchVelocityBody{touching(), velocity(), contact_velocity()});
+    for_each(node_start_.view().size / 3,
+             NodeVelocityBody{bodies(), const_view(image_), node_start_.view()});
+    for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
     sum_error(impulse(), contact_velocity());
     const Sums sums = grid_.load(sums_.view().data);
     return TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
@@ -147,16 +146,15 @@ class ElasticIteration {
   /// @param ends_early  where it diverges
   End iterate(bool ends_early, TwoLevelOutcome& outcome) {
     using Next = TwoLevelControl::Next;
-    Mixer mixer(mixing_, numbers_.weight(), mixed_.view());
-    grid_.resize(before_, contact_numbers_);  // zero impulses
-    sum_error(const_view(before_), const_view(free_velocity_));
+    Mixer mixer(grid_, numbers_.weight(), mixed_.view());
+    grid_.resize(none_, contact_numbers_);  // zeros
+    sum_error(const_view(none_), const_view(free_velocity_));
     TwoLevelControl control({.has_elastic = true,
                              .ends_early = ends_early,
                              .tolerance = options_->tolerance,
                              .natural_alone = grid_.load(sums_.view().data).error.value[0],
                              .least_error = least_error_});
     best_residual_ = std::numeric_limits<double>::infinity();
-    std::int64_t operations = 0;
     while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
       const Next next = control.next(find_error(), outcome.sweeps);
       outcome.residual = control.residual();
@@ -164,17 +162,15 @@ class ElasticIteration {
       if (next == Next::fails) return End::fails;
       if (next == Next::converges) return End::converges;
       if (next == Next::diverges) return End::diverges;
-      if (operations > TwoLevelControl::most_operations) return End::fails;
+      if (outcome.sweeps > most_of_solve) return End::fails;
       grid_.copy(label, View<const double>(impulse()), stepped_.view());
-      const std::int64_t sweeps = sweep(control.enough());
-      outcome.sweeps += sweeps;
-      operations += sweeps * lists_->sweep_operations;
+      outcome.sweeps += step_contacts(control.enough());
       ++outcome.outer_iterations;
       if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
         return End::is_stopped;
       }
       for_each(row_numbers_ / 3,
-               RowPushBody{bodies(), touching(), impulse(), const_view(stepped_), defect_.view()});
+               RowPushBody{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
       move(const_view(image_));
       if (control.mixes()) {
         mixer.observe(velocity(), const_view(image_));
@@ -185,33 +181,32 @@ class ElasticIteration {
     return End::fails;
   }
 
-  /// Sweeps until one changes the impulses by at most `enough` in the norm of their energy.
-  /// @returns the sweeps
-  std::int64_t sweep(double enough) {
-    Directions directions(grid_, numbers_.diagonal(), direction_.view());
-    for (std::int64_t sweeps = 1;; ++sweeps) {
-      grid_.copy(label, const_view(node_velocity_), node_before_.view());
-      sweep_groups();
-      directions.observe(const_view(before_), impulse());
-      if (directions.defect() <= enough || sweeps == most_sweeps) return sweeps;
-      directions.advance(const_view(before_), impulse());
-      grid_.for_runs(label, node_velocity_.view().size,
-                     Directions::AdvanceBody{directions.state(), const_view(node_before_),
-                                             node_velocity_.view(), node_direction_.view().data});
+  /// Steps until the laws are off by at most `enough`. @returns the steps
+  std::int64_t step_contacts(double enough) {
+    constexpr int count = ProximalState::steps_at_once;
+    ProximalState* const state = state_.view().data;
+    grid_.once(label, ProximalStartBody{state});
+    grid_.copy(label, View<const double>(impulse()), ahead_.view());
+    grid_.copy(label, const_view(node_start_), node_velocity_.view());
+    for (std::int64_t steps = count;; steps += count) {
+      for (int step = 0; step < count; ++step) step_contacts_once(state, step);
+      grid_.sum_to(label, 0, terms_.view().size, ReadySums<PlainSums<2>>{terms_.view()},
+                   &state->sums);
+      const double natural = grid_.load(state).sums.value[0];
+      if (TwoLevelError::of(0, natural, 0).laws <= enough || steps >= most_steps) return steps;
+      grid_.once(label, ProximalDecideBody{state});
     }
   }
-
-  void sweep_groups() {
-    const GroupSweep job = {numbers_.groups(), numbers_.constants(),  switches_, numbers_.units(),
-                            numbers_.matrix(), node_velocity_.view(), impulse(), before_.view()};
-    const std::size_t shared =
-        (3 + 3 * static_cast<std::size_t>(lists_->largest_group)) * sizeof(double);
-    for (std::size_t color = 0; color + 1 < lists_->color_start.size(); ++color) {
-      const std::int32_t first = lists_->color_start[color];
-      launch(exec_.stream(), group_sweep_kernel,
-             dim3(static_cast<unsigned>(lists_->color_start[color + 1] - first)), dim3(sum_threads),
-             shared, job, std::int64_t{first});
-    }
+  void step_contacts_once(const ProximalState* state, int step) {
+    const TouchingNodes& touching = numbers_.touching();
+    for_each(contact_numbers_ / 3,
+             ProximalStepBody{touching, numbers_.constants(), numbers_.majorant(), switches_,
+                              const_view(node_velocity_), state, step, ahead_.view(), impulse(),
+                              terms_.view()});
+    for_each(push_.view().size / 3,
+             NodePushBody{touching, const_view(ahead_), const_view(stepped_), push_.view()});
+    for_each(push_.view().size, NodeMoveBody{bodies(), const_view(push_), const_view(node_start_),
+                                             node_velocity_.view()});
   }
 
   void keep_best(double residual) {
@@ -223,11 +218,11 @@ class ElasticIteration {
     outcome.residual = best_residual_;
     grid_.copy(label, const_view(best_impulse_), impulse());
     grid_.copy(label, const_view(best_velocity_), velocity());
-    for_each(contact_numbers_ / 3, TouchVelocityBody{touching(), velocity(), contact_velocity()});
+    for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
   }
 
   CudaStepExec& exec_;
-  GridContactExec mixing_, grid_;  ///< each has the state of one accelerator
+  GridContactExec grid_;
   ElasticNumbers numbers_;
   const ElasticLists* lists_ = nullptr;      ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve
@@ -238,9 +233,11 @@ class ElasticIteration {
   double best_residual_ = 0;
   Vector results_;
   double* results_data_ = nullptr;
-  Vector free_velocity_, before_, stepped_, direction_, best_impulse_;
+  Vector free_velocity_, none_, stepped_, ahead_, best_impulse_;  ///< [3 contacts]
   Vector image_, defect_, moved_, best_velocity_;
-  Vector node_velocity_, node_before_, node_direction_;
+  Vector node_start_, node_velocity_, push_;  ///< [nodes][3] in frames; node_start_: with stepped_
+  DeviceVector<PlainSums<2>> terms_;          ///< [contacts]
+  DeviceVector<ProximalState> state_;
   Vector mixed_;
   DeviceVector<Sums> sums_;
 };

@@ -11,7 +11,7 @@
 #include "host/simulate/resident_elastic.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/elastic/elastic_start.hpp"
-#include "kernels/elastic/group_sweep.cuh"
+#include "kernels/elastic/majorant.hpp"
 #include "kernels/exec/staged_arrays.cuh"
 
 namespace tetwarp {
@@ -23,7 +23,7 @@ class ElasticNumbers {
   ElasticNumbers(std::int64_t node_count, std::int64_t rigid_count)
       : node_count_(node_count), rigid_count_(rigid_count) {}
 
-  /// Copies lists and laws to the device by one call, and takes the numbers of the system there.
+  /// Copies lists and laws to the device, and takes the numbers of the system there.
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
   void set(CudaStepExec& exec,
@@ -33,79 +33,75 @@ class ElasticNumbers {
            const ElasticLists& lists,
            const ElasticStart& start,
            RestFactors& factors) {
-    std::vector<CompliantBody>& with_inverses = host_bodies_;
-    with_inverses = lists.bodies;
-    store_.set_inverses(exec, factors, start.time_step, lists.model_body, with_inverses);
-    host_preload_.assign(3 * lists.contacts.size(), 0.0);
-    for (std::size_t c = 0; c < lists.contacts.size(); ++c) {
-      host_preload_[3 * c] = start.laws.preload[c];
-    }
-    TouchingRows& touching = groups_.touching;
-    CompliantBodies& bodies = groups_.bodies;
-    View<const double> axes;
-    View<const ContactArm> arms;
-    View<const ArmPlace> places;
-    View<const std::int32_t> rigid_rows;
-    View<const ContactConstants<double>> laws;
-    std::tie(bodies.bodies, bodies.body_of_row, bodies.row_of_node, system_row_, model_block_,
-             rigid_rows) = bodies_.put(grid, with_inverses, lists.body_of_row, lists.row_of_node,
-                                       lists.system_row, lists.model_block, lists.rigid_rows);
-    std::tie(touching.block_start, touching.row, touching.node, touching.contact,
-             touching.touch_start, touching.touch, axes, arms, places) =
-        blocks_.put(grid, lists.block_start, lists.block_row, lists.block_node, lists.block_contact,
-                    lists.touch_start, lists.touch, lists.axes, lists.arms, lists.places);
-    std::tie(groups_.groups, groups_.group_of_contact, unit_start_, matrix_start_, laws,
-             touching.offset, start_impulse_, preload_, change_) =
-        laws_.put(grid, lists.groups, lists.group_of_contact, lists.unit_start, lists.matrix_start,
-                  start.laws.constants, start.offset, start.impulse, host_preload_, start.change);
+    host_bodies_ = lists.bodies;
+    store_.set_inverses(exec, factors, start.time_step, lists.model_body, host_bodies_);
+    upload(grid, lists, start);
     rows_ = rows;
     values_ = exec.view(arrays.values);
     load_ = exec.view(arrays.load);
-    const std::int64_t blocks = touching.row.size, numbers = 3 * bodies.body_of_row.size;
+    CompliantBodies& bodies = touching_.bodies;
+    const std::int64_t blocks = touching_.rows.row.size, numbers = 3 * lists.row_count();
     jacobian_.resize(9 * blocks);
     turned_.resize(9 * blocks);
-    units_.resize(lists.unit_count);
-    matrix_.resize(lists.matrix_count);
-    constants_.resize(laws.size);
-    diagonal_.resize(3 * laws.size);
     inverse_.resize(9 * std::int64_t{rows.unknown_count} + 36 * rigid_count_);
     start_velocity_.resize(numbers);
     weight_.resize(numbers);
-    grid.copy(label, laws, constants_.view());
     bodies.diagonal = {rows.pair, rows.block_of, rows.unknown_count, node_count_, inverse_.view()};
-    grid.for_each(label, rigid_rows.size,
-                  RigidInvertBody{rigid_rows, {rows, values_, bodies.diagonal}});
-    grid.for_each(label, places.size, ContactRowsBody{axes, arms, places, jacobian_.view()});
-    touching.jacobian = const_view(jacobian_);
-    grid.for_each(label, blocks, TurnJacobianBody{bodies, touching, turned_.view()});
-    groups_.turned = const_view(turned_);
+    grid.for_each(label, rigid_rows_.size,
+                  RigidInvertBody{rigid_rows_, {rows, values_, bodies.diagonal}});
+    grid.for_each(label, places_.size, ContactRowsBody{axes_, arms_, places_, jacobian_.view()});
+    touching_.rows.jacobian = const_view(jacobian_);
+    grid.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
+    touching_.turned = const_view(turned_);
     grid.for_each(label, numbers / 3,
                   RowStartBody{system_row_, rows, values_, exec.view(arrays.x),
                                start_velocity_.view(), weight_.view()});
   }
 
-  /// Computes how the impulses of a group act.
+  /// Computes the compliance of the bodies, the blocks of the contacts and their majorants.
   /// @param damping  factor of the compliance of elastic bodies
   void set_damping(CudaStepExec& exec, GridContactExec& grid, double damping) {
-    groups_.bodies.damping = damping;
-    CudaExec& device = exec.device_exec();
-    device.for_each_item(label, unit_start_, pairs_of(units_, 9),
-                         UnitVelocityBody{groups_, units_.view()});
-    device.for_each_item(label, matrix_start_, pairs_of(matrix_, 9),
-                         GroupMatrixBody{groups_, const_view(units_), matrix_.view()});
-    grid.for_each(label, constants_.view().size,
-                  OwnBlockBody{groups_, const_view(matrix_), constants_.view(), diagonal_.view()});
+    CompliantBodies& bodies = touching_.bodies;
+    const std::int64_t contacts = laws_.size, nodes = bodies.row_of_node.size;
+    bodies.damping = damping;
+    compliance_.resize(compliance_size_);
+    constants_.resize(contacts);
+    majorant_.resize(contacts);
+    side_diagonal_.resize(6 * contacts);
+    vector_.resize(6 * contacts);
+    scale_.resize(bodies.bodies.size);
+    for (DeviceVector<double>* v : {&push_, &before_, &after_}) v->resize(3 * nodes);
+    exec.device_exec().for_each_item(label, pair_start_, compliance_size_ / 9,
+                                     ComplianceBlockBody{bodies, compliance_.view()});
+    bodies.compliance = View<const float>(compliance_.view());
+    grid.copy(label, laws_, constants_.view());
+    grid.for_each(
+        label, contacts,
+        OwnBlockBody{touching_, constants_.view(), side_diagonal_.view(), vector_.view()});
+    for (int n = 0;; ++n) {
+      grid.for_each(label, nodes, SidePushBody{touching_, const_view(vector_), push_.view()});
+      DeviceVector<double>& velocity = n < power_steps ? before_ : after_;
+      grid.for_each(label, 3 * nodes, NodeMoveBody{bodies, const_view(push_), {}, velocity.view()});
+      if (n == power_steps) break;
+      grid.for_each(label, contacts,
+                    SideVectorBody{touching_, const_view(before_), const_view(side_diagonal_),
+                                   vector_.view()});
+    }
+    grid.for_each(label, bodies.bodies.size,
+                  BodyScaleBody{bodies, const_view(push_), const_view(before_), const_view(after_),
+                                scale_.view()});
+    grid.for_each(label, contacts,
+                  MajorantBody{touching_, constants(), const_view(side_diagonal_),
+                               const_view(scale_), majorant_.view()});
   }
 
-  const ContactGroups& groups() const { return groups_; }
+  const TouchingNodes& touching() const { return touching_; }
   View<const ContactConstants<double>> constants() const { return constants_.view(); }
-  View<const float> units() const { return units_.view(); }
-  View<const float> matrix() const { return matrix_.view(); }
-  View<const double> diagonal() const { return diagonal_.view(); }
-  View<const double> start_velocity() const { return start_velocity_.view(); }
-  View<const double> start_impulse() const { return start_impulse_; }
-  View<const double> preload() const { return preload_; }  ///< [3 contacts]
-  View<const double> change() const { return change_; }
+  View<const ContactConstants<double>> majorant() const { return majorant_.view(); }
+  View<const double> start_velocity() const { return start_velocity_.view(); }  ///< [rows][3]
+  View<const double> start_impulse() const { return start_impulse_; }           ///< [3 contacts]
+  View<const double> preload() const { return preload_; }                       ///< [3 contacts]
+  View<const double> change() const { return change_; }  ///< [rows][3], or empty
   View<const double> weight() const { return weight_.view(); }
   View<const std::int32_t> model_block() const { return model_block_; }
 
@@ -113,35 +109,60 @@ class ElasticNumbers {
   RowDefectBody defect(View<const double> velocity,
                        View<const double> impulse,
                        View<double> out) const {
-    return {groups_.bodies, groups_.touching, rows_,    values_, load_,
-            velocity,       impulse,          preload_, out};
+    return {touching_.bodies, touching_.rows, rows_,    values_, load_,
+            velocity,         impulse,        preload_, out};
   }
 
  private:
   static constexpr const char* label = "body/contact";
+  static constexpr int power_steps = 6;
 
   template <class T>
   static View<const T> const_view(const DeviceVector<T>& values) {
     return values.view();
   }
-  template <class T>
-  static std::int64_t pairs_of(const DeviceVector<T>& values, std::int64_t width) {
-    return values.view().size / width;
+
+  /// Two copies.
+  void upload(GridContactExec& grid, const ElasticLists& lists, const ElasticStart& start) {
+    host_preload_.assign(3 * start.laws.preload.size(), 0.0);
+    for (std::size_t c = 0; c < start.laws.preload.size(); ++c) {
+      host_preload_[3 * c] = start.laws.preload[c];
+    }
+    CompliantBodies& bodies = touching_.bodies;
+    TouchingRows& rows = touching_.rows;
+    compliance_size_ = lists.compliance_size;
+    std::tie(bodies.bodies, bodies.body_of_row, bodies.row_of_node, system_row_, model_block_,
+             rigid_rows_, pair_start_) =
+        for_bodies_.put(grid, host_bodies_, lists.body_of_row, lists.row_of_node, lists.system_row,
+                        lists.model_block, lists.rigid_rows, lists.pair_start);
+    std::tie(rows.block_start, rows.row, rows.node, rows.contact, rows.side, rows.touch_start,
+             rows.touch, touching_.sides, axes_, arms_, places_, laws_, rows.offset, start_impulse_,
+             preload_, change_) =
+        for_contacts_.put(grid, lists.block_start, lists.block_row, lists.block_node,
+                          lists.block_contact, lists.block_side, lists.touch_start, lists.touch,
+                          lists.sides, lists.axes, lists.arms, lists.places, start.laws.constants,
+                          start.offset, start.impulse, host_preload_, start.change);
   }
 
   std::int64_t node_count_, rigid_count_;
   ComplianceStore store_;
   std::vector<CompliantBody> host_bodies_;
   std::vector<double> host_preload_;
-  StagedArrays bodies_, blocks_, laws_;
-  ContactGroups groups_;
+  StagedArrays for_bodies_, for_contacts_;
+  TouchingNodes touching_;
   SystemRows rows_;
-  View<const double> values_, load_, start_impulse_, preload_, change_;
-  View<const std::int32_t> system_row_, model_block_;
-  View<const std::int64_t> unit_start_, matrix_start_;
-  DeviceVector<double> jacobian_, turned_, inverse_, diagonal_, start_velocity_, weight_;
-  DeviceVector<float> units_, matrix_;
-  DeviceVector<ContactConstants<double>> constants_;
+  std::int64_t compliance_size_ = 0;
+  View<const double> values_, load_, axes_, start_impulse_, preload_, change_;
+  View<const std::int32_t> system_row_, model_block_, rigid_rows_;
+  View<const std::int64_t> pair_start_;
+  View<const ContactArm> arms_;
+  View<const ArmPlace> places_;
+  View<const ContactConstants<double>> laws_;
+  DeviceVector<double> jacobian_, turned_, inverse_, start_velocity_, weight_;
+  DeviceVector<double> side_diagonal_, vector_, scale_;
+  DeviceVector<double> push_, before_, after_;  ///< [nodes][3], of the power iteration
+  DeviceVector<float> compliance_;
+  DeviceVector<ContactConstants<double>> constants_, majorant_;
 };
 
 }  // namespace tetwarp

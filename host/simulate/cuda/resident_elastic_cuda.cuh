@@ -26,7 +26,7 @@ class CudaResidentElastic final : public ResidentElastic {
                         RestFactors& factors,
                         const ContactOptions& options) override {
     const DeviceScope scope = exec_.enter();
-    contact_numbers_ = 3 * lists.contacts.size();
+    contact_numbers_ = 3 * static_cast<std::size_t>(lists.contact_count());
     return iteration_.solve(pipeline_.rows(), pipeline_.arrays(), lists, start, factors, options);
   }
 

@@ -1,0 +1,20 @@
+/// @file stack_scenes.hpp
+/// Stacks of elastic bodies whose contacts are given by hand.
+#pragma once
+#include <cstdint>
+
+#include "tests/simulate/hand_contacts.hpp"
+
+namespace tetwarp::test {
+
+constexpr double stack_step = 8e-3;  // [s]
+
+/// A stiff elastic block on a frame and a rigid box on it, all touching at many points.
+HandScene stack_scene(double youngs);
+
+/// Three elastic blocks on a frame: with 12 cells along each side groups of 169, 57 and 85
+/// contacts, of one body or of two.
+/// @param height  of the shape at rest
+HandScene tower_scene(double height = 1, std::int32_t cells = 12);
+
+}  // namespace tetwarp::test
