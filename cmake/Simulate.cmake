@@ -103,8 +103,8 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/contact_thickness.cpp
   host/simulate/contact/edge_side.cpp
   host/simulate/contact/elastic_groups.cpp
-  host/simulate/contact/elastic_islands.cpp
-  host/simulate/contact/elastic_list_maker.cpp
+  host/simulate/contact/two_level_on_device.cpp
+  host/simulate/contact/two_level_list_maker.cpp
   host/simulate/contact/elastic_space.cpp
   host/simulate/contact/flat_edges.cpp
   host/simulate/contact/medial_node.cpp

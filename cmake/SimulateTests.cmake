@@ -96,6 +96,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_contact_system.cpp
     tests/simulate/test_contact_system_blocks.cpp
     tests/simulate/test_following_motion.cpp
+    tests/simulate/test_majorant.cpp
     tests/simulate/test_two_level.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
@@ -125,7 +126,7 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_contact_system_emulated.cpp
-    tests/emu/test_elastic_contacts_emulated.cpp
+    tests/emu/test_two_level_emulated.cpp
     tests/emu/test_simulator_emulated.cpp
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp

@@ -68,7 +68,7 @@ struct StepSystem {
 };
 
 class ResidentContacts;
-class ResidentElastic;
+class ResidentTwoLevel;
 class ResidentState;
 
 class BodyStepper {
@@ -110,7 +110,7 @@ class BodyStepper {
   /// host.
   virtual ResidentContacts* resident_contacts() { return nullptr; }
   /// What solves contacts of elastic bodies there; null where the state is in memory of the host.
-  virtual ResidentElastic* resident_elastic() { return nullptr; }
+  virtual ResidentTwoLevel* resident_two_level() { return nullptr; }
 };
 
 /// @param model  kept by the caller

@@ -80,14 +80,14 @@ TEST(ContactSystemEmulated, SolvesContactsOfRigidBodiesOnTheDevice) {
   EXPECT_GT(launches_in(found), 0);
 }
 
-/// Those of elastic bodies, cloth and coupled bodies are solved on the host.
-TEST(ContactSystemEmulated, SolvesOtherContactsOnTheHost) {
+/// Those of elastic bodies, cloth and coupled bodies are solved where the bodies are stepped.
+TEST(ContactSystemEmulated, SolvesOtherContactsWhereTheBodiesAreStepped) {
   const HandScene scene = mixed_scene(1);
   const Course expected = course_of(scene, Backend::cpu, exact(), materials(0.3), 1);
   for (const Backend stepped : {Backend::cpu, Backend::cuda}) {
     const Course found = course_of(scene, stepped, exact(Backend::cuda), materials(0.3), 1);
     expect_near_course(found, expected, 1e-8);
-    EXPECT_EQ(launches_in(found), 0);
+    EXPECT_EQ(launches_in(found) > 0, stepped == Backend::cuda);
   }
 }
 

@@ -31,10 +31,6 @@ class ContactIslands {
   bool is_soft(std::int32_t island) const {
     return is_soft_[static_cast<std::size_t>(root_[static_cast<std::size_t>(island)])] != 0;
   }
-  /// The contact island of an island: the smallest island of those that contacts join.
-  std::int32_t contact_island(std::int32_t island) const {
-    return root_[static_cast<std::size_t>(island)];
-  }
   /// Of each contact any of its coupling islands; -1: all blocks that it acts on are prescribed.
   /// Every other pair that the end check of a step watches is a contact, however small its share.
   const std::vector<std::int32_t>& of_contact() const { return of_contact_; }

@@ -26,30 +26,15 @@ struct ContactShare {
   }
 };
 
-/// How contact islands are divided.
-struct ContactDivision {
-  bool iterates_two_levels = true;  ///< false: the contact solver takes all of them
-  bool skips_islands = true;        ///< coupling islands without contacts are not solved again
-  const std::vector<std::uint8_t>* compliant = nullptr;  ///< [coupling islands] those that a device
-                                                         ///< can take; null: none
-};
+struct ContactShares {
+  ContactShare soft;   ///< of the two-level iteration
+  ContactShare other;  ///< of the contact solver
 
-class ContactShares {
- public:
-  ContactShare elastic;  ///< of the two-level iteration on a device
-  ContactShare soft;     ///< of the two-level iteration on the host
-  ContactShare other;    ///< of the contact solver
-
-  /// Contact islands of bodies that A couples go to the two-level iteration, on a device where it
-  /// can take all coupling islands of a contact island; all others go to the contact solver.
-  void divide(const ContactIslands& islands, const ContactDivision& how);
-
- private:
-  ContactShare& share_of(const ContactIslands& islands,
-                         const ContactDivision& how,
-                         std::int32_t island);
-
-  std::vector<std::uint8_t> is_left_;  ///< [islands] of roots: not for a device
+  /// Contact islands of bodies that A couples go to the two-level iteration, all others to the
+  /// contact solver.
+  /// @param iterates_two_levels  false: the contact solver takes all
+  /// @param skips_islands        coupling islands without contacts are not solved again
+  void divide(const ContactIslands& islands, bool iterates_two_levels, bool skips_islands);
 };
 
 }  // namespace tetwarp

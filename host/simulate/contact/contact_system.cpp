@@ -9,11 +9,11 @@
 #include "host/simulate/contact/contact_laws.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/contact_shares.hpp"
-#include "host/simulate/contact/elastic_islands.hpp"
 #include "host/simulate/contact/solver_islands.hpp"
+#include "host/simulate/contact/two_level_on_device.hpp"
 #include "host/simulate/contact/two_level_solver.hpp"
 #include "host/simulate/resident_contacts.hpp"
-#include "host/simulate/resident_elastic.hpp"
+#include "host/simulate/resident_two_level.hpp"
 
 namespace tetwarp {
 
@@ -26,7 +26,7 @@ struct ContactSystem::State {
         islands(of),
         factors(given.factors ? given.factors : std::make_shared<RestFactors>(of)),
         two_level(of, given.solver, factors),
-        elastic_islands(of, given.solver, factors),
+        two_level_on_device(of, given.solver, factors),
         solver_islands(given.solver) {}
 
   void set_laws(const ContactTracker& tracker,
@@ -36,11 +36,6 @@ struct ContactSystem::State {
   void take_impulses(const ContactShare& share,
                      std::span<const double> impulse,
                      std::span<const double> velocity);
-  void solve_elastic(BodyStepper& stepper,
-                     const ModelState& state,
-                     const std::vector<Point3>& change,
-                     std::vector<Point3>& velocity,
-                     ContactSolveOutcome& outcome);
   void solve_soft(BodyStepper& stepper,
                   const ModelState& state,
                   const std::vector<Point3>& change,
@@ -50,7 +45,6 @@ struct ContactSystem::State {
                    std::vector<Point3>& velocity,
                    ContactSolveOutcome& outcome);
   bool take(const TwoLevelOutcome& solved,
-            const ContactShare& share,
             std::span<const double> impulse,
             std::span<const double> velocity,
             ContactSolveOutcome& outcome);
@@ -69,12 +63,13 @@ struct ContactSystem::State {
   ContactShares shares;
   std::shared_ptr<RestFactors> factors;
   TwoLevelSolver two_level;
-  ElasticIslands elastic_islands;
+  TwoLevelOnDevice two_level_on_device;
+  bool has_soft_on_host = false;
   SolverIslands solver_islands;
   // Where velocities that contacts have changed are, if all of them are in memory of a device.
   bool is_resident = false;
-  ResidentContacts* resident = nullptr;         ///< or null: none there
-  ResidentElastic* resident_elastic = nullptr;  ///< or null: none there
+  ResidentContacts* resident = nullptr;            ///< or null: none there
+  ResidentTwoLevel* resident_two_level = nullptr;  ///< or null: none there
   std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
   std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
                                    ///< because only a bond is left
@@ -155,9 +150,8 @@ void ContactSystem::State::take_impulses(const ContactShare& share,
   }
 }
 
-/// @returns whether there is a result, which is taken
+/// Takes impulses and velocities of soft contacts. @returns whether there is a result
 bool ContactSystem::State::take(const TwoLevelOutcome& solved,
-                                const ContactShare& share,
                                 std::span<const double> impulse,
                                 std::span<const double> velocity,
                                 ContactSolveOutcome& outcome) {
@@ -166,39 +160,36 @@ bool ContactSystem::State::take(const TwoLevelOutcome& solved,
   if (!solved.is_result) return false;
   outcome.converged = outcome.converged && solved.converged;
   outcome.residual = std::max(outcome.residual, solved.residual);
-  take_impulses(share, impulse, velocity);
+  take_impulses(shares.soft, impulse, velocity);
   return true;
 }
 
-void ContactSystem::State::solve_elastic(BodyStepper& stepper,
-                                         const ModelState& state,
-                                         const std::vector<Point3>& change,
-                                         std::vector<Point3>& velocity,
-                                         ContactSolveOutcome& outcome) {
-  resident_elastic = nullptr;
-  if (shares.elastic.is_empty()) return;
-  const TwoLevelOutcome solved =
-      elastic_islands.solve(stepper, state, islands, rows, shares.elastic.islands,
-                            shares.elastic.contacts, laws, change, velocity);
-  if (take(solved, shares.elastic, elastic_islands.impulse(), elastic_islands.contact_velocity(),
-           outcome)) {
-    resident_elastic = stepper.resident_elastic();
-  } else {
-    shares.soft.take(shares.elastic);
-  }
-}
-
+/// On the device that steps the bodies, and on the host without one, or without a result of it.
 void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       const ModelState& state,
                                       const std::vector<Point3>& change,
                                       std::vector<Point3>& velocity,
                                       ContactSolveOutcome& outcome) {
+  resident_two_level = nullptr;
+  has_soft_on_host = false;
   if (shares.soft.is_empty()) return;
   gather_laws(shares.soft.contacts, laws, soft_laws);
+  ResidentTwoLevel* const resident_solver = stepper.resident_two_level();
+  if (resident_solver != nullptr) {
+    const TwoLevelOutcome solved =
+        two_level_on_device.solve(*resident_solver, state, islands, rows, shares.soft.islands,
+                                  shares.soft.contacts, soft_laws, change, velocity);
+    if (take(solved, two_level_on_device.impulse(), two_level_on_device.contact_velocity(),
+             outcome)) {
+      resident_two_level = resident_solver;
+      return;
+    }
+  }
+  has_soft_on_host = true;
   const TwoLevelOutcome solved =
       two_level.solve(stepper.system(), state, islands, rows, shares.soft.islands,
                       shares.soft.contacts, soft_laws, change, velocity);
-  if (!take(solved, shares.soft, two_level.impulse(), two_level.contact_velocity(), outcome)) {
+  if (!take(solved, two_level.impulse(), two_level.contact_velocity(), outcome)) {
     shares.other.take(shares.soft);
   }
 }
@@ -279,21 +270,17 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.rows);
   s.islands.join(s.rows);
   s.set_laws(tracker, contacts, velocity);
-  s.shares.divide(
-      s.islands, {.iterates_two_levels = s.iterates_two_levels(),
-                  .skips_islands = s.options.skips_islands,
-                  .compliant = stepper.resident_elastic() != nullptr ? &s.elastic_islands.possible()
-                                                                     : nullptr});
+  s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);
   s.solution.report = {};
   s.solution.impulse.assign(3 * contacts.size(), 0);
   s.solution.velocity = s.laws.velocity_offset;  // of contacts that act on no unknown
   ContactSolveOutcome outcome;
   outcome.islands = s.islands.contact_island_count();
-  const std::vector<Point3>& last_change = change != nullptr ? *change : none;
-  s.solve_elastic(stepper, state, last_change, velocity, outcome);
+  const std::vector<Point3>& last_change =
+      change != nullptr && change->size() == velocity.size() ? *change : none;
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
-  s.is_resident = s.shares.soft.is_empty() && (s.shares.other.is_empty() || s.resident != nullptr);
+  s.is_resident = !s.has_soft_on_host && (s.shares.other.is_empty() || s.resident != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
@@ -307,7 +294,7 @@ void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
   const State& s = *state_;
   if (!s.is_resident) return stepper.set_velocities(velocity);
   if (s.resident != nullptr) s.resident->set_velocities();
-  if (s.resident_elastic != nullptr) s.resident_elastic->set_velocities();
+  if (s.resident_two_level != nullptr) s.resident_two_level->set_velocities();
 }
 
 const ContactSolution& ContactSystem::solution() const {

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <tetwarp/contact.hpp>
+
 namespace tetwarp {
 
 struct TwoLevelOutcome {
@@ -56,6 +58,8 @@ class TwoLevelControl {
 
   /// Multiplications of all sweeps of a solve, after which it ends: about a second on a CPU.
   static constexpr std::int64_t most_operations = 1'000'000'000;
+  /// omega of the bodies that A couples to others.
+  static double relaxation(const ContactOptions& options) { return 1.3 * options.relaxation; }
   /// Up to these sizes the contact solver is quick where the iteration fails.
   static bool is_small(std::int64_t contacts, std::int64_t rows) {
     return contacts <= 256 && rows <= 128;

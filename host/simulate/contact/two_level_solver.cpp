@@ -23,7 +23,7 @@ TwoLevelSolver::TwoLevelSolver(const Model& model,
       options_(options),
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
-      relaxation_(1.3 * options.relaxation),
+      relaxation_(TwoLevelControl::relaxation(options)),
       elastic_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)),
       blocks_(threads_) {}
 

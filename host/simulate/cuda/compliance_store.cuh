@@ -10,7 +10,7 @@
 
 #include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/cuda/step_exec_cuda.cuh"
-#include "kernels/elastic/compliant_body.hpp"
+#include "kernels/two_level/compliant_body.hpp"
 
 namespace tetwarp {
 
@@ -18,7 +18,7 @@ namespace tetwarp {
 class ComplianceStore {
  public:
   /// Sets CompliantBody::inverse of elastic bodies; computes what is not there yet.
-  /// @param model_body  [bodies] their numbers in the model; -1: rigid
+  /// @param model_body  [frames] their numbers in the model
   void set_inverses(CudaStepExec& exec,
                     RestFactors& factors,
                     double time_step,
@@ -26,15 +26,16 @@ class ComplianceStore {
                     std::vector<CompliantBody>& bodies) {
     Inverses& own = of_time_step(time_step);
     factors.set_time_step(time_step);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (model_body[b] < 0) continue;
-      const auto [found, is_new] = own.of_body.try_emplace(model_body[b]);
+    for (CompliantBody& body : bodies) {
+      if (body.frame < 0) continue;
+      const std::int32_t number = model_body[static_cast<std::size_t>(body.frame)];
+      const auto [found, is_new] = own.of_body.try_emplace(number);
       if (is_new) {
-        factors.of_body(model_body[b]).inverse(host_);
+        factors.of_body(number).inverse(host_);
         exec.put(host_.data(), static_cast<std::int64_t>(host_.size()), found->second);
         exec.wait();  // for the copy, before the next one
       }
-      bodies[b].inverse = found->second.view().data;
+      body.inverse = found->second.view().data;
     }
   }
 

@@ -6,7 +6,7 @@
 
 #include "host/simulate/body_pipeline.hpp"
 #include "host/simulate/cuda/resident_contacts_cuda.cuh"
-#include "host/simulate/cuda/resident_elastic_cuda.cuh"
+#include "host/simulate/cuda/resident_two_level_cuda.cuh"
 #include "host/simulate/cuda/resident_state_cuda.cuh"
 #include "host/simulate/cuda/step_exec_cuda.cuh"
 
@@ -63,14 +63,14 @@ class CudaStepper final : public BodyStepper {
   }
   ResidentState* resident_state() override { return &resident_; }
   ResidentContacts* resident_contacts() override { return &contacts_; }
-  ResidentElastic* resident_elastic() override { return &elastic_; }
+  ResidentTwoLevel* resident_two_level() override { return &elastic_; }
 
  private:
   mutable CudaStepExec exec_;  ///< reads need its stream
   BodyPipeline<CudaStepExec, T> pipeline_;
   CudaResidentState<T> resident_;
   CudaResidentContacts<T> contacts_;
-  CudaResidentElastic<T> elastic_;
+  CudaResidentTwoLevel<T> elastic_;
   std::string name_;
 };
 

@@ -1,5 +1,5 @@
-/// @file elastic_iteration.cuh
-/// ElasticIteration: the two-level iteration over compliant bodies and their contacts on a device.
+/// @file two_level_iteration.cuh
+/// TwoLevelIteration: the two-level iteration over compliant bodies and their contacts on a device.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -7,28 +7,28 @@
 #include <vector>
 
 #include "host/base/stopwatch.hpp"
-#include "host/simulate/cuda/elastic_numbers.cuh"
+#include "host/simulate/cuda/two_level_numbers.cuh"
 #include "kernels/contact/anderson.hpp"
-#include "kernels/elastic/proximal_step.hpp"
+#include "kernels/two_level/proximal_step.hpp"
 
 namespace tetwarp {
 
 /// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and instead of
 /// sweeps, which visit contacts one after the other, accelerated proximal steps move all contacts
 /// at once. The host reads the sums of an error once per outer iteration and per eight steps.
-class ElasticIteration {
+class TwoLevelIteration {
  public:
   /// @param exec                     kept by the caller
   /// @param node_count, rigid_count  of the model
-  ElasticIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
+  TwoLevelIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
       : exec_(exec), grid_(exec.device_exec()), numbers_(node_count, rigid_count) {}
 
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
   TwoLevelOutcome solve(const SystemRows& rows,
                         const StepArrays<CudaStepExec>& arrays,
-                        const ElasticLists& lists,
-                        const ElasticStart& start,
+                        const TwoLevelLists& lists,
+                        const TwoLevelStart& start,
                         RestFactors& factors,
                         const ContactOptions& options) {
     clock_ = {};
@@ -41,7 +41,8 @@ class ElasticIteration {
     End end = End::diverges;
     for (double damping = 1; end == End::diverges; damping /= 2) {
       prepare(damping);
-      end = iterate(damping > TwoLevelControl::least_damping, outcome);
+      const bool can_be_damped = has_elastic() && damping > TwoLevelControl::least_damping;
+      end = iterate(can_be_damped, outcome);
     }
     if (end == End::is_stopped) return outcome;
     outcome.converged = end == End::converges;
@@ -67,6 +68,7 @@ class ElasticIteration {
   };
   static constexpr std::int64_t most_steps = 1000;  ///< of an outer iteration
   static constexpr std::int64_t most_of_solve = 20000;
+  static constexpr double most_growth = 10;
   static constexpr const char* label = "body/contact";
 
   static View<const double> const_view(const Vector& values) { return values.view(); }
@@ -76,6 +78,7 @@ class ElasticIteration {
   View<double> impulse() const { return part(0, contact_numbers_); }
   View<double> contact_velocity() const { return part(contact_numbers_, contact_numbers_); }
   View<double> velocity() const { return part(2 * contact_numbers_, row_numbers_); }
+  bool has_elastic() const { return !lists_->model_body.empty(); }
   const CompliantBodies& bodies() const { return numbers_.touching().bodies; }
   const TouchingRows& rows() const { return numbers_.touching().rows; }
 
@@ -149,7 +152,7 @@ class ElasticIteration {
     Mixer mixer(grid_, numbers_.weight(), mixed_.view());
     grid_.resize(none_, contact_numbers_);  // zeros
     sum_error(const_view(none_), const_view(free_velocity_));
-    TwoLevelControl control({.has_elastic = true,
+    TwoLevelControl control({.has_elastic = has_elastic(),
                              .ends_early = ends_early,
                              .tolerance = options_->tolerance,
                              .natural_alone = grid_.load(sums_.view().data).error.value[0],
@@ -185,17 +188,28 @@ class ElasticIteration {
   std::int64_t step_contacts(double enough) {
     constexpr int count = ProximalState::steps_at_once;
     ProximalState* const state = state_.view().data;
-    grid_.once(label, ProximalStartBody{state});
-    grid_.copy(label, View<const double>(impulse()), ahead_.view());
-    grid_.copy(label, const_view(node_start_), node_velocity_.view());
+    start_steps(state);
+    double first = 0;
     for (std::int64_t steps = count;; steps += count) {
       for (int step = 0; step < count; ++step) step_contacts_once(state, step);
       grid_.sum_to(label, 0, terms_.view().size, ReadySums<PlainSums<2>>{terms_.view()},
                    &state->sums);
-      const double natural = grid_.load(state).sums.value[0];
-      if (TwoLevelError::of(0, natural, 0).laws <= enough || steps >= most_steps) return steps;
-      grid_.once(label, ProximalDecideBody{state});
+      const double laws = TwoLevelError::of(0, grid_.load(state).sums.value[0], 0).laws;
+      if (laws <= enough || steps >= most_steps) return steps;
+      if (steps == count) first = laws;
+      if (laws <= most_growth * first) {
+        grid_.once(label, ProximalDecideBody{state});
+      } else {  // the power iteration has missed the largest eigenvalue
+        numbers_.grow_majorants(grid_);
+        start_steps(state);
+      }
     }
+  }
+  void start_steps(ProximalState* state) {
+    grid_.once(label, ProximalStartBody{state});
+    grid_.copy(label, const_view(stepped_), impulse());
+    grid_.copy(label, const_view(stepped_), ahead_.view());
+    grid_.copy(label, const_view(node_start_), node_velocity_.view());
   }
   void step_contacts_once(const ProximalState* state, int step) {
     const TouchingNodes& touching = numbers_.touching();
@@ -223,8 +237,8 @@ class ElasticIteration {
 
   CudaStepExec& exec_;
   GridContactExec grid_;
-  ElasticNumbers numbers_;
-  const ElasticLists* lists_ = nullptr;      ///< of the present solve
+  TwoLevelNumbers numbers_;
+  const TwoLevelLists* lists_ = nullptr;     ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve
   ContactSwitches switches_;
   Stopwatch clock_;

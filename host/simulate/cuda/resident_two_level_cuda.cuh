@@ -1,28 +1,28 @@
-/// @file resident_elastic_cuda.cuh
-/// ResidentElastic on a device.
+/// @file resident_two_level_cuda.cuh
+/// ResidentTwoLevel on a device.
 #pragma once
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "host/simulate/body_pipeline.hpp"
-#include "host/simulate/cuda/elastic_iteration.cuh"
+#include "host/simulate/cuda/two_level_iteration.cuh"
 
 namespace tetwarp {
 
 template <class T>
-class CudaResidentElastic final : public ResidentElastic {
+class CudaResidentTwoLevel final : public ResidentTwoLevel {
  public:
   /// @param exec, model, pipeline  kept by the caller
-  CudaResidentElastic(CudaStepExec& exec,
-                      const Model& model,
-                      BodyPipeline<CudaStepExec, T>& pipeline)
+  CudaResidentTwoLevel(CudaStepExec& exec,
+                       const Model& model,
+                       BodyPipeline<CudaStepExec, T>& pipeline)
       : exec_(exec), pipeline_(pipeline), iteration_(exec, model.node_count, model.rigid_count) {}
 
   SystemRows rows() override { return pipeline_.host_rows(); }
 
-  TwoLevelOutcome solve(const ElasticLists& lists,
-                        const ElasticStart& start,
+  TwoLevelOutcome solve(const TwoLevelLists& lists,
+                        const TwoLevelStart& start,
                         RestFactors& factors,
                         const ContactOptions& options) override {
     const DeviceScope scope = exec_.enter();
@@ -50,7 +50,7 @@ class CudaResidentElastic final : public ResidentElastic {
  private:
   CudaStepExec& exec_;
   BodyPipeline<CudaStepExec, T>& pipeline_;
-  ElasticIteration iteration_;
+  TwoLevelIteration iteration_;
   std::size_t contact_numbers_ = 0;
   std::vector<double> host_results_;
 };

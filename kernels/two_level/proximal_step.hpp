@@ -7,7 +7,7 @@
 #pragma once
 #include <cstdint>
 
-#include "kernels/elastic/majorant.hpp"
+#include "kernels/two_level/majorant.hpp"
 
 namespace tetwarp {
 
@@ -37,7 +37,8 @@ struct ProximalStepBody {
       u[a] = of.rows.offset[3 * contact + a];
       r[a] = ahead[3 * contact + a];
     }
-    of.add_velocity(contact, -1, node_velocity.data, u);
+    of.add_velocity(of.rows.block_start[contact], of.rows.block_start[contact + 1],
+                    node_velocity.data, u);
     const ContactConstants<double>& own = constants[contact];
     PlainSums<2> sums;
     sums.value[0] = natural_square(own, switches, normal_weight(own), tangent_weight(own), r, u);

@@ -1,5 +1,5 @@
-/// @file elastic_numbers.cuh
-/// ElasticNumbers: contacts between compliant bodies and how they act, in memory of a device.
+/// @file two_level_numbers.cuh
+/// TwoLevelNumbers: contacts between compliant bodies and how they act, in memory of a device.
 #pragma once
 #include <cstdint>
 #include <tuple>
@@ -8,19 +8,19 @@
 
 #include "host/simulate/body_arrays.hpp"
 #include "host/simulate/cuda/compliance_store.cuh"
-#include "host/simulate/resident_elastic.hpp"
+#include "host/simulate/resident_two_level.hpp"
 #include "kernels/contact/contact_grid.cuh"
-#include "kernels/elastic/elastic_start.hpp"
-#include "kernels/elastic/majorant.hpp"
 #include "kernels/exec/staged_arrays.cuh"
+#include "kernels/two_level/majorant.hpp"
+#include "kernels/two_level/row_start.hpp"
 
 namespace tetwarp {
 
 /// What does not change during a solve, but for the damping.
-class ElasticNumbers {
+class TwoLevelNumbers {
  public:
   /// @param node_count, rigid_count  of the model
-  ElasticNumbers(std::int64_t node_count, std::int64_t rigid_count)
+  TwoLevelNumbers(std::int64_t node_count, std::int64_t rigid_count)
       : node_count_(node_count), rigid_count_(rigid_count) {}
 
   /// Copies lists and laws to the device, and takes the numbers of the system there.
@@ -30,8 +30,8 @@ class ElasticNumbers {
            GridContactExec& grid,
            const SystemRows& rows,
            const StepArrays<CudaStepExec>& arrays,
-           const ElasticLists& lists,
-           const ElasticStart& start,
+           const TwoLevelLists& lists,
+           const TwoLevelStart& start,
            RestFactors& factors) {
     host_bodies_ = lists.bodies;
     store_.set_inverses(exec, factors, start.time_step, lists.model_body, host_bodies_);
@@ -47,8 +47,8 @@ class ElasticNumbers {
     start_velocity_.resize(numbers);
     weight_.resize(numbers);
     bodies.diagonal = {rows.pair, rows.block_of, rows.unknown_count, node_count_, inverse_.view()};
-    grid.for_each(label, rigid_rows_.size,
-                  RigidInvertBody{rigid_rows_, {rows, values_, bodies.diagonal}});
+    grid.for_each(label, diagonal_rows_.size,
+                  DiagonalInvertBody{diagonal_rows_, {rows, values_, bodies.diagonal}});
     grid.for_each(label, places_.size, ContactRowsBody{axes_, arms_, places_, jacobian_.view()});
     touching_.rows.jacobian = const_view(jacobian_);
     grid.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
@@ -62,37 +62,28 @@ class ElasticNumbers {
   /// @param damping  factor of the compliance of elastic bodies
   void set_damping(CudaStepExec& exec, GridContactExec& grid, double damping) {
     CompliantBodies& bodies = touching_.bodies;
-    const std::int64_t contacts = laws_.size, nodes = bodies.row_of_node.size;
+    const std::int64_t contacts = laws_.size, parts = touching_.part_body.size;
+    const std::int64_t nodes = bodies.row_of_node.size;
     bodies.damping = damping;
     compliance_.resize(compliance_size_);
     constants_.resize(contacts);
     majorant_.resize(contacts);
-    side_diagonal_.resize(6 * contacts);
-    vector_.resize(6 * contacts);
+    part_diagonal_.resize(3 * parts);
+    vector_.resize(3 * parts);
     scale_.resize(bodies.bodies.size);
     for (DeviceVector<double>* v : {&push_, &before_, &after_}) v->resize(3 * nodes);
     exec.device_exec().for_each_item(label, pair_start_, compliance_size_ / 9,
                                      ComplianceBlockBody{bodies, compliance_.view()});
     bodies.compliance = View<const float>(compliance_.view());
     grid.copy(label, laws_, constants_.view());
-    grid.for_each(
-        label, contacts,
-        OwnBlockBody{touching_, constants_.view(), side_diagonal_.view(), vector_.view()});
-    for (int n = 0;; ++n) {
-      grid.for_each(label, nodes, SidePushBody{touching_, const_view(vector_), push_.view()});
-      DeviceVector<double>& velocity = n < power_steps ? before_ : after_;
-      grid.for_each(label, 3 * nodes, NodeMoveBody{bodies, const_view(push_), {}, velocity.view()});
-      if (n == power_steps) break;
-      grid.for_each(label, contacts,
-                    SideVectorBody{touching_, const_view(before_), const_view(side_diagonal_),
-                                   vector_.view()});
-    }
-    grid.for_each(label, bodies.bodies.size,
-                  BodyScaleBody{bodies, const_view(push_), const_view(before_), const_view(after_),
-                                scale_.view()});
-    grid.for_each(label, contacts,
-                  MajorantBody{touching_, constants(), const_view(side_diagonal_),
-                               const_view(scale_), majorant_.view()});
+    set_majorants(grid, touching_,
+                  {constants_.view(), majorant_.view(), scale_.view(), part_diagonal_.view(),
+                   vector_.view(), push_.view(), before_.view(), after_.view()});
+  }
+
+  /// Doubles the majorants.
+  void grow_majorants(GridContactExec& grid) {
+    grid.for_each(label, majorant_.view().size, MajorantGrowBody{majorant_.view()});
   }
 
   const TouchingNodes& touching() const { return touching_; }
@@ -115,15 +106,14 @@ class ElasticNumbers {
 
  private:
   static constexpr const char* label = "body/contact";
-  static constexpr int power_steps = 6;
 
   template <class T>
   static View<const T> const_view(const DeviceVector<T>& values) {
     return values.view();
   }
 
-  /// Two copies.
-  void upload(GridContactExec& grid, const ElasticLists& lists, const ElasticStart& start) {
+  /// Three copies.
+  void upload(GridContactExec& grid, const TwoLevelLists& lists, const TwoLevelStart& start) {
     host_preload_.assign(3 * start.laws.preload.size(), 0.0);
     for (std::size_t c = 0; c < start.laws.preload.size(); ++c) {
       host_preload_[3 * c] = start.laws.preload[c];
@@ -131,35 +121,37 @@ class ElasticNumbers {
     CompliantBodies& bodies = touching_.bodies;
     TouchingRows& rows = touching_.rows;
     compliance_size_ = lists.compliance_size;
-    std::tie(bodies.bodies, bodies.body_of_row, bodies.row_of_node, system_row_, model_block_,
-             rigid_rows_, pair_start_) =
-        for_bodies_.put(grid, host_bodies_, lists.body_of_row, lists.row_of_node, lists.system_row,
-                        lists.model_block, lists.rigid_rows, lists.pair_start);
-    std::tie(rows.block_start, rows.row, rows.node, rows.contact, rows.side, rows.touch_start,
-             rows.touch, touching_.sides, axes_, arms_, places_, laws_, rows.offset, start_impulse_,
-             preload_, change_) =
-        for_contacts_.put(grid, lists.block_start, lists.block_row, lists.block_node,
-                          lists.block_contact, lists.block_side, lists.touch_start, lists.touch,
-                          lists.sides, lists.axes, lists.arms, lists.places, start.laws.constants,
-                          start.offset, start.impulse, host_preload_, start.change);
+    std::tie(bodies.bodies, bodies.body_of_row, bodies.row_of_node, bodies.rotation, system_row_,
+             model_block_, diagonal_rows_, pair_start_) =
+        for_bodies_.put(grid, host_bodies_, lists.body_of_row, lists.row_of_node, start.rotation,
+                        lists.system_row, lists.model_block, lists.diagonal_rows, lists.pair_start);
+    std::tie(rows.block_start, rows.row, rows.node, rows.contact, rows.part, rows.touch_start,
+             rows.touch, touching_.part_start, touching_.part_block, touching_.part_body, axes_,
+             arms_, places_) =
+        for_blocks_.put(grid, lists.block_start, lists.block_row, lists.block_node,
+                        lists.block_contact, lists.block_part, lists.touch_start, lists.touch,
+                        lists.part_start, lists.part_block, lists.part_body, lists.axes, lists.arms,
+                        lists.places);
+    std::tie(laws_, rows.offset, start_impulse_, preload_, change_) = for_laws_.put(
+        grid, start.laws.constants, start.offset, start.impulse, host_preload_, start.change);
   }
 
   std::int64_t node_count_, rigid_count_;
   ComplianceStore store_;
   std::vector<CompliantBody> host_bodies_;
   std::vector<double> host_preload_;
-  StagedArrays for_bodies_, for_contacts_;
+  StagedArrays for_bodies_, for_blocks_, for_laws_;
   TouchingNodes touching_;
   SystemRows rows_;
   std::int64_t compliance_size_ = 0;
   View<const double> values_, load_, axes_, start_impulse_, preload_, change_;
-  View<const std::int32_t> system_row_, model_block_, rigid_rows_;
+  View<const std::int32_t> system_row_, model_block_, diagonal_rows_;
   View<const std::int64_t> pair_start_;
   View<const ContactArm> arms_;
   View<const ArmPlace> places_;
   View<const ContactConstants<double>> laws_;
   DeviceVector<double> jacobian_, turned_, inverse_, start_velocity_, weight_;
-  DeviceVector<double> side_diagonal_, vector_, scale_;
+  DeviceVector<double> part_diagonal_, vector_, scale_;
   DeviceVector<double> push_, before_, after_;  ///< [nodes][3], of the power iteration
   DeviceVector<float> compliance_;
   DeviceVector<ContactConstants<double>> constants_, majorant_;

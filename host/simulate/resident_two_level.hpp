@@ -1,5 +1,6 @@
-/// @file resident_elastic.hpp
-/// ResidentElastic: solves contacts of elastic bodies in memory of the device that steps them.
+/// @file resident_two_level.hpp
+/// ResidentTwoLevel: solves contacts of deformable and coupled bodies in memory of the device that
+/// steps them.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -10,31 +11,32 @@
 #include "host/simulate/contact/contact_constants.hpp"
 #include "host/simulate/contact/two_level_control.hpp"
 #include "host/simulate/cpu/rest_factors.hpp"
-#include "host/simulate/elastic_lists.hpp"
 #include "host/simulate/resident_contacts.hpp"
+#include "host/simulate/two_level_lists.hpp"
 
 namespace tetwarp {
 
 /// What a solve starts from.
-struct ElasticStart {
-  double time_step = 0;         ///< [s]
-  ContactConstantsList laws;    ///< in the order of the lists
-  std::vector<double> offset;   ///< w, [3 contacts]
-  std::vector<double> impulse;  ///< guess of r, preload included, [3 contacts]
-  std::vector<double> change;   ///< added to the velocities without contact, [rows][3]; or empty
+struct TwoLevelStart {
+  double time_step = 0;          ///< [s]
+  std::vector<double> rotation;  ///< R of the elastic bodies, [frames][9], rows first
+  ContactConstantsList laws;     ///< of the contacts
+  std::vector<double> offset;    ///< w, [3 contacts]
+  std::vector<double> impulse;   ///< guess of r, preload included, [3 contacts]
+  std::vector<double> change;    ///< added to the velocities without contact, [rows][3]; or empty
 };
 
-class ResidentElastic {
+class ResidentTwoLevel {
  public:
-  virtual ~ResidentElastic() = default;
+  virtual ~ResidentTwoLevel() = default;
   /// Rows of the system, in memory of the host.
   virtual SystemRows rows() = 0;
   /// The two-level iteration of TwoLevelSolver, from the system that BodyStepper::solve() has made.
   /// @param lists    kept until the results have been read
   /// @param factors  of the elastic bodies; their inverses are copied to the device once per body
   ///                 and length of a step
-  virtual TwoLevelOutcome solve(const ElasticLists& lists,
-                                const ElasticStart& start,
+  virtual TwoLevelOutcome solve(const TwoLevelLists& lists,
+                                const TwoLevelStart& start,
                                 RestFactors& factors,
                                 const ContactOptions& options) = 0;
   /// Copies the results to the host, valid until the next call: impulses, preload included;

@@ -1,6 +1,7 @@
 /// @file compliant_body.hpp
-/// Bodies that give way to contacts by dense matrices: elastic ones by the inverse of their system
-/// at rest, M^-1 = R A_0^-1 R^T, and single rigid ones by their own, M^-1 = A^-1.
+/// Bodies that give way to contacts by dense matrices M^-1: elastic bodies by the inverse of their
+/// system at rest, R A_0^-1 R^T; single rigid bodies by their own, A^-1; and of bodies that A
+/// couples to others each node and each rigid body by omega D^-1, D its diagonal block.
 ///
 /// A solve numbers the rows of its bodies one body after the other. Vectors [rows][3] are in the
 /// world; vectors "in frames" have the numbers of elastic bodies turned by R^T. The rows that
@@ -15,53 +16,56 @@
 namespace tetwarp {
 
 struct CompliantBody {
-  const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: a rigid body
+  const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: by D^-1
+  double relaxation = 1;              ///< omega, where by D^-1
+  std::int32_t frame = -1;            ///< its rotation, -1: none
   std::int32_t system_row = 0;        ///< its first row of the system
   std::int32_t first = 0, count = 0;  ///< its rows
-  std::int32_t first_node = 0, node_count = 0;       ///< its nodes, in the order of their rows
-  std::int32_t contact_count = 0;                    ///< contacts that act on it
-  std::int64_t compliance = 0;                       ///< first number of its compliance
-  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< R, rows first
-
-  /// out = R^T v
-  TETWARP_HD void to_frame(const double* v, double* out) const {
-    for (int i = 0; i < 3; ++i) {
-      out[i] = rotation[i] * v[0] + rotation[3 + i] * v[1] + rotation[6 + i] * v[2];
-    }
-  }
-  /// out = R v
-  TETWARP_HD void to_world(const double* v, double* out) const {
-    for (int i = 0; i < 3; ++i) {
-      out[i] = rotation[3 * i] * v[0] + rotation[3 * i + 1] * v[1] + rotation[3 * i + 2] * v[2];
-    }
-  }
+  std::int32_t first_node = 0, node_count = 0;  ///< its nodes, in the order of their rows
+  std::int32_t contact_count = 0;               ///< contacts that act on it
+  std::int64_t compliance = 0;                  ///< first number of its compliance
 };
 
 struct CompliantBodies {
   View<const CompliantBody> bodies;
   View<const std::int32_t> body_of_row;  ///< [rows]
   View<const std::int32_t> row_of_node;  ///< [nodes]
+  View<const double> rotation;           ///< [frames][9] R, rows first
   View<const float> compliance;          ///< of each body [3 nodes][3 nodes], columns first
-  DiagonalInverse<double> diagonal;      ///< of rigid bodies
-  double damping = 1;                    ///< factor of the compliance of elastic bodies
+  DiagonalInverse<double> diagonal;
+  double damping = 1;  ///< factor of the compliance of elastic bodies
 
   TETWARP_HD const CompliantBody& of_row(std::int64_t row) const {
     return bodies[body_of_row[row]];
   }
-  /// Numbers of M^-1 for unit forces on the three numbers of `source`, in the frame of the body.
+  TETWARP_HD const CompliantBody& of_node(std::int64_t node) const {
+    return of_row(row_of_node[node]);
+  }
+  /// out = R^T v
+  TETWARP_HD void to_frame(const CompliantBody& own, const double* v, double* out) const {
+    const double* const r = rotation.data + 9 * std::int64_t{own.frame};
+    for (int i = 0; i < 3; ++i) {
+      out[i] = own.frame < 0 ? v[i] : r[i] * v[0] + r[3 + i] * v[1] + r[6 + i] * v[2];
+    }
+  }
+  /// out = R v
+  TETWARP_HD void to_world(const CompliantBody& own, const double* v, double* out) const {
+    const double* const r = rotation.data + 9 * std::int64_t{own.frame};
+    for (int i = 0; i < 3; ++i) {
+      out[i] = own.frame < 0 ? v[i] : r[3 * i] * v[0] + r[3 * i + 1] * v[1] + r[3 * i + 2] * v[2];
+    }
+  }
+  /// Velocities for unit forces on the three numbers of `source`, in the frame of the body.
   /// @param target, source  rows of the same body
   /// @param block           out, [3][3], row by row
   TETWARP_HD void block(std::int64_t target, std::int64_t source, double* block) const {
     const CompliantBody& own = of_row(target);
     const std::int64_t i = 3 * (target - own.first), j = 3 * (source - own.first);
-    if (own.inverse == nullptr) {
-      const double* const a = diagonal.at(own.system_row);
-      for (int e = 0; e < 9; ++e) block[e] = a[6 * (i + e / 3) + j + e % 3];
-      return;
-    }
     const std::int64_t size = 3 * std::int64_t{own.count};
+    const double* const a = own.inverse == nullptr ? diagonal.at(own.system_row) : nullptr;
     for (int e = 0; e < 9; ++e) {
-      block[e] = damping * double{own.inverse[(j + e % 3) * size + i + e / 3]};
+      const std::int64_t place = (j + e % 3) * size + i + e / 3;
+      block[e] = a != nullptr ? own.relaxation * a[place] : damping * double{own.inverse[place]};
     }
   }
 };
@@ -73,7 +77,7 @@ struct ComplianceBlockBody {
   View<float> compliance;  ///< out
 
   TETWARP_HD void operator()(std::int64_t node, std::int64_t other, std::int64_t) const {
-    const CompliantBody& own = of.of_row(of.row_of_node[node]);
+    const CompliantBody& own = of.of_node(node);
     double block[9];
     of.block(of.row_of_node[node], of.row_of_node[own.first_node + other], block);
     const std::int64_t size = 3 * std::int64_t{own.node_count};
@@ -91,7 +95,7 @@ struct NodeMoveBody {
   View<double> velocity;          ///< out: from + compliance push
 
   TETWARP_HD void operator()(std::int64_t number) const {
-    const CompliantBody& own = of.of_row(of.row_of_node[number / 3]);
+    const CompliantBody& own = of.of_node(number / 3);
     const std::int64_t first = 3 * std::int64_t{own.first_node};
     const std::int64_t size = 3 * std::int64_t{own.node_count};
     const float* a = of.compliance.data + own.compliance + number - first;
@@ -110,18 +114,22 @@ struct ComplianceBody {
 
   TETWARP_HD void operator()(std::int64_t number) const {
     const CompliantBody& own = of.of_row(number / 3);
-    const double* const p = push.data + 3 * std::int64_t{own.first};
-    const std::int64_t size = 3 * std::int64_t{own.count}, i = number - 3 * std::int64_t{own.first};
-    double sum = 0;
+    const std::int64_t first = 3 * std::int64_t{own.first};
+    const std::int64_t size = 3 * std::int64_t{own.count}, i = number - first;
     if (own.inverse == nullptr) {
-      const double* const a = of.diagonal.at(own.system_row) + 6 * i;
-      for (int j = 0; j < 6; ++j) sum += a[j] * p[j];
-      moved[number] = sum;
-      return;
+      moved[number] = own.relaxation * product(of.diagonal.at(own.system_row) + i, first, size);
+    } else {
+      moved[number] = of.damping * product(own.inverse + i, first, size);
     }
-    const float* a = own.inverse + i;
-    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * p[j];
-    moved[number] = of.damping * sum;
+  }
+
+ private:
+  /// Of a row of a symmetric matrix, read as a column.
+  template <class T>
+  TETWARP_HD double product(const T* a, std::int64_t first, std::int64_t size) const {
+    double sum = 0;
+    for (std::int64_t j = 0; j < size; ++j, a += size) sum += double{*a} * push[first + j];
+    return sum;
   }
 };
 
@@ -134,7 +142,7 @@ struct RowMoveBody {
 
   TETWARP_HD void operator()(std::int64_t row) const {
     double turned[3];
-    of.of_row(row).to_world(moved.data + 3 * row, turned);
+    of.to_world(of.of_row(row), moved.data + 3 * row, turned);
     for (int i = 0; i < 3; ++i) to[3 * row + i] = from[3 * row + i] + turned[i];
   }
 };
@@ -147,7 +155,7 @@ struct NodeVelocityBody {
 
   TETWARP_HD void operator()(std::int64_t node) const {
     const std::int64_t row = of.row_of_node[node];
-    of.of_row(row).to_frame(velocity.data + 3 * row, node_velocity.data + 3 * node);
+    of.to_frame(of.of_row(row), velocity.data + 3 * row, node_velocity.data + 3 * node);
   }
 };
 

@@ -1,4 +1,4 @@
-/// @file elastic_start.hpp
+/// @file row_start.hpp
 /// What the iteration over compliant bodies starts from, out of the system of a step.
 #pragma once
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace tetwarp {
 
-/// One index = one rigid body: the inverse of its block, by its first row of the system.
-struct RigidInvertBody {
+/// One index = one diagonal block: its inverse, by its first row of the system.
+struct DiagonalInvertBody {
   View<const std::int32_t> first_row;
   RowInvertBody<double> invert;
 

@@ -5,15 +5,15 @@
 
 #include "kernels/base/plain_sums.hpp"
 #include "kernels/contact/contact_residual.hpp"
-#include "kernels/elastic/compliant_body.hpp"
+#include "kernels/two_level/compliant_body.hpp"
 
 namespace tetwarp {
 
 /// J of the contacts in 3x3 blocks, row by row: velocities along the axes of a contact per velocity
-/// of a row. The blocks of a contact on the same body are its side 0 or 1, one after the other.
+/// of a row. The blocks of a contact on the same body, a part of the contact, follow each other.
 struct TouchingRows {
   View<const std::int32_t> block_start;               ///< [contacts + 1]
-  View<const std::int32_t> row, node, contact, side;  ///< [blocks]
+  View<const std::int32_t> row, node, contact, part;  ///< [blocks]
   View<const double> jacobian;                        ///< [blocks][9]
   View<const std::int32_t> touch_start, touch;        ///< of each row its blocks, ascending
   View<const double> offset;                          ///< w, [3 contacts]
@@ -50,13 +50,13 @@ struct RowDefectBody {
     const CompliantBody& own = of.of_row(row);
     const std::int64_t place = own.system_row + row - own.first;
     double product[3], force[3];
-    // Columns of the system are rows of the same body.
+    // Columns of the system are rows of the same coupling island, which are all taken.
     const double* const from = velocity.data + 3 * (own.first - std::int64_t{own.system_row});
     multiply_blocks(values.data, rows.column.data, rows.start[place], rows.free_end[place], from,
                     product);
     for (int i = 0; i < 3; ++i) force[i] = load[3 * place + i] - product[i];
     touching.add_forces(row, impulse.data, preload.data, force);
-    own.to_frame(force, defect.data + 3 * row);
+    of.to_frame(own, force, defect.data + 3 * row);
   }
 };
 
@@ -70,7 +70,7 @@ struct RowPushBody {
   TETWARP_HD void operator()(std::int64_t row) const {
     double force[3] = {0, 0, 0};
     touching.add_forces(row, after.data, before.data, force);
-    of.of_row(row).to_frame(force, push.data + 3 * row);
+    of.to_frame(of.of_row(row), force, push.data + 3 * row);
   }
 };
 

@@ -1,4 +1,4 @@
-#include "host/simulate/contact/elastic_list_maker.hpp"
+#include "host/simulate/contact/two_level_list_maker.hpp"
 #include "host/base/index_of.hpp"
 
 #include <algorithm>
@@ -12,24 +12,27 @@ std::int32_t size_of(const std::vector<std::int32_t>& list) {
 
 }  // namespace
 
-void ElasticListMaker::make(const SystemRows& rows,
-                            const ContactIslands& islands,
-                            const RestFactors& factors,
-                            const ContactRows& contact_rows,
-                            const std::vector<std::uint8_t>& takes,
-                            const std::vector<std::int32_t>& contacts) {
-  list_bodies(rows, islands, factors, takes);
+void TwoLevelListMaker::make(const SystemRows& rows,
+                             const ContactIslands& islands,
+                             const std::vector<std::int32_t>& body_of,
+                             const ContactRows& contact_rows,
+                             const std::vector<std::uint8_t>& takes,
+                             const std::vector<std::int32_t>& contacts,
+                             double relaxation) {
+  list_bodies(rows, islands, body_of, takes, relaxation);
   list_nodes(contact_rows, contacts);
   list_blocks(contact_rows, contacts);
   list_touching();
 }
 
-void ElasticListMaker::list_bodies(const SystemRows& rows,
-                                   const ContactIslands& islands,
-                                   const RestFactors& factors,
-                                   const std::vector<std::uint8_t>& takes) {
+/// Rows of an island follow each other, and so do the two rows of a rigid body.
+void TwoLevelListMaker::list_bodies(const SystemRows& rows,
+                                    const ContactIslands& islands,
+                                    const std::vector<std::int32_t>& body_of,
+                                    const std::vector<std::uint8_t>& takes,
+                                    double relaxation) {
   for (auto* list : {&lists_.model_body, &lists_.body_of_row, &lists_.system_row,
-                     &lists_.model_block, &lists_.rigid_rows}) {
+                     &lists_.model_block, &lists_.diagonal_rows}) {
     list->clear();
   }
   lists_.bodies.clear();
@@ -38,14 +41,20 @@ void ElasticListMaker::list_bodies(const SystemRows& rows,
   for (std::int32_t row = 0; row < rows.unknown_count; ++row) {
     const std::int32_t block = rows.block_of[row], island = islands.of_block(block);
     if (takes[index_of(island)] == 0) continue;
-    if (island != last) {
-      lists_.bodies.emplace_back();
-      lists_.bodies.back().system_row = row;
-      lists_.bodies.back().first = size_of(lists_.body_of_row);
-      lists_.model_body.push_back(factors.body_of_island(island));
-      if (lists_.model_body.back() < 0) lists_.rigid_rows.push_back(row);
-      last = island;
+    const bool is_elastic = body_of[index_of(island)] >= 0;
+    if (is_elastic ? island != last : rows.pair[row] != 2) {
+      CompliantBody& own = lists_.bodies.emplace_back();
+      own.system_row = row;
+      own.first = size_of(lists_.body_of_row);
+      if (is_elastic) {
+        own.frame = size_of(lists_.model_body);
+        lists_.model_body.push_back(body_of[index_of(island)]);
+      } else {
+        own.relaxation = islands.is_coupled(island) ? relaxation : 1;
+        lists_.diagonal_rows.push_back(row);
+      }
     }
+    last = island;
     ++lists_.bodies.back().count;
     row_of_block_[index_of(block)] = size_of(lists_.body_of_row);
     lists_.body_of_row.push_back(static_cast<std::int32_t>(lists_.bodies.size()) - 1);
@@ -54,8 +63,8 @@ void ElasticListMaker::list_bodies(const SystemRows& rows,
   }
 }
 
-void ElasticListMaker::list_nodes(const ContactRows& contact_rows,
-                                  const std::vector<std::int32_t>& contacts) {
+void TwoLevelListMaker::list_nodes(const ContactRows& contact_rows,
+                                   const std::vector<std::int32_t>& contacts) {
   node_of_row_.assign(lists_.body_of_row.size(), -1);
   for (const std::int32_t contact : contacts) {
     for (const std::int32_t block : contact_rows.blocks_of(index_of(contact))) {
@@ -82,29 +91,28 @@ void ElasticListMaker::list_nodes(const ContactRows& contact_rows,
   }
 }
 
-/// Appends a block of the last contact, and its body to the sides of the contact. The rows of a
-/// body follow each other, and so do its blocks.
-void ElasticListMaker::add_block(std::int32_t row) {
+/// Appends a block of the last contact. The rows of a body follow each other, and so do its blocks.
+void TwoLevelListMaker::add_block(std::int32_t row) {
   const std::int32_t body = lists_.body_of_row[index_of(row)];
-  std::int32_t* const sides = lists_.sides.data() + lists_.sides.size() - 2;
-  const bool is_second = sides[0] >= 0 && sides[0] != body;
-  if (sides[is_second ? 1 : 0] < 0) {
-    sides[is_second ? 1 : 0] = body;
+  if (size_of(lists_.part_body) == lists_.part_start.back() || lists_.part_body.back() != body) {
+    lists_.part_block.push_back(size_of(lists_.block_row));
+    lists_.part_body.push_back(body);
     ++lists_.bodies[index_of(body)].contact_count;
   }
   lists_.block_row.push_back(row);
   lists_.block_node.push_back(node_of_row_[index_of(row)]);
-  lists_.block_contact.push_back(static_cast<std::int32_t>(lists_.sides.size() / 2) - 1);
-  lists_.block_side.push_back(is_second ? 1 : 0);
+  lists_.block_contact.push_back(size_of(lists_.block_start) - 1);
+  lists_.block_part.push_back(size_of(lists_.part_body) - 1);
 }
 
-void ElasticListMaker::list_blocks(const ContactRows& contact_rows,
-                                   const std::vector<std::int32_t>& contacts) {
+void TwoLevelListMaker::list_blocks(const ContactRows& contact_rows,
+                                    const std::vector<std::int32_t>& contacts) {
   for (auto* list : {&lists_.block_row, &lists_.block_node, &lists_.block_contact,
-                     &lists_.block_side, &lists_.sides}) {
+                     &lists_.block_part, &lists_.part_block, &lists_.part_body}) {
     list->clear();
   }
   lists_.block_start.assign(1, 0);
+  lists_.part_start.assign(1, 0);
   lists_.axes.clear();
   lists_.arms.clear();
   lists_.places.clear();
@@ -112,8 +120,7 @@ void ElasticListMaker::list_blocks(const ContactRows& contact_rows,
     const std::size_t contact = index_of(number);
     const auto axes = contact_rows.axes.begin() + static_cast<std::ptrdiff_t>(9 * contact);
     lists_.axes.insert(lists_.axes.end(), axes, axes + 9);
-    lists_.sides.insert(lists_.sides.end(), {-1, -1});
-    const auto place = static_cast<std::int32_t>(lists_.sides.size() / 2) - 1;
+    const std::int32_t place = size_of(lists_.block_start) - 1;
     const std::int32_t end = contact_rows.arm_start[contact + 1];
     for (std::int32_t a = contact_rows.arm_start[contact]; a < end; ++a) {
       const std::int32_t row = row_of_block_[index_of(contact_rows.block_of_arm(a))];
@@ -125,11 +132,13 @@ void ElasticListMaker::list_blocks(const ContactRows& contact_rows,
       if (is_frame) add_block(row + 1);
     }
     lists_.block_start.push_back(size_of(lists_.block_row));
+    lists_.part_start.push_back(size_of(lists_.part_body));
   }
+  lists_.part_block.push_back(size_of(lists_.block_row));
 }
 
 /// The blocks of each row.
-void ElasticListMaker::list_touching() {
+void TwoLevelListMaker::list_touching() {
   lists_.touch_start.assign(lists_.body_of_row.size() + 1, 0);
   for (const std::int32_t row : lists_.block_row) ++lists_.touch_start[index_of(row) + 1];
   for (std::size_t row = 0; row < lists_.body_of_row.size(); ++row) {

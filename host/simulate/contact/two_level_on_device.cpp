@@ -1,0 +1,86 @@
+#include "host/simulate/contact/two_level_on_device.hpp"
+#include "host/base/index_of.hpp"
+
+#include <utility>
+
+namespace tetwarp {
+namespace {
+
+// Inverses of 3 n x 3 n numbers of float32: of one body up to 81 MB, of all up to 1 GiB. Larger
+// bodies give way by their diagonal blocks.
+constexpr std::int64_t most_nodes = 1500;
+constexpr std::int64_t most_numbers = std::int64_t{1} << 28;
+
+}  // namespace
+
+TwoLevelOnDevice::TwoLevelOnDevice(const Model& model,
+                                   const ContactOptions& options,
+                                   std::shared_ptr<RestFactors> factors)
+    : options_(options), factors_(std::move(factors)), body_of_(index_of(model.island_count), -1) {
+  std::int64_t numbers = 0;
+  for (std::int32_t island = 0; island < model.island_count; ++island) {
+    const std::int32_t body = factors_->body_of_island(island);
+    if (body < 0) continue;
+    const std::int64_t nodes =
+        model.body_node[index_of(body) + 1] - model.body_node[index_of(body)];
+    if (nodes > most_nodes || numbers + 9 * nodes * nodes > most_numbers) continue;
+    numbers += 9 * nodes * nodes;
+    body_of_[index_of(island)] = body;
+  }
+}
+
+TwoLevelOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,
+                                        const ModelState& state,
+                                        const ContactIslands& islands,
+                                        const ContactRows& rows,
+                                        const std::vector<std::uint8_t>& takes,
+                                        const std::vector<std::int32_t>& contacts,
+                                        const ContactProblem& laws,
+                                        const std::vector<Point3>& change,
+                                        std::vector<Point3>& velocity) {
+  maker_.make(resident.rows(), islands, body_of_, rows, takes, contacts,
+              TwoLevelControl::relaxation(options_));
+  set_start(state, laws, change);
+  const TwoLevelOutcome outcome = resident.solve(maker_.lists(), start_, *factors_, options_);
+  if (outcome.is_result) take_results(resident.results(), velocity);
+  return outcome;
+}
+
+void TwoLevelOnDevice::set_start(const ModelState& state,
+                                 const ContactProblem& laws,
+                                 const std::vector<Point3>& change) {
+  const TwoLevelLists& lists = maker_.lists();
+  start_.time_step = laws.adhesion.time_step;
+  start_.laws.set(laws);
+  start_.offset = laws.velocity_offset;
+  start_.impulse = laws.impulse_guess;
+  for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {
+    start_.impulse[3 * c] += start_.laws.preload[c];
+  }
+  start_.change.clear();
+  for (std::size_t row = 0; row < lists.model_block.size() && !change.empty(); ++row) {
+    const Point3& own = change[index_of(lists.model_block[row])];
+    start_.change.insert(start_.change.end(), own.begin(), own.end());
+  }
+  factors_->set_time_step(start_.time_step);
+  start_.rotation.clear();
+  for (const std::int32_t body : lists.model_body) {
+    const auto rotation = factors_->of_body(body).mean_rotation(state.position.front().data());
+    start_.rotation.insert(start_.rotation.end(), rotation.begin(), rotation.end());
+  }
+}
+
+void TwoLevelOnDevice::take_results(const ResidentResults& results, std::vector<Point3>& velocity) {
+  const TwoLevelLists& lists = maker_.lists();
+  impulse_.assign(results.impulse.begin(), results.impulse.end());
+  contact_velocity_.assign(results.velocity.begin(), results.velocity.end());
+  for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {
+    impulse_[3 * c] -= start_.laws.preload[c];
+  }
+  for (std::size_t row = 0; row < lists.model_block.size(); ++row) {
+    Point3& own = velocity[index_of(lists.model_block[row])];
+    for (std::size_t i = 0; i < 3; ++i) own[i] = results.body_velocity[3 * row + i];
+  }
+}
+
+}  // namespace tetwarp

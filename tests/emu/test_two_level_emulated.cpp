@@ -1,0 +1,128 @@
+/// Contacts of deformable bodies, solved where back end cuda steps them, against those on the host.
+#include <gtest/gtest.h>
+
+#include "host/base/point3.hpp"
+#include "tests/emu/device_calls.hpp"
+#include "tests/simulate/body_models.hpp"
+#include "tests/simulate/mixed_contacts.hpp"
+#include "tests/simulate/stack_scenes.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+struct StackStep {
+  ContactSolveOutcome outcome;
+  std::vector<Point3> velocity, block_impulses;
+  simt::CopiedBytes copied;  ///< by ContactSystem::solve() and set_velocities()
+  DeviceCalls calls{""};     ///< of them
+};
+
+/// Steps of a stack that is pushed sideways.
+std::vector<StackStep> run_stack(const HandScene& scene,
+                                 Backend backend,
+                                 double tolerance,
+                                 double adhesion = 0) {
+  ContactSystemOptions options;
+  options.solver.backend = backend;
+  options.solver.tolerance = tolerance;
+  options.recovery_fraction = 1e9;
+  const StepperOptions stepping = {.linear_tolerance = 1e-12};
+  const auto stepper = backend == Backend::cuda ? make_cuda_stepper(scene.model, stepping)
+                                                : make_cpu_stepper(scene.model, stepping);
+  ContactSystem system(scene.surfaces, scene.model, options);
+  ContactTracker tracker(materials(0.4, adhesion));
+  ModelState state = scene.model.start;
+  std::vector<Point3> change;
+  std::vector<StackStep> steps(3);
+  for (StackStep& step : steps) {
+    stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+    const auto contacts = scene.begin(tracker, state, stack_step);
+    stepper->get_velocities(step.velocity);
+    take_copied();
+    take_calls();
+    step.outcome = system.solve(*stepper, state, tracker, contacts, step.velocity, &change);
+    system.set_velocities(step.velocity, *stepper);
+    step.copied = take_copied();
+    step.calls = take_calls();
+    step.block_impulses = system.block_impulses();
+
+    // The velocities of the stepper are those of the solution, bit for bit.
+    std::vector<Point3> of_stepper;
+    stepper->get_velocities(of_stepper);
+    EXPECT_EQ(of_stepper, step.velocity);
+    stepper->move(stack_step, {});
+    stepper->get_state(state);
+    tracker.end_step(system.solution(), scene.places(state));
+  }
+  return steps;
+}
+
+double farthest(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+  double far = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) far = std::max(far, norm(minus(a[i], b[i])));
+  return far;
+}
+
+/// @param most_outer  outer iterations more than on the host
+void expect_as_on_the_host(const HandScene& scene,
+                           double tolerance,
+                           double adhesion,
+                           double near,
+                           std::int64_t most_outer) {
+  const auto expected = run_stack(scene, Backend::cpu, tolerance, adhesion);
+  const auto found = run_stack(scene, Backend::cuda, tolerance, adhesion);
+  for (std::size_t n = 0; n < found.size(); ++n) {
+    SCOPED_TRACE(n);
+    EXPECT_TRUE(found[n].outcome.converged && expected[n].outcome.converged);
+    EXPECT_LE(found[n].outcome.residual, tolerance);
+    EXPECT_LE(farthest(found[n].velocity, expected[n].velocity), near);
+    EXPECT_LE(farthest(found[n].block_impulses, expected[n].block_impulses), near);
+    EXPECT_LE(found[n].outcome.outer_iterations, expected[n].outcome.outer_iterations + most_outer);
+    EXPECT_GT(found[n].calls.count(DeviceCall::launch), 0);
+  }
+}
+
+TEST(TwoLevelEmulated, AStackIsSolvedAsOnTheHost) {
+  for (const double youngs : {1e4, 1e6}) {
+    for (const double adhesion : {0.0, 4e7}) {
+      SCOPED_TRACE(testing::Message() << youngs << " " << adhesion);
+      expect_as_on_the_host(stack_scene(youngs), 1e-8, adhesion, 2e-7, 3);
+    }
+  }
+}
+
+TEST(TwoLevelEmulated, ATowerOfElasticBlocksIsSolvedAsOnTheHost) {
+  expect_as_on_the_host(tower_scene(1, 6), 1e-7, 4e7, 1e-6, 3);
+}
+
+/// The inverses at rest of bodies that are pressed flat are far from those of their systems.
+TEST(TwoLevelEmulated, BlocksPressedFlatAreSolvedAsOnTheHost) {
+  expect_as_on_the_host(tower_scene(0.3, 6), 1e-6, 0, 1e-5, 3);
+}
+
+/// Nothing of A is copied: of contacts axes, arms, laws and lists, of nodes that may move lists and
+/// the change of the step before. The inverse of the block is copied once.
+TEST(TwoLevelEmulated, TheSystemStaysOnTheDevice) {
+  const HandScene scene = stack_scene(1e6);
+  const auto steps = run_stack(scene, Backend::cuda, 1e-4);
+  const auto contacts = static_cast<std::size_t>(scene.touches.size());
+  const std::size_t nodes = 100, rows = nodes + 2;
+  const std::size_t inverse = 9 * nodes * nodes * sizeof(float);
+  EXPECT_GE(steps[0].copied.to_device, inverse);
+  EXPECT_LE(steps[0].copied.to_device, inverse + 460 * contacts + 60 * rows + 1024);
+  for (std::size_t n = 1; n < steps.size(); ++n) {
+    SCOPED_TRACE(n);
+    const StackStep& step = steps[n];
+    EXPECT_LE(step.copied.to_device, 460 * contacts + 60 * rows + 1024);
+    const auto reads = static_cast<std::size_t>(step.calls.count(DeviceCall::copy_to_host));
+    EXPECT_LE(step.copied.to_host, 48 * contacts + 24 * rows + 32 * reads);
+    // Two per outer iteration, one per eight steps.
+    EXPECT_LE(static_cast<std::int64_t>(reads),
+              4 + 2 * step.outcome.outer_iterations + step.outcome.sweeps / 8);
+    EXPECT_LE(step.calls.count(DeviceCall::copy_to_device), 5);
+  }
+  EXPECT_EQ(steps[2].calls.count(DeviceCall::allocate), 0);
+}
+
+}  // namespace
+}  // namespace tetwarp::test
