@@ -69,6 +69,7 @@ struct StepSystem {
 
 class ResidentContacts;
 class ResidentState;
+class ResidentSurfaces;
 
 class BodyStepper {
  public:
@@ -108,6 +109,8 @@ class BodyStepper {
   /// What builds contact problems in memory of a device; null where the state is in that of the
   /// host.
   virtual ResidentContacts* resident_contacts() { return nullptr; }
+  /// What moves surfaces in memory of a device; null where the state is in that of the host.
+  virtual ResidentSurfaces* resident_surfaces() { return nullptr; }
 };
 
 /// @param model  kept by the caller

@@ -15,6 +15,9 @@ class CpuDetector final : public Detector {
   const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
     return pipeline_.detect(motion);
   }
+  const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) override {
+    return pipeline_.detect_hits(motion);
+  }
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     return pipeline_.check(motion);
   }

@@ -17,6 +17,10 @@ class CudaDetector final : public Detector {
     const auto scope = exec_.enter();
     return pipeline_.detect(motion);
   }
+  const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) override {
+    const auto scope = exec_.enter();
+    return pipeline_.detect_hits(motion);
+  }
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     const auto scope = exec_.enter();
     return pipeline_.check(motion);
