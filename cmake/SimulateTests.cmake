@@ -124,8 +124,8 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_contact_system_emulated.cpp
-    tests/emu/test_detection_copies_emulated.cpp
     tests/emu/test_simulator_emulated.cpp
+    tests/emu/test_surfaces_emulated.cpp
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp

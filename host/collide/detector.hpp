@@ -77,7 +77,11 @@ class Detector {
   /// A motion that begins with all pairs apart by more has none where it does not move.
   virtual const std::vector<TouchingPair>& check(const SurfaceMotion& motion) = 0;
   /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
-  virtual ClosestPair closest(const SurfacePlaces& places, double cap) = 0;
+  /// @param resident  a motion that stays at these places, as SurfaceMotion::resident
+  virtual ClosestPair closest(const SurfacePlaces& places,
+                              double cap,
+                              const MotionView& resident) = 0;
+  ClosestPair closest(const SurfacePlaces& places, double cap) { return closest(places, cap, {}); }
 
   /// Of all calls since the last counts().
   virtual DetectionCounts counts() = 0;

@@ -99,7 +99,7 @@ void DetectorPipeline<Exec>::set_motion(const SurfaceMotion& motion) {
                                 std::to_string(motion.frames.size()) + " bodies, expected " +
                                 std::to_string(surfaces_.bodies.size()));
   }
-  if (motion.resident.start.size > 0 || motion.resident.plane_start.size > 0) {
+  if (is_given(motion.resident)) {
     motion_ = motion.resident;
     return;
   }
@@ -160,14 +160,20 @@ PairGap DetectorPipeline<Exec>::nearest_of_features() {
 
 /// Searches within small distances first: of many near pairs few are then compared.
 template <class Exec>
-ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places, double cap) {
+ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
+                                            double cap,
+                                            const MotionView& resident) {
   check_sizes(places);
   if (!std::isfinite(cap))
     throw std::invalid_argument("collision detection: the cap is not finite");
   begin_step();
-  const View<const double> vertices = points(places.vertices, start_);
-  const View<const double> planes = plane_numbers(places.planes, plane_start_);
-  motion_ = {vertices, vertices, view(memory_.no_sagitta), planes, planes, {}};
+  if (is_given(resident)) {
+    motion_ = resident;
+  } else {
+    const View<const double> vertices = points(places.vertices, start_);
+    const View<const double> planes = plane_numbers(places.planes, plane_start_);
+    motion_ = {vertices, vertices, view(memory_.no_sagitta), planes, planes, {}};
+  }
   still_.start.planes = still_.end.planes = places.planes;
   ClosestPair closest;
   closest.distance = cap;

@@ -59,7 +59,7 @@ class DetectorPipeline {
   const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) {
     return touching(motion, detection_limits(surfaces_.thickness), -1);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap);
+  ClosestPair closest(const SurfacePlaces& places, double cap, const MotionView& resident);
 
   DetectionCounts take_counts() { return std::exchange(counts_, {}); }
 
@@ -131,6 +131,9 @@ class DetectorPipeline {
     return exec_.input(host.empty() ? nullptr : host[0].point.data(), 6 * size_of(host), own);
   }
 
+  static bool is_given(const MotionView& resident) {
+    return resident.start.size > 0 || resident.plane_start.size > 0;
+  }
   /// Makes the motion readable by stages.
   void set_motion(const SurfaceMotion& motion);
   const std::vector<TouchingPair>& touching(const SurfaceMotion& motion,

@@ -21,8 +21,11 @@ class CpuDetector final : public Detector {
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     return pipeline_.check(motion);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap) override {
-    return pipeline_.closest(places, cap);
+  using Detector::closest;
+  ClosestPair closest(const SurfacePlaces& places,
+                      double cap,
+                      const MotionView& resident) override {
+    return pipeline_.closest(places, cap, resident);
   }
   DetectionCounts counts() override { return pipeline_.take_counts(); }
 

@@ -25,9 +25,12 @@ class CudaDetector final : public Detector {
     const auto scope = exec_.enter();
     return pipeline_.check(motion);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap) override {
+  using Detector::closest;
+  ClosestPair closest(const SurfacePlaces& places,
+                      double cap,
+                      const MotionView& resident) override {
     const auto scope = exec_.enter();
-    return pipeline_.closest(places, cap);
+    return pipeline_.closest(places, cap, resident);
   }
   DetectionCounts counts() override { return pipeline_.take_counts(); }
 

@@ -121,7 +121,8 @@ class ContactStep {
   /// Of the last part, with `sleeps`.
   const ContactRest& rest() const { return rest_; }
 
-  /// Fills the adhesion's energy and area, and the smallest distance, in a state.
+  /// Fills the adhesion's energy and area, and the smallest distance, in a state: that of the
+  /// stepper of advance().
   void record(const ModelState& state, StepRecord& record);
 
  private:
