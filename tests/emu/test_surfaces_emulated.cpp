@@ -19,8 +19,11 @@ Scene all_kinds() {
   elastic.surface = std::int64_t{100};
   Body sheet = sheet_body("sheet", {0.3, 0.2}, {30, 20});
   sheet.pose.position = {0, 0, 2};
+  Body driven = elastic_box("driven", {0.1, 0.1, 0.1}, {1, 1, 1});
+  driven.kind = BodyKind::scripted;
+  driven.pose.position = {3, 0, 0};
   Scene scene = scene_of({elastic, rigid_box("box", {0.1, 0.2, 0.1}, {-1, 0, 0}), sheet,
-                          rigid_capsule("pill", 0.1, 0.4, {0, -5, 0})},
+                          rigid_capsule("pill", 0.1, 0.4, {0, -5, 0}), driven},
                          0.01);
   scene.obstacles = {{"floor", PlaneObstacle{{0, 1, 2}, {0, 0, -4}}, {}, {}},
                      {"bar",
@@ -45,7 +48,7 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   std::uniform_real_distribution<double> any(-30, 30);
   std::vector<Point3> velocity(static_cast<std::size_t>(model.block_count()));
   for (Point3& v : velocity) v = {any(random), any(random), any(random)};
-  const std::vector<double> fraction{1, 0.25, 0.5, 0.75, 0.125, 0};
+  const std::vector<double> fraction{1, 0.25, 0.5, 0.75, 1, 0.125, 0};
   const auto stepper = make_cuda_stepper(model, {});
   ResidentSurfaces* const surfaces = stepper->resident_surfaces();
   ASSERT_NE(surfaces, nullptr);
@@ -88,8 +91,8 @@ TEST(SurfacesEmulated, OnlyChangedVelocitiesAreSent) {
   EXPECT_EQ(take_copied().to_device, 0u);
 
   velocity[5] = {4, 5, 6};
-  surfaces.move(velocity, 0.01, std::vector<double>(6, 0.5));
-  EXPECT_EQ(take_copied().to_device, (3 + 6) * sizeof(double));
+  surfaces.move(velocity, 0.01, std::vector<double>(7, 0.5));
+  EXPECT_EQ(take_copied().to_device, (3 + 7) * sizeof(double));
 }
 
 /// Four rows of four bricks, at distances of `gap` above each other.
