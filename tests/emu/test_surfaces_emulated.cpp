@@ -7,6 +7,7 @@
 #include <random>
 
 #include "host/simulate/resident_surfaces.hpp"
+#include "host/simulate/stepper.hpp"
 #include "tests/emu/device_calls.hpp"
 #include "tests/simulate/touch_run.hpp"
 
