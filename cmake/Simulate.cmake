@@ -119,6 +119,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/rigid_patches.cpp
   host/simulate/contact/round_shape.cpp
   host/simulate/contact/scene_surfaces.cpp
+  host/simulate/contact/soft_islands.cpp
   host/simulate/contact/solved_islands.cpp
   host/simulate/contact/solver_islands.cpp
   host/simulate/contact/start_check.cpp

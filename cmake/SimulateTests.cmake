@@ -128,6 +128,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/emu/test_contact_system_emulated.cpp
     tests/emu/test_two_level_emulated.cpp
     tests/emu/test_simulator_emulated.cpp
+    tests/emu/test_surfaces_emulated.cpp
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp

@@ -40,17 +40,13 @@ bool is_near(const Box& box, const PlanePlace& start, const PlanePlace& end, dou
 }
 }  // namespace
 
-void BodyPartners::unite(const CollideItems& items, const View<const RunBox>& run_boxes) {
+void BodyPartners::set_boxes(const CollideItems& items, const View<const RunBox>& of_bodies) {
   boxes.resize(items.bodies.size() + 1);
   has_box.assign(items.bodies.size(), 0);
-  for (std::size_t r = 0; r < items.runs.size(); ++r) {
+  const std::size_t first = items.runs.size() - static_cast<std::size_t>(of_bodies.size);
+  for (std::size_t r = first; r < items.runs.size(); ++r) {
     const auto b = static_cast<std::size_t>(items.runs[r].body);
-    const Box& box = run_boxes[static_cast<std::int64_t>(r)].box;
-    if (has_box[b] != 0) {
-      add_box(boxes[b], box);
-    } else {
-      boxes[b] = box;
-    }
+    boxes[b] = of_bodies[static_cast<std::int64_t>(r - first)].box;
     has_box[b] = 1;
   }
 }

@@ -21,8 +21,8 @@ struct BodyPartners {
   bool has_pairs = false;   ///< some body has a partner
   bool has_planes = false;  ///< some body is near a plane
 
-  /// Sets `boxes` and `has_box` to the unions of each body's runs.
-  void unite(const CollideItems& items, const View<const RunBox>& run_boxes);
+  /// Sets `boxes` and `has_box` to the boxes of the last runs.
+  void set_boxes(const CollideItems& items, const View<const RunBox>& of_bodies);
   /// Finds the partners of all bodies. Of very many bodies each that overlaps the space of the
   /// others counts as a partner.
   /// @param is_still  [bodies] those that do not move are no partners of each other; or empty

@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 namespace {
-constexpr std::int32_t run_length = 32;  // vertices of a run
+constexpr std::int32_t run_length = 32;  // vertices or boxes of a run
 
 [[noreturn]] void fail(const std::string& problem) {
   throw std::invalid_argument("collision surfaces: " + problem);
@@ -136,6 +136,29 @@ void add_runs(const CollisionBody& body, std::int32_t b, std::vector<VertexRun>&
     runs.push_back({v, std::min(v + run_length, body.vertex_end), b});
   }
 }
+
+/// Adds runs of the last runs of `made`, each of one body.
+void add_level(CollideItems& made) {
+  const auto end = static_cast<std::int32_t>(made.runs.size());
+  for (auto first = static_cast<std::int32_t>(made.levels.back()); first < end;) {
+    const std::int32_t body = made.runs[static_cast<std::size_t>(first)].body;
+    std::int32_t past = first + 1;
+    while (past < end && past < first + run_length &&
+           made.runs[static_cast<std::size_t>(past)].body == body) {
+      ++past;
+    }
+    made.runs.push_back({first, past, body});
+    first = past;
+  }
+  made.levels.push_back(end);
+}
+
+/// Whether a body has two runs from `first` on.
+bool has_twins(const std::vector<VertexRun>& runs, std::int64_t first) {
+  return std::adjacent_find(
+             runs.begin() + first, runs.end(),
+             [](const VertexRun& a, const VertexRun& b) { return a.body == b.body; }) != runs.end();
+}
 }  // namespace
 
 CollideItems make_collide_items(const CollisionSurfaces& surfaces) {
@@ -161,6 +184,9 @@ CollideItems make_collide_items(const CollisionSurfaces& surfaces) {
     made.bodies.push_back(own);
   }
   if (next != surfaces.forbidden.end()) fail("forbidden pairs are not sorted");
+  made.levels.push_back(0);
+  while (has_twins(made.runs, made.levels.back())) add_level(made);
+  made.levels.push_back(static_cast<std::int64_t>(made.runs.size()));
   return made;
 }
 

@@ -14,7 +14,9 @@ struct CollideItems {
   std::vector<CollideItem> items;  ///< body by body
   std::vector<CollideBody> bodies;
   std::vector<std::int32_t> forbidden;  ///< second bodies of forbidden pairs, by the first
-  std::vector<VertexRun> runs;          ///< body by body
+  std::vector<VertexRun> runs;  ///< body by body: of vertices; of boxes of successive runs, until
+                                ///< each body has one
+  std::vector<std::int64_t> levels;  ///< first run of vertices, of boxes, ..., end
 };
 
 /// @throws std::invalid_argument  one line: a vertex, edge or body outside its range, a triangle

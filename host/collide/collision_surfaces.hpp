@@ -11,7 +11,7 @@
 
 #include <tetwarp/volume.hpp>
 
-#include "kernels/collide/moving_points.hpp"
+#include "kernels/collide/collide_item.hpp"
 
 namespace tetwarp {
 
@@ -69,6 +69,9 @@ struct SurfaceMotion {
   /// [bodies] with turn 0 where all goes straight; or empty: sagittas are all that is known of
   /// turns (pairs then touch earlier), and planes turn by the least angle about their points.
   std::vector<TurningFrame> frames = {};
+  /// The same, but for rounding, in memory of the device of the detector; or empty: it copies what
+  /// is here. Which bodies a plane may reach is decided by what is here.
+  MotionView resident = {};
 };
 
 }  // namespace tetwarp

@@ -70,11 +70,18 @@ class Detector {
   /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
   /// sorted, each once. Valid until the next call.
   virtual const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) = 0;
+  /// Of these, those that come within half the thickness: pairs near at the start are known from
+  /// another motion that begins at the same places.
+  virtual const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) = 0;
   /// Pairs that come within a tenth of the thickness, sorted, each once: what a step must not do.
   /// A motion that begins with all pairs apart by more has none where it does not move.
   virtual const std::vector<TouchingPair>& check(const SurfaceMotion& motion) = 0;
   /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
-  virtual ClosestPair closest(const SurfacePlaces& places, double cap) = 0;
+  /// @param resident  a motion that stays at these places, as SurfaceMotion::resident
+  virtual ClosestPair closest(const SurfacePlaces& places,
+                              double cap,
+                              const MotionView& resident) = 0;
+  ClosestPair closest(const SurfacePlaces& places, double cap) { return closest(places, cap, {}); }
 
   /// Of all calls since the last counts().
   virtual DetectionCounts counts() = 0;

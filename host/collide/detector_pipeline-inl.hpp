@@ -10,15 +10,22 @@ bool DetectorPipeline<Exec>::make_boxes(double distance,
                                         bool finds,
                                         double found_distance,
                                         double fraction) {
-  exec_.for_each("collide/vertex_box", size_of(items_.runs),
+  const std::vector<std::int64_t>& levels = items_.levels;
+  exec_.for_each("collide/vertex_box", levels[1],
                  VertexBoxBody{view(memory_.runs), motion_, view(memory_.vertex_radius),
                                distance / 2, found_distance / 2, fraction, finds ? 1 : 0,
                                exec_.view(found_), exec_.view(run_boxes_)});
-  const View<const RunBox> boxes = exec_.on_host(view(run_boxes_), host_run_boxes_);
+  for (std::size_t k = 1; k + 1 < levels.size(); ++k) {
+    exec_.for_each("collide/vertex_box", levels[k + 1] - levels[k],
+                   BoxUniteBody{view(memory_.runs), levels[k], exec_.view(run_boxes_)});
+  }
+  const std::int64_t last = levels[levels.size() - 2];
+  const View<const RunBox> boxes = exec_.on_host(
+      View<const RunBox>{view(run_boxes_).data + last, levels.back() - last}, host_run_boxes_);
   for (std::int64_t r = 0; r < boxes.size && !finds; ++r) {
     if (boxes[r].leaves != 0) return false;
   }
-  partners_.unite(items_, boxes);
+  partners_.set_boxes(items_, boxes);
   return true;
 }
 
@@ -46,13 +53,12 @@ void DetectorPipeline<Exec>::find_item_pairs(std::span<const std::uint8_t> is_st
                              exec_.view(item_sizes_)});
   exec_.for_each("collide/item_box", (items + size_run - 1) / size_run,
                  SizeCountBody{view(item_sizes_), exec_.view(size_counts_)});
-  const View<const std::int32_t> counted = exec_.on_host(view(size_counts_), host_size_counts_);
+  exec_.for_each("collide/item_box", item_sizes,
+                 SizeSumBody{view(size_counts_), exec_.view(size_sums_)});
+  const View<const std::int32_t> counted = exec_.on_host(view(size_sums_), host_size_sums_);
   std::array<std::int64_t, item_sizes> counts{};
-  std::int64_t kept = 0;
-  for (std::int64_t k = 0; k < counted.size; ++k) {
-    counts[static_cast<std::size_t>(k % item_sizes)] += counted[k];
-    kept += counted[k];
-  }
+  std::copy_n(counted.data, item_sizes, counts.begin());
+  const std::int64_t kept = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
   counts_.skipped_items += items - kept;
   if (kept == 0) return;
   host_plan_ = make_grid_plan(counts, largest, space);
@@ -85,9 +91,7 @@ void DetectorPipeline<Exec>::find_features(const SurfaceMotion& motion,
 }
 
 template <class Exec>
-const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceMotion& motion,
-                                                                  const CcdLimits& limits,
-                                                                  double near_at_start) {
+void DetectorPipeline<Exec>::set_motion(const SurfaceMotion& motion) {
   check_sizes(motion.start);
   check_sizes(motion.end);
   if (!motion.frames.empty() && motion.frames.size() != surfaces_.bodies.size()) {
@@ -95,12 +99,23 @@ const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceM
                                 std::to_string(motion.frames.size()) + " bodies, expected " +
                                 std::to_string(surfaces_.bodies.size()));
   }
+  if (is_given(motion.resident)) {
+    motion_ = motion.resident;
+    return;
+  }
   motion_ = {points(motion.start.vertices, start_),
              points(motion.end.vertices, end_),
              exec_.input(motion.sagitta.data(), size_of(motion.sagitta), sagitta_),
              plane_numbers(motion.start.planes, plane_start_),
              plane_numbers(motion.end.planes, plane_end_),
              exec_.input(motion.frames.data(), size_of(motion.frames), frames_)};
+}
+
+template <class Exec>
+const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceMotion& motion,
+                                                                  const CcdLimits& limits,
+                                                                  double near_at_start) {
+  set_motion(motion);
   const double distance = std::max(near_at_start, limits.distance + limits.slack);
   const bool was_found = reuses_pairs_ && has_pairs_;
   if (was_found && make_boxes(distance, false, 0, 0)) {
@@ -145,14 +160,20 @@ PairGap DetectorPipeline<Exec>::nearest_of_features() {
 
 /// Searches within small distances first: of many near pairs few are then compared.
 template <class Exec>
-ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places, double cap) {
+ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
+                                            double cap,
+                                            const MotionView& resident) {
   check_sizes(places);
   if (!std::isfinite(cap))
     throw std::invalid_argument("collision detection: the cap is not finite");
   begin_step();
-  const View<const double> vertices = points(places.vertices, start_);
-  const View<const double> planes = plane_numbers(places.planes, plane_start_);
-  motion_ = {vertices, vertices, view(memory_.no_sagitta), planes, planes, {}};
+  if (is_given(resident)) {
+    motion_ = resident;
+  } else {
+    const View<const double> vertices = points(places.vertices, start_);
+    const View<const double> planes = plane_numbers(places.planes, plane_start_);
+    motion_ = {vertices, vertices, view(memory_.no_sagitta), planes, planes, {}};
+  }
   still_.start.planes = still_.end.planes = places.planes;
   ClosestPair closest;
   closest.distance = cap;

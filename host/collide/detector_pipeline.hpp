@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -38,6 +39,7 @@ class DetectorPipeline {
     exec_.resize(item_boxes_, size_of(items_.items));
     exec_.resize(item_sizes_, size_of(items_.items));
     exec_.resize(size_counts_, (size_of(items_.items) + size_run - 1) / size_run * item_sizes);
+    exec_.resize(size_sums_, item_sizes);
   }
 
   void begin_step() { has_pairs_ = false; }
@@ -54,7 +56,10 @@ class DetectorPipeline {
     const double h = surfaces_.thickness;
     return touching(motion, end_check_limits(h), -1);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap);
+  const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) {
+    return touching(motion, detection_limits(surfaces_.thickness), -1);
+  }
+  ClosestPair closest(const SurfacePlaces& places, double cap, const MotionView& resident);
 
   DetectionCounts take_counts() { return std::exchange(counts_, {}); }
 
@@ -126,6 +131,11 @@ class DetectorPipeline {
     return exec_.input(host.empty() ? nullptr : host[0].point.data(), 6 * size_of(host), own);
   }
 
+  static bool is_given(const MotionView& resident) {
+    return resident.start.size > 0 || resident.plane_start.size > 0;
+  }
+  /// Makes the motion readable by stages.
+  void set_motion(const SurfaceMotion& motion);
   const std::vector<TouchingPair>& touching(const SurfaceMotion& motion,
                                             const CcdLimits& limits,
                                             double near_at_start);
@@ -157,8 +167,8 @@ class DetectorPipeline {
   Vector<Box> body_boxes_, item_boxes_;
   Vector<std::int32_t> partner_start_, partner_bodies_, near_start_, near_planes_;
   Vector<std::int8_t> item_sizes_;
-  Vector<std::int32_t> size_counts_;
-  std::vector<std::int32_t> host_size_counts_;
+  Vector<std::int32_t> size_counts_, size_sums_;
+  std::vector<std::int32_t> host_size_sums_;
   GridPlan host_plan_{};
   Vector<GridPlan> plan_;
   List<CellPair> entries_;

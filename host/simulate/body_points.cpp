@@ -5,6 +5,7 @@
 
 #include "host/simulate/nearest.hpp"
 #include "host/simulate/rotations.hpp"
+#include "host/simulate/state_view.hpp"
 
 namespace tetwarp {
 namespace {
@@ -22,15 +23,8 @@ void add_area_thirds(const std::vector<Point3>& points,
 }  // namespace
 
 Point3 position_of(const ModelPoint& point, const ModelState& state, std::int32_t node_count) {
-  if (point.rigid >= 0) {
-    return plus(at(state.position, node_count + point.rigid),
-                rotate(at(state.rotation, point.rigid), point.local));
-  }
-  if (point.node[0] < 0) return point.local;
-  Point3 x{0, 0, 0};
-  for (std::size_t a = 0; a < 4 && point.node[a] >= 0; ++a) {
-    x = plus(x, times(point.weight[a], at(state.position, point.node[a])));
-  }
+  Point3 x;
+  start_of(point, view_of_state(state, node_count), x.data());
   return x;
 }
 

@@ -70,6 +70,7 @@ struct StepSystem {
 class ResidentContacts;
 class ResidentTwoLevel;
 class ResidentState;
+class ResidentSurfaces;
 
 class BodyStepper {
  public:
@@ -109,8 +110,11 @@ class BodyStepper {
   /// What builds contact problems in memory of a device; null where the state is in that of the
   /// host.
   virtual ResidentContacts* resident_contacts() { return nullptr; }
-  /// What solves contacts of elastic bodies there; null where the state is in memory of the host.
+  /// What solves contacts of deformable and coupled bodies there; null where the state is in memory
+  /// of the host.
   virtual ResidentTwoLevel* resident_two_level() { return nullptr; }
+  /// What moves surfaces in memory of a device; null where the state is in that of the host.
+  virtual ResidentSurfaces* resident_surfaces() { return nullptr; }
 };
 
 /// @param model  kept by the caller

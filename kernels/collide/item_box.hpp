@@ -64,4 +64,16 @@ struct SizeCountBody {
   }
 };
 
+/// One index = one size. Sums its counts of all runs.
+struct SizeSumBody {
+  View<const std::int32_t> counts;  ///< [runs][item_sizes]
+  View<std::int32_t> sums;          ///< out [item_sizes]
+
+  TETWARP_HD void operator()(std::int64_t size) const {
+    std::int32_t sum = 0;
+    for (std::int64_t k = size; k < counts.size; k += item_sizes) sum += counts[k];
+    sums[size] = sum;
+  }
+};
+
 }  // namespace tetwarp

@@ -13,7 +13,7 @@ namespace tetwarp {
 constexpr double found_thicknesses = 2.5;
 constexpr double found_fraction = 0.25;
 
-/// Successive vertices of one body.
+/// Successive vertices of one body, or boxes of such runs.
 struct VertexRun {
   std::int32_t begin, end, body;
 };
@@ -39,7 +39,7 @@ struct VertexBoxBody {
   double fraction;             ///< of a vertex's way: added to `found` on all sides
   std::int32_t finds;          ///< 1: writes `found`; 0: compares with it
   View<Box> found;             ///< [vertices]
-  View<RunBox> run_boxes;      ///< out: of the boxes written, or of those compared
+  View<RunBox> run_boxes;      ///< out: of the boxes written, or of those compared; more follow
 
   TETWARP_HD void operator()(std::int64_t r) const {
     const VertexRun run = runs[r];
@@ -80,6 +80,23 @@ struct VertexBoxBody {
       box.high[k] = max_of(a, b) + inflation + rounding;
     }
     return box;
+  }
+};
+
+/// One index = one run of boxes. Writes their union behind them.
+struct BoxUniteBody {
+  View<const VertexRun> runs;
+  std::int64_t first;  ///< of `runs`, which is also the place of its union in `boxes`
+  View<RunBox> boxes;  ///< in, out
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    const VertexRun run = runs[first + i];
+    RunBox all = boxes[run.begin];
+    for (std::int32_t k = run.begin + 1; k < run.end; ++k) {
+      add_box(all.box, boxes[k].box);
+      all.leaves |= boxes[k].leaves;
+    }
+    boxes[first + i] = all;
   }
 };
 

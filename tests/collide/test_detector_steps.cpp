@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "host/collide/collide_items.hpp"
 #include "tests/collide/collide_scenes.hpp"
 
 namespace tetwarp::test {
@@ -35,6 +36,53 @@ TEST(DetectorSteps, ReusedPairsGiveTheSameResults) {
     EXPECT_EQ(without->counts().reused, 0);
     EXPECT_EQ(with->counts().reused, change < 1e-3 ? 3 : 0);
   }
+}
+
+/// Later passes of a step need only what is hit on the way.
+TEST(DetectorSteps, HitsAreTheDetectedPairsThatTouch) {
+  for (const unsigned seed : {5u, 6u}) {
+    const CollideScene scene = mixed_scene(seed, 0.05);
+    const auto detector = make_cpu_detector(scene.surfaces, {});
+    std::vector<TouchingPair> expected = detector->detect(scene.motion);
+    const std::size_t all = expected.size();
+    std::erase_if(expected, [](const TouchingPair& pair) { return pair.time > 1; });
+
+    EXPECT_EQ(detector->detect_hits(scene.motion), expected);
+
+    EXPECT_GT(expected.size(), 10u);
+    EXPECT_LT(expected.size(), all);
+  }
+}
+
+/// Runs of up to 32 vertices, then of up to 32 boxes, end in one per body that holds all of it.
+TEST(CollideItems, EachBodyHasOneLastRun) {
+  CollideScene scene;
+  scene.surfaces.thickness = 1e-3;
+  const std::vector<std::int32_t> counts{1, 31, 32, 33, 1025, 1, 1024 * 32 + 1};
+  for (const std::int32_t count : counts) {
+    CollisionBody& body = scene.surfaces.bodies.emplace_back();
+    body.first_vertex = static_cast<std::int32_t>(scene.surfaces.vertex_body.size());
+    body.vertex_end = body.first_vertex + count;
+    scene.surfaces.vertex_body.resize(static_cast<std::size_t>(body.vertex_end),
+                                      scene.body_count() - 1);
+    scene.surfaces.bodies.emplace_back();  // without vertices
+  }
+  scene.surfaces.vertex_radius.assign(scene.surfaces.vertex_body.size(), 1e-3);
+  const CollideItems made = make_collide_items(scene.surfaces);
+
+  ASSERT_EQ(made.levels.size(), 5u);
+  const std::vector<VertexRun> last(made.runs.begin() + made.levels[3], made.runs.end());
+  ASSERT_EQ(last.size(), counts.size());
+  for (std::size_t b = 0; b < counts.size(); ++b) {
+    VertexRun run = last[b];
+    EXPECT_EQ(run.body, 2 * static_cast<std::int32_t>(b));
+    const auto at = [&](std::int32_t k) { return made.runs[static_cast<std::size_t>(k)]; };
+    for (int level = 3; level > 0; --level) run = {at(run.begin).begin, at(run.end - 1).end, 0};
+    const CollisionBody& body = scene.surfaces.bodies[2 * b];
+    EXPECT_EQ(run.begin, body.first_vertex);
+    EXPECT_EQ(run.end, body.vertex_end);
+  }
+  for (const VertexRun& run : made.runs) EXPECT_LE(run.end - run.begin, 32);
 }
 
 TEST(DetectorSteps, ANewStepForgetsThePairs) {

@@ -24,6 +24,7 @@ void expect_parity(const CollideScene& scene) {
     cpu->begin_step();
     cuda->begin_step();
     EXPECT_EQ(cuda->detect(scene.motion), cpu->detect(scene.motion));
+    EXPECT_EQ(cuda->detect_hits(scene.motion), cpu->detect_hits(scene.motion));
     EXPECT_EQ(cuda->check(scene.motion), cpu->check(scene.motion));
     expect_equal(cuda->counts(), cpu->counts());
   }
@@ -42,6 +43,11 @@ TEST(DetectorEmulated, MixedScenesHaveThePairsOfTheCpu) {
 
 TEST(DetectorEmulated, APileHasThePairsOfTheCpu) {
   expect_parity(pile_scene(6, 1500, {.touches_itself = true}));
+}
+
+/// Bodies of more than 32^2 vertices, whose boxes are united in three stages.
+TEST(DetectorEmulated, LargeBodiesHaveThePairsOfTheCpu) {
+  expect_parity(pile_scene(3, 9000));
 }
 
 TEST(DetectorEmulated, EmptyScenesHaveNoPairs) {

@@ -59,6 +59,16 @@ Scene mixed_on_tray() {
   return scene;
 }
 
+/// The pile under a falling cloth, beside the soft box, on the tray.
+Scene cloth_over_tray() {
+  Scene scene = mixed_on_tray();
+  Body cloth = sheet_body("cloth", {0.12, 0.12}, {6, 6});
+  cloth.pose.position = {0.1037, -0.0571, 0.0443};
+  cloth.velocity = {0, 0, -0.5};
+  scene.bodies.push_back(cloth);
+  return scene;
+}
+
 /// Two boxes that a coupling ties together, beside a free one.
 Scene tied_boxes() {
   Scene scene = on_floor({rigid_box("a", {0.02, 0.02, 0.02}, {0, 0, 0.022}),
@@ -117,6 +127,10 @@ TEST(ContactCuda, ARigidPileFallsAsOnTheCpu) {
 
 TEST(ContactCuda, ARigidPileAndASoftBoxRideOnATrayAsOnTheCpu) {
   expect_parity(mixed_on_tray(), 30, 1e-6);
+}
+
+TEST(ContactCuda, RigidAndSoftBodiesUnderAClothRideOnATrayAsOnTheCpu) {
+  expect_parity(cloth_over_tray(), 25, 1e-6);
 }
 
 TEST(ContactCuda, TiedBoxesAndAFreeOneSlideAsOnTheCpu) {

@@ -15,11 +15,17 @@ class CpuDetector final : public Detector {
   const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
     return pipeline_.detect(motion);
   }
+  const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) override {
+    return pipeline_.detect_hits(motion);
+  }
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     return pipeline_.check(motion);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap) override {
-    return pipeline_.closest(places, cap);
+  using Detector::closest;
+  ClosestPair closest(const SurfacePlaces& places,
+                      double cap,
+                      const MotionView& resident) override {
+    return pipeline_.closest(places, cap, resident);
   }
   DetectionCounts counts() override { return pipeline_.take_counts(); }
 

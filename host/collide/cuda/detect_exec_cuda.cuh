@@ -42,6 +42,17 @@ struct AppendCountBody {
     tallies[i] = emit.tallied;
   }
 };
+/// Reads two ends of the sums of what indices append.
+struct AppendTotalsBody {
+  View<const std::int64_t> sums;  ///< exclusive, of the counts and then of the tallies
+  View<std::int64_t> totals;      ///< out [2] number of values, tally
+
+  __device__ void operator()(std::int64_t) const {
+    const std::int64_t count = sums.size / 2;
+    totals[0] = sums[count];
+    totals[1] = sums[2 * count] - sums[count];
+  }
+};
 template <class Body, class T>
 struct AppendWriteBody {
   static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
@@ -129,21 +140,23 @@ class CudaDetectExec {
               std::int64_t most = unlimited) {
     list.clear();
     if (count == 0) return;
-    counts_.resize(count + 1);
-    tallies_.resize(count + 1);
-    exec_.for_each(label, count, AppendCountBody<Body>{body, counts_.view(), tallies_.view()});
-    exec_.exclusive_scan(label, counts_.view());
-    exec_.exclusive_scan(label, tallies_.view());
-    const std::int64_t size = last_of(counts_);
-    check_count(size, most);
-    list.size_ = size;
-    list.tally_ = last_of(tallies_);
+    sums_.resize(2 * count + 1);
+    totals_.resize(2);
+    std::int64_t* const sums = sums_.view().data;
+    exec_.for_each(label, count, AppendCountBody<Body>{body, {sums, count}, {sums + count, count}});
+    exec_.exclusive_scan(label, sums_.view());
+    exec_.for_each(label, 1, AppendTotalsBody{sums_.view(), totals_.view()});
+    std::int64_t totals[2];
+    exec_.read(View<const std::int64_t>(totals_.view()), totals);
+    check_count(totals[0], most);
+    list.size_ = totals[0];
+    list.tally_ = totals[1];
     if (list.size_ > list.capacity_) {
       list.capacity_ = list.size_ + list.size_ / 2;
       list.values_.reserve(list.capacity_);
     }
     if (list.size_ == 0) return;
-    const AppendWriteBody<Body, T> write{body, counts_.view(), list.values_.view(list.size_)};
+    const AppendWriteBody<Body, T> write{body, sums_.view(), list.values_.view(list.size_)};
     exec_.for_each(label, count, write);
   }
   void sort_pairs(const char* label, DeviceList<CellPair>& list, int key_bits) {
@@ -151,15 +164,8 @@ class CudaDetectExec {
   }
 
  private:
-  std::int64_t last_of(const DeviceVector<std::int64_t>& values) {
-    const View<const std::int64_t> all = values.view();
-    std::int64_t last = 0;
-    exec_.read(View<const std::int64_t>{all.data + all.size - 1, 1}, &last);
-    return last;
-  }
-
   CudaExec exec_;
-  DeviceVector<std::int64_t> counts_, tallies_;
+  DeviceVector<std::int64_t> sums_, totals_;
 };
 
 }  // namespace tetwarp

@@ -17,13 +17,20 @@ class CudaDetector final : public Detector {
     const auto scope = exec_.enter();
     return pipeline_.detect(motion);
   }
+  const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) override {
+    const auto scope = exec_.enter();
+    return pipeline_.detect_hits(motion);
+  }
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     const auto scope = exec_.enter();
     return pipeline_.check(motion);
   }
-  ClosestPair closest(const SurfacePlaces& places, double cap) override {
+  using Detector::closest;
+  ClosestPair closest(const SurfacePlaces& places,
+                      double cap,
+                      const MotionView& resident) override {
     const auto scope = exec_.enter();
-    return pipeline_.closest(places, cap);
+    return pipeline_.closest(places, cap, resident);
   }
   DetectionCounts counts() override { return pipeline_.take_counts(); }
 

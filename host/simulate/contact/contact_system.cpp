@@ -9,9 +9,9 @@
 #include "host/simulate/contact/contact_laws.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/contact_shares.hpp"
+#include "host/simulate/contact/soft_islands.hpp"
 #include "host/simulate/contact/solver_islands.hpp"
 #include "host/simulate/contact/two_level_on_device.hpp"
-#include "host/simulate/contact/two_level_solver.hpp"
 #include "host/simulate/resident_contacts.hpp"
 #include "host/simulate/resident_two_level.hpp"
 
@@ -24,9 +24,7 @@ struct ContactSystem::State {
         options(given),
         frames(frames_of_bodies(surfaces, of)),
         islands(of),
-        factors(given.factors ? given.factors : std::make_shared<RestFactors>(of)),
-        two_level(of, given.solver, factors),
-        two_level_on_device(of, given.solver, factors),
+        soft_islands(of, given.solver, given.factors),
         solver_islands(given.solver) {}
 
   void set_laws(const ContactTracker& tracker,
@@ -44,10 +42,6 @@ struct ContactSystem::State {
   void solve_other(BodyStepper& stepper,
                    std::vector<Point3>& velocity,
                    ContactSolveOutcome& outcome);
-  bool take(const TwoLevelOutcome& solved,
-            std::span<const double> impulse,
-            std::span<const double> velocity,
-            ContactSolveOutcome& outcome);
   void add_block_impulses();
   bool stop_fast_turns(std::vector<Point3>& velocity);
   double recovery_speed(const ContactKey& key) const;
@@ -59,17 +53,14 @@ struct ContactSystem::State {
   std::vector<std::int32_t> frames;  ///< [bodies, then obstacles]
   ContactRows rows;
   ContactIslands islands;
-  ContactProblem laws, soft_laws;  ///< friction, offsets, adhesion, guess; no matrices
+  ContactProblem laws;  ///< friction, offsets, adhesion, guess; no matrices
   ContactShares shares;
-  std::shared_ptr<RestFactors> factors;
-  TwoLevelSolver two_level;
-  TwoLevelOnDevice two_level_on_device;
-  bool has_soft_on_host = false;
+  SoftIslands soft_islands;
   SolverIslands solver_islands;
   // Where velocities that contacts have changed are, if all of them are in memory of a device.
   bool is_resident = false;
-  ResidentContacts* resident = nullptr;            ///< or null: none there
-  ResidentTwoLevel* resident_two_level = nullptr;  ///< or null: none there
+  ResidentTwoLevel* resident_soft = nullptr;   ///< or null: none there
+  ResidentContacts* resident_other = nullptr;  ///< or null: none there
   std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
   std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
                                    ///< because only a bond is left
@@ -150,59 +141,37 @@ void ContactSystem::State::take_impulses(const ContactShare& share,
   }
 }
 
-/// Takes impulses and velocities of soft contacts. @returns whether there is a result
-bool ContactSystem::State::take(const TwoLevelOutcome& solved,
-                                std::span<const double> impulse,
-                                std::span<const double> velocity,
-                                ContactSolveOutcome& outcome) {
-  outcome.outer_iterations += solved.outer_iterations;
-  outcome.sweeps += solved.sweeps;
-  if (!solved.is_result) return false;
-  outcome.converged = outcome.converged && solved.converged;
-  outcome.residual = std::max(outcome.residual, solved.residual);
-  take_impulses(shares.soft, impulse, velocity);
-  return true;
-}
-
-/// On the device that steps the bodies, and on the host without one, or without a result of it.
 void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       const ModelState& state,
                                       const std::vector<Point3>& change,
                                       std::vector<Point3>& velocity,
                                       ContactSolveOutcome& outcome) {
-  resident_two_level = nullptr;
-  has_soft_on_host = false;
+  resident_soft = nullptr;
   if (shares.soft.is_empty()) return;
-  gather_laws(shares.soft.contacts, laws, soft_laws);
-  ResidentTwoLevel* const resident_solver = stepper.resident_two_level();
-  if (resident_solver != nullptr) {
-    const TwoLevelOutcome solved =
-        two_level_on_device.solve(*resident_solver, state, islands, rows, shares.soft.islands,
-                                  shares.soft.contacts, soft_laws, change, velocity);
-    if (take(solved, two_level_on_device.impulse(), two_level_on_device.contact_velocity(),
-             outcome)) {
-      resident_two_level = resident_solver;
-      return;
-    }
-  }
-  has_soft_on_host = true;
   const TwoLevelOutcome solved =
-      two_level.solve(stepper.system(), state, islands, rows, shares.soft.islands,
-                      shares.soft.contacts, soft_laws, change, velocity);
-  if (!take(solved, two_level.impulse(), two_level.contact_velocity(), outcome)) {
+      soft_islands.solve(stepper, state, islands, rows, shares.soft.islands, shares.soft.contacts,
+                         laws, change, velocity);
+  outcome.outer_iterations += solved.outer_iterations;
+  outcome.sweeps += solved.sweeps;
+  if (!solved.is_result) {
     shares.other.take(shares.soft);
+    return shares.soft.clear(islands.count());
   }
+  outcome.converged = solved.converged;
+  outcome.residual = solved.residual;
+  take_impulses(shares.soft, soft_islands.impulse(), soft_islands.contact_velocity());
+  resident_soft = soft_islands.resident();
 }
 
 void ContactSystem::State::solve_other(BodyStepper& stepper,
                                        std::vector<Point3>& velocity,
                                        ContactSolveOutcome& outcome) {
-  resident = nullptr;
+  resident_other = nullptr;
   if (shares.other.is_empty()) return;
   solution.report = solver_islands.solve(stepper, islands, rows, shares.other.islands,
                                          shares.other.contacts, laws, velocity);
   take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
-  resident = solver_islands.resident();
+  resident_other = solver_islands.resident();
   const ContactReport& report = solution.report;
   outcome.converged = outcome.converged && solution.converged();
   outcome.residual = std::max(outcome.residual, report.residual.eta);
@@ -280,7 +249,8 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
       change != nullptr && change->size() == velocity.size() ? *change : none;
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
-  s.is_resident = !s.has_soft_on_host && (s.shares.other.is_empty() || s.resident != nullptr);
+  s.is_resident = (s.shares.soft.is_empty() || s.resident_soft != nullptr) &&
+                  (s.shares.other.is_empty() || s.resident_other != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.add_block_impulses();
@@ -293,8 +263,8 @@ void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
                                    BodyStepper& stepper) const {
   const State& s = *state_;
   if (!s.is_resident) return stepper.set_velocities(velocity);
-  if (s.resident != nullptr) s.resident->set_velocities();
-  if (s.resident_two_level != nullptr) s.resident_two_level->set_velocities();
+  if (s.resident_soft != nullptr) s.resident_soft->set_velocities();
+  if (s.resident_other != nullptr) s.resident_other->set_velocities();
 }
 
 const ContactSolution& ContactSystem::solution() const {

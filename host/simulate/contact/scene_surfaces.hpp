@@ -12,6 +12,7 @@
 #include "host/collide/collision_surfaces.hpp"
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model.hpp"
+#include "host/simulate/resident_surfaces.hpp"
 
 namespace tetwarp {
 
@@ -50,6 +51,12 @@ struct SceneSurfaces {
 SceneSurfaces make_scene_surfaces(const Scene& scene,
                                   const SceneGeometry& geometry,
                                   const Model& model);
+
+/// What ResidentSurfaces needs of them.
+/// @param scene  kept by the caller
+SurfaceBinding binding_of(const SceneSurfaces& scene);
+/// A motion of ResidentSurfaces, for a Detector on the same device.
+MotionView view_of(const ResidentMotion& motion);
 
 /// World places of all vertices and planes.
 /// @param places  out; memory is kept

@@ -24,7 +24,8 @@ TwoLevelSolver::TwoLevelSolver(const Model& model,
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
       relaxation_(TwoLevelControl::relaxation(options)),
-      elastic_(factors ? std::move(factors) : std::make_shared<RestFactors>(model)),
+      factors_(std::move(factors)),
+      elastic_(factors_),
       blocks_(threads_) {}
 
 /// Parts of islands that one task takes; both rows of a rigid body are in one.

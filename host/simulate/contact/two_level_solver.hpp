@@ -37,7 +37,7 @@ namespace tetwarp {
 /// Determinism: same bits for any number of threads.
 class TwoLevelSolver {
  public:
-  /// @param factors  of the elastic bodies, or null: own ones
+  /// @param factors  of the elastic bodies
   TwoLevelSolver(const Model& model,
                  const ContactOptions& options,
                  std::shared_ptr<RestFactors> factors);
@@ -60,6 +60,8 @@ class TwoLevelSolver {
   /// r and u of the contacts of the last solve(), [3 contacts].
   const std::vector<double>& impulse() const { return impulse_; }
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
+
+  const std::shared_ptr<RestFactors>& factors() const { return factors_; }
 
  private:
   enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
@@ -106,6 +108,7 @@ class TwoLevelSolver {
   int threads_;
   double relaxation_;  ///< omega
   Stopwatch clock_;    ///< since the start of the solve
+  std::shared_ptr<RestFactors> factors_;
   SolvedIslands islands_;
   ElasticSpace elastic_;
   TouchingBlocks blocks_;

@@ -6,8 +6,9 @@
 
 #include "host/simulate/body_pipeline.hpp"
 #include "host/simulate/cuda/resident_contacts_cuda.cuh"
-#include "host/simulate/cuda/resident_two_level_cuda.cuh"
 #include "host/simulate/cuda/resident_state_cuda.cuh"
+#include "host/simulate/cuda/resident_surfaces_cuda.cuh"
+#include "host/simulate/cuda/resident_two_level_cuda.cuh"
 #include "host/simulate/cuda/step_exec_cuda.cuh"
 
 namespace tetwarp {
@@ -20,7 +21,8 @@ class CudaStepper final : public BodyStepper {
         pipeline_(exec_, model, options),
         resident_(exec_, model, pipeline_),
         contacts_(exec_, pipeline_),
-        elastic_(exec_, model, pipeline_),
+        two_level_(exec_, model, pipeline_),
+        surfaces_(exec_, model, pipeline_.arrays()),
         name_(std::move(name)) {}
 
   std::string device() const override { return name_; }
@@ -63,14 +65,16 @@ class CudaStepper final : public BodyStepper {
   }
   ResidentState* resident_state() override { return &resident_; }
   ResidentContacts* resident_contacts() override { return &contacts_; }
-  ResidentTwoLevel* resident_two_level() override { return &elastic_; }
+  ResidentTwoLevel* resident_two_level() override { return &two_level_; }
+  ResidentSurfaces* resident_surfaces() override { return &surfaces_; }
 
  private:
   mutable CudaStepExec exec_;  ///< reads need its stream
   BodyPipeline<CudaStepExec, T> pipeline_;
   CudaResidentState<T> resident_;
   CudaResidentContacts<T> contacts_;
-  CudaResidentTwoLevel<T> elastic_;
+  CudaResidentTwoLevel<T> two_level_;
+  CudaResidentSurfaces surfaces_;
   std::string name_;
 };
 

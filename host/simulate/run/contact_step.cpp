@@ -138,6 +138,9 @@ void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion&
   if (&motion != &motions_[0]) motion.start = motions_[0].start;
   surface_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, options_.threads,
                  motion);
+  if (resident_ == nullptr) return;
+  motion.resident = view_of(resident_->move(
+      is_free_ ? std::span<const Point3>{} : std::span(velocity_), time_step_, fraction));
 }
 
 std::size_t ContactStep::add_pairs(const std::vector<TouchingPair>& found, std::int32_t pass) {
@@ -179,7 +182,8 @@ void ContactStep::report(bool is_first) {
 bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
   const Clock clock(part.contact_seconds);
   velocity_ = free_velocity_;
-  if (contacts_->empty()) return false;
+  is_free_ = contacts_->empty();
+  if (is_free_) return false;
   const ContactSolveOutcome outcome =
       system_.solve(stepper, *start_, tracker_, *contacts_, velocity_, &change_);
   part.converged = outcome.converged;
@@ -197,14 +201,16 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
   const bool is_expected =
       options_.skip.hits && !scene_.solver.pyramid && has_change() && motions_.size() > 1;
   if (is_expected) expect_contacts(model_, *start_, change_, velocity_);
+  is_free_ = !is_expected;
   for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
     bool is_new = false;
     {
       const Clock clock(part.detection_seconds);
       move_surfaces({}, motions_[pass]);
       final_ = &motions_[pass];
-      const std::size_t added = add_pairs(awake_pairs(detector_->detect(motions_[pass])),
-                                          static_cast<std::int32_t>(pass));
+      const auto& found =
+          pass == 0 ? detector_->detect(motions_[0]) : detector_->detect_hits(motions_[pass]);
+      const std::size_t added = add_pairs(awake_pairs(found), static_cast<std::int32_t>(pass));
       ++part.passes;
       if (!woken_.empty()) return;
       is_new = added > 0 || (pass == 0 && (is_expected || !tracker_.records().empty()));
@@ -269,6 +275,8 @@ ContactPart ContactStep::advance(const ModelState& start,
     {
       const Clock clock(part.detection_seconds);
       surface_places(surfaces_, model_, start, options_.threads, motions_[0].start);
+      resident_ = stepper.resident_surfaces();
+      if (resident_ != nullptr) resident_->begin(binding_of(surfaces_));
       detector_->begin_step();
     }
     find_velocities(is_first, stepper, part);

@@ -20,6 +20,7 @@
 #include "host/simulate/contact/contact_system.hpp"
 #include "host/simulate/contact/pair_contacts.hpp"
 #include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/simulate/resident_surfaces.hpp"
 #include "host/simulate/run/contact_memory.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/run/step_groups.hpp"
@@ -120,7 +121,8 @@ class ContactStep {
   /// Of the last part, with `sleeps`.
   const ContactRest& rest() const { return rest_; }
 
-  /// Fills the adhesion's energy and area, and the smallest distance, in a state.
+  /// Fills the adhesion's energy and area, and the smallest distance, in a state: that of the
+  /// stepper of advance().
   void record(const ModelState& state, StepRecord& record);
 
  private:
@@ -165,9 +167,11 @@ class ContactStep {
   const ModelState* start_ = nullptr;
   double time_step_ = 0;
   std::vector<Point3> free_velocity_, velocity_;
-  std::vector<Point3> change_;          ///< see ContactMemory
-  std::vector<SurfaceMotion> motions_;  ///< of the detections
-  SurfaceMotion clamped_;               ///< of the end check with fractions below 1
+  bool is_free_ = true;                   ///< velocity_ is what the stepper has
+  ResidentSurfaces* resident_ = nullptr;  ///< of the stepper
+  std::vector<Point3> change_;            ///< see ContactMemory
+  std::vector<SurfaceMotion> motions_;    ///< of the detections
+  SurfaceMotion clamped_;                 ///< of the end check with fractions below 1
   const SurfaceMotion* final_ = nullptr;
   SurfacePlaces end_surfaces_;
   std::vector<BodyPlace> start_places_, end_places_;

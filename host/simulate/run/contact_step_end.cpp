@@ -193,7 +193,12 @@ void ContactStep::restore(const ContactMemory& memory) {
 void ContactStep::record(const ModelState& state, StepRecord& record) {
   surface_places(surfaces_, model_, state, options_.threads, end_surfaces_);
   const double cap = 100 * surfaces_.surfaces.thickness;
-  record.smallest_distance = detector_->closest(end_surfaces_, cap).distance;
+  MotionView on_device;
+  if (resident_ != nullptr) {
+    resident_->begin(binding_of(surfaces_));
+    on_device = view_of(resident_->move({}, 0, {}));
+  }
+  record.smallest_distance = detector_->closest(end_surfaces_, cap, on_device).distance;
   ContactTracker now(tracker_options_, all_records());
   set_places(state, end_surfaces_, end_places_);
   // Without reports the contacts are those that adhere, between their anchors.

@@ -1,0 +1,50 @@
+#include "host/simulate/contact/soft_islands.hpp"
+
+#include "host/simulate/contact/contact_laws.hpp"
+
+namespace tetwarp {
+namespace {
+
+std::shared_ptr<RestFactors> given_or_own(std::shared_ptr<RestFactors> factors,
+                                          const Model& model) {
+  return factors ? std::move(factors) : std::make_shared<RestFactors>(model);
+}
+
+}  // namespace
+
+SoftIslands::SoftIslands(const Model& model,
+                         const ContactOptions& options,
+                         std::shared_ptr<RestFactors> factors)
+    : on_host_(model, options, given_or_own(std::move(factors), model)),
+      on_device_(model, options, on_host_.factors()) {}
+
+TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
+                                   const ModelState& state,
+                                   const ContactIslands& islands,
+                                   const ContactRows& rows,
+                                   const std::vector<std::uint8_t>& takes,
+                                   const std::vector<std::int32_t>& contacts,
+                                   const ContactProblem& laws,
+                                   const std::vector<Point3>& change,
+                                   std::vector<Point3>& velocity) {
+  gather_laws(contacts, laws, laws_);
+  TwoLevelOutcome on_device;
+  resident_ = stepper.resident_two_level();
+  if (resident_ != nullptr) {
+    on_device = on_device_.solve(*resident_, state, islands, rows, takes, contacts, laws_, change,
+                                 velocity);
+    impulse_ = on_device_.impulse();
+    contact_velocity_ = on_device_.contact_velocity();
+    if (on_device.is_result) return on_device;
+  }
+  resident_ = nullptr;
+  TwoLevelOutcome on_host = on_host_.solve(stepper.system(), state, islands, rows, takes, contacts,
+                                           laws_, change, velocity);
+  impulse_ = on_host_.impulse();
+  contact_velocity_ = on_host_.contact_velocity();
+  on_host.outer_iterations += on_device.outer_iterations;
+  on_host.sweeps += on_device.sweeps;
+  return on_host;
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,55 @@
+/// @file soft_islands.hpp
+/// SoftIslands: contact islands of bodies that A couples, with their contacts.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/simulate/contact/two_level_on_device.hpp"
+#include "host/simulate/contact/two_level_solver.hpp"
+
+namespace tetwarp {
+
+/// The two-level iteration, on the device that steps the bodies where there is one. What it does
+/// not solve there is solved on the host, from the system of the step.
+class SoftIslands {
+ public:
+  /// @param model    kept by the caller
+  /// @param factors  of the elastic bodies, or null: own ones
+  SoftIslands(const Model& model,
+              const ContactOptions& options,
+              std::shared_ptr<RestFactors> factors);
+
+  /// @param stepper   after its solve()
+  /// @param state     at the start of the step
+  /// @param takes     [coupling islands] which are taken
+  /// @param contacts  on them, ascending
+  /// @param laws      friction, offsets, adhesion and guess of all contacts
+  /// @param change    how contacts changed the velocities in the step before, or empty
+  /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
+  TwoLevelOutcome solve(BodyStepper& stepper,
+                        const ModelState& state,
+                        const ContactIslands& islands,
+                        const ContactRows& rows,
+                        const std::vector<std::uint8_t>& takes,
+                        const std::vector<std::int32_t>& contacts,
+                        const ContactProblem& laws,
+                        const std::vector<Point3>& change,
+                        std::vector<Point3>& velocity);
+
+  /// r and u of the contacts of the last solve(), [3 contacts].
+  std::span<const double> impulse() const { return impulse_; }
+  std::span<const double> contact_velocity() const { return contact_velocity_; }
+  /// Where the velocities of the last solve() are, if that is memory of a device; else null.
+  ResidentTwoLevel* resident() const { return resident_; }
+
+ private:
+  ContactProblem laws_;  ///< of the contacts that are taken
+  TwoLevelSolver on_host_;
+  TwoLevelOnDevice on_device_;
+  std::span<const double> impulse_, contact_velocity_;
+  ResidentTwoLevel* resident_ = nullptr;
+};
+
+}  // namespace tetwarp
