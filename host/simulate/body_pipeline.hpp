@@ -74,8 +74,7 @@ class BodyPipeline {
     return outcome;
   }
 
-  /// Rows of the system in memory of the host.
-  SystemRows host_rows() { return system_.rows(model_, pattern_.rows()); }
+  SystemRows host_rows() { return system_.rows(model_, pattern_.rows()); }  ///< on the host
   StepSystem system() {
     return system_.get(exec_, model_, pattern_.rows(), const_view(now_.values),
                        const_view(now_.load), const_view(now_.x));
@@ -106,8 +105,7 @@ class BodyPipeline {
   }
   const ConstantArrays<Exec>& constants() const { return constants_; }
   StepArrays<Exec>& arrays() { return now_; }
-  /// Of the system, in memory of the executor.
-  const SystemRows& rows() const { return pattern_.rows(); }
+  const SystemRows& rows() const { return pattern_.rows(); }  ///< in memory of the executor
 
  private:
   static constexpr const char* forces_label = "body/forces";

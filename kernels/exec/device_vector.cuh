@@ -31,5 +31,9 @@ template <class T>
 View<const T> view_of(const DeviceVector<T>& values) {
   return values.view();
 }
+template <class T>
+View<const T> const_view(const DeviceVector<T>& values) {
+  return values.view();
+}
 
 }  // namespace tetwarp

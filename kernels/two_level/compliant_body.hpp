@@ -70,8 +70,8 @@ struct CompliantBodies {
   }
 };
 
-/// (node, other, item): one block of the compliance of their body; `other` counts from its first
-/// node.
+/// (node, other, item): one block of the compliance of their body, velocities of `other`, counted
+/// from the first node of the body, for unit forces on the node.
 struct ComplianceBlockBody {
   CompliantBodies of;
   View<float> compliance;  ///< out
@@ -79,10 +79,10 @@ struct ComplianceBlockBody {
   TETWARP_HD void operator()(std::int64_t node, std::int64_t other, std::int64_t) const {
     const CompliantBody& own = of.of_node(node);
     double block[9];
-    of.block(of.row_of_node[node], of.row_of_node[own.first_node + other], block);
+    of.block(of.row_of_node[own.first_node + other], of.row_of_node[node], block);
     const std::int64_t size = 3 * std::int64_t{own.node_count};
-    float* const out = compliance.data + own.compliance + 3 * other * size +
-                       3 * (node - std::int64_t{own.first_node});
+    float* const out = compliance.data + own.compliance +
+                       3 * (node - std::int64_t{own.first_node}) * size + 3 * other;
     for (int e = 0; e < 9; ++e) out[e % 3 * size + e / 3] = static_cast<float>(block[e]);
   }
 };

@@ -29,7 +29,7 @@ struct ProximalStepBody {
   int step;                  ///< of this run
   View<double> ahead;        ///< in and out, [3 contacts]
   View<double> impulse;      ///< in and out, [3 contacts]
-  View<PlainSums<2>> terms;  ///< out, [contacts]
+  View<PlainSums<2>> terms;  ///< out of the last step of a run, [contacts]
 
   TETWARP_HD void operator()(std::int64_t contact) const {
     double u[3], r[3];
@@ -40,8 +40,11 @@ struct ProximalStepBody {
     of.add_velocity(of.rows.block_start[contact], of.rows.block_start[contact + 1],
                     node_velocity.data, u);
     const ContactConstants<double>& own = constants[contact];
+    const bool is_last = step + 1 == ProximalState::steps_at_once;
     PlainSums<2> sums;
-    sums.value[0] = natural_square(own, switches, normal_weight(own), tangent_weight(own), r, u);
+    if (is_last) {
+      sums.value[0] = natural_square(own, switches, normal_weight(own), tangent_weight(own), r, u);
+    }
     solve_contact(majorant[contact], switches, u, r);
     const double age = static_cast<double>(state->age + step), momentum = age / (age + 3);
     for (int a = 0; a < 3; ++a) {
@@ -50,7 +53,7 @@ struct ProximalStepBody {
       ahead[3 * contact + a] = r[a] + momentum * change;
       impulse[3 * contact + a] = r[a];
     }
-    terms[contact] = sums;
+    if (is_last) terms[contact] = sums;
   }
 };
 

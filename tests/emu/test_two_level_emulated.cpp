@@ -63,6 +63,7 @@ double farthest(const std::vector<Point3>& a, const std::vector<Point3>& b) {
   return far;
 }
 
+/// @param near        of velocities [m/s] and of impulses on blocks [N s]
 /// @param most_outer  outer iterations more than on the host
 void expect_as_on_the_host(const HandScene& scene,
                            double tolerance,
@@ -98,6 +99,45 @@ TEST(TwoLevelEmulated, ATowerOfElasticBlocksIsSolvedAsOnTheHost) {
 /// The inverses at rest of bodies that are pressed flat are far from those of their systems.
 TEST(TwoLevelEmulated, BlocksPressedFlatAreSolvedAsOnTheHost) {
   expect_as_on_the_host(tower_scene(0.3, 6), 1e-6, 0, 1e-5, 3);
+}
+
+/// Inverses rounded to float32 of bodies this stiff may not be positive.
+TEST(TwoLevelEmulated, AVeryStiffStackIsSolvedAsOnTheHost) {
+  expect_as_on_the_host(stack_scene(1e9), 1e-5, 0, 5e-4, 1000);
+}
+
+/// Islands without contacts keep their velocities.
+TEST(TwoLevelEmulated, IslandsWithoutContactsMayBeSolvedToo) {
+  HandScene scene = stack_scene(1e5);
+  scene.touches.clear();
+  ContactSystemOptions options = exact(Backend::cuda);
+  options.skips_islands = false;
+  const auto stepper = make_cuda_stepper(scene.model, {.linear_tolerance = 1e-12});
+  ContactSystem system(scene.surfaces, scene.model, options);
+  ContactTracker tracker(materials(0.4));
+  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
+  std::vector<Point3> velocity;
+  stepper->get_velocities(velocity);
+  const std::vector<Point3> before = velocity;
+  EXPECT_TRUE(system.solve(*stepper, scene.model.start, tracker, contacts, velocity).converged);
+  EXPECT_LE(farthest(velocity, before), 1e-9);
+}
+
+TEST(TwoLevelEmulated, ProgressStopsASolve) {
+  const HandScene scene = stack_scene(1e6);
+  ContactSystemOptions options = exact(Backend::cuda);
+  int calls = 0;
+  options.solver.progress = [&](const ContactProgress&) { return ++calls < 2; };
+  const auto stepper = make_cuda_stepper(scene.model, {.linear_tolerance = 1e-12});
+  ContactSystem system(scene.surfaces, scene.model, options);
+  ContactTracker tracker(materials(0.4));
+  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
+  std::vector<Point3> velocity;
+  stepper->get_velocities(velocity);
+  EXPECT_FALSE(system.solve(*stepper, scene.model.start, tracker, contacts, velocity).converged);
+  EXPECT_EQ(calls, 2);
 }
 
 /// Nothing of A is copied: of contacts axes, arms, laws and lists, of nodes that may move lists and

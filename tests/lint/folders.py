@@ -47,6 +47,7 @@ ALLOWED = {
         "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
         "host/reference/contact", *CONTACT],
     "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/two_level": ["kernels/base", "kernels/body", "kernels/contact"],
     "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "host/collide": COLLIDE,
     "host/collide/cpu": ["host/collide", *COLLIDE],
@@ -56,10 +57,13 @@ ALLOWED = {
     "host/simulate/run": [
         "host/simulate", "host/simulate/contact", "host/collide", *COLLIDE, *SIMULATE],
     "host/simulate/contact": [
-        "host/simulate", "host/simulate/cpu", "host/collide", "kernels/contact", *COLLIDE, *SIMULATE],
+        "host/simulate", "host/simulate/cpu", "host/collide", "kernels/contact", "kernels/two_level",
+        *COLLIDE, *SIMULATE],
     "host/simulate/model": ["host/simulate", *SIMULATE],
     "host/simulate/cpu": ["host/simulate", *SIMULATE],
-    "host/simulate/cuda": ["host/simulate", "kernels/exec", *SIMULATE],
+    "host/simulate/cuda": [
+        "host/simulate", "host/simulate/contact", "host/simulate/cpu", "kernels/contact",
+        "kernels/exec", "kernels/two_level", *SIMULATE],
     "host/reference/simulate": ["host/base", "host/scene", "host/tetwarp", "kernels/base/tetwarp"],
     "io": ["io/tetwarp", "host/base", *BASE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],

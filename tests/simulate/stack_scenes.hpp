@@ -12,9 +12,10 @@ constexpr double stack_step = 8e-3;  // [s]
 /// A stiff elastic block on a frame and a rigid box on it, all touching at many points.
 HandScene stack_scene(double youngs);
 
-/// Three elastic blocks on a frame: with 12 cells along each side groups of 169, 57 and 85
-/// contacts, of one body or of two.
-/// @param height  of the shape at rest
+/// Three elastic blocks on a frame. With 12 cells along each side there are groups of 169, 57 and
+/// 85 contacts of one body or of two.
+/// @param height  of the shape at the start, as a factor of that at rest
+/// @param cells   of each block along x and y
 HandScene tower_scene(double height = 1, std::int32_t cells = 12);
 
 }  // namespace tetwarp::test

@@ -12,8 +12,9 @@ namespace tetwarp {
 
 struct ContactConstantsList {
   std::vector<ContactConstants<double>> constants;  ///< [contacts] all but block, tangent_metric
-  std::vector<double> preload;  ///< [contacts] springs whose gap is not dt w_n push by this at u_n
-                                ///< = 0: impulses of the laws are those of the contacts plus it
+  /// [contacts] normal impulse [N s] of a spring at u_n = 0 where its gap is not dt w_n; normal
+  /// impulses of the laws are those of the contacts plus it.
+  std::vector<double> preload;
 
   /// @param laws  friction, offsets and adhesion of the contacts
   void set(const ContactProblem& laws);

@@ -11,7 +11,7 @@ namespace tetwarp {
 
 /// Coupling islands and contacts that one solver takes.
 struct ContactShare {
-  std::vector<std::uint8_t> islands;
+  std::vector<std::uint8_t> islands;   ///< [coupling islands] which are taken
   std::vector<std::int32_t> contacts;  ///< ascending
 
   void clear(std::int32_t island_count) {

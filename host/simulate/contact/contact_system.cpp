@@ -9,11 +9,10 @@
 #include "host/simulate/contact/contact_laws.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/contact_shares.hpp"
+#include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/contact/soft_islands.hpp"
 #include "host/simulate/contact/solver_islands.hpp"
-#include "host/simulate/contact/two_level_on_device.hpp"
 #include "host/simulate/resident_contacts.hpp"
-#include "host/simulate/resident_two_level.hpp"
 
 namespace tetwarp {
 
@@ -57,8 +56,7 @@ struct ContactSystem::State {
   ContactShares shares;
   SoftIslands soft_islands;
   SolverIslands solver_islands;
-  // Where velocities that contacts have changed are, if all of them are in memory of a device.
-  bool is_resident = false;
+  bool is_resident = false;  ///< all velocities that contacts have changed are on the device
   ResidentTwoLevel* resident_soft = nullptr;   ///< or null: none there
   ResidentContacts* resident_other = nullptr;  ///< or null: none there
   std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
@@ -153,6 +151,10 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                          laws, change, velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
+  if (solved.is_stopped) {
+    outcome.converged = false;
+    return;
+  }
   if (!solved.is_result) {
     shares.other.take(shares.soft);
     return shares.soft.clear(islands.count());

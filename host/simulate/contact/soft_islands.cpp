@@ -1,5 +1,7 @@
 #include "host/simulate/contact/soft_islands.hpp"
 
+#include <utility>
+
 #include "host/simulate/contact/contact_laws.hpp"
 
 namespace tetwarp {
@@ -16,7 +18,8 @@ SoftIslands::SoftIslands(const Model& model,
                          const ContactOptions& options,
                          std::shared_ptr<RestFactors> factors)
     : on_host_(model, options, given_or_own(std::move(factors), model)),
-      on_device_(model, options, on_host_.factors()) {}
+      on_device_(model, options, on_host_.factors()),
+      uses_device_(options.backend == Backend::cuda) {}
 
 TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
                                    const ModelState& state,
@@ -29,13 +32,13 @@ TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
                                    std::vector<Point3>& velocity) {
   gather_laws(contacts, laws, laws_);
   TwoLevelOutcome on_device;
-  resident_ = stepper.resident_two_level();
-  if (resident_ != nullptr) {
+  resident_ = uses_device_ ? stepper.resident_two_level() : nullptr;
+  if (resident_ != nullptr && on_device_.can_take(takes)) {
     on_device = on_device_.solve(*resident_, state, islands, rows, takes, contacts, laws_, change,
                                  velocity);
     impulse_ = on_device_.impulse();
     contact_velocity_ = on_device_.contact_velocity();
-    if (on_device.is_result) return on_device;
+    if (on_device.is_result || on_device.is_stopped) return on_device;
   }
   resident_ = nullptr;
   TwoLevelOutcome on_host = on_host_.solve(stepper.system(), state, islands, rows, takes, contacts,

@@ -11,8 +11,8 @@
 
 namespace tetwarp {
 
-/// The two-level iteration, on the device that steps the bodies where there is one. What it does
-/// not solve there is solved on the host, from the system of the step.
+/// The two-level iteration: with back end cuda on the device that steps the bodies, if one does.
+/// What does not converge there is solved on the host, from the system of the step.
 class SoftIslands {
  public:
   /// @param model    kept by the caller
@@ -21,7 +21,7 @@ class SoftIslands {
               const ContactOptions& options,
               std::shared_ptr<RestFactors> factors);
 
-  /// @param stepper   after its solve()
+  /// @param stepper   after its solve(), whose velocities are those without contact
   /// @param state     at the start of the step
   /// @param takes     [coupling islands] which are taken
   /// @param contacts  on them, ascending
@@ -48,6 +48,7 @@ class SoftIslands {
   ContactProblem laws_;  ///< of the contacts that are taken
   TwoLevelSolver on_host_;
   TwoLevelOnDevice on_device_;
+  bool uses_device_;
   std::span<const double> impulse_, contact_velocity_;
   ResidentTwoLevel* resident_ = nullptr;
 };

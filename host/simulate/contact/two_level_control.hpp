@@ -12,10 +12,12 @@ namespace tetwarp {
 
 struct TwoLevelOutcome {
   bool converged = false;
-  bool is_result = false;  ///< velocities and impulses are set: converged, or those of the iterate
-                           ///< with the least residual where another solver would take too long
+  bool is_result = false;   ///< velocities and impulses are set: converged, or those of the iterate
+                            ///< with the least residual where another solver would take too long
+  bool is_stopped = false;  ///< by `progress`
   double residual = 0;
-  std::int64_t outer_iterations = 0, sweeps = 0;
+  std::int64_t outer_iterations = 0;
+  std::int64_t sweeps = 0;  ///< or proximal steps, on a device
 };
 
 /// Of an iterate; square roots of energies.
@@ -66,11 +68,12 @@ class TwoLevelControl {
   }
 
   struct Options {
-    bool has_elastic = false;  ///< bodies that are solved by their factors at rest
-    bool ends_early = false;   ///< where it diverges
-    double tolerance = 0;      ///< of the error, relative
-    double natural_alone = 0;  ///< sum of natural_square() without impulses
-    double least_error = 0;    ///< TwoLevelError::least()
+    bool has_elastic = false;     ///< bodies that are solved by their factors at rest
+    bool ends_early = false;      ///< where it diverges
+    double tolerance = 0;         ///< of the error, relative
+    double natural_alone = 0;     ///< sum of natural_square() without impulses
+    std::int64_t few_sweeps = 2;  ///< the least that an iteration takes, or little more
+    double least_error = 0;       ///< TwoLevelError::least()
   };
 
   explicit TwoLevelControl(const Options& options)
@@ -78,7 +81,7 @@ class TwoLevelControl {
         share_(options.has_elastic ? elastic_share : inner_share),
         final_share_(options.has_elastic ? final_share : 0) {}
 
-  /// @param sweeps  of all outer iterations before
+  /// @param sweeps  of all outer iterations before; or proximal steps
   Next next(const TwoLevelError& error, std::int64_t sweeps) {
     const double scale = std::max(std::sqrt(options_.natural_alone) + error.work,
                                   options_.least_error / options_.tolerance);
@@ -99,12 +102,12 @@ class TwoLevelControl {
 
   /// Of the last iterate; relative.
   double residual() const { return residual_; }
-  /// Whether it had the least residual so far, and that residual.
+  /// Whether it had the least residual so far.
   bool is_best() const { return is_best_; }
-  double best() const { return best_; }
   /// Whether velocities of this iteration are mixed with those before by Anderson's method.
   bool mixes() const { return mixes_; }
-  /// The change of impulses in a sweep at which the sweeps of this iteration end.
+  /// The sweeps of this iteration end where one changes the impulses by at most this, its proximal
+  /// steps where the laws are off by at most this; as TwoLevelError.
   double enough() const { return enough_; }
 
  private:
@@ -133,7 +136,8 @@ class TwoLevelControl {
 
   void set_enough(const TwoLevelError& error, double target, std::int64_t sweeps) {
     // The change of a sweep is no bound of the error of the laws.
-    if (iterations_ > 0 && sweeps - sweeps_before_ <= 2 && error.laws > 0.9 * target) {
+    if (iterations_ > 0 && sweeps - sweeps_before_ <= options_.few_sweeps &&
+        error.laws > 0.9 * target) {
       final_share_ /= 2;
     }
     sweeps_before_ = sweeps;

@@ -6,7 +6,7 @@
 
 #include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
-#include "host/simulate/two_level_lists.hpp"
+#include "host/simulate/contact/two_level_lists.hpp"
 #include "kernels/body/system_lists.hpp"
 
 namespace tetwarp {
@@ -26,7 +26,7 @@ class TwoLevelListMaker {
             const std::vector<std::uint8_t>& takes,
             const std::vector<std::int32_t>& contacts,
             double relaxation);
-  TwoLevelLists& lists() { return lists_; }
+  const TwoLevelLists& lists() const { return lists_; }
 
  private:
   void list_bodies(const SystemRows& rows,

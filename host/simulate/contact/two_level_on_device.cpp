@@ -6,10 +6,10 @@
 namespace tetwarp {
 namespace {
 
-// Inverses of 3 n x 3 n numbers of float32: of one body up to 81 MB, of all up to 1 GiB. Larger
-// bodies give way by their diagonal blocks.
-constexpr std::int64_t most_nodes = 1500;
-constexpr std::int64_t most_numbers = std::int64_t{1} << 28;
+// Inverses of 3 n x 3 n numbers of float32: of one body up to 36 MB, of all up to 512 MiB for each
+// of the last lengths of a step. Larger bodies are left to the host, which has sparse factors.
+constexpr std::int64_t most_nodes = 1000;
+constexpr std::int64_t most_numbers = std::int64_t{1} << 27;
 
 }  // namespace
 
@@ -27,6 +27,14 @@ TwoLevelOnDevice::TwoLevelOnDevice(const Model& model,
     numbers += 9 * nodes * nodes;
     body_of_[index_of(island)] = body;
   }
+}
+
+bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
+  for (std::size_t i = 0; i < takes.size(); ++i) {
+    const std::int32_t body = factors_->body_of_island(static_cast<std::int32_t>(i));
+    if (takes[i] != 0 && body >= 0 && body_of_[i] < 0) return false;
+  }
+  return true;
 }
 
 TwoLevelOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,

@@ -9,8 +9,8 @@
 
 #include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/contact/two_level_list_maker.hpp"
-#include "host/simulate/resident_two_level.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
@@ -23,6 +23,9 @@ class TwoLevelOnDevice {
   TwoLevelOnDevice(const Model& model,
                    const ContactOptions& options,
                    std::shared_ptr<RestFactors> factors);
+
+  /// Whether all elastic bodies among islands that have factors on the host have inverses here.
+  bool can_take(const std::vector<std::uint8_t>& takes) const;
 
   /// @param resident  of the stepper, after its solve()
   /// @param state     at the start of the step
@@ -53,7 +56,8 @@ class TwoLevelOnDevice {
 
   ContactOptions options_;
   std::shared_ptr<RestFactors> factors_;
-  std::vector<std::int32_t> body_of_;  ///< [coupling islands] as TwoLevelListMaker
+  std::vector<std::int32_t> body_of_;  ///< [coupling islands] elastic body that gives way by its
+                                       ///< inverse, or -1
   TwoLevelListMaker maker_;
   TwoLevelStart start_;
   std::vector<double> impulse_, contact_velocity_;

@@ -190,7 +190,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     outcome.converged = outcome.is_result = true;
     return outcome;
   }
-  if (end == End::is_stopped) return outcome;
+  outcome.is_stopped = end == End::is_stopped;
+  if (outcome.is_stopped) return outcome;
   outcome.converged = end == End::converges;
   const bool is_small = TwoLevelControl::is_small(
       blocks_.count(), chunks_.back().row_end - chunks_.front().row_begin);

@@ -92,7 +92,7 @@ class CudaStepExec {
                "cudaMemcpyAsync on the device");
   }
   cudaStream_t stream() const { return exec_.stream(); }
-  /// What launches on its stream.
+  /// The executor that it enqueues on.
   CudaExec& device_exec() { return exec_; }
   /// Waits for all that has been enqueued.
   void wait() { check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize"); }

@@ -44,11 +44,8 @@ class TwoLevelIteration {
       const bool can_be_damped = has_elastic() && damping > TwoLevelControl::least_damping;
       end = iterate(can_be_damped, outcome);
     }
-    if (end == End::is_stopped) return outcome;
-    outcome.converged = end == End::converges;
-    const bool is_small = TwoLevelControl::is_small(lists.contact_count(), lists.row_count());
-    outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_residual_));
-    if (outcome.is_result && !outcome.converged) take_best(outcome);
+    outcome.is_stopped = end == End::is_stopped;
+    outcome.converged = outcome.is_result = end == End::converges;
     return outcome;
   }
 
@@ -66,12 +63,11 @@ class TwoLevelIteration {
     PlainSums<1> defect;
     PlainSums<2> error;
   };
-  static constexpr std::int64_t most_steps = 1000;  ///< of an outer iteration
+  static constexpr std::int64_t most_steps = 1000;  ///< proximal ones of an outer iteration
   static constexpr std::int64_t most_of_solve = 20000;
-  static constexpr double most_growth = 10;
+  static constexpr double most_growth = 10;  ///< of how far the laws are off, before it diverges
   static constexpr const char* label = "body/contact";
 
-  static View<const double> const_view(const Vector& values) { return values.view(); }
   View<double> part(std::int64_t first, std::int64_t size) const {
     return {results_data_ + first, size};
   }
@@ -93,10 +89,10 @@ class TwoLevelIteration {
     const auto nodes = 3 * static_cast<std::int64_t>(lists_->row_of_node.size());
     results_.resize(2 * contact_numbers_ + row_numbers_);
     results_data_ = results_.view().data;
-    for (Vector* v : {&free_velocity_, &none_, &stepped_, &ahead_, &best_impulse_}) {
+    for (Vector* v : {&free_velocity_, &none_, &stepped_, &ahead_}) {
       v->resize(contact_numbers_);
     }
-    for (Vector* v : {&image_, &defect_, &moved_, &best_velocity_}) v->resize(row_numbers_);
+    for (Vector* v : {&image_, &defect_, &moved_}) v->resize(row_numbers_);
     for (Vector* v : {&node_start_, &node_velocity_, &push_}) v->resize(nodes);
     mixed_.resize(Mixer::columns * row_numbers_);
     terms_.resize(contact_numbers_ / 3);
@@ -143,7 +139,11 @@ class TwoLevelIteration {
     for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
     sum_error(impulse(), contact_velocity());
     const Sums sums = grid_.load(sums_.view().data);
-    return TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+    TwoLevelError error =
+        TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+    // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
+    if (sums.defect.value[0] < 0) error.total = std::numeric_limits<double>::quiet_NaN();
+    return error;
   }
 
   /// @param ends_early  where it diverges
@@ -156,12 +156,11 @@ class TwoLevelIteration {
                              .ends_early = ends_early,
                              .tolerance = options_->tolerance,
                              .natural_alone = grid_.load(sums_.view().data).error.value[0],
+                             .few_sweeps = ProximalState::steps_at_once,
                              .least_error = least_error_});
-    best_residual_ = std::numeric_limits<double>::infinity();
     while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
       const Next next = control.next(find_error(), outcome.sweeps);
       outcome.residual = control.residual();
-      if (control.is_best()) keep_best(control.residual());
       if (next == Next::fails) return End::fails;
       if (next == Next::converges) return End::converges;
       if (next == Next::diverges) return End::diverges;
@@ -184,7 +183,7 @@ class TwoLevelIteration {
     return End::fails;
   }
 
-  /// Steps until the laws are off by at most `enough`. @returns the steps
+  /// Steps until the laws were off by at most `enough` before the last one. @returns the steps
   std::int64_t step_contacts(double enough) {
     constexpr int count = ProximalState::steps_at_once;
     ProximalState* const state = state_.view().data;
@@ -223,18 +222,6 @@ class TwoLevelIteration {
                                              node_velocity_.view()});
   }
 
-  void keep_best(double residual) {
-    best_residual_ = residual;
-    grid_.copy(label, View<const double>(impulse()), best_impulse_.view());
-    grid_.copy(label, View<const double>(velocity()), best_velocity_.view());
-  }
-  void take_best(TwoLevelOutcome& outcome) {
-    outcome.residual = best_residual_;
-    grid_.copy(label, const_view(best_impulse_), impulse());
-    grid_.copy(label, const_view(best_velocity_), velocity());
-    for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
-  }
-
   CudaStepExec& exec_;
   GridContactExec grid_;
   TwoLevelNumbers numbers_;
@@ -244,15 +231,14 @@ class TwoLevelIteration {
   Stopwatch clock_;
   std::int64_t contact_numbers_ = 0, row_numbers_ = 0;  ///< 3 per contact, per row
   double least_error_ = 0;                              ///< of the velocities without contact
-  double best_residual_ = 0;
   Vector results_;
   double* results_data_ = nullptr;
-  Vector free_velocity_, none_, stepped_, ahead_, best_impulse_;  ///< [3 contacts]
-  Vector image_, defect_, moved_, best_velocity_;
+  Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]
+  Vector image_, defect_, moved_;                  ///< [rows][3]; the last two in frames
   Vector node_start_, node_velocity_, push_;  ///< [nodes][3] in frames; node_start_: with stepped_
   DeviceVector<PlainSums<2>> terms_;          ///< [contacts]
   DeviceVector<ProximalState> state_;
-  Vector mixed_;
+  Vector mixed_;  ///< of the mixer
   DeviceVector<Sums> sums_;
 };
 

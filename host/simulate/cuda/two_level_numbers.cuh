@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host/simulate/body_arrays.hpp"
+#include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/cuda/compliance_store.cuh"
-#include "host/simulate/resident_two_level.hpp"
 #include "kernels/contact/contact_grid.cuh"
 #include "kernels/exec/staged_arrays.cuh"
 #include "kernels/two_level/majorant.hpp"
@@ -16,7 +16,7 @@
 
 namespace tetwarp {
 
-/// What does not change during a solve, but for the damping.
+/// What a solve needs besides its iterates; of it only damping and majorants change on the way.
 class TwoLevelNumbers {
  public:
   /// @param node_count, rigid_count  of the model
@@ -107,12 +107,7 @@ class TwoLevelNumbers {
  private:
   static constexpr const char* label = "body/contact";
 
-  template <class T>
-  static View<const T> const_view(const DeviceVector<T>& values) {
-    return values.view();
-  }
-
-  /// Three copies.
+  /// Copies all lists in three transfers.
   void upload(GridContactExec& grid, const TwoLevelLists& lists, const TwoLevelStart& start) {
     host_preload_.assign(3 * start.laws.preload.size(), 0.0);
     for (std::size_t c = 0; c < start.laws.preload.size(); ++c) {

@@ -10,9 +10,9 @@
 
 #include "host/simulate/contact/contact_constants.hpp"
 #include "host/simulate/contact/two_level_control.hpp"
+#include "host/simulate/contact/two_level_lists.hpp"
 #include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/resident_contacts.hpp"
-#include "host/simulate/two_level_lists.hpp"
 
 namespace tetwarp {
 
@@ -32,9 +32,10 @@ class ResidentTwoLevel {
   /// Rows of the system, in memory of the host.
   virtual SystemRows rows() = 0;
   /// The two-level iteration of TwoLevelSolver, from the system that BodyStepper::solve() has made.
-  /// @param lists    kept until the results have been read
-  /// @param factors  of the elastic bodies; their inverses are copied to the device once per body
-  ///                 and length of a step
+  /// @param lists    kept until it returns
+  /// @param factors  of the elastic bodies, set to the length of the step; their inverses are
+  /// copied
+  ///                 to the device once per body and length
   virtual TwoLevelOutcome solve(const TwoLevelLists& lists,
                                 const TwoLevelStart& start,
                                 RestFactors& factors,

@@ -17,8 +17,9 @@ struct TwoLevelLists {
   std::vector<std::int32_t> model_block;    ///< [rows]
   std::vector<std::int32_t> diagonal_rows;  ///< first system rows of the bodies by D^-1
   std::vector<std::int32_t> row_of_node;    ///< [nodes]
-  std::vector<std::int64_t> pair_start;     ///< [nodes + 1] nodes of the same body, of all nodes
-  std::int64_t compliance_size = 0;         ///< numbers
+  std::vector<std::int64_t> pair_start;  ///< [nodes + 1] sums over the nodes before of the number
+                                         ///< of nodes of their body
+  std::int64_t compliance_size = 0;      ///< numbers
 
   std::vector<std::int32_t> part_start, part_block, part_body;  ///< TouchingNodes
   std::vector<std::int32_t> block_start, block_row, block_node, block_contact,
