@@ -39,7 +39,7 @@ Protocol protocol_for(double first_seconds) {
 class Pile {
  public:
   Pile(const test::CollideScene& scene, int threads)
-      : scene_(scene), exec_(threads), pipeline_(exec_, scene.surfaces, true) {}
+      : scene_(scene), exec_(threads), pipeline_(exec_, scene.surfaces, {}) {}
 
   void detect() {
     pipeline_.begin_step();

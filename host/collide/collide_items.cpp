@@ -70,11 +70,10 @@ class EdgeFinder {
 
 class ItemMaker {
  public:
-  ItemMaker(const CollisionSurfaces& surfaces, CollideItems& made)
-      : s_(surfaces),
-        made_(made),
-        vertex_is_owned_(s_.vertex_body.size()),
-        edge_is_owned_(s_.edge_is_flat) {
+  ItemMaker(const CollisionSurfaces& surfaces, bool skips_flat_edges, CollideItems& made)
+      : s_(surfaces), made_(made), vertex_is_owned_(s_.vertex_body.size()) {
+    if (skips_flat_edges) edge_is_owned_ = s_.edge_is_flat;
+    made_.flat_edges = std::count(edge_is_owned_.begin(), edge_is_owned_.end(), 1);
     edge_is_owned_.resize(s_.edges.size());
   }
 
@@ -161,11 +160,11 @@ bool has_twins(const std::vector<VertexRun>& runs, std::int64_t first) {
 }
 }  // namespace
 
-CollideItems make_collide_items(const CollisionSurfaces& surfaces) {
+CollideItems make_collide_items(const CollisionSurfaces& surfaces, bool skips_flat_edges) {
   check_sizes(surfaces);
   CollideItems made;
   made.items.reserve(surfaces.triangles.size());
-  ItemMaker maker(surfaces, made);
+  ItemMaker maker(surfaces, skips_flat_edges, made);
   auto next = surfaces.forbidden.begin();
   for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
     const CollisionBody& body = surfaces.bodies[b];

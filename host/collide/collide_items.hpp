@@ -17,10 +17,12 @@ struct CollideItems {
   std::vector<VertexRun> runs;  ///< body by body: of vertices; of boxes of successive runs, until
                                 ///< each body has one
   std::vector<std::int64_t> levels;  ///< first run of vertices, of boxes, ..., end
+  std::int64_t flat_edges = 0;       ///< edges that no item owns, as they lie within flat faces
 };
 
+/// @param skips_flat_edges  false: they are owned as all others
 /// @throws std::invalid_argument  one line: a vertex, edge or body outside its range, a triangle
 ///         whose edge is not in the list, more than 2^31 - 1 items
-CollideItems make_collide_items(const CollisionSurfaces& surfaces);
+CollideItems make_collide_items(const CollisionSurfaces& surfaces, bool skips_flat_edges = true);
 
 }  // namespace tetwarp

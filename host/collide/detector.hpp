@@ -35,6 +35,7 @@ struct DetectionCounts {
   std::int64_t pairs = 0;          ///< of features, tested by the narrow phase
   std::int64_t evaluations = 0;    ///< of distances
   std::int64_t reused = 0;         ///< detections that kept the pairs of an earlier one
+  std::int64_t skipped_edges = 0;  ///< within flat faces of rigid bodies, in all searches
 };
 
 struct ClosestPair {
@@ -55,6 +56,7 @@ struct DetectorOptions {
   int device = 0;   ///< CUDA device number
   bool reuse_pairs =
       true;  ///< keeps the broad phase's pairs where boxes lie inside the former ones
+  bool skip_flat_edges = true;  ///< edges within flat faces of rigid bodies are in no pair
 };
 
 class Detector {

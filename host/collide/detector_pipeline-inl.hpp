@@ -32,6 +32,7 @@ bool DetectorPipeline<Exec>::make_boxes(double distance,
 /// Pairs of items whose boxes of the search overlap.
 template <class Exec>
 void DetectorPipeline<Exec>::find_item_pairs(std::span<const std::uint8_t> is_still) {
+  counts_.skipped_edges += items_.flat_edges;
   partners_.find_bodies(items_, is_still);
   entries_.clear();
   pairs_.clear();

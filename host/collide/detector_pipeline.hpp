@@ -27,11 +27,11 @@ template <class Exec>
 class DetectorPipeline {
  public:
   /// @param surfaces  kept by the caller
-  DetectorPipeline(Exec& exec, const CollisionSurfaces& surfaces, bool reuses_pairs)
+  DetectorPipeline(Exec& exec, const CollisionSurfaces& surfaces, const DetectorOptions& options)
       : exec_(exec),
         surfaces_(surfaces),
-        reuses_pairs_(reuses_pairs),
-        items_(make_collide_items(surfaces)),
+        reuses_pairs_(options.reuse_pairs),
+        items_(make_collide_items(surfaces, options.skip_flat_edges)),
         memory_(exec, surfaces, items_) {
     const auto vertices = static_cast<std::int64_t>(surfaces.vertex_body.size());
     exec_.resize(found_, vertices);

@@ -94,18 +94,20 @@ TEST(FlatEdges, ChangeNoDistanceAndNoHit) {
       const Point3 way = plus(times(-1.5 * side, direction), times(0.2 * side, draw()));
       scene.add_mesh(body.vertices, body.triangles, {.way = way});
     }
-    const auto measure = [&] {
-      const auto detector = make_cpu_detector(scene.scene.surfaces, {});
+    mark_flat_edges(scene);
+    const auto measure = [&](bool skips) {
+      const auto detector = make_cpu_detector(scene.scene.surfaces, {.skip_flat_edges = skips});
       detector->begin_step();
       double first = 2;
       for (const TouchingPair& pair : detector->detect(scene.motion)) {
         first = std::min(first, pair.time);
       }
-      return std::pair(detector->closest(scene.motion.start, 10).distance, first);
+      const double distance = detector->closest(scene.motion.start, 10).distance;
+      EXPECT_EQ(detector->counts().skipped_edges > 0, skips);
+      return std::pair(distance, first);
     };
-    const auto [distance, time] = measure();
-    mark_flat_edges(scene);
-    const auto [other_distance, other_time] = measure();
+    const auto [distance, time] = measure(false);
+    const auto [other_distance, other_time] = measure(true);
     EXPECT_NEAR(other_distance, distance, 1e-12) << k;
     EXPECT_NEAR(other_time, time, 0.2 * h) << k;
     hits += time <= 1;

@@ -108,6 +108,25 @@ TEST(Contact, SkipsWhatWouldBeHitWithoutContactsThatHold) {
   }
 }
 
+/// Boxes lie on each other the same with pairs of the diagonals of their sides.
+TEST(Contact, SkipsEdgesWithinFlatFaces) {
+  Scene scene = floor_scene({rigid_box("low", {0.05, 0.05, 0.05}, {0, 0, 0.0502}),
+                             rigid_box("high", {0.04, 0.04, 0.04}, {0.01, 0.005, 0.1404})},
+                            0.002, 0.5);
+  Simulator skipping(scene);
+  SimulateOptions options;
+  options.skip.flat_edges = false;
+  Simulator complete(scene, options);
+  run(skipping, 100);
+  run(complete, 100);
+  EXPECT_LE(skipping.record().contacts, complete.record().contacts);
+  for (std::size_t body = 0; body < 2; ++body) {
+    EXPECT_LT(largest_distance(skipping.surface_positions(body), complete.surface_positions(body)),
+              0.1 * skipping.thickness())
+        << body;
+  }
+}
+
 /// Islands without contacts that are solved with the others change results by the tolerance of
 /// contacts, 1e-4, and do not change themselves. Seven steps, which neither divides: parts of steps
 /// integrate free bodies more accurately.

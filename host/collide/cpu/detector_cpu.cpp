@@ -8,7 +8,7 @@ namespace {
 class CpuDetector final : public Detector {
  public:
   CpuDetector(const CollisionSurfaces& surfaces, const DetectorOptions& options)
-      : exec_(thread_count(options.threads)), pipeline_(exec_, surfaces, options.reuse_pairs) {}
+      : exec_(thread_count(options.threads)), pipeline_(exec_, surfaces, options) {}
 
   void begin_step() override { pipeline_.begin_step(); }
   void set_still(std::span<const std::uint8_t> is_still) override { pipeline_.set_still(is_still); }

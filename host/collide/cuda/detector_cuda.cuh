@@ -9,7 +9,7 @@ namespace tetwarp {
 class CudaDetector final : public Detector {
  public:
   CudaDetector(const CollisionSurfaces& surfaces, const DetectorOptions& options)
-      : exec_(options.device), pipeline_(exec_, surfaces, options.reuse_pairs) {}
+      : exec_(options.device), pipeline_(exec_, surfaces, options) {}
 
   void begin_step() override { pipeline_.begin_step(); }
   void set_still(std::span<const std::uint8_t> is_still) override { pipeline_.set_still(is_still); }

@@ -30,10 +30,10 @@ bool are_finite(const std::vector<Point3>& list) {
 
 std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
                                         const ContactStepOptions& options) {
-  DetectorOptions of;
-  of.threads = options.threads;
-  of.device = options.device;
-  of.reuse_pairs = options.skip.pairs;
+  const DetectorOptions of = {.threads = options.threads,
+                              .device = options.device,
+                              .reuse_pairs = options.skip.pairs,
+                              .skip_flat_edges = options.skip.flat_edges};
   return options.backend == Backend::cuda ? make_cuda_detector(surfaces, of)
                                           : make_cpu_detector(surfaces, of);
 }
