@@ -96,7 +96,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_contact_system.cpp
     tests/simulate/test_contact_system_blocks.cpp
     tests/simulate/test_following_motion.cpp
-    tests/simulate/test_majorant.cpp
+    tests/simulate/test_proximal_steps.cpp
     tests/simulate/test_two_level.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
