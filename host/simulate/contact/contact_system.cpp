@@ -146,9 +146,9 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       ContactSolveOutcome& outcome) {
   resident_soft = nullptr;
   if (shares.soft.is_empty()) return;
-  const TwoLevelOutcome solved =
-      soft_islands.solve(stepper, state, islands, rows, shares.soft.islands, shares.soft.contacts,
-                         laws, change, velocity);
+  const TwoLevelOutcome solved = soft_islands.solve(
+      stepper, {state, islands, rows, shares.soft.islands, shares.soft.contacts, laws, change},
+      velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
   if (solved.is_stopped) {

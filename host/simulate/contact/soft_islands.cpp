@@ -22,27 +22,21 @@ SoftIslands::SoftIslands(const Model& model,
       uses_device_(options.backend == Backend::cuda) {}
 
 TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
-                                   const ModelState& state,
-                                   const ContactIslands& islands,
-                                   const ContactRows& rows,
-                                   const std::vector<std::uint8_t>& takes,
-                                   const std::vector<std::int32_t>& contacts,
-                                   const ContactProblem& laws,
-                                   const std::vector<Point3>& change,
+                                   const SoftProblem& all,
                                    std::vector<Point3>& velocity) {
-  gather_laws(contacts, laws, laws_);
+  gather_laws(all.contacts, all.laws, laws_);
+  const SoftProblem problem = {all.state,    all.islands, all.rows,  all.takes,
+                               all.contacts, laws_,       all.change};
   TwoLevelOutcome on_device;
   resident_ = uses_device_ ? stepper.resident_two_level() : nullptr;
-  if (resident_ != nullptr && on_device_.can_take(takes)) {
-    on_device = on_device_.solve(*resident_, state, islands, rows, takes, contacts, laws_, change,
-                                 velocity);
+  if (resident_ != nullptr && on_device_.can_take(problem.takes)) {
+    on_device = on_device_.solve(*resident_, problem, velocity);
     impulse_ = on_device_.impulse();
     contact_velocity_ = on_device_.contact_velocity();
     if (on_device.is_result || on_device.is_stopped) return on_device;
   }
   resident_ = nullptr;
-  TwoLevelOutcome on_host = on_host_.solve(stepper.system(), state, islands, rows, takes, contacts,
-                                           laws_, change, velocity);
+  TwoLevelOutcome on_host = on_host_.solve(stepper.system(), problem, velocity);
   impulse_ = on_host_.impulse();
   contact_velocity_ = on_host_.contact_velocity();
   on_host.outer_iterations += on_device.outer_iterations;

@@ -22,20 +22,10 @@ class SoftIslands {
               std::shared_ptr<RestFactors> factors);
 
   /// @param stepper   after its solve(), whose velocities are those without contact
-  /// @param state     at the start of the step
-  /// @param takes     [coupling islands] which are taken
-  /// @param contacts  on them, ascending
-  /// @param laws      friction, offsets, adhesion and guess of all contacts
-  /// @param change    how contacts changed the velocities in the step before, or empty
+  /// @param all       its laws are those of all contacts
   /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
   TwoLevelOutcome solve(BodyStepper& stepper,
-                        const ModelState& state,
-                        const ContactIslands& islands,
-                        const ContactRows& rows,
-                        const std::vector<std::uint8_t>& takes,
-                        const std::vector<std::int32_t>& contacts,
-                        const ContactProblem& laws,
-                        const std::vector<Point3>& change,
+                        const SoftProblem& all,
                         std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].

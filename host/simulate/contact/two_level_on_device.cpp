@@ -38,25 +38,18 @@ bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
 }
 
 TwoLevelOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,
-                                        const ModelState& state,
-                                        const ContactIslands& islands,
-                                        const ContactRows& rows,
-                                        const std::vector<std::uint8_t>& takes,
-                                        const std::vector<std::int32_t>& contacts,
-                                        const ContactProblem& laws,
-                                        const std::vector<Point3>& change,
+                                        const SoftProblem& problem,
                                         std::vector<Point3>& velocity) {
-  maker_.make(resident.rows(), islands, body_of_, rows, takes, contacts,
-              TwoLevelControl::relaxation(options_));
-  set_start(state, laws, change);
+  maker_.make(resident.rows(), problem.islands, body_of_, problem.rows, problem.takes,
+              problem.contacts, TwoLevelControl::relaxation(options_));
+  set_start(problem);
   const TwoLevelOutcome outcome = resident.solve(maker_.lists(), start_, *factors_, options_);
   if (outcome.is_result) take_results(resident.results(), velocity);
   return outcome;
 }
 
-void TwoLevelOnDevice::set_start(const ModelState& state,
-                                 const ContactProblem& laws,
-                                 const std::vector<Point3>& change) {
+void TwoLevelOnDevice::set_start(const SoftProblem& problem) {
+  const ContactProblem& laws = problem.laws;
   const TwoLevelLists& lists = maker_.lists();
   start_.time_step = laws.adhesion.time_step;
   start_.laws.set(laws);
@@ -66,14 +59,15 @@ void TwoLevelOnDevice::set_start(const ModelState& state,
     start_.impulse[3 * c] += start_.laws.preload[c];
   }
   start_.change.clear();
-  for (std::size_t row = 0; row < lists.model_block.size() && !change.empty(); ++row) {
-    const Point3& own = change[index_of(lists.model_block[row])];
+  for (std::size_t row = 0; row < lists.model_block.size() && !problem.change.empty(); ++row) {
+    const Point3& own = problem.change[index_of(lists.model_block[row])];
     start_.change.insert(start_.change.end(), own.begin(), own.end());
   }
   factors_->set_time_step(start_.time_step);
   start_.rotation.clear();
   for (const std::int32_t body : lists.model_body) {
-    const auto rotation = factors_->of_body(body).mean_rotation(state.position.front().data());
+    const auto rotation =
+        factors_->of_body(body).mean_rotation(problem.state.position.front().data());
     start_.rotation.insert(start_.rotation.end(), rotation.begin(), rotation.end());
   }
 }

@@ -7,9 +7,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/simulate/contact/contact_islands.hpp"
-#include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/resident_two_level.hpp"
+#include "host/simulate/contact/soft_problem.hpp"
 #include "host/simulate/contact/two_level_list_maker.hpp"
 #include "host/simulate/stepper.hpp"
 
@@ -28,20 +27,9 @@ class TwoLevelOnDevice {
   bool can_take(const std::vector<std::uint8_t>& takes) const;
 
   /// @param resident  of the stepper, after its solve()
-  /// @param state     at the start of the step
-  /// @param takes     [coupling islands] which are taken
-  /// @param contacts  on them, ascending
-  /// @param laws      friction, offsets, adhesion and guess of these contacts
-  /// @param change    how contacts changed the velocities in the step before, or empty
   /// @param velocity  out, if there is a result: with contact in the islands, [block_count]
   TwoLevelOutcome solve(ResidentTwoLevel& resident,
-                        const ModelState& state,
-                        const ContactIslands& islands,
-                        const ContactRows& rows,
-                        const std::vector<std::uint8_t>& takes,
-                        const std::vector<std::int32_t>& contacts,
-                        const ContactProblem& laws,
-                        const std::vector<Point3>& change,
+                        const SoftProblem& problem,
                         std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
@@ -49,9 +37,7 @@ class TwoLevelOnDevice {
   const std::vector<double>& contact_velocity() const { return contact_velocity_; }
 
  private:
-  void set_start(const ModelState& state,
-                 const ContactProblem& laws,
-                 const std::vector<Point3>& change);
+  void set_start(const SoftProblem& problem);
   void take_results(const ResidentResults& results, std::vector<Point3>& velocity);
 
   ContactOptions options_;

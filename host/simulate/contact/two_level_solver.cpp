@@ -45,11 +45,8 @@ void TwoLevelSolver::list_chunks(const SystemRows& rows) {
 
 /// Sets the contacts in the metric M, and starts from the velocities without contact.
 void TwoLevelSolver::prepare(const StepSystem& system,
-                             const std::vector<std::int32_t>& contacts,
-                             const ContactRows& rows,
-                             const ContactProblem& laws,
-                             const std::vector<Point3>& velocity,
-                             const std::vector<Point3>& change) {
+                             const SoftProblem& problem,
+                             const std::vector<Point3>& velocity) {
   const SystemRows& all = system.rows;
   const std::int64_t numbers = 3 * std::int64_t{all.count};
   list_chunks(all);
@@ -80,18 +77,19 @@ void TwoLevelSolver::prepare(const StepSystem& system,
       force_[3 * index_of(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
     }
   }
-  blocks_.set(system, islands_, elastic_, rows, contacts, laws, diagonal_, relaxation_);
+  blocks_.set(system, islands_, elastic_, problem.rows, problem.contacts, problem.laws, diagonal_,
+              relaxation_);
   std::copy(x_.begin(), x_.end(), y_.begin());
-  impulse_ = laws.impulse_guess;
+  impulse_ = problem.laws.impulse_guess;
   for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] += blocks_.preload()[c];
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
   blocks_.velocities_of_rows(x_.data(), free_.data());
   least_error_ = TwoLevelError::least(step(system));
-  if (change.size() != velocity.size()) return;
+  if (problem.change.size() != velocity.size()) return;
   for (const Chunk& chunk : chunks_) {
     for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const Point3& own = change[index_of(all.block_of[row])];
+      const Point3& own = problem.change[index_of(all.block_of[row])];
       for (std::size_t i = 0; i < 3; ++i) x_[3 * index_of(row) + i] += own[i];
     }
   }
@@ -164,23 +162,17 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
 }
 
 TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
-                                      const ModelState& state,
-                                      const ContactIslands& islands,
-                                      const ContactRows& rows,
-                                      const std::vector<std::uint8_t>& takes,
-                                      const std::vector<std::int32_t>& contacts,
-                                      const ContactProblem& laws,
-                                      const std::vector<Point3>& change,
+                                      const SoftProblem& problem,
                                       std::vector<Point3>& velocity) {
   clock_ = {};
-  elastic_.choose(system.rows, islands, takes, rows, contacts);
-  islands_.set(system.rows, islands, takes, elastic_);
+  elastic_.choose(system.rows, problem.islands, problem.takes, problem.rows, problem.contacts);
+  islands_.set(system.rows, problem.islands, problem.takes, elastic_);
   TwoLevelOutcome outcome;
   End end = End::converges;
   for (double damping = 1; damping >= TwoLevelControl::least_damping; damping /= 2) {
-    elastic_.set(state, laws.adhesion.time_step, 3 * std::int64_t{system.rows.count}, damping,
-                 threads_);
-    prepare(system, contacts, rows, laws, velocity, change);
+    elastic_.set(problem.state, problem.laws.adhesion.time_step,
+                 3 * std::int64_t{system.rows.count}, damping, threads_);
+    prepare(system, problem, velocity);
     const bool can_be_damped =
         !elastic_.bodies().empty() && damping > TwoLevelControl::least_damping;
     if (!chunks_.empty()) end = iterate(system, can_be_damped, outcome);

@@ -9,6 +9,7 @@
 
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/contact/following_motion.hpp"
+#include "host/simulate/contact/soft_problem.hpp"
 #include "host/simulate/contact/touching_blocks.hpp"
 #include "host/simulate/contact/two_level_control.hpp"
 #include "kernels/contact/anderson.hpp"
@@ -42,19 +43,9 @@ class TwoLevelSolver {
                  const ContactOptions& options,
                  std::shared_ptr<RestFactors> factors);
 
-  /// @param takes     [coupling islands] which are taken
-  /// @param contacts  numbers of the contacts in `rows`; they act on these islands
-  /// @param laws      friction, offsets, adhesion and guess of these contacts
-  /// @param change    how contacts changed the velocities in the step before, or empty
   /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
   TwoLevelOutcome solve(const StepSystem& system,
-                        const ModelState& state,
-                        const ContactIslands& islands,
-                        const ContactRows& rows,
-                        const std::vector<std::uint8_t>& takes,
-                        const std::vector<std::int32_t>& contacts,
-                        const ContactProblem& laws,
-                        const std::vector<Point3>& change,
+                        const SoftProblem& problem,
                         std::vector<Point3>& velocity);
 
   /// r and u of the contacts of the last solve(), [3 contacts].
@@ -71,11 +62,8 @@ class TwoLevelSolver {
   };
 
   void prepare(const StepSystem& system,
-               const std::vector<std::int32_t>& contacts,
-               const ContactRows& rows,
-               const ContactProblem& laws,
-               const std::vector<Point3>& velocity,
-               const std::vector<Point3>& change);
+               const SoftProblem& problem,
+               const std::vector<Point3>& velocity);
   void list_chunks(const SystemRows& rows);
   double step(const StepSystem& system);
   void step_chunk(std::int64_t chunk);

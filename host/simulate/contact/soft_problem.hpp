@@ -1,0 +1,26 @@
+/// @file soft_problem.hpp
+/// SoftProblem: islands and contacts for the two-level iteration.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+
+#include "host/simulate/contact/contact_islands.hpp"
+#include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/model.hpp"
+
+namespace tetwarp {
+
+struct SoftProblem {
+  const ModelState& state;  ///< at the start of the step
+  const ContactIslands& islands;
+  const ContactRows& rows;
+  const std::vector<std::uint8_t>& takes;     ///< [coupling islands] which are taken
+  const std::vector<std::int32_t>& contacts;  ///< in `rows`, on these islands; ascending
+  const ContactProblem& laws;         ///< friction, offsets, adhesion and guess of these contacts
+  const std::vector<Point3>& change;  ///< how contacts changed the velocities in the step before,
+                                      ///< [block_count], or empty
+};
+
+}  // namespace tetwarp
