@@ -37,6 +37,23 @@ struct TouchingNodes {
       }
     }
   }
+  /// J^T r of the contacts on a node.
+  /// @param r     (block, axis): impulse of the contact of a block
+  /// @param push  out, [3] in the frame of its body
+  template <class Impulse>
+  TETWARP_HD void push_of(std::int64_t node, const Impulse& r, double* push) const {
+    const std::int64_t row = bodies.row_of_node[node];
+    double sum[3] = {0, 0, 0};
+    for (std::int64_t t = rows.touch_start[row]; t < rows.touch_start[row + 1]; ++t) {
+      const std::int64_t b = rows.touch[t];
+      const double* const j = turned.data + 9 * b;
+      for (int a = 0; a < 3; ++a) {
+        const double own = r(b, a);
+        for (int i = 0; i < 3; ++i) sum[i] += j[3 * a + i] * own;
+      }
+    }
+    for (int i = 0; i < 3; ++i) push[i] = sum[i];
+  }
   /// What a part adds to the block of its contact and itself in J M^-1 J^T.
   TETWARP_HD void own_block(std::int64_t part, double* block) const {
     for (int e = 0; e < 9; ++e) block[e] = 0;
@@ -122,18 +139,10 @@ struct PartPushBody {
   View<double> push;          ///< out, [nodes][3]
 
   TETWARP_HD void operator()(std::int64_t node) const {
-    const TouchingRows& rows = of.rows;
-    const std::int64_t row = of.bodies.row_of_node[node];
-    double sum[3] = {0, 0, 0};
-    for (std::int64_t t = rows.touch_start[row]; t < rows.touch_start[row + 1]; ++t) {
-      const std::int64_t b = rows.touch[t];
-      const double* const v = vector.data + 3 * std::int64_t{rows.part[b]};
-      const double* const j = of.turned.data + 9 * b;
-      for (int a = 0; a < 3; ++a) {
-        for (int i = 0; i < 3; ++i) sum[i] += j[3 * a + i] * v[a];
-      }
-    }
-    for (int i = 0; i < 3; ++i) push[3 * node + i] = sum[i];
+    const auto of_part = [this](std::int64_t block, int axis) {
+      return vector[3 * std::int64_t{of.rows.part[block]} + axis];
+    };
+    of.push_of(node, of_part, push.data + 3 * node);
   }
 };
 

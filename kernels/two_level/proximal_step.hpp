@@ -64,18 +64,11 @@ struct NodePushBody {
   View<double> push;                 ///< out
 
   TETWARP_HD void operator()(std::int64_t node) const {
-    const TouchingRows& rows = of.rows;
-    const std::int64_t row = of.bodies.row_of_node[node];
-    double sum[3] = {0, 0, 0};
-    for (std::int64_t t = rows.touch_start[row]; t < rows.touch_start[row + 1]; ++t) {
-      const std::int64_t b = rows.touch[t], first = 3 * std::int64_t{rows.contact[b]};
-      const double* const j = of.turned.data + 9 * b;
-      for (int a = 0; a < 3; ++a) {
-        const double r = ahead[first + a] - before[first + a];
-        for (int i = 0; i < 3; ++i) sum[i] += j[3 * a + i] * r;
-      }
-    }
-    for (int i = 0; i < 3; ++i) push[3 * node + i] = sum[i];
+    const auto change = [this](std::int64_t block, int axis) {
+      const std::int64_t place = 3 * std::int64_t{of.rows.contact[block]} + axis;
+      return ahead[place] - before[place];
+    };
+    of.push_of(node, change, push.data + 3 * node);
   }
 };
 

@@ -3,6 +3,8 @@
 /// mid-contact.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <algorithm>
 
 #include "host/scene/shape.hpp"
@@ -84,6 +86,23 @@ TEST(Contact, SkipsWorkWithTheSameBits) {
   expect_equal_states(skipping, complete);
 }
 
+/// Contacts after 100 steps with and without what a switch leaves out; two bodies are at the same
+/// places.
+std::array<std::int64_t, 2> contacts_of(const Scene& scene, bool SimulateSkipOptions::*skips) {
+  Simulator skipping(scene);
+  SimulateOptions options;
+  options.skip.*skips = false;
+  Simulator complete(scene, options);
+  run(skipping, 100);
+  run(complete, 100);
+  for (std::size_t body = 0; body < 2; ++body) {
+    EXPECT_LT(largest_distance(skipping.surface_positions(body), complete.surface_positions(body)),
+              0.1 * skipping.thickness())
+        << body;
+  }
+  return {skipping.record().contacts, complete.record().contacts};
+}
+
 /// What a soft ball on a soft box would hit if its contacts let go makes no contacts: fewer of them
 /// hold it where all do.
 TEST(Contact, SkipsWhatWouldBeHitWithoutContactsThatHold) {
@@ -94,37 +113,17 @@ TEST(Contact, SkipsWhatWouldBeHitWithoutContactsThatHold) {
   scene.bodies[0].material.youngs_modulus = scene.bodies[1].material.youngs_modulus = 2e4;
   scene.bodies[1].surface = make_shape_surface(EllipsoidShape{{0.03, 0.03, 0.03}}, 1280);
   scene.solver.contact_tolerance = 1e-4;
-  Simulator skipping(scene);
-  SimulateOptions options;
-  options.skip.hits = false;
-  Simulator complete(scene, options);
-  run(skipping, 100);
-  run(complete, 100);
-  EXPECT_LT(3 * skipping.record().contacts, 2 * complete.record().contacts);
-  for (std::size_t body = 0; body < 2; ++body) {
-    EXPECT_LT(largest_distance(skipping.surface_positions(body), complete.surface_positions(body)),
-              0.1 * skipping.thickness())
-        << body;
-  }
+  const auto [skipping, complete] = contacts_of(scene, &SimulateSkipOptions::hits);
+  EXPECT_LT(3 * skipping, 2 * complete);
 }
 
 /// Boxes lie on each other the same with pairs of the diagonals of their sides.
 TEST(Contact, SkipsEdgesWithinFlatFaces) {
-  Scene scene = floor_scene({rigid_box("low", {0.05, 0.05, 0.05}, {0, 0, 0.0502}),
-                             rigid_box("high", {0.04, 0.04, 0.04}, {0.01, 0.005, 0.1404})},
-                            0.002, 0.5);
-  Simulator skipping(scene);
-  SimulateOptions options;
-  options.skip.flat_edges = false;
-  Simulator complete(scene, options);
-  run(skipping, 100);
-  run(complete, 100);
-  EXPECT_LE(skipping.record().contacts, complete.record().contacts);
-  for (std::size_t body = 0; body < 2; ++body) {
-    EXPECT_LT(largest_distance(skipping.surface_positions(body), complete.surface_positions(body)),
-              0.1 * skipping.thickness())
-        << body;
-  }
+  const Scene scene = floor_scene({rigid_box("low", {0.05, 0.05, 0.05}, {0, 0, 0.0502}),
+                                   rigid_box("high", {0.04, 0.04, 0.04}, {0.01, 0.005, 0.1404})},
+                                  0.002, 0.5);
+  const auto [skipping, complete] = contacts_of(scene, &SimulateSkipOptions::flat_edges);
+  EXPECT_LE(skipping, complete);
 }
 
 /// Islands without contacts that are solved with the others change results by the tolerance of

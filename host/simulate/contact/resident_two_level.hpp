@@ -33,9 +33,9 @@ class ResidentTwoLevel {
   virtual SystemRows rows() = 0;
   /// The two-level iteration of TwoLevelSolver, from the system that BodyStepper::solve() has made.
   /// @param lists    kept until it returns
-  /// @param factors  of the elastic bodies, set to the length of the step; their inverses are
-  /// copied
-  ///                 to the device once per body and length
+  /// @param factors  of the elastic bodies, set to the length of the step; the inverse of each is
+  ///                 copied to the device once per length
+  /// @throws CudaError  a call of the device fails, as without memory for the inverses
   virtual TwoLevelOutcome solve(const TwoLevelLists& lists,
                                 const TwoLevelStart& start,
                                 RestFactors& factors,

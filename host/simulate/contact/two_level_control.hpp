@@ -58,14 +58,8 @@ class TwoLevelControl {
   /// begun anew with half their compliance, down to this part of it.
   static constexpr double least_damping = 1.0 / 16;
 
-  /// Multiplications of all sweeps of a solve, after which it ends: about a second on a CPU.
-  static constexpr std::int64_t most_operations = 1'000'000'000;
   /// omega of the bodies that A couples to others.
   static double relaxation(const ContactOptions& options) { return 1.3 * options.relaxation; }
-  /// Up to these sizes the contact solver is quick where the iteration fails.
-  static bool is_small(std::int64_t contacts, std::int64_t rows) {
-    return contacts <= 256 && rows <= 128;
-  }
 
   struct Options {
     bool has_elastic = false;     ///< bodies that are solved by their factors at rest

@@ -12,6 +12,10 @@
 namespace tetwarp {
 namespace {
 
+// Multiplications of all sweeps of a solve, after which it ends: about a second.
+constexpr std::int64_t most_operations = 1'000'000'000;
+// Up to these sizes the contact solver is quick where the iteration fails.
+constexpr std::int64_t small_contacts = 256, small_rows = 128;
 constexpr std::int32_t chunk_rows = 64;
 
 }  // namespace
@@ -142,7 +146,7 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     if (next == TwoLevelControl::Next::fails) return End::fails;
     if (next == TwoLevelControl::Next::converges) return End::converges;
     if (next == TwoLevelControl::Next::diverges) return End::diverges;
-    if (blocks_.operations() > TwoLevelControl::most_operations) return End::fails;
+    if (blocks_.operations() > most_operations) return End::fails;
     stepped_ = impulse_;
     outcome.sweeps += sweep(control.enough());
     ++outcome.outer_iterations;
@@ -185,8 +189,8 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
   outcome.is_stopped = end == End::is_stopped;
   if (outcome.is_stopped) return outcome;
   outcome.converged = end == End::converges;
-  const bool is_small = TwoLevelControl::is_small(
-      blocks_.count(), chunks_.back().row_end - chunks_.front().row_begin);
+  const bool is_small = blocks_.count() <= small_contacts &&
+                        chunks_.back().row_end - chunks_.front().row_begin <= small_rows;
   outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);
