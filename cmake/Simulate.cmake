@@ -90,7 +90,8 @@ set(tetwarp_collide_sources  # host/collide: which features touch during a motio
   host/collide/collide_items.cpp
   host/collide/cpu/detector_cpu.cpp
   host/collide/cuda/detector_$<IF:$<BOOL:${TETWARP_HAS_CUDA}>,cuda.cu,nocuda.cpp>
-  host/collide/grid_plan.cpp)
+  host/collide/grid_plan.cpp
+  host/collide/touch_areas.cpp)
 set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their solution
   host/simulate/contact/cage_growth.cpp
   host/simulate/contact/cage_pose.cpp
@@ -101,7 +102,6 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/contact_shares.cpp
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
-  host/simulate/contact/edge_side.cpp
   host/simulate/contact/elastic_groups.cpp
   host/simulate/contact/two_level_on_device.cpp
   host/simulate/contact/two_level_list_maker.cpp
@@ -111,7 +111,6 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/near_pair.cpp
   host/simulate/contact/pair_contacts.cpp
   host/simulate/contact/pair_materials.cpp
-  host/simulate/contact/pair_touch.cpp
   host/simulate/contact/patch_moments.cpp
   host/simulate/contact/patch_supports.cpp
   host/simulate/contact/prepare_start.cpp
@@ -126,7 +125,6 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/start_shrink.cpp
   host/simulate/contact/step_problem.cpp
   host/simulate/contact/surface_motion.cpp
-  host/simulate/contact/touch_area.cpp
   host/simulate/contact/touching_blocks.cpp
   host/simulate/contact/touching_groups.cpp
   host/simulate/contact/touching_sweeps.cpp

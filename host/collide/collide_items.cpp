@@ -25,7 +25,8 @@ void check_range(const char* what, std::int32_t first, std::int32_t past, std::s
 void check_sizes(const CollisionSurfaces& s) {
   const std::size_t vertices = s.vertex_body.size();
   const bool has_flat_edges = !s.edge_is_flat.empty();
-  if (s.vertex_radius.size() != vertices || s.edge_radius.size() != s.edges.size() ||
+  if (s.vertex_radius.size() != vertices || s.vertex_area.size() != vertices ||
+      s.edge_radius.size() != s.edges.size() ||
       (has_flat_edges && s.edge_is_flat.size() != s.edges.size())) {
     fail("lists of vertices or edges have different lengths");
   }
@@ -175,6 +176,7 @@ CollideItems make_collide_items(const CollisionSurfaces& surfaces, bool skips_fl
     own.item_end = static_cast<std::int32_t>(made.items.size());
     own.has_unknowns = body.has_unknowns;
     own.touches_itself = body.touches_itself;
+    own.is_rigid = body.is_rigid;
     own.forbidden_begin = static_cast<std::int32_t>(made.forbidden.size());
     for (; next != surfaces.forbidden.end() && (*next)[0] == number; ++next) {
       made.forbidden.push_back((*next)[1]);

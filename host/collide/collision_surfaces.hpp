@@ -22,6 +22,7 @@ struct CollisionBody {
   std::int32_t first_triangle = 0, triangle_end = 0;
   std::int32_t first_plane = 0, plane_end = 0;
   bool has_unknowns = false;    ///< false: fixed or prescribed; two of these are never a pair
+  bool is_rigid = false;        ///< all is fixed in one frame
   bool touches_itself = false;  ///< pairs of its own features count, unless they share a vertex
 };
 

@@ -13,6 +13,7 @@
 
 #include "host/collide/collision_surfaces.hpp"
 #include "kernels/collide/pair_kind.hpp"
+#include "kernels/touch/pair_touch.hpp"
 
 namespace tetwarp {
 
@@ -63,10 +64,9 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// Starts a step: pairs of the broad phase of earlier motions are forgotten.
+  /// Starts a step: pairs and touches of earlier motions are forgotten.
   virtual void begin_step() = 0;
-  /// Bodies that do not move until the next call: detect() and check() leave out pairs of two of
-  /// them, or report them as before where they lie near a third body.
+  /// Bodies that do not move until the next call: pairs of two of them are left out.
   /// @param is_still  [bodies], or empty: none
   virtual void set_still(std::span<const std::uint8_t> is_still) = 0;
   /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
@@ -78,6 +78,16 @@ class Detector {
   /// Pairs that come within a tenth of the thickness, sorted, each once: what a step must not do.
   /// A motion that begins with all pairs apart by more has none where it does not move.
   virtual const std::vector<TouchingPair>& check(const SurfaceMotion& motion) = 0;
+  /// Finds the pairs of a motion, as detect() in the first call of a step and as detect_hits() in
+  /// later ones, and where they touch. All motions of a step have the same start, and are kept by
+  /// the caller.
+  /// @returns the number of pairs that no earlier call of the step found, or found near only
+  virtual std::int64_t find_touches(const SurfaceMotion& motion) = 0;
+  /// Bodies with unknowns that stand still, of the pairs of the last find_touches(), ascending.
+  virtual const std::vector<std::int32_t>& reached() const = 0;
+  /// Of all pairs of the step: those that become contacts, as StepTouches::choose(). Ways of
+  /// touches are those of the first motion. Valid until the next call.
+  virtual std::span<const ChosenTouch> touches() = 0;
   /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
   /// @param resident  a motion that stays at these places, as SurfaceMotion::resident
   virtual ClosestPair closest(const SurfacePlaces& places,

@@ -113,9 +113,9 @@ void DetectorPipeline<Exec>::set_motion(const SurfaceMotion& motion) {
 }
 
 template <class Exec>
-const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceMotion& motion,
-                                                                  const CcdLimits& limits,
-                                                                  double near_at_start) {
+void DetectorPipeline<Exec>::find_pairs(const SurfaceMotion& motion,
+                                        const CcdLimits& limits,
+                                        double near_at_start) {
   set_motion(motion);
   const double distance = std::max(near_at_start, limits.distance + limits.slack);
   const bool was_found = reuses_pairs_ && has_pairs_;
@@ -131,8 +131,17 @@ const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceM
   exec_.for_each("collide/pair_touch", features_.size(),
                  PairTouchBody{scene(), motion_, limits, features_.view(), exec_.view(results_)});
   exec_.append("collide/pair_touch", features_.size(),
-               TouchFilterBody{features_.view(), view(results_), near_at_start}, touches_);
+               TouchFilterBody{scene(), view(still_bodies_), features_.view(), view(results_),
+                               near_at_start},
+               touches_);
   counts_.evaluations += touches_.tally();
+}
+
+template <class Exec>
+const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceMotion& motion,
+                                                                  const CcdLimits& limits,
+                                                                  double near_at_start) {
+  find_pairs(motion, limits, near_at_start);
   const View<const FeatureTouch> touches = exec_.on_host(touches_.view(), host_touches_);
   touching_.clear();
   for (std::int64_t k = 0; k < touches.size; ++k) {
@@ -142,6 +151,22 @@ const std::vector<TouchingPair>& DetectorPipeline<Exec>::touching(const SurfaceM
   }
   std::sort(touching_.begin(), touching_.end());
   return touching_;
+}
+
+template <class Exec>
+std::int64_t DetectorPipeline<Exec>::find_touches(const SurfaceMotion& motion) {
+  const double h = surfaces_.thickness;
+  find_pairs(motion, detection_limits(h), step_.has_begun() ? -1 : 2 * h);
+  reached_.clear();
+  if (!is_still_.empty()) {
+    exec_.append("collide/touches", touches_.size(),
+                 ReachedBody{scene(), view(still_bodies_), touches_.view()}, reached_list_);
+    const View<const std::int32_t> found = exec_.on_host(reached_list_.view(), host_reached_);
+    reached_.assign(found.data, found.data + found.size);
+    std::ranges::sort(reached_);
+    reached_.erase(std::ranges::unique(reached_).begin(), reached_.end());
+  }
+  return step_.add(scene(), motion_, touches_);
 }
 
 template <class Exec>
@@ -167,7 +192,7 @@ ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
   check_sizes(places);
   if (!std::isfinite(cap))
     throw std::invalid_argument("collision detection: the cap is not finite");
-  begin_step();
+  has_pairs_ = false;
   if (is_given(resident)) {
     motion_ = resident;
   } else {

@@ -16,6 +16,7 @@
 #include "host/collide/collide_items.hpp"
 #include "host/collide/detector.hpp"
 #include "host/collide/grid_plan.hpp"
+#include "host/collide/step_touches.hpp"
 #include "kernels/collide/pair_features.hpp"
 #include "kernels/collide/pair_gap.hpp"
 #include "kernels/collide/pair_touch.hpp"
@@ -32,7 +33,8 @@ class DetectorPipeline {
         surfaces_(surfaces),
         reuses_pairs_(options.reuse_pairs),
         items_(make_collide_items(surfaces, options.skip_flat_edges)),
-        memory_(exec, surfaces, items_) {
+        memory_(exec, surfaces, items_),
+        step_(exec, surfaces) {
     const auto vertices = static_cast<std::int64_t>(surfaces.vertex_body.size());
     exec_.resize(found_, vertices);
     exec_.resize(run_boxes_, size_of(items_.runs));
@@ -42,9 +44,13 @@ class DetectorPipeline {
     exec_.resize(size_sums_, item_sizes);
   }
 
-  void begin_step() { has_pairs_ = false; }
+  void begin_step() {
+    has_pairs_ = false;
+    step_.begin_step();
+  }
   void set_still(std::span<const std::uint8_t> is_still) {
     is_still_.assign(is_still.begin(), is_still.end());
+    Memory::put(exec_, is_still_, still_bodies_);
     has_pairs_ = false;
   }
 
@@ -59,6 +65,9 @@ class DetectorPipeline {
   const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) {
     return touching(motion, detection_limits(surfaces_.thickness), -1);
   }
+  std::int64_t find_touches(const SurfaceMotion& motion);
+  const std::vector<std::int32_t>& reached() const { return reached_; }
+  std::span<const ChosenTouch> touches() { return step_.choose(); }
   ClosestPair closest(const SurfacePlaces& places, double cap, const MotionView& resident);
 
   DetectionCounts take_counts() { return std::exchange(counts_, {}); }
@@ -136,6 +145,9 @@ class DetectorPipeline {
   }
   /// Makes the motion readable by stages.
   void set_motion(const SurfaceMotion& motion);
+  /// Sets touches_.
+  void find_pairs(const SurfaceMotion& motion, const CcdLimits& limits, double near_at_start);
+  /// The same, sorted on the host.
   const std::vector<TouchingPair>& touching(const SurfaceMotion& motion,
                                             const CcdLimits& limits,
                                             double near_at_start);
@@ -153,11 +165,13 @@ class DetectorPipeline {
   bool reuses_pairs_;
   CollideItems items_;
   Memory memory_;
+  StepTouches<Exec> step_;
   BodyPartners partners_;
   MotionView motion_;
   DetectionCounts counts_;
   bool has_pairs_ = false;
   std::vector<std::uint8_t> is_still_;  ///< [bodies], or empty
+  Vector<std::uint8_t> still_bodies_;   ///< the same
 
   Vector<double> start_, end_, sagitta_, plane_start_, plane_end_;
   Vector<TurningFrame> frames_;
@@ -178,6 +192,8 @@ class DetectorPipeline {
   List<FeatureTouch> touches_;
   std::vector<FeatureTouch> host_touches_;
   std::vector<TouchingPair> touching_;
+  List<std::int32_t> reached_list_;
+  std::vector<std::int32_t> host_reached_, reached_;
   Vector<PairGap> gaps_;
   std::vector<PairGap> host_gaps_;
   SurfaceMotion still_;  ///< of closest(): planes only

@@ -23,7 +23,7 @@ struct CollideItem {
 
 struct CollideBody {
   std::int32_t item_end;  ///< items of a body are contiguous, bodies ascend
-  std::int32_t has_unknowns, touches_itself;
+  std::int32_t has_unknowns, touches_itself, is_rigid;
   std::int32_t forbidden_begin, forbidden_end;  ///< in the list of bodies that it never touches
 };
 

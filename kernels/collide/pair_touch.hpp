@@ -39,6 +39,14 @@ TETWARP_HD PairVertices vertices_of(const CollideView& scene, const FeaturePair&
   return own;
 }
 
+/// The body of a, and that of b.
+TETWARP_HD void bodies_of(const CollideView& scene, const FeaturePair& pair, std::int32_t* bodies) {
+  const PairVertices own = vertices_of(scene, pair);
+  bodies[0] = scene.vertex_body[own.vertex[0]];
+  bodies[1] = own.count > own.count_a ? scene.vertex_body[own.vertex[own.count_a]]
+                                      : scene.plane_body[pair.b];
+}
+
 /// Sum of the radii of both features.
 TETWARP_HD double radius_of(const CollideView& scene, const FeaturePair& pair) {
   switch (pair.kind) {
@@ -109,8 +117,11 @@ struct FeatureTouch {
   double time, start_distance;
 };
 
-/// One index = one pair of features. Appends those that touch, or begin within a distance.
+/// One index = one pair of features. Appends those that touch, or begin within a distance, but for
+/// pairs of two bodies that stand still.
 struct TouchFilterBody {
+  CollideView scene;
+  View<const std::uint8_t> is_still;  ///< [bodies], or empty: none
   View<const FeaturePair> pairs;
   View<const CcdResult> results;
   double near_at_start;  ///< [m]
@@ -119,8 +130,28 @@ struct TouchFilterBody {
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
     const CcdResult& result = results[i];
     emit.tally(result.evaluations);
-    if (result.time <= 1 || result.start_distance < near_at_start) {
-      emit(FeatureTouch{pairs[i], result.time, result.start_distance});
+    if (!(result.time <= 1 || result.start_distance < near_at_start)) return;
+    std::int32_t bodies[2];
+    if (is_still.size > 0) {
+      bodies_of(scene, pairs[i], bodies);
+      if (is_still[bodies[0]] != 0 && is_still[bodies[1]] != 0) return;
+    }
+    emit(FeatureTouch{pairs[i], result.time, result.start_distance});
+  }
+};
+
+/// One index = one pair. Appends the one of its bodies that has unknowns and stands still.
+struct ReachedBody {
+  CollideView scene;
+  View<const std::uint8_t> is_still;  ///< [bodies]
+  View<const FeatureTouch> pairs;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    std::int32_t bodies[2];
+    bodies_of(scene, pairs[i].pair, bodies);
+    for (int k = 0; k < 2; ++k) {
+      if (is_still[bodies[k]] != 0 && scene.bodies[bodies[k]].has_unknowns != 0) emit(bodies[k]);
     }
   }
 };

@@ -68,6 +68,7 @@ TEST(CollideItems, EachBodyHasOneLastRun) {
     scene.surfaces.bodies.emplace_back();  // without vertices
   }
   scene.surfaces.vertex_radius.assign(scene.surfaces.vertex_body.size(), 1e-3);
+  scene.surfaces.vertex_area.assign(scene.surfaces.vertex_body.size(), 0);
   const CollideItems made = make_collide_items(scene.surfaces);
 
   ASSERT_EQ(made.levels.size(), 5u);

@@ -17,6 +17,27 @@ void expect_equal(const DetectionCounts& a, const DetectionCounts& b) {
   EXPECT_EQ(a.reused, b.reused);
 }
 
+/// The emulated device computes with the host's rounding.
+void expect_equal(const ChosenTouch& a, const ChosenTouch& b) {
+  EXPECT_EQ(a.touch, b.touch);
+  EXPECT_EQ(a.area, b.area);
+}
+
+void expect_same_touches(const CollideScene& scene, Detector& cpu, Detector& cuda) {
+  std::vector<CollideScene> pass(3, scene);
+  std::mt19937 random(3);
+  for (std::size_t k = 1; k < pass.size(); ++k) {
+    for (std::int32_t b = 0; b < scene.body_count(); ++b) pass[k].shake_body(b, 0.02, random);
+  }
+  for (const CollideScene& moved : pass) {
+    EXPECT_EQ(cuda.find_touches(moved.motion), cpu.find_touches(moved.motion));
+    EXPECT_EQ(cuda.reached(), cpu.reached());
+    const auto expected = cpu.touches(), touches = cuda.touches();
+    ASSERT_EQ(touches.size(), expected.size());
+    for (std::size_t t = 0; t < touches.size(); ++t) expect_equal(touches[t], expected[t]);
+  }
+}
+
 void expect_parity(const CollideScene& scene) {
   const auto cpu = make_cpu_detector(scene.surfaces, {});
   const auto cuda = make_cuda_detector(scene.surfaces, {});
@@ -27,6 +48,12 @@ void expect_parity(const CollideScene& scene) {
     EXPECT_EQ(cuda->detect_hits(scene.motion), cpu->detect_hits(scene.motion));
     EXPECT_EQ(cuda->check(scene.motion), cpu->check(scene.motion));
     expect_equal(cuda->counts(), cpu->counts());
+    expect_same_touches(scene, *cpu, *cuda);
+    expect_equal(cuda->counts(), cpu->counts());
+    const std::vector<std::uint8_t> is_still(static_cast<std::size_t>(scene.body_count()), 1);
+    for (Detector* const detector : {cpu.get(), cuda.get()}) {
+      detector->set_still(std::span(is_still).first(step == 0 ? is_still.size() : 0));
+    }
   }
   const ClosestPair a = cpu->closest(scene.motion.start, 0.1);
   const ClosestPair b = cuda->closest(scene.motion.start, 0.1);
@@ -70,10 +97,16 @@ TEST(DetectorEmulated, EveryOrderOfThreadsGivesTheSamePairs) {
 
 TEST(DetectorEmulated, LaterStepsAllocateNothingOnTheDevice) {
   const CollideScene scene = mixed_scene(44, 0.05);
+  CollideScene moved = scene;
+  std::mt19937 random(4);
+  for (std::int32_t b = 0; b < scene.body_count(); ++b) moved.shake_body(b, 0.02, random);
   const auto cuda = make_cuda_detector(scene.surfaces, {});
   const auto step = [&] {
     cuda->begin_step();
-    cuda->detect(scene.motion);
+    cuda->find_touches(scene.motion);
+    cuda->touches();
+    cuda->find_touches(moved.motion);
+    cuda->touches();
     cuda->check(scene.motion);
   };
   for (int k = 0; k < 2; ++k) step();

@@ -149,13 +149,13 @@ TEST(SurfacesEmulated, BodiesApartCopyNothingOfTheirSurfaces) {
 }
 
 /// Two detections and a check. Most bytes to the device are lists of the contact solver, most to
-/// the host are the pairs that are near at the start, 32 bytes each, once.
+/// the host are the touches of vertices of the bricks.
 TEST(SurfacesEmulated, AStepWithContactSendsNoPlaces) {
   const StepCopies copies = copies_of(brick_wall(3e-4), 12);
   EXPECT_GT(copies.contacts, 100);
   EXPECT_EQ(copies.passes, 2);
   EXPECT_LE(copies.bytes.to_device, 900u * static_cast<std::size_t>(copies.contacts));
-  EXPECT_LE(copies.bytes.to_host, 30 * copies.vertices);
+  EXPECT_LE(copies.bytes.to_host, 100 * copies.vertices);
   EXPECT_EQ(copies.calls.count(DeviceCall::allocate), 0);
 }
 

@@ -14,7 +14,7 @@ from pathlib import Path
 # include nothing of the project, so a new folder needs a line here.
 BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
 CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
-COLLIDE = ["host/base", "host/exec", "kernels/collide", *BASE]
+COLLIDE = ["host/base", "host/exec", "kernels/collide", "kernels/touch", *BASE]
 SIMULATE = ["host/scene", "host/base", "host/exec", "kernels/body", *BASE]
 ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
@@ -49,6 +49,7 @@ ALLOWED = {
     "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "kernels/two_level": ["kernels/base", "kernels/body", "kernels/contact"],
     "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/touch": ["kernels/base", "kernels/collide"],
     "host/collide": COLLIDE,
     "host/collide/cpu": ["host/collide", *COLLIDE],
     "host/collide/cuda": ["host/collide", "kernels/exec", *COLLIDE],

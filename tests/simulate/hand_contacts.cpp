@@ -15,7 +15,7 @@ void HandScene::make_surfaces(double body_size) {
     CollisionBody& body = surfaces.surfaces.bodies[b];
     body.first_vertex = model.body_node[b];
     body.vertex_end = model.body_node[b + 1];
-    surfaces.is_rigid.push_back(model.body_rigid[b] >= 0);
+    body.is_rigid = model.body_rigid[b] >= 0;
   }
   for (std::int32_t n = 0; n < model.node_count; ++n) {
     surfaces.vertex_point.push_back(node_point(model, n));

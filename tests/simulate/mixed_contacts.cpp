@@ -55,7 +55,7 @@ HandScene mixed_scene(unsigned seed, double adhesion_area) {
     touch.body_b = b;
     touch.point_a = point_of(a);
     touch.point_b = point_of(b);
-    touch.normal = unit({normal(random), normal(random), normal(random)});
+    touch.normal = unit(Point3{normal(random), normal(random), normal(random)});
     touch.area = adhesion_area;
     scene.touches.push_back(touch);
   }

@@ -27,8 +27,8 @@ CollisionBody& PairScene::begin(const Kind& kind) {
   body.first_plane = body.plane_end = static_cast<std::int32_t>(all.plane_body.size());
   body.has_unknowns = kind.has_unknowns;
   body.touches_itself = kind.touches_itself;
+  body.is_rigid = kind.is_rigid;
   all.bodies.push_back(body);
-  scene.is_rigid.push_back(kind.is_rigid);
   scene.body_rigid.push_back(kind.is_rigid ? 0 : -1);
   scene.contact_class.push_back(0);
   scene.body_size.push_back(1);
@@ -116,17 +116,18 @@ std::vector<TouchingPair> PairScene::pairs() const {
 }
 
 const std::vector<ReportedContact>& PairScene::contacts(std::span<const ContactRecord> records) {
-  const std::vector<TouchingPair> found = pairs();
-  const std::vector<std::int32_t> pass(found.size());
+  const auto detector = make_cpu_detector(scene.surfaces, {});
+  detector->begin_step();
+  detector->find_touches(motion);
   maker_ = std::make_unique<PairContacts>(scene);
-  return maker_->find(found, pass, std::span(&motion, 1), records);
+  return maker_->find(detector->touches(), motion.start.vertices, records);
 }
 
 std::vector<BodyPlace> PairScene::places() const {
   std::vector<BodyPlace> places(scene.surfaces.bodies.size());
   for (std::size_t b = 0; b < places.size(); ++b) {
     const CollisionBody& body = scene.surfaces.bodies[b];
-    if (scene.is_rigid[b] != 0) continue;
+    if (body.is_rigid) continue;
     places[b].vertices =
         std::span(motion.start.vertices)
             .subspan(static_cast<std::size_t>(body.first_vertex),

@@ -46,7 +46,7 @@ TEST(PairContacts, RoundBodiesTouchAtTheirSurfaces) {
   }
 
   PairScene spheres;
-  const Point3 direction = unit({1, 2, -2});
+  const Point3 direction = unit(Point3{1, 2, -2});
   spheres.add_sphere({0, 0, 0}, r, {});
   spheres.add_sphere(times(2 * r + 1.5 * h, direction), r, {});
   const std::vector<ReportedContact> two = spheres.contacts();

@@ -100,7 +100,7 @@ TEST(SceneSurfaces, HoldThePartsOfEveryKind) {
     const bool moves = b == 0 || b == 1 || b == 2 || b == 5 || b == 6;
     EXPECT_EQ(surfaces.bodies[b].has_unknowns, moves) << b;
     EXPECT_EQ(surfaces.bodies[b].touches_itself, b == 2) << b;
-    EXPECT_EQ(touch.surfaces.is_rigid[b] != 0, b != 0 && b != 2 && b != 3) << b;
+    EXPECT_EQ(touch.surfaces.surfaces.bodies[b].is_rigid, b != 0 && b != 2 && b != 3) << b;
     for (std::int32_t v = surfaces.bodies[b].first_vertex; v < surfaces.bodies[b].vertex_end; ++v) {
       EXPECT_EQ(at(surfaces.vertex_body, v), static_cast<std::int32_t>(b));
       EXPECT_EQ(at(touch.surfaces.vertex_point, v).body, static_cast<std::int32_t>(b));

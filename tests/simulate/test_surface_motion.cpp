@@ -81,7 +81,7 @@ TEST(SurfaceMotion, EndsWhereTheMovedBodiesAre) {
       ASSERT_LT(norm(minus(motion.end.vertices[v], exact)), 1e-12);
     }
     const std::int32_t frame = touch.surfaces.plane_rigid[0];
-    const Point3 normal = rotate(at(end.rotation, frame), unit({0, 1, 2}));
+    const Point3 normal = rotate(at(end.rotation, frame), unit(Point3{0, 1, 2}));
     EXPECT_LT(norm(minus(motion.end.planes[0].normal, normal)), 1e-14);
     const Point3 point = plus(at(end.position, touch.model.node_count + frame),
                               rotate(at(end.rotation, frame), {0, 0, -4}));

@@ -20,6 +20,7 @@ class HostList {
  public:
   std::int64_t size() const { return size_; }
   View<const T> view() const { return values_.const_view(size_); }
+  View<T> values() { return values_.view(size_); }
   /// Sum of what the indices of append() tallied.
   std::int64_t tally() const { return tally_; }
   void clear() { size_ = tally_ = 0; }
@@ -64,6 +65,12 @@ class CpuDetectExec {
   template <class T>
   View<const T> input(const T* host, std::int64_t size, std::vector<T>&) const {
     return {host, size};
+  }
+  /// Memory of the executor, or of the host as input(), as it is now: in place, where the caller
+  /// keeps it; `own` is memory of executors that need a copy.
+  template <class T>
+  View<const T> keep(View<const T> values, std::vector<T>&) const {
+    return values;
   }
   /// What stages wrote, for the host to read: in place.
   template <class T>

@@ -21,6 +21,11 @@ class CpuDetector final : public Detector {
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     return pipeline_.check(motion);
   }
+  std::int64_t find_touches(const SurfaceMotion& motion) override {
+    return pipeline_.find_touches(motion);
+  }
+  const std::vector<std::int32_t>& reached() const override { return pipeline_.reached(); }
+  std::span<const ChosenTouch> touches() override { return pipeline_.touches(); }
   using Detector::closest;
   ClosestPair closest(const SurfacePlaces& places,
                       double cap,

@@ -71,6 +71,7 @@ class DeviceList {
  public:
   std::int64_t size() const { return size_; }
   View<const T> view() const { return values_.const_view(size_); }
+  View<T> values() { return values_.view(size_); }
   std::int64_t tally() const { return tally_; }
   void clear() { size_ = tally_ = 0; }
 
@@ -110,6 +111,17 @@ class CudaDetectExec {
   template <class T>
   View<const T> input(const T* host, std::int64_t size, Vector<T>& own) {
     put(host, size, own);
+    return own.view();
+  }
+  template <class T>
+  View<const T> keep(View<const T> values, Vector<T>& own) {
+    own.resize(values.size);
+    if (values.size > 0) {
+      check_cuda(cudaMemcpyAsync(own.view().data, values.data,
+                                 static_cast<std::size_t>(values.size) * sizeof(T),
+                                 cudaMemcpyDeviceToDevice, exec_.stream()),
+                 "cudaMemcpyAsync on device");
+    }
     return own.view();
   }
   template <class T>

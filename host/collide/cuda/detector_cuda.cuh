@@ -12,7 +12,10 @@ class CudaDetector final : public Detector {
       : exec_(options.device), pipeline_(exec_, surfaces, options) {}
 
   void begin_step() override { pipeline_.begin_step(); }
-  void set_still(std::span<const std::uint8_t> is_still) override { pipeline_.set_still(is_still); }
+  void set_still(std::span<const std::uint8_t> is_still) override {
+    const auto scope = exec_.enter();
+    pipeline_.set_still(is_still);
+  }
   const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) override {
     const auto scope = exec_.enter();
     return pipeline_.detect(motion);
@@ -24,6 +27,15 @@ class CudaDetector final : public Detector {
   const std::vector<TouchingPair>& check(const SurfaceMotion& motion) override {
     const auto scope = exec_.enter();
     return pipeline_.check(motion);
+  }
+  std::int64_t find_touches(const SurfaceMotion& motion) override {
+    const auto scope = exec_.enter();
+    return pipeline_.find_touches(motion);
+  }
+  const std::vector<std::int32_t>& reached() const override { return pipeline_.reached(); }
+  std::span<const ChosenTouch> touches() override {
+    const auto scope = exec_.enter();
+    return pipeline_.touches();
   }
   using Detector::closest;
   ClosestPair closest(const SurfacePlaces& places,

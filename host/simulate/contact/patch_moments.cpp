@@ -77,14 +77,18 @@ void PatchMoments::spread_triangles(const std::vector<ReportedContact>& contacts
         std::lower_bound(corners_.begin(), corners_.end(), std::pair(vertex, std::size_t{0}));
     return found != corners_.end() && found->first == vertex ? &contacts[found->second] : nullptr;
   };
+  const TouchAreaView areas = areas_.view();
+  const View<const double> at_start = numbers_of(vertices);
   for (const auto& [vertex, c] : corners_) {
     const ReportedContact& contact = contacts[c];
-    const double share = contact.area / areas_.seen(vertex, contact.normal, vertices);
-    const double side = areas_.side(vertex, contact.normal, vertices);
+    const Vec3 normal = vec3_of(contact.normal);
+    const double share = contact.area / seen_area(areas, vertex, normal, at_start);
+    const AreasAround around = areas_around(areas, vertex, normal, at_start);
+    const double side = around.along >= around.against ? 1 : -1;
     for (const std::int32_t t : areas_.triangles_around(vertex)) {
       const auto& triangle = at(surfaces_.triangles, t);
       if (*std::min_element(triangle.begin(), triangle.end()) != vertex) continue;
-      const double area = share * side * areas_.facing(t, contact.normal, vertices);
+      const double area = share * side * facing_area(areas, t, normal, at_start);
       const ReportedContact* corner[3];
       for (std::size_t k = 0; k < 3; ++k) corner[k] = contact_at(triangle[k]);
       if (!(area > 0) || corner[0] == nullptr || corner[1] == nullptr || corner[2] == nullptr) {

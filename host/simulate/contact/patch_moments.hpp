@@ -9,8 +9,8 @@
 
 #include <tetwarp/contact_tracker.hpp>
 
+#include "host/collide/touch_areas.hpp"
 #include "host/simulate/contact/patch_frame.hpp"
-#include "host/simulate/contact/touch_area.hpp"
 
 namespace tetwarp {
 

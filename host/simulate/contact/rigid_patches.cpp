@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "host/base/point3.hpp"
+#include "host/simulate/contact/find_record.hpp"
 
 namespace tetwarp {
 namespace {
@@ -16,21 +17,14 @@ ContactKey point_key(const ContactKey& bodies, std::int32_t slot, std::int32_t p
   return {bodies.body_a, first - 4 * slot - point, bodies.body_b, first};
 }
 
-const ContactRecord* record_of(std::span<const ContactRecord> records, const ContactKey& key) {
-  const auto found =
-      std::lower_bound(records.begin(), records.end(), key,
-                       [](const ContactRecord& a, const ContactKey& of) { return a.key < of; });
-  return found != records.end() && found->key == key ? &*found : nullptr;
-}
-
 std::tuple<std::int32_t, std::int32_t> bodies_of(const ReportedContact& contact) {
   return {contact.key.body_a, contact.key.body_b};
 }
 }  // namespace
 
 bool RigidPatches::is_rigid(const ReportedContact& contact) const {
-  return at(scene_.is_rigid, contact.key.body_a) != 0 &&
-         at(scene_.is_rigid, contact.key.body_b) != 0;
+  return at(scene_.surfaces.bodies, contact.key.body_a).is_rigid &&
+         at(scene_.surfaces.bodies, contact.key.body_b).is_rigid;
 }
 
 void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
@@ -95,7 +89,7 @@ std::int32_t RigidPatches::slot_of(const ContactKey& bodies,
     if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) continue;
     const ContactRecord* record = nullptr;
     for (std::int32_t k = 0; k < 4 && record == nullptr; ++k) {
-      record = record_of(records, point_key(bodies, slot, k));
+      record = find_record(records, point_key(bodies, slot, k));
     }
     if (record == nullptr) {
       // Patches are numbered from 0; one that has ended leaves a gap of one number at most.
@@ -115,7 +109,7 @@ void RigidPatches::add_points(const ReportedContact& first,
   std::array<const ContactRecord*, 4> record{};
   double area = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    record[k] = record_of(records, point_key(first.key, slot, static_cast<std::int32_t>(k)));
+    record[k] = find_record(records, point_key(first.key, slot, static_cast<std::int32_t>(k)));
     if (record[k] != nullptr) area += record[k]->area;
   }
   const bool has_grown = points.area > growth * area;

@@ -101,7 +101,7 @@ class SurfaceParts {
     const bool has_nodes =
         index_of(body_) < scene_.bodies.size() && !geometry_.bodies[index_of(body_)].nodes.empty();
     result_.body_rigid.push_back(has_nodes ? -1 : at(frame_, body_));
-    result_.is_rigid.push_back(result_.body_rigid.back() >= 0);
+    parts.is_rigid = result_.body_rigid.back() >= 0;
     result_.body_size.push_back(size_of(parts));
   }
 
@@ -265,7 +265,7 @@ void mark_flat_faces(SceneSurfaces& result) {
   std::vector<Point3> position;
   for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
     const CollisionBody& body = surfaces.bodies[b];
-    if (result.is_rigid[b] == 0) continue;
+    if (!result.surfaces.bodies[b].is_rigid) continue;
     position.clear();
     for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
       position.push_back(at(result.vertex_point, v).local);

@@ -31,9 +31,8 @@ struct SceneSurfaces {
   std::vector<PlanePlace> plane_local;      ///< [planes] in that frame
   std::vector<double> body_size;            ///< [bodies, then obstacles] diagonal of the box at the
                                             ///< start [m]; infinite of planes, 0 without parts
-  std::vector<std::uint8_t> is_rigid;       ///< [bodies, then obstacles] all is fixed in one frame
-  std::vector<std::int32_t> body_rigid;     ///< [bodies, then obstacles] that frame, as
-                                            ///< ModelPoint::rigid, or -1: deformable
+  std::vector<std::int32_t> body_rigid;     ///< [bodies, then obstacles] the frame of a rigid one,
+                                            ///< as ModelPoint::rigid, or -1: deformable
   std::vector<ContactMaterial> materials;   ///< different ones
   std::vector<std::int32_t> contact_class;  ///< [bodies, then obstacles] bodies of equal material
   std::int32_t class_count = 0;

@@ -103,7 +103,7 @@ ContactStep::ContactStep(const Scene& scene,
       material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
       tracker_options_(tracker_options(surfaces)),
-      pair_contacts_(surfaces, options.threads),
+      pair_contacts_(surfaces),
       tracker_(tracker_options_),
       system_(surfaces,
               model,
@@ -123,7 +123,7 @@ void ContactStep::set_places(const ModelState& state,
   for (std::size_t b = 0; b < places.size(); ++b) {
     places[b] = {};
     const CollisionBody& body = surfaces_.surfaces.bodies[b];
-    if (surfaces_.is_rigid[b] != 0) {
+    if (body.is_rigid) {
       const auto rigid = static_cast<std::size_t>(surfaces_.body_rigid[b]);
       places[b].pose = {state.position[static_cast<std::size_t>(model_.node_count) + rigid],
                         state.rotation[rigid]};
@@ -143,34 +143,9 @@ void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion&
       is_free_ ? std::span<const Point3>{} : std::span(velocity_), time_step_, fraction));
 }
 
-std::size_t ContactStep::add_pairs(const std::vector<TouchingPair>& found, std::int32_t pass) {
-  const auto key = [](const TouchingPair& pair) { return std::tuple(pair.kind, pair.a, pair.b); };
-  merged_pairs_.clear();
-  merged_pass_.clear();
-  std::size_t old = 0, added = 0;
-  const auto keep_old = [&] {
-    merged_pairs_.push_back(pairs_[old]);
-    merged_pass_.push_back(pass_of_[old++]);
-  };
-  for (const TouchingPair& pair : found) {
-    while (old < pairs_.size() && key(pairs_[old]) < key(pair)) keep_old();
-    if (old < pairs_.size() && key(pairs_[old]) == key(pair)) {
-      // A pair that was only near may have been no contact; one that now touches has to be.
-      if (pairs_[old].time <= 1 || pair.time > 1) continue;
-      ++old;
-    }
-    merged_pairs_.push_back(pair);
-    merged_pass_.push_back(pass);
-    ++added;
-  }
-  while (old < pairs_.size()) keep_old();
-  pairs_.swap(merged_pairs_);
-  pass_of_.swap(merged_pass_);
-  return added;
-}
-
 void ContactStep::report(bool is_first) {
-  reports_ = pair_contacts_.find(pairs_, pass_of_, motions_, tracker_.start_records());
+  reports_ = pair_contacts_.find(detector_->touches(), motions_[0].start.vertices,
+                                 tracker_.start_records());
   for (ReportedContact& report : reports_) {
     const double gap = dot(report.normal, minus(report.point_a_world, report.point_b_world));
     if (!is_first || gap > surfaces_.surfaces.thickness) report.material += material_count_;
@@ -208,11 +183,11 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
       const Clock clock(part.detection_seconds);
       move_surfaces({}, motions_[pass]);
       final_ = &motions_[pass];
-      const auto& found =
-          pass == 0 ? detector_->detect(motions_[0]) : detector_->detect_hits(motions_[pass]);
-      const std::size_t added = add_pairs(awake_pairs(found), static_cast<std::int32_t>(pass));
+      const std::int64_t added = detector_->find_touches(motions_[pass]);
       ++part.passes;
-      if (!woken_.empty()) return;
+      has_pairs_ = has_pairs_ || added > 0;
+      part.woken = detector_->reached();
+      if (!part.woken.empty()) return;
       is_new = added > 0 || (pass == 0 && (is_expected || !tracker_.records().empty()));
       if (!is_new) return;
       report(is_first);
@@ -232,7 +207,7 @@ void ContactStep::keep_apart(ContactPart& part) {
   groups_.begin(contacts_ == nullptr ? none : *contacts_, sleeping_links());
   part.islands = groups_.island_count();
   // A motion without pairs has passed a detection at a larger distance already.
-  if (pairs_.empty()) return;
+  if (!has_pairs_) return;
   const SurfaceMotion* motion = final_;
   while (groups_.stop(detector_->check(*motion), *motion)) {
     move_surfaces(fractions(), clamped_);
@@ -264,12 +239,10 @@ ContactPart ContactStep::advance(const ModelState& start,
   set_time_step(time_step);
   was_ended_ = false;
   contacts_ = nullptr;
-  pairs_.clear();
-  pass_of_.clear();
+  has_pairs_ = false;
   block_impulses_.assign(static_cast<std::size_t>(model_.block_count()), {0, 0, 0});
   body_impulses_.assign(surfaces_.surfaces.bodies.size(), {0, 0, 0});
   groups_.begin({}, {});
-  woken_.clear();
   stepper.get_velocities(free_velocity_);
   if (are_finite(free_velocity_)) {
     {
@@ -280,8 +253,7 @@ ContactPart ContactStep::advance(const ModelState& start,
       detector_->begin_step();
     }
     find_velocities(is_first, stepper, part);
-    part.woken = woken_;
-    if (!part.is_completed || !woken_.empty()) return part;
+    if (!part.is_completed || !part.woken.empty()) return part;
     if (are_finite(velocity_)) keep_apart(part);
     if (contacts_ == nullptr || contacts_->empty()) {
       change_.clear();

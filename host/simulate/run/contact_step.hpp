@@ -132,7 +132,6 @@ class ContactStep {
                   const SurfacePlaces& of,
                   std::vector<BodyPlace>& places) const;
   void move_surfaces(std::span<const double> fraction, SurfaceMotion& motion);
-  std::size_t add_pairs(const std::vector<TouchingPair>& found, std::int32_t pass);
   void report(bool is_first);
   bool solve(BodyStepper& stepper, ContactPart& part);
   void find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part);
@@ -142,7 +141,6 @@ class ContactStep {
   ContactPlace place_of(std::size_t body, const MaterialPoint& point) const;
   void set_points();
   bool both_still(const BodyLink& bodies) const;
-  const std::vector<TouchingPair>& awake_pairs(const std::vector<TouchingPair>& found);
   std::vector<ContactRecord> all_records() const;
   void add_sleeping(const ModelState& state, double time_step, ContactPart& part);
   void set_sleeping(std::vector<SleepingContact> contacts);
@@ -175,8 +173,7 @@ class ContactStep {
   const SurfaceMotion* final_ = nullptr;
   SurfacePlaces end_surfaces_;
   std::vector<BodyPlace> start_places_, end_places_;
-  std::vector<TouchingPair> pairs_, merged_pairs_;
-  std::vector<std::int32_t> pass_of_, merged_pass_;
+  bool has_pairs_ = false;  ///< detection has found any
   std::vector<ReportedContact> reports_;
   const std::vector<TrackedContact>* contacts_ = nullptr;  ///< null: nothing touches
   std::vector<Point3> block_impulses_, body_impulses_;
@@ -187,8 +184,6 @@ class ContactStep {
   std::vector<std::pair<std::int32_t, Point3>> sleeping_forces_;  ///< on prescribed blocks [N, N m]
   bool has_sleeping_forces_ = false;                              ///< of the present list
   std::vector<std::uint8_t> still_;                               ///< see set_still()
-  std::vector<std::int32_t> woken_;
-  std::vector<TouchingPair> awake_pairs_;
   ContactRest rest_;
 };
 

@@ -35,22 +35,6 @@ bool ContactStep::both_still(const BodyLink& bodies) const {
          still_[static_cast<std::size_t>(bodies[1])] != 0;
 }
 
-/// Leaves out pairs of bodies that stand still, and notes those that something reaches.
-const std::vector<TouchingPair>& ContactStep::awake_pairs(const std::vector<TouchingPair>& found) {
-  if (still_.empty()) return found;
-  awake_pairs_.clear();
-  for (const TouchingPair& pair : found) {
-    const BodyLink bodies = tetwarp::bodies_of(pair, surfaces_.surfaces);
-    if (both_still(bodies)) continue;
-    awake_pairs_.push_back(pair);
-    for (const std::int32_t body : bodies) {
-      const bool is_free = surfaces_.surfaces.bodies[static_cast<std::size_t>(body)].has_unknowns;
-      if (is_free && still_[static_cast<std::size_t>(body)] != 0) woken_.push_back(body);
-    }
-  }
-  return awake_pairs_;
-}
-
 std::vector<ContactRecord> ContactStep::all_records() const {
   std::vector<ContactRecord> sleeping, all;
   for (const SleepingContact& contact : sleeping_) sleeping.push_back(contact.record);

@@ -18,8 +18,7 @@ T entry(const std::vector<T>& list, std::int32_t i) {
   return list[static_cast<std::size_t>(i)];
 }
 
-}  // namespace
-
+/// The bodies or obstacles of the features of a pair.
 std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionSurfaces& surfaces) {
   const auto of_vertex = [&](std::int32_t v) { return entry(surfaces.vertex_body, v); };
   const auto of_edge = [&](std::int32_t e) { return of_vertex(entry(surfaces.edges, e)[0]); };
@@ -37,6 +36,8 @@ std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionS
   }
   return {of_vertex(pair.a), entry(surfaces.plane_body, pair.b)};
 }
+
+}  // namespace
 
 StepGroups::StepGroups(const Model& model, const CollisionSurfaces& surfaces)
     : model_(model), surfaces_(surfaces) {

@@ -60,7 +60,4 @@ class StepGroups {
   int rounds_ = 0;
 };
 
-/// The bodies or obstacles of the features of a pair.
-std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionSurfaces& surfaces);
-
 }  // namespace tetwarp

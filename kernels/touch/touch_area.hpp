@@ -1,0 +1,100 @@
+/// @file touch_area.hpp
+/// The area that a vertex stands for in a contact, and the surface beside an edge.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/vec3.hpp"
+
+namespace tetwarp {
+
+/// Triangles around vertices; does not change during a simulation.
+struct TouchAreaView {
+  View<const std::int32_t> start, triangle;  ///< of each vertex, see TouchAreas
+  View<const std::int32_t> corners;          ///< [triangles][3] vertices
+  View<const double> vertex_area;            ///< [vertices] CollisionSurfaces::vertex_area
+  View<const double> mean_area;              ///< [bodies] of a vertex [m^2]
+};
+
+/// Twice the area of a triangle times its normal.
+TETWARP_HD Vec3 double_normal(const TouchAreaView& areas,
+                              std::int64_t triangle,
+                              View<const double> vertices) {
+  const std::int32_t* const corner = areas.corners.data + 3 * triangle;
+  const Vec3 x = vec3_at(vertices, corner[0]);
+  return cross(minus(vec3_at(vertices, corner[1]), x), minus(vec3_at(vertices, corner[2]), x));
+}
+
+/// Area of a triangle seen along a direction, negative against it.
+TETWARP_HD double facing_area(const TouchAreaView& areas,
+                              std::int64_t triangle,
+                              const Vec3& direction,
+                              View<const double> vertices) {
+  return dot(double_normal(areas, triangle, vertices), direction) / 2;
+}
+
+/// Areas of the triangles around a vertex.
+struct AreasAround {
+  double all = 0, along = 0, against = 0;  ///< a direction
+};
+TETWARP_HD AreasAround areas_around(const TouchAreaView& areas,
+                                    std::int64_t vertex,
+                                    const Vec3& direction,
+                                    View<const double> vertices) {
+  AreasAround sum;
+  for (std::int32_t k = areas.start[vertex]; k < areas.start[vertex + 1]; ++k) {
+    const Vec3 normal = double_normal(areas, areas.triangle[k], vertices);
+    const double along = dot(normal, direction) / 2;
+    sum.all += norm(normal) / 2;
+    (along > 0 ? sum.along : sum.against) += fabs(along);
+  }
+  return sum;
+}
+
+/// The share of a vertex's area that is seen along a direction: each triangle by the cosine of its
+/// angle. Of triangles that face along it, or of those that face against it, whichever is more: a
+/// sheet touches with either side, a body with its outside.
+/// @param direction  unit
+TETWARP_HD double seen_area(const TouchAreaView& areas,
+                            std::int64_t vertex,
+                            const Vec3& direction,
+                            View<const double> vertices) {
+  const double area = areas.vertex_area[vertex];
+  if (!(area > 0)) return 0;
+  const AreasAround around = areas_around(areas, vertex, direction, vertices);
+  const double most = max_of(around.along, around.against);
+  return around.all > 0 ? area * min_of(1.0, most / around.all) : 0;
+}
+
+/// Share of the area of `body` where it touches `other`, both meshes: shares add up to 1, the finer
+/// mesh has more. 1/2 for equal ones.
+TETWARP_HD double area_share(const TouchAreaView& areas, std::int64_t body, std::int64_t other) {
+  const double own = areas.mean_area[body], others = areas.mean_area[other];
+  return own + others > 0 ? others / (own + others) : 0.5;
+}
+
+/// Whether an edge is what is nearest of the surface around it: false where a triangle beside the
+/// edge comes nearer to what lies in a direction from the edge, because the direction leans over
+/// the triangle by more than 3 degrees.
+/// @param edge    its two vertices
+/// @param toward  unit, across the edge
+TETWARP_ANY_EXEC inline bool edge_is_nearest(const TouchAreaView& areas,
+                                             const std::int32_t* edge,
+                                             const Vec3& toward,
+                                             View<const double> vertices) {
+  constexpr double sine_3 = 0.0523359562429438;
+  const std::int32_t v = edge[0], w = edge[1];
+  const Vec3 at_v = vec3_at(vertices, v), along = unit(minus(vec3_at(vertices, w), at_v));
+  for (std::int32_t k = areas.start[v]; k < areas.start[v + 1]; ++k) {
+    const std::int32_t* const corner = areas.corners.data + 3 * std::int64_t{areas.triangle[k]};
+    if (corner[0] != w && corner[1] != w && corner[2] != w) continue;
+    for (int c = 0; c < 3; ++c) {
+      if (corner[c] == v || corner[c] == w) continue;
+      const Vec3 into = minus(vec3_at(vertices, corner[c]), at_v);
+      const Vec3 across = unit(minus(into, times(dot(into, along), along)));
+      if (dot(across, toward) > sine_3) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace tetwarp
