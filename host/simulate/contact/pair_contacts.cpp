@@ -130,9 +130,9 @@ void PairContacts::report_vertex(std::span<const ChosenTouch> touches,
   }
 }
 
-const std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> touches,
-                                                       const std::vector<Point3>& vertices,
-                                                       std::span<const ContactRecord> records) {
+std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> touches,
+                                                 const std::vector<Point3>& vertices,
+                                                 std::span<const ContactRecord> records) {
   contacts_.clear();
   list_records(records);
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
@@ -152,9 +152,17 @@ const std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTou
     first = end;
   }
   patches_.reduce(contacts_, vertices, records);
-  std::sort(contacts_.begin(), contacts_.end(),
-            [](const ReportedContact& p, const ReportedContact& q) { return p.key < q.key; });
+  sort_contacts();
   return contacts_;
+}
+
+void PairContacts::sort_contacts() {
+  order_.clear();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) order_.emplace_back(contacts_[c].key, c);
+  std::sort(order_.begin(), order_.end());
+  sorted_.clear();
+  for (const auto& [key, c] : order_) sorted_.push_back(contacts_[c]);
+  contacts_.swap(sorted_);
 }
 
 }  // namespace tetwarp

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>
@@ -35,9 +36,9 @@ class PairContacts {
   ///          contact of the vertex and the body, -2 the second; a contact takes the number of the
   ///          record whose normal is nearest. Vertices of material points are
   ///          counted from the first of the body.
-  const std::vector<ReportedContact>& find(std::span<const ChosenTouch> touches,
-                                           const std::vector<Point3>& vertices,
-                                           std::span<const ContactRecord> records = {});
+  std::vector<ReportedContact>& find(std::span<const ChosenTouch> touches,
+                                     const std::vector<Point3>& vertices,
+                                     std::span<const ContactRecord> records = {});
 
  private:
   /// A record of the tracker of a vertex.
@@ -53,6 +54,7 @@ class PairContacts {
   MaterialPoint material_of(const std::int32_t* vertex,
                             const double* weight,
                             std::int32_t body) const;
+  void sort_contacts();
   void report_vertex(std::span<const ChosenTouch> touches, std::span<const ContactRecord> records);
 
   const SceneSurfaces& scene_;
@@ -60,7 +62,8 @@ class PairContacts {
   RigidPatches patches_;
   std::vector<std::int32_t> slots_;           ///< taken, of the current vertex and body
   std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted by all but the record
-  std::vector<ReportedContact> contacts_;
+  std::vector<ReportedContact> contacts_, sorted_;
+  std::vector<std::pair<ContactKey, std::size_t>> order_;  ///< of contacts_
 };
 
 }  // namespace tetwarp

@@ -31,15 +31,14 @@ void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
                           const std::vector<Point3>& vertices,
                           std::span<const ContactRecord> records) {
   order_.clear();
-  kept_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    if (is_rigid(contacts[c])) {
-      order_.push_back(c);
-    } else {
-      kept_.push_back(contacts[c]);
-    }
+    if (is_rigid(contacts[c])) order_.push_back(c);
   }
   if (order_.empty()) return;
+  kept_.clear();
+  for (const ReportedContact& contact : contacts) {
+    if (!is_rigid(contact)) kept_.push_back(contact);
+  }
   std::sort(order_.begin(), order_.end(), [&](std::size_t i, std::size_t k) {
     return std::tuple(bodies_of(contacts[i]), contacts[i].key) <
            std::tuple(bodies_of(contacts[k]), contacts[k].key);

@@ -39,7 +39,7 @@ std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
 }
 
 /// Every material twice: the second ones without adhesion of surfaces that are near at the start.
-ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
+ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads) {
   ContactTrackerOptions of;
   of.materials = surfaces.materials;
   of.materials.insert(of.materials.end(), surfaces.materials.begin(), surfaces.materials.end());
@@ -48,6 +48,7 @@ ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
   }
   of.match_distance = surfaces.surfaces.thickness;
   of.touch_distance = surfaces.surfaces.thickness;
+  of.threads = threads;
   return of;
 }
 
@@ -102,7 +103,7 @@ ContactStep::ContactStep(const Scene& scene,
       options_(options),
       material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
-      tracker_options_(tracker_options(surfaces)),
+      tracker_options_(tracker_options(surfaces, options.threads)),
       pair_contacts_(surfaces),
       tracker_(tracker_options_),
       system_(surfaces,
@@ -144,14 +145,14 @@ void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion&
 }
 
 void ContactStep::report(bool is_first) {
-  reports_ = pair_contacts_.find(detector_->touches(), motions_[0].start.vertices,
-                                 tracker_.start_records());
-  for (ReportedContact& report : reports_) {
+  std::vector<ReportedContact>& reports = pair_contacts_.find(
+      detector_->touches(), motions_[0].start.vertices, tracker_.start_records());
+  for (ReportedContact& report : reports) {
     const double gap = dot(report.normal, minus(report.point_a_world, report.point_b_world));
     if (!is_first || gap > surfaces_.surfaces.thickness) report.material += material_count_;
   }
   set_places(*start_, motions_[0].start, start_places_);
-  contacts_ = &tracker_.begin_step(reports_, start_places_, time_step_);
+  contacts_ = &tracker_.begin_step(reports, start_places_, time_step_);
 }
 
 bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
