@@ -7,7 +7,7 @@
 /// J M^-1 J^T. A body with a few contacts so does not slow down because another one has hundreds.
 ///
 /// lambda_b is estimated from below by a power iteration, times a margin. Where that has missed it,
-/// steps diverge, and their caller doubles the majorant.
+/// a step changes velocities by more than the majorant allows, and its caller doubles the majorant.
 #pragma once
 #include <cstdint>
 

@@ -15,8 +15,20 @@ namespace tetwarp {
 struct ProximalState {
   static constexpr int steps_at_once = 8;
 
-  PlainSums<2> sums;     ///< at the last step: natural_square(); product of the step and the change
+  /// At the last step: natural_square(); product of the step and the change; d . J M^-1 J^T d and
+  /// d . D d, d the change of the impulses `ahead` since the step before and D the majorant.
+  using Sums = PlainSums<4>;
+
+  Sums sums;
   std::int64_t age = 0;  ///< steps since the last restart, up to the present run of steps
+
+  /// Whether the majorant is too small. The impulses need not diverge then: as none along a normal
+  /// may be negative, they can go to and fro for ever. With momentum m, a mode grows whose product
+  /// is more than (2 + 2 m) / (1 + 2 m) > 4/3 times that of the majorant.
+  static bool has_missed(const Sums& sums) {
+    constexpr double harmless = 1.3;
+    return !(sums.value[2] <= harmless * sums.value[3]);
+  }
 };
 
 /// One index = one contact.
@@ -26,10 +38,11 @@ struct ProximalStepBody {
   ContactSwitches switches;
   View<const double> node_velocity;  ///< with the impulses `ahead`
   const ProximalState* state;
-  int step;                  ///< of this run
-  View<double> ahead;        ///< in and out, [3 contacts]
-  View<double> impulse;      ///< in and out, [3 contacts]
-  View<PlainSums<2>> terms;  ///< out of the last step of a run, [contacts]
+  int step;              ///< of this run
+  View<double> ahead;    ///< in and out, [3 contacts]
+  View<double> impulse;  ///< in and out, [3 contacts]
+  View<double> past;     ///< work, [contacts][6]: `ahead` and velocities at the last step but one
+  View<ProximalState::Sums> terms;  ///< out of the last step of a run, [contacts]
 
   TETWARP_HD void operator()(std::int64_t contact) const {
     double u[3], r[3];
@@ -41,9 +54,11 @@ struct ProximalStepBody {
                     node_velocity.data, u);
     const ContactConstants<double>& own = constants[contact];
     const bool is_last = step + 1 == ProximalState::steps_at_once;
-    PlainSums<2> sums;
+    ProximalState::Sums sums;
+    if (step + 2 == ProximalState::steps_at_once) keep(contact, r, u);
     if (is_last) {
       sums.value[0] = natural_square(own, switches, normal_weight(own), tangent_weight(own), r, u);
+      add_curvature(contact, r, u, sums);
     }
     solve_contact(majorant[contact], switches, u, r);
     const double age = static_cast<double>(state->age + step), momentum = age / (age + 3);
@@ -54,6 +69,26 @@ struct ProximalStepBody {
       impulse[3 * contact + a] = r[a];
     }
     if (is_last) terms[contact] = sums;
+  }
+
+ private:
+  TETWARP_HD void keep(std::int64_t contact, const double* r, const double* u) const {
+    for (int a = 0; a < 3; ++a) {
+      past[6 * contact + a] = r[a];
+      past[6 * contact + 3 + a] = u[a];
+    }
+  }
+  TETWARP_HD void add_curvature(std::int64_t contact,
+                                const double* r,
+                                const double* u,
+                                ProximalState::Sums& sums) const {
+    const ContactConstants<double>& own = majorant[contact];
+    for (int a = 0; a < 3; ++a) {
+      const double change = r[a] - past[6 * contact + a];
+      const bool has_own = a == 0 || switches.pyramid;  // as solve_contact() takes it
+      sums.value[2] += change * (u[a] - past[6 * contact + 3 + a]);
+      sums.value[3] += change * change * (has_own ? own.block[4 * a] : own.tangent_metric);
+    }
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "tests/simulate/body_models.hpp"
+#include "tests/simulate/random_contacts.hpp"
 
 namespace tetwarp::test {
 
@@ -72,6 +73,29 @@ HandScene tower_scene(double height, std::int32_t cells) {
       touch.area = 1e-5;
       scene.touches.push_back(touch);
     }
+  }
+  return scene;
+}
+
+HandScene rods_scene() {
+  HandScene scene;
+  Model& model = scene.model;
+  model = empty_model();
+  add_frame(model, {0, 0, 0});  // body a of all contacts, which are sorted by it first
+  const double end = 0.05, mass = 0.1, moment = mass * end * end;
+  for (const double y : {0.0, 0.1}) add_rigid(model, mass, {1e-5, moment, moment}, {0, y, 0});
+  add_spring(model, rigid_point(model, 1, {0, 0, 0}), rigid_point(model, 2, {0, 0, 0}), 1);
+  scene.make_surfaces(0.02);
+  int counts[2] = {0, 0};
+  for (const char c : missed_contacts) {
+    const int rod = c == '1' ? 0 : 1;
+    const double x = counts[rod]++ % 2 == 0 ? end : -end;
+    Touch touch;
+    touch.body_b = 1 + rod;
+    touch.point_a = on_rigid({x, 0.1 * rod, 0});
+    touch.point_b = on_rigid({x, 0, 0});
+    touch.normal = {-1, 0, 0};
+    scene.touches.push_back(touch);
   }
   return scene;
 }

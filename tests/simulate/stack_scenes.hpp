@@ -1,5 +1,5 @@
 /// @file stack_scenes.hpp
-/// Stacks of elastic bodies whose contacts are given by hand.
+/// Stacks of elastic bodies and two rods whose contacts are given by hand.
 #pragma once
 #include <cstdint>
 
@@ -17,5 +17,9 @@ HandScene stack_scene(double youngs);
 /// @param height  of the shape at the start, as a factor of that at rest
 /// @param cells   of each block along x and y
 HandScene tower_scene(double height = 1, std::int32_t cells = 12);
+
+/// The rods of `missed_contacts` of 0.1 kg beside each other, joined by a spring, and a frame that
+/// holds them against a push along -x.
+HandScene rods_scene();
 
 }  // namespace tetwarp::test

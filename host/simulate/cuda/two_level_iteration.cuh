@@ -65,7 +65,6 @@ class TwoLevelIteration {
   };
   static constexpr std::int64_t most_steps = 1000;  ///< proximal ones of an outer iteration
   static constexpr std::int64_t most_of_solve = 20000;
-  static constexpr double most_growth = 10;  ///< of how far the laws are off, before it diverges
   static constexpr const char* label = "body/contact";
 
   View<double> part(std::int64_t first, std::int64_t size) const {
@@ -94,6 +93,7 @@ class TwoLevelIteration {
     }
     for (Vector* v : {&image_, &defect_, &moved_}) v->resize(row_numbers_);
     for (Vector* v : {&node_start_, &node_velocity_, &push_}) v->resize(nodes);
+    past_.resize(2 * contact_numbers_);
     mixed_.resize(Mixer::columns * row_numbers_);
     terms_.resize(contact_numbers_ / 3);
     sums_.resize(1);
@@ -188,19 +188,18 @@ class TwoLevelIteration {
     constexpr int count = ProximalState::steps_at_once;
     ProximalState* const state = state_.view().data;
     start_steps(state);
-    double first = 0;
     for (std::int64_t steps = count;; steps += count) {
       for (int step = 0; step < count; ++step) step_contacts_once(state, step);
-      grid_.sum_to(label, 0, terms_.view().size, ReadySums<PlainSums<2>>{terms_.view()},
+      grid_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
                    &state->sums);
-      const double laws = TwoLevelError::of(0, grid_.load(state).sums.value[0], 0).laws;
+      const ProximalState::Sums sums = grid_.load(&state->sums);
+      const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
       if (laws <= enough || steps >= most_steps) return steps;
-      if (steps == count) first = laws;
-      if (laws <= most_growth * first) {
-        grid_.once(label, ProximalDecideBody{state});
-      } else {  // the power iteration has missed the largest eigenvalue
+      if (ProximalState::has_missed(sums)) {
         numbers_.grow_majorants(grid_);
         start_steps(state);
+      } else {
+        grid_.once(label, ProximalDecideBody{state});
       }
     }
   }
@@ -215,7 +214,7 @@ class TwoLevelIteration {
     for_each(contact_numbers_ / 3,
              ProximalStepBody{touching, numbers_.constants(), numbers_.majorant(), switches_,
                               const_view(node_velocity_), state, step, ahead_.view(), impulse(),
-                              terms_.view()});
+                              past_.view(), terms_.view()});
     for_each(push_.view().size / 3,
              NodePushBody{touching, const_view(ahead_), const_view(stepped_), push_.view()});
     for_each(push_.view().size, NodeMoveBody{bodies(), const_view(push_), const_view(node_start_),
@@ -236,7 +235,8 @@ class TwoLevelIteration {
   Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]
   Vector image_, defect_, moved_;                  ///< [rows][3]; the last two in frames
   Vector node_start_, node_velocity_, push_;  ///< [nodes][3] in frames; node_start_: with stepped_
-  DeviceVector<PlainSums<2>> terms_;          ///< [contacts]
+  Vector past_;                               ///< [contacts][6], of ProximalStepBody
+  DeviceVector<ProximalState::Sums> terms_;   ///< [contacts]
   DeviceVector<ProximalState> state_;
   Vector mixed_;  ///< of the mixer
   DeviceVector<Sums> sums_;
