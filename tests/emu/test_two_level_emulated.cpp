@@ -1,7 +1,9 @@
 /// Contacts of deformable bodies, solved where back end cuda steps them, against those on the host.
 #include <gtest/gtest.h>
 
-#include <utility>
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "host/base/point3.hpp"
 #include "tests/emu/device_calls.hpp"
@@ -108,18 +110,33 @@ TEST(TwoLevelEmulated, AVeryStiffStackIsSolvedAsOnTheHost) {
   expect_as_on_the_host(stack_scene(1e9), 1e-5, 0, 5e-4, 1000);
 }
 
-/// By how much contacts change the velocities of a first step [m/s], and whether it has converged.
-std::pair<double, bool> first_change(const HandScene& scene, const ContactSystemOptions& options) {
+/// A first step on the emulated device.
+struct FirstStep {
+  StackStep solved;
+  std::vector<Point3> before;  ///< velocities without contact
+  double change() const { return farthest(solved.velocity, before); }
+};
+
+FirstStep first_step(const HandScene& scene,
+                     const ContactSystemOptions& options,
+                     const Point3& acceleration = {3, 1, -9.81},
+                     double friction = 0.4) {
   const auto stepper = make_cuda_stepper(scene.model, {.linear_tolerance = 1e-12});
   ContactSystem system(scene.surfaces, scene.model, options);
-  ContactTracker tracker(materials(0.4));
-  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  ContactTracker tracker(materials(friction));
+  stepper->solve(input_for(scene.model, stack_step, acceleration));
   const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
-  std::vector<Point3> before;
-  stepper->get_velocities(before);
-  std::vector<Point3> velocity = before;
-  const auto outcome = system.solve(*stepper, scene.model.start, tracker, contacts, velocity);
-  return {farthest(velocity, before), outcome.converged};
+  FirstStep step;
+  stepper->get_velocities(step.before);
+  StackStep& solved = step.solved;
+  solved.velocity = step.before;
+  take_copied();
+  take_calls();
+  solved.outcome = system.solve(*stepper, scene.model.start, tracker, contacts, solved.velocity);
+  solved.copied = take_copied();
+  solved.calls = take_calls();
+  solved.block_impulses = system.block_impulses();
+  return step;
 }
 
 TEST(TwoLevelEmulated, IslandsWithoutContactsKeepTheirVelocities) {
@@ -127,17 +144,74 @@ TEST(TwoLevelEmulated, IslandsWithoutContactsKeepTheirVelocities) {
   scene.touches.clear();
   ContactSystemOptions options = exact(Backend::cuda);
   options.skips_islands = false;
-  const auto [change, converged] = first_change(scene, options);
-  EXPECT_TRUE(converged);
-  EXPECT_LE(change, 1e-9);
+  const FirstStep step = first_step(scene, options);
+  EXPECT_TRUE(step.solved.outcome.converged);
+  EXPECT_LE(step.change(), 1e-9);
 }
 
 TEST(TwoLevelEmulated, ProgressStopsASolve) {
   ContactSystemOptions options = exact(Backend::cuda);
   int calls = 0;
   options.solver.progress = [&](const ContactProgress&) { return ++calls < 2; };
-  EXPECT_FALSE(first_change(stack_scene(1e6), options).second);
+  EXPECT_FALSE(first_step(stack_scene(1e6), options).solved.outcome.converged);
   EXPECT_EQ(calls, 2);
+}
+
+/// The same step with contacts solved on the host, from the system of the emulated device.
+/// @param tries  whether the device tries first
+void expect_solved_on_the_host(const HandScene& scene, bool tries) {
+  ContactSystemOptions options;
+  options.solver.tolerance = 1e-5;
+  const StackStep host = first_step(scene, options).solved;
+  options.solver.backend = Backend::cuda;
+  const StackStep found = first_step(scene, options).solved;
+  EXPECT_TRUE(found.outcome.converged);
+  EXPECT_EQ(found.outcome.residual, host.outcome.residual);
+  EXPECT_EQ(found.velocity, host.velocity);
+  EXPECT_EQ(found.block_impulses, host.block_impulses);
+  EXPECT_GE(found.copied.to_host, host.copied.to_host);  // the system
+  EXPECT_EQ(host.calls.count(DeviceCall::launch), 0);
+  EXPECT_EQ(found.calls.count(DeviceCall::launch) > 0, tries);
+  EXPECT_EQ(found.outcome.sweeps > host.outcome.sweeps, tries);
+}
+
+/// Rounded to float32 the inverse of the block is not positive.
+TEST(TwoLevelEmulated, WhatDoesNotConvergeIsSolvedByTheHost) {
+  expect_solved_on_the_host(stack_scene(1e11), true);
+}
+
+TEST(TwoLevelEmulated, BodiesTooLargeForAnInverseAreSolvedByTheHost) {
+  HandScene scene;
+  scene.model = empty_model();
+  add_block(scene.model, {.cells = {125, 3, 1}, .edge = 0.005, .youngs = 1e3});
+  ASSERT_EQ(scene.model.node_count, 1008);
+  const std::int32_t frame = add_frame(scene.model, {0, 0, 0});
+  scene.make_surfaces(0.02);
+  for (std::int32_t node = 0; node < 504; node += 50) {
+    Touch touch;
+    touch.body_b = scene.model.rigid.body[static_cast<std::size_t>(frame)];
+    touch.point_a = on_nodes({node, -1, -1}, {1, 0, 0});
+    touch.point_b = on_rigid(scene.model.start.position[static_cast<std::size_t>(node)]);
+    scene.touches.push_back(touch);
+  }
+  expect_solved_on_the_host(scene, false);
+}
+
+/// Copies within the device: three as a solve begins, two per outer iteration, and three where its
+/// steps begin, which they do anew with twice the majorant.
+TEST(TwoLevelEmulated, StepsBeginAnewWhereAnEigenvalueIsMissed) {
+  ContactSystemOptions options = exact(Backend::cuda);
+  options.solver.tolerance = 1e-8;
+  const Point3 push = {-10, 0, 0};
+  const StackStep found = first_step(rods_scene(), options, push, 0).solved;
+  options.solver.backend = Backend::cpu;
+  const StackStep host = first_step(rods_scene(), options, push, 0).solved;
+  EXPECT_TRUE(found.outcome.converged);
+  EXPECT_EQ(found.calls.count(DeviceCall::copy_within), 3 + 5 * found.outcome.outer_iterations + 3);
+  EXPECT_LT(found.outcome.sweeps, 300);
+  EXPECT_LE(farthest(found.velocity, host.velocity), 1e-9);
+  EXPECT_LE(farthest(found.block_impulses, host.block_impulses), 1e-9);
+  EXPECT_NEAR(norm(found.block_impulses[2]), 0.1 * 10 * stack_step, 1e-9);
 }
 
 /// Nothing of A is copied: of contacts axes, arms, laws and lists, of nodes that may move lists and
