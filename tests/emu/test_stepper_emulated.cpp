@@ -1,7 +1,15 @@
 /// @file test_stepper_emulated.cpp
-/// What the stepper of back end cuda asks of a device; the emulated one records it.
+/// What the stepper of back end cuda asks of a device; the emulated one records it. Inverses of
+/// systems at rest that are kept there.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "host/base/index_of.hpp"
+#include "host/simulate/cuda/compliance_store.cuh"
 #include "tests/emu/device_calls.hpp"
 #include "tests/simulate/body_models.hpp"
 
@@ -86,6 +94,91 @@ TEST(StepperEmulated, PositionsAreInDeviceMemory) {
   EXPECT_EQ(view.memory, Memory::device);
   EXPECT_EQ(view.node_count, 5);
   EXPECT_TRUE(simt::Device::only().is_on_device(view.xyz, 15 * sizeof(double)));
+}
+
+/// A of a body at rest, for its nodes that may move in the order of the model.
+Eigen::MatrixXd rest_matrix(const Model& model, std::int32_t body, double time_step) {
+  const auto stepper = make_cpu_stepper(model, {});
+  stepper->solve(input_for(model, time_step));
+  const StepSystem system = stepper->system();
+  std::vector<Eigen::Index> place(index_of(model.node_count), -1);
+  Eigen::Index count = 0;
+  for (std::int32_t n = model.body_node[index_of(body)]; n < model.body_node[index_of(body) + 1];
+       ++n) {
+    if (model.prescribed[index_of(n)] == 0) place[index_of(n)] = count++;
+  }
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
+    const Eigen::Index i = place[index_of(system.rows.block_of[row])];
+    if (i < 0) continue;
+    for (std::int64_t k = system.rows.start[row]; k < system.rows.free_end[row]; ++k) {
+      const Eigen::Index j = place[index_of(system.rows.block_of[system.rows.column[k]])];
+      a.block<3, 3>(3 * i, 3 * j) = Eigen::Map<const Eigen::Matrix3d>(system.values.data + 9 * k);
+    }
+  }
+  return a;
+}
+
+/// The inverses of two bodies in a store, each compared with Eigen's.
+class StoredInverses {
+ public:
+  StoredInverses() : model_(two_blocks()), factors_(model_), exec_(0), scope_(exec_.enter()) {
+    bodies_[0].frame = 1;
+    bodies_[2].frame = 0;
+  }
+
+  /// @returns how many inverses were copied to the device
+  std::int64_t set(double time_step) {
+    factors_.set_time_step(time_step);
+    take_calls();
+    store_.set_inverses(exec_, factors_, time_step, {1, 0}, bodies_);
+    const std::int64_t copies = take_calls().count(DeviceCall::copy_to_device);
+    EXPECT_EQ(bodies_[1].inverse, nullptr);
+    expect_inverse(bodies_[0], 0, time_step);
+    expect_inverse(bodies_[2], 1, time_step);
+    return copies;
+  }
+  const float* of_first() const { return bodies_[0].inverse; }
+
+ private:
+  static Model two_blocks() {
+    Model model = empty_model();
+    add_block(model, {.cells = {2, 2, 1}, .gamma = 1e-3});
+    add_block(model, {.cells = {1, 1, 2}, .origin = {1, 0, 0}, .youngs = 1e4});
+    model.prescribed[4] = 1;
+    return model;
+  }
+  void expect_inverse(const CompliantBody& body, std::int32_t number, double time_step) {
+    const Eigen::MatrixXd expected = rest_matrix(model_, number, time_step).inverse();
+    Eigen::MatrixXf found(expected.rows(), expected.cols());
+    exec_.get(View<const float>{body.inverse, found.size()}, found.data());
+    EXPECT_LE((found.cast<double>() - expected).cwiseAbs().maxCoeff(),
+              1e-5 * expected.cwiseAbs().maxCoeff());
+  }
+
+  Model model_;
+  RestFactors factors_;
+  CudaStepExec exec_;
+  DeviceScope scope_;
+  ComplianceStore store_;
+  std::vector<CompliantBody> bodies_{3};
+};
+
+/// Three lengths are kept; a fourth takes the place of the one whose last use is longest ago.
+TEST(ComplianceStore, MakesInversesOncePerLengthOfAStep) {
+  StoredInverses inverses;
+  EXPECT_EQ(inverses.set(1e-3), 2);
+  const float* const first = inverses.of_first();
+  EXPECT_EQ(inverses.set(1e-3), 0);
+  EXPECT_EQ(inverses.set(2e-3), 2);
+  EXPECT_NE(inverses.of_first(), first);
+  EXPECT_EQ(inverses.set(3e-3), 2);
+  EXPECT_EQ(inverses.set(1e-3), 0);
+  EXPECT_EQ(inverses.of_first(), first);
+  EXPECT_EQ(inverses.set(4e-3), 2);
+  EXPECT_EQ(inverses.set(3e-3), 0);
+  EXPECT_EQ(inverses.set(1e-3), 0);
+  EXPECT_EQ(inverses.set(2e-3), 2);
 }
 
 }  // namespace
