@@ -184,7 +184,8 @@ PairGap DetectorPipeline<Exec>::nearest_of_features() {
   return nearest;
 }
 
-/// Searches within small distances first: of many near pairs few are then compared.
+/// Searches within small distances first: of many near pairs few are then compared. Pairs that the
+/// step has found are kept where they suffice.
 template <class Exec>
 ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
                                             double cap,
@@ -192,6 +193,7 @@ ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
   check_sizes(places);
   if (!std::isfinite(cap))
     throw std::invalid_argument("collision detection: the cap is not finite");
+  const bool were_found = reuses_pairs_ && has_pairs_ && is_still_.empty();
   has_pairs_ = false;
   if (is_given(resident)) {
     motion_ = resident;
@@ -203,10 +205,16 @@ ClosestPair DetectorPipeline<Exec>::closest(const SurfacePlaces& places,
   still_.start.planes = still_.end.planes = places.planes;
   ClosestPair closest;
   closest.distance = cap;
+  bool suffice = were_found;
   for (double within = std::min(cap, 2 * surfaces_.thickness); within > 0;
        within = std::min(cap, 4 * within)) {
-    make_boxes(within, true, within, 0);
-    find_item_pairs({});
+    suffice = suffice && make_boxes(within, false, 0, 0);
+    if (suffice) {
+      ++counts_.reused;
+    } else {
+      make_boxes(within, true, within, 0);
+      find_item_pairs({});
+    }
     find_features(still_, within, {});
     if (features_.size() > 0) {
       const PairGap gap = nearest_of_features();

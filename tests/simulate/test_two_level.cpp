@@ -43,7 +43,7 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     ContactIslands islands(scene.model);
     ContactRows jacobian;
     set_contact_rows(scene.surfaces, scene.model, frames_of_bodies(scene.surfaces, scene.model),
-                     state, contacts, jacobian);
+                     state, contacts, 1, jacobian);
     std::vector<std::int32_t> all;
     for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
     StepProblem part;

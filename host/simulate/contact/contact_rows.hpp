@@ -15,6 +15,11 @@ namespace tetwarp {
 
 /// Of each contact the blocks that it acts on, ascending, each once.
 struct ContactRows {
+  struct BlockArm {
+    std::int32_t block = 0;  ///< of a frame the first one
+    ContactArm arm;
+  };
+
   std::vector<std::int32_t> start;           ///< [contacts + 1]
   std::vector<std::int32_t> block;           ///< [entries] of the model
   std::vector<std::array<double, 9>> value;  ///< [entries] row k: velocity along axis k of the
@@ -25,6 +30,8 @@ struct ContactRows {
   std::vector<std::int32_t> arm_start;  ///< [contacts + 1]
   std::vector<ContactArm> arms;         ///< of nodes and frames, in the order of the blocks
   std::vector<ArmPlace> places;         ///< [arms] in `value`
+
+  std::vector<std::vector<BlockArm>> parts;  ///< only used to set the rest: keeps memory
 
   std::span<const std::int32_t> blocks_of(std::size_t contact) const {
     return std::span(block).subspan(static_cast<std::size_t>(start[contact]),
@@ -42,14 +49,16 @@ std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Mod
 
 /// A point of a rigid body at x moves with v + omega x (x - centre); a point of a deformable body
 /// with the weighted mean of up to 12 nodes.
-/// @param frames  of frames_of_bodies()
-/// @param state   at the start of the step
-/// @param rows    out; memory is kept
+/// @param frames   of frames_of_bodies()
+/// @param state    at the start of the step
+/// @param threads  any number: same rows
+/// @param rows     out; memory is kept
 void set_contact_rows(const SceneSurfaces& scene,
                       const Model& model,
                       std::span<const std::int32_t> frames,
                       const ModelState& state,
                       const std::vector<TrackedContact>& contacts,
+                      int threads,
                       ContactRows& rows);
 
 }  // namespace tetwarp

@@ -238,7 +238,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   State& s = *state_;
   static const std::vector<Point3> none;
   s.velocity_before = velocity;
-  set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.rows);
+  set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.options.solver.threads, s.rows);
   s.islands.join(s.rows);
   s.set_laws(tracker, contacts, velocity);
   s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);

@@ -42,7 +42,8 @@ std::array<std::int32_t, 2> ElasticGroups::bodies_of(std::int32_t contact) const
   return own;
 }
 
-const std::vector<std::int32_t>& ElasticGroups::group(std::vector<std::int32_t>& list) {
+const std::vector<std::int32_t>& ElasticGroups::group(std::vector<std::int32_t>& list,
+                                                      int threads) {
   changed_.clear();
   for (const std::int32_t contact : list) {
     if (group_of_[index_of(contact)] >= 0) continue;
@@ -54,12 +55,12 @@ const std::vector<std::int32_t>& ElasticGroups::group(std::vector<std::int32_t>&
   }
   std::ranges::sort(changed_);
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
-  for (const std::int32_t g : changed_) {
-    Group& own = groups_[index_of(g)];
+  parallel_tasks(threads, static_cast<std::int64_t>(changed_.size()), [this](std::int64_t k) {
+    Group& own = groups_[index_of(changed_[index_of(k)])];
     std::ranges::sort(own.contacts);
     own = Group{std::move(own.contacts)};
     list_slots(own);
-  }
+  });
   std::ranges::sort(list, {}, [&](std::int32_t contact) {
     return std::pair(group_of_[index_of(contact)], contact);
   });

@@ -25,8 +25,9 @@ class ElasticGroups {
            const std::vector<std::int32_t>& part_row);
   /// Sorts a list of contacts into the order of sweeps, one group after the other. Groups that it
   /// gives contacts that no list before had are made anew.
+  /// @param threads  any number: same groups
   /// @returns these groups
-  const std::vector<std::int32_t>& group(std::vector<std::int32_t>& list);
+  const std::vector<std::int32_t>& group(std::vector<std::int32_t>& list, int threads);
 
   std::int32_t count() const { return static_cast<std::int32_t>(groups_.size()); }
   /// All contacts of a group that have been listed, ascending.

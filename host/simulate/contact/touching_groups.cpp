@@ -84,7 +84,7 @@ void TouchingBlocks::set_matrix(std::int32_t group) {
 
 void TouchingBlocks::begin_sweeps() {
   std::vector<std::int32_t> made;
-  for (const std::int32_t group : groups_.group(working_)) {
+  for (const std::int32_t group : groups_.group(working_, threads_)) {
     for (const std::int32_t contact : groups_.contacts(group)) {
       elastic_start_[index_of(contact)] = -1;
     }

@@ -263,6 +263,7 @@ void TouchingBlocks::add_impulses(View<const double> load,
   }
   for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
     const double r[3] = {impulse[3 * c] - laws_.preload[c], impulse[3 * c + 1], impulse[3 * c + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
     add_push(c, r, force);
   }
 }

@@ -120,7 +120,8 @@ void ContactStep::set_sleeping_forces(const ModelState& state) {
   std::vector<TrackedContact> contacts;
   for (const SleepingContact& contact : sleeping_) contacts.push_back(contact.contact);
   ContactRows rows;
-  set_contact_rows(surfaces_, model_, frames_of_bodies(surfaces_, model_), state, contacts, rows);
+  set_contact_rows(surfaces_, model_, frames_of_bodies(surfaces_, model_), state, contacts,
+                   options_.threads, rows);
   sleeping_forces_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const SleepingContact& of = sleeping_[c];
