@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/find_record.hpp"
 
@@ -26,8 +28,8 @@ ContactKey key_of(std::int32_t body_a,
 
 }  // namespace
 
-PairContacts::PairContacts(const SceneSurfaces& scene)
-    : scene_(scene), areas_(scene.surfaces), patches_(scene, areas_) {}
+PairContacts::PairContacts(const SceneSurfaces& scene, int threads)
+    : scene_(scene), threads_(threads), areas_(scene.surfaces), patches_(scene, areas_) {}
 
 std::int32_t PairContacts::slot_of(const PairTouch& touch,
                                    std::span<const ContactRecord> records) const {
@@ -90,24 +92,22 @@ MaterialPoint PairContacts::material_of(const std::int32_t* vertex,
   return point;
 }
 
-void PairContacts::report(const PairTouch& touch,
-                          std::int32_t feature_a,
-                          std::int32_t feature_b,
-                          double area) {
-  ReportedContact& contact = contacts_.emplace_back();
-  contact.key = key_of(touch.body_a, feature_a, touch.body_b, feature_b);
-  const bool is_turned = contact.key.body_a != touch.body_a || contact.key.feature_a != feature_a;
-  const double sign = is_turned ? -1 : 1;
+/// The contact of a touch.
+void PairContacts::report(const NamedTouch& named, ReportedContact& contact) const {
+  const PairTouch& touch = *named.touch;
+  contact = {};
+  contact.key = named.key;
+  const double sign = named.is_turned ? -1 : 1;
   contact.point_a_world = point_of(touch.point_a);
   contact.point_b_world = point_of(touch.point_b);
   contact.material_a = material_of(touch.vertex_a, touch.weight_a, touch.body_a);
   contact.material_b = material_of(touch.vertex_b, touch.weight_b, touch.body_b);
-  if (is_turned) {
+  if (named.is_turned) {
     std::swap(contact.point_a_world, contact.point_b_world);
     std::swap(contact.material_a, contact.material_b);
   }
   contact.normal = point_of(times(sign, touch.normal));
-  contact.area = area;
+  contact.area = named.area;
   contact.material = scene_.material_of(touch.body_a, touch.body_b);
   const Vec3 across = minus(touch.way, times(dot(touch.way, touch.normal), touch.normal));
   if (norm(across) > 1e-9 * scene_.surfaces.thickness) {
@@ -115,8 +115,18 @@ void PairContacts::report(const PairTouch& touch,
   }
 }
 
-void PairContacts::report_vertex(std::span<const ChosenTouch> touches,
-                                 std::span<const ContactRecord> records) {
+void PairContacts::name(const PairTouch& touch,
+                        std::int32_t feature_a,
+                        std::int32_t feature_b,
+                        double area) {
+  const ContactKey key = key_of(touch.body_a, feature_a, touch.body_b, feature_b);
+  const bool is_turned = key.body_a != touch.body_a || key.feature_a != feature_a;
+  named_.push_back({key, &touch, area, is_turned});
+}
+
+/// Names the touches of a vertex and a body.
+void PairContacts::name_vertex(std::span<const ChosenTouch> touches,
+                               std::span<const ContactRecord> records) {
   slots_.clear();
   for (const ChosenTouch& chosen : touches) {
     const PairTouch& touch = chosen.touch;
@@ -125,15 +135,15 @@ void PairContacts::report_vertex(std::span<const ChosenTouch> touches,
     const ContactRecord* const record =
         find_record(records, key_of(touch.body_a, touch.a, touch.body_b, slots_.back()));
     const bool is_bonded = record != nullptr && record->intensity > 0;
-    report(touch, touch.a, slots_.back(),
-           is_bonded ? std::max(chosen.area, record->area) : chosen.area);
+    name(touch, touch.a, slots_.back(),
+         is_bonded ? std::max(chosen.area, record->area) : chosen.area);
   }
 }
 
 std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> touches,
                                                  const std::vector<Point3>& vertices,
                                                  std::span<const ContactRecord> records) {
-  contacts_.clear();
+  named_.clear();
   list_records(records);
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
   const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());
@@ -141,28 +151,24 @@ std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> to
     const PairTouch& touch = touches[first].touch;
     std::size_t end = first + 1;
     if (is_of_edges(touch)) {
-      report(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
+      name(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
     } else {
       while (end < touches.size() && !is_of_edges(touches[end].touch) &&
              touches[end].touch.a == touch.a && touches[end].touch.body_b == touch.body_b) {
         ++end;
       }
-      report_vertex(touches.subspan(first, end - first), records);
+      name_vertex(touches.subspan(first, end - first), records);
     }
     first = end;
   }
-  patches_.reduce(contacts_, vertices, records);
-  sort_contacts();
+  std::ranges::sort(named_, {}, &NamedTouch::key);
+  contacts_.resize(named_.size());
+  parallel_for(threads_, static_cast<std::int64_t>(named_.size()),
+               [this](std::int64_t c) { report(named_[index_of(c)], contacts_[index_of(c)]); });
+  if (patches_.reduce(contacts_, vertices, records)) {
+    std::ranges::sort(contacts_, {}, &ReportedContact::key);
+  }
   return contacts_;
-}
-
-void PairContacts::sort_contacts() {
-  order_.clear();
-  for (std::size_t c = 0; c < contacts_.size(); ++c) order_.emplace_back(contacts_[c].key, c);
-  std::sort(order_.begin(), order_.end());
-  sorted_.clear();
-  for (const auto& [key, c] : order_) sorted_.push_back(contacts_[c]);
-  contacts_.swap(sorted_);
 }
 
 }  // namespace tetwarp

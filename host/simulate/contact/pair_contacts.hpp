@@ -3,7 +3,6 @@
 #pragma once
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>
@@ -22,7 +21,8 @@ namespace tetwarp {
 class PairContacts {
  public:
   /// @param scene  kept by the caller
-  explicit PairContacts(const SceneSurfaces& scene);
+  /// @param threads  any number: same contacts
+  explicit PairContacts(const SceneSurfaces& scene, int threads = 1);
   PairContacts(const PairContacts&) = delete;
   PairContacts& operator=(const PairContacts&) = delete;
 
@@ -48,22 +48,31 @@ class PairContacts {
     std::size_t record = 0;             ///< in the records
   };
 
+  /// A touch and the key of its contact, whose sides may be those of the touch turned.
+  struct NamedTouch {
+    ContactKey key;
+    const PairTouch* touch = nullptr;
+    double area = 0;
+    bool is_turned = false;
+  };
+
   std::int32_t slot_of(const PairTouch& touch, std::span<const ContactRecord> records) const;
   void list_records(std::span<const ContactRecord> records);
-  void report(const PairTouch& touch, std::int32_t feature_a, std::int32_t feature_b, double area);
+  void name(const PairTouch& touch, std::int32_t feature_a, std::int32_t feature_b, double area);
   MaterialPoint material_of(const std::int32_t* vertex,
                             const double* weight,
                             std::int32_t body) const;
-  void sort_contacts();
-  void report_vertex(std::span<const ChosenTouch> touches, std::span<const ContactRecord> records);
+  void name_vertex(std::span<const ChosenTouch> touches, std::span<const ContactRecord> records);
+  void report(const NamedTouch& named, ReportedContact& contact) const;
 
   const SceneSurfaces& scene_;
+  int threads_;
   TouchAreas areas_;
   RigidPatches patches_;
   std::vector<std::int32_t> slots_;           ///< taken, of the current vertex and body
   std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted by all but the record
-  std::vector<ReportedContact> contacts_, sorted_;
-  std::vector<std::pair<ContactKey, std::size_t>> order_;  ///< of contacts_
+  std::vector<NamedTouch> named_;
+  std::vector<ReportedContact> contacts_;
 };
 
 }  // namespace tetwarp

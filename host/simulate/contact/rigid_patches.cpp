@@ -27,14 +27,14 @@ bool RigidPatches::is_rigid(const ReportedContact& contact) const {
          at(scene_.surfaces.bodies, contact.key.body_b).is_rigid;
 }
 
-void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
+bool RigidPatches::reduce(std::vector<ReportedContact>& contacts,
                           const std::vector<Point3>& vertices,
                           std::span<const ContactRecord> records) {
   order_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (is_rigid(contacts[c])) order_.push_back(c);
   }
-  if (order_.empty()) return;
+  if (order_.empty()) return false;
   kept_.clear();
   for (const ReportedContact& contact : contacts) {
     if (!is_rigid(contact)) kept_.push_back(contact);
@@ -52,6 +52,7 @@ void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
     reduce_pair(contacts, vertices, records);
   }
   contacts.swap(kept_);
+  return true;
 }
 
 void RigidPatches::reduce_pair(std::vector<ReportedContact>& contacts,

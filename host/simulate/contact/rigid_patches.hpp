@@ -38,7 +38,8 @@ class RigidPatches {
   /// @param contacts  in: sides in the order of keys; out: reduced, in no order
   /// @param vertices  at the start of the step
   /// @param records   at the start of the step, sorted by key
-  void reduce(std::vector<ReportedContact>& contacts,
+  /// @returns whether there are any to reduce
+  bool reduce(std::vector<ReportedContact>& contacts,
               const std::vector<Point3>& vertices,
               std::span<const ContactRecord> records);
 
