@@ -7,7 +7,7 @@
 #include "kernels/exec/device_vector.cuh"
 #include "kernels/exec/exec_cuda.cuh"
 #include "kernels/exec/grid_sum.cuh"
-#include "kernels/exec/stream_capture.cuh"
+#include "kernels/exec/iteration_graph.cuh"
 
 namespace tetwarp {
 
@@ -46,40 +46,6 @@ class DeviceSums {
   DeviceVector<PlainSums<2>> runs_;
 };
 
-/// Iterations of an island as a CUDA graph. They make the same launches with the same arguments in
-/// every step, because the arrays of a stepper stay where they are.
-class IterationGraph {
- public:
-  static constexpr std::int64_t length = 8;  ///< iterations
-
-  IterationGraph() = default;
-  IterationGraph(const IterationGraph&) = delete;
-  IterationGraph& operator=(const IterationGraph&) = delete;
-  ~IterationGraph() {
-    if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
-  }
-
-  /// @param run  launches `length` iterations. The first time they run as they are, which loads
-  ///             their kernels, as a recording must not; the second time they are recorded
-  template <class Run>
-  void launch(cudaStream_t stream, const Run& run) {
-    if (!is_loaded_) {
-      is_loaded_ = true;
-      return run();
-    }
-    if (graph_ == nullptr) {
-      StreamCapture capture(stream);
-      run();
-      check_cuda(cudaGraphInstantiate(&graph_, capture.end(), 0), "cudaGraphInstantiate");
-    }
-    check_cuda(cudaGraphLaunch(graph_, stream), "cudaGraphLaunch");
-  }
-
- private:
-  bool is_loaded_ = false;
-  cudaGraphExec_t graph_ = nullptr;
-};
-
 /// One index = index begin + i of the other body.
 template <class Body>
 struct ShiftedBody {
@@ -92,7 +58,9 @@ struct ShiftedBody {
 /// each.
 class GridGradientExec {
  public:
-  /// @param graph  of the rows that island_cg() solves
+  static constexpr std::int64_t length = 8;  ///< iterations of a graph
+
+  /// @param graph  of the rows that island_cg() solves: the arrays of a stepper stay where they are
   GridGradientExec(CudaExec& exec,
                    DeviceSums& sums,
                    PinnedBuffer<GradientScalars>& pinned,
@@ -122,13 +90,13 @@ class GridGradientExec {
     exec_.read(View<const Value>{value, 1}, pinned);
     return *pinned;
   }
-  std::int64_t iterations_at_once() const { return IterationGraph::length; }
+  std::int64_t iterations_at_once() const { return length; }
   template <class Iteration>
   void repeat(std::int64_t count, const Iteration& iteration) {
     const auto run = [&] {
       for (std::int64_t i = 0; i < count; ++i) iteration.run(*this);
     };
-    if (count == IterationGraph::length) return graph_.launch(exec_.stream(), run);
+    if (count == length) return graph_.launch(exec_.stream(), run);
     run();
   }
 

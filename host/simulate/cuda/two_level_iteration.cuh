@@ -9,6 +9,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/cuda/two_level_numbers.cuh"
 #include "kernels/contact/anderson.hpp"
+#include "kernels/exec/iteration_graph.cuh"
 #include "kernels/two_level/proximal_step.hpp"
 
 namespace tetwarp {
@@ -21,7 +22,10 @@ class TwoLevelIteration {
   /// @param exec                     kept by the caller
   /// @param node_count, rigid_count  of the model
   TwoLevelIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
-      : exec_(exec), grid_(exec.device_exec()), numbers_(node_count, rigid_count) {}
+      : exec_(exec),
+        grid_(exec.device_exec()),
+        run_grid_(exec.device_exec()),
+        numbers_(node_count, rigid_count) {}
 
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
@@ -102,6 +106,7 @@ class TwoLevelIteration {
 
   /// Starts from the velocities without contact.
   void prepare(double damping) {
+    run_.restart();
     numbers_.set_damping(exec_, grid_, damping);
     grid_.copy(label, numbers_.start_velocity(), velocity());
     for_each(contact_numbers_ / 3,
@@ -189,9 +194,7 @@ class TwoLevelIteration {
     ProximalState* const state = state_.view().data;
     start_steps(state);
     for (std::int64_t steps = count;; steps += count) {
-      for (int step = 0; step < count; ++step) step_contacts_once(state, step);
-      grid_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
-                   &state->sums);
+      make_run(state);
       const ProximalState::Sums sums = grid_.load(&state->sums);
       const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
       if (laws <= enough || steps >= most_steps) return steps;
@@ -202,6 +205,16 @@ class TwoLevelIteration {
         grid_.once(label, ProximalDecideBody{state});
       }
     }
+  }
+  /// Eight steps and their sums.
+  void make_run(ProximalState* state) {
+    run_.launch(exec_.device_exec().stream(), [&] {
+      for (int step = 0; step < ProximalState::steps_at_once; ++step) {
+        step_contacts_once(state, step);
+      }
+      run_grid_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
+                       &state->sums);
+    });
   }
   void start_steps(ProximalState* state) {
     grid_.once(label, ProximalStartBody{state});
@@ -223,6 +236,7 @@ class TwoLevelIteration {
 
   CudaStepExec& exec_;
   GridContactExec grid_;
+  GridContactExec run_grid_;  ///< of recorded runs: its sums stay where they are
   TwoLevelNumbers numbers_;
   const TwoLevelLists* lists_ = nullptr;     ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve
@@ -238,7 +252,8 @@ class TwoLevelIteration {
   Vector past_;                               ///< [contacts][6], of ProximalStepBody
   DeviceVector<ProximalState::Sums> terms_;   ///< [contacts]
   DeviceVector<ProximalState> state_;
-  Vector mixed_;  ///< of the mixer
+  IterationGraph run_;  ///< of the present numbers
+  Vector mixed_;        ///< of the mixer
   DeviceVector<Sums> sums_;
 };
 
