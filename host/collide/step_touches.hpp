@@ -89,7 +89,8 @@ class StepTouches {
     if (!new_.empty()) {
       put(new_, new_pairs_);
       exec_.append(label, size_of(new_),
-                   TouchBody{exec_.view(std::as_const(new_pairs_)), view_of(motion), pass_}, fresh_);
+                   TouchBody{exec_.view(std::as_const(new_pairs_)), view_of(motion), pass_},
+                   fresh_);
       add_later();
     }
     ++pass_;
@@ -100,7 +101,7 @@ class StepTouches {
   /// other, the nearest first; edges come last. Valid until the next call.
   std::span<const ChosenTouch> choose() {
     const TouchList touches{first_.view(), later()};
-    exec_.append(label, touches.size(), TouchKeyBody{touches, vertex_count_}, order_);
+    exec_.fill(label, touches.size(), TouchKeyBody{touches, vertex_count_}, order_);
     int bits = 1;
     while ((feature_count_ >> bits) > 0) ++bits;
     exec_.sort_pairs(label, order_, bits);
@@ -108,10 +109,10 @@ class StepTouches {
     exec_.for_each(
         label, order_.size(),
         TouchChoiceBody{touches, scene_, thickness_, order_.values(), exec_.view(mark_)});
-    exec_.append(label, order_.size(),
-                 ChosenTouchBody{touches, areas(), start_, order_.view(),
-                                 exec_.view(std::as_const(mark_))},
-                 chosen_);
+    exec_.append(
+        label, order_.size(),
+        ChosenTouchBody{touches, areas(), start_, order_.view(), exec_.view(std::as_const(mark_))},
+        chosen_);
     const View<const ChosenTouch> chosen = exec_.on_host(chosen_.view(), host_chosen_);
     return {chosen.data, static_cast<std::size_t>(chosen.size)};
   }
@@ -176,8 +177,8 @@ class StepTouches {
   View<const double> start_;
   Vector<double> first_end_, first_planes_;
   View<const double> first_end_view_, first_planes_view_;
-  std::vector<FeatureTouch> known_;  ///< hits, sorted
-  List<PairTouch> first_;            ///< of the first detection
+  std::vector<FeatureTouch> known_;         ///< hits, sorted
+  List<PairTouch> first_;                   ///< of the first detection
   std::array<Vector<PairTouch>, 2> later_;  ///< of later ones: one of both
   std::size_t later_now_ = 0;
   std::int64_t later_count_ = 0;

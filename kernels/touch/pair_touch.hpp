@@ -13,19 +13,19 @@ namespace tetwarp {
 /// Side a is that of the pair's first feature.
 struct PairTouch {
   PairKind kind = PairKind::vertex_face;
-  bool is_inside = true;           ///< nearest point inside a face; of two edges: between all ends
-  std::int32_t a = 0, b = 0;       ///< the features, as in TouchingPair
-  std::int32_t end = 0;            ///< 1, 2: at an end of the overlap of two capsules side by side
-  std::int32_t pass = 0;           ///< the detection of the step that found it, from 0
+  bool is_inside = true;      ///< nearest point inside a face; of two edges: between all ends
+  std::int32_t a = 0, b = 0;  ///< the features, as in TouchingPair
+  std::int32_t end = 0;       ///< 1, 2: at an end of the overlap of two capsules side by side
+  std::int32_t pass = 0;      ///< the detection of the step that found it, from 0
   std::int32_t body_a = 0, body_b = 0;  ///< bodies, then obstacles
   Vec3 point_a{}, point_b{};            ///< of the material, at the start; `gap` apart
   Vec3 normal{{0, 0, 1}};               ///< unit, from b to a
-  Vec3 way{};           ///< by which a moves relative to b as first expected [m]
-  double gap = 0;       ///< at the start along the normal, less the thickness [m]
-  double distance = 0;  ///< between the surfaces at the start [m]
-  double time = 0;      ///< of the hit, 0 to 1; 0 where they are near at the start
-  std::int32_t vertex_a[3] = {-1, -1, -1};  ///< of the vertex or edge a; -1: not used
-  std::int32_t vertex_b[3] = {-1, -1, -1};  ///< of the face, edge or vertex b; none of a plane
+  Vec3 way{};                           ///< by which a moves relative to b as first expected [m]
+  double gap = 0;                       ///< at the start along the normal, less the thickness [m]
+  double distance = 0;                  ///< between the surfaces at the start [m]
+  double time = 0;                      ///< of the hit, 0 to 1; 0 where they are near at the start
+  std::int32_t vertex_a[3] = {-1, -1, -1};    ///< of the vertex or edge a; -1: not used
+  std::int32_t vertex_b[3] = {-1, -1, -1};    ///< of the face, edge or vertex b; none of a plane
   double weight_a[3] = {}, weight_b[3] = {};  ///< of these, of the nearest points; sum 1
 
   bool operator==(const PairTouch&) const = default;
@@ -41,8 +41,8 @@ struct ChosenTouch {
 struct TouchView {
   CollideView scene;
   TouchAreaView areas;
-  MotionView motion;                         ///< in which the pairs were found
-  View<const double> first_end;              ///< of the first motion of the step, as MotionView
+  MotionView motion;             ///< in which the pairs were found
+  View<const double> first_end;  ///< of the first motion of the step, as MotionView
   View<const double> first_plane_end;
   double thickness;  ///< [m]
 

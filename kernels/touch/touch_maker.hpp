@@ -94,8 +94,10 @@ class TouchMaker {
     return plus(minus(start, origin_), way_at(frame, start, end, time_));
   }
 
-  TETWARP_ANY_EXEC void set_vertex(
-      SidePoint& side, std::int32_t vertex, std::int32_t& body, Vec3& hit) const {
+  TETWARP_ANY_EXEC void set_vertex(SidePoint& side,
+                                   std::int32_t vertex,
+                                   std::int32_t& body,
+                                   Vec3& hit) const {
     side.vertex[0] = vertex;
     side.weight[0] = 1;
     side.radius = view_.scene.vertex_radius[vertex];
@@ -166,8 +168,8 @@ class TouchMaker {
     touch_.normal = normal_at(minus(start_a, start_b));
     touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
     touch_.point_b = plus(start_b, times(b_.radius, touch_.normal));
-    touch_.way = minus(minus(a_.mean(view_.first_end), start_a),
-                       minus(b_.mean(view_.first_end), start_b));
+    touch_.way =
+        minus(minus(a_.mean(view_.first_end), start_a), minus(b_.mean(view_.first_end), start_b));
     set_gap();
   }
   /// The unit vector along `apart_`; where it vanishes, along or against `otherwise_`.

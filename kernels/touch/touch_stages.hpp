@@ -77,16 +77,15 @@ struct TouchCopyBody {
   TETWARP_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
 };
 
-/// One index = one touch. Appends its first feature, edges after vertices, and its number.
+/// One index = one touch: its first feature, edges after vertices, and its number.
 struct TouchKeyBody {
   TouchList touches;
   std::int64_t vertex_count;
 
-  template <class Emit>
-  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+  TETWARP_HD CellPair operator()(std::int64_t i) const {
     const PairTouch& touch = touches[i];
     const std::int64_t first = touch.kind == PairKind::edge_edge ? vertex_count : 0;
-    emit(make_pair(first + touch.a, i, false));
+    return make_pair(first + touch.a, i, false);
   }
 };
 
@@ -96,6 +95,7 @@ struct TouchKeyBody {
 /// count, too, where they face elsewhere, see StepTouches. A pair that was only near and is hit in
 /// a later detection has the touch of the later one.
 struct TouchChoiceBody {
+  static constexpr int resident_blocks = 1;  ///< else registers are spilled
   enum Mark : std::int8_t { dropped, kept, kept_with_area };
 
   TouchList touches;

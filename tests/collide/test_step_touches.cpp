@@ -84,8 +84,7 @@ TEST(StepTouches, TheNearestPartOfABodyIsAlwaysChosen) {
   };
   for (const TouchingPair& pair : detector->detect(scene.motion)) {
     if (pair.kind == PairKind::edge_edge || pair.start_distance >= near) continue;
-    const auto [found, is_new] =
-        nearest.try_emplace({pair.a, body_of(pair)}, pair.start_distance);
+    const auto [found, is_new] = nearest.try_emplace({pair.a, body_of(pair)}, pair.start_distance);
     found->second = std::min(found->second, pair.start_distance);
   }
   ASSERT_GT(nearest.size(), 20u);

@@ -234,6 +234,8 @@ TEST(TwoLevelEmulated, TheSystemStaysOnTheDevice) {
     EXPECT_LE(static_cast<std::int64_t>(reads),
               4 + 2 * step.outcome.outer_iterations + step.outcome.sweeps / 8);
     EXPECT_LE(step.calls.count(DeviceCall::copy_to_device), 5);
+    // All runs of eight steps but the first.
+    EXPECT_EQ(step.calls.count(DeviceCall::graph), step.outcome.sweeps / 8 - 1);
   }
   EXPECT_EQ(steps[2].calls.count(DeviceCall::allocate), 0);
 }

@@ -136,6 +136,16 @@ class CpuDetectExec {
     });
   }
 
+  /// Replaces the list by body(i) for i in [0, count).
+  template <class Body, class T>
+  void fill(const char* label, std::int64_t count, const Body& body, HostList<T>& list) {
+    list.clear();
+    list.size_ = count;
+    if (count > list.values_.capacity()) list.values_.reserve(count + count / 2);
+    const View<T> values = list.values();
+    for_each(label, count, [&](std::int64_t i) { values[i] = body(i); });
+  }
+
   /// Stable sort by the upper 32 bits, of which the lowest `key_bits` count.
   void sort_pairs(const char* label, HostList<CellPair>& list, int key_bits) {
     exec_.sort_pairs(label, list.values_.view(list.size_), {&list.size_, 1}, key_bits);

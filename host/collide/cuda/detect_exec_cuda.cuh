@@ -66,6 +66,14 @@ struct AppendWriteBody {
   }
 };
 
+/// Writes the value of one index.
+template <class Body, class T>
+struct FillBody {
+  Body body;
+  View<T> values;  ///< out
+  __device__ void operator()(std::int64_t i) const { values[i] = body(i); }
+};
+
 template <class T>
 class DeviceList {
  public:
@@ -161,21 +169,31 @@ class CudaDetectExec {
     std::int64_t totals[2];
     exec_.read(View<const std::int64_t>(totals_.view()), totals);
     check_count(totals[0], most);
-    list.size_ = totals[0];
     list.tally_ = totals[1];
-    if (list.size_ > list.capacity_) {
-      list.capacity_ = list.size_ + list.size_ / 2;
-      list.values_.reserve(list.capacity_);
-    }
+    set_size(list, totals[0]);
     if (list.size_ == 0) return;
     const AppendWriteBody<Body, T> write{body, sums_.view(), list.values_.view(list.size_)};
     exec_.for_each(label, count, write);
+  }
+  template <class Body, class T>
+  void fill(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
+    list.clear();
+    set_size(list, count);
+    exec_.for_each(label, count, FillBody<Body, T>{body, list.values()});
   }
   void sort_pairs(const char* label, DeviceList<CellPair>& list, int key_bits) {
     exec_.sort_pairs(label, list.values_.view(list.size_), {}, key_bits);
   }
 
  private:
+  template <class T>
+  static void set_size(DeviceList<T>& list, std::int64_t size) {
+    list.size_ = size;
+    if (size <= list.capacity_) return;
+    list.capacity_ = size + size / 2;
+    list.values_.reserve(list.capacity_);
+  }
+
   CudaExec exec_;
   DeviceVector<std::int64_t> sums_, totals_;
 };

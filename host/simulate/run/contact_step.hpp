@@ -173,7 +173,7 @@ class ContactStep {
   const SurfaceMotion* final_ = nullptr;
   SurfacePlaces end_surfaces_;
   std::vector<BodyPlace> start_places_, end_places_;
-  bool has_pairs_ = false;  ///< detection has found any
+  bool has_pairs_ = false;                                 ///< detection has found any
   const std::vector<TrackedContact>* contacts_ = nullptr;  ///< null: nothing touches
   std::vector<Point3> block_impulses_, body_impulses_;
   std::vector<ContactPoint> points_, own_points_;  ///< own_points_: without those that sleep
