@@ -77,5 +77,22 @@ void surface_motion(const SceneSurfaces& scene,
                     std::span<const double> fraction,
                     int threads,
                     SurfaceMotion& motion);
+/// The same in two parts: all but the vertices, whose ends and sagittas only get their size here;
+void frame_motion(const SceneSurfaces& scene,
+                  const Model& model,
+                  const ModelState& state,
+                  const std::vector<Point3>& velocity,
+                  double time_step,
+                  std::span<const double> fraction,
+                  SurfaceMotion& motion);
+/// and then the vertices.
+void vertex_motion(const SceneSurfaces& scene,
+                   const Model& model,
+                   const ModelState& state,
+                   const std::vector<Point3>& velocity,
+                   double time_step,
+                   std::span<const double> fraction,
+                   int threads,
+                   SurfaceMotion& motion);
 
 }  // namespace tetwarp

@@ -73,18 +73,16 @@ void surface_places(const SceneSurfaces& scene,
   }
 }
 
-void surface_motion(const SceneSurfaces& scene,
-                    const Model& model,
-                    const ModelState& state,
-                    const std::vector<Point3>& velocity,
-                    double time_step,
-                    std::span<const double> fraction,
-                    int threads,
-                    SurfaceMotion& motion) {
+void vertex_motion(const SceneSurfaces& scene,
+                   const Model& model,
+                   const ModelState& state,
+                   const std::vector<Point3>& velocity,
+                   double time_step,
+                   std::span<const double> fraction,
+                   int threads,
+                   SurfaceMotion& motion) {
   const SurfaceState at = view_of_state(state, model.node_count);
   const SurfaceVelocity by = view_of_velocity(velocity, model.node_count, time_step, fraction);
-  motion.end.vertices.resize(scene.vertex_point.size());
-  motion.sagitta.resize(scene.vertex_point.size());
   for_ranges(threads, scene.vertex_point.size(), [&](std::size_t begin, std::size_t end) {
     MovedFrame frame{};
     std::int32_t rigid = -1;  // of the frame; successive vertices are often of the same body
@@ -99,6 +97,19 @@ void surface_motion(const SceneSurfaces& scene,
                                      motion.end.vertices[v].data());
     }
   });
+}
+
+void frame_motion(const SceneSurfaces& scene,
+                  const Model& model,
+                  const ModelState& state,
+                  const std::vector<Point3>& velocity,
+                  double time_step,
+                  std::span<const double> fraction,
+                  SurfaceMotion& motion) {
+  const SurfaceState at = view_of_state(state, model.node_count);
+  const SurfaceVelocity by = view_of_velocity(velocity, model.node_count, time_step, fraction);
+  motion.end.vertices.resize(scene.vertex_point.size());
+  motion.sagitta.resize(scene.vertex_point.size());
   motion.frames.resize(scene.body_rigid.size());
   for (std::size_t b = 0; b < scene.body_rigid.size(); ++b) {
     MovedFrame frame{};
@@ -114,6 +125,18 @@ void surface_motion(const SceneSurfaces& scene,
     frame_plane(frame.end, frame.rotation, numbers_of(scene.plane_local[p]),
                 numbers_of(motion.end.planes[p]));
   }
+}
+
+void surface_motion(const SceneSurfaces& scene,
+                    const Model& model,
+                    const ModelState& state,
+                    const std::vector<Point3>& velocity,
+                    double time_step,
+                    std::span<const double> fraction,
+                    int threads,
+                    SurfaceMotion& motion) {
+  frame_motion(scene, model, state, velocity, time_step, fraction, motion);
+  vertex_motion(scene, model, state, velocity, time_step, fraction, threads, motion);
 }
 
 }  // namespace tetwarp

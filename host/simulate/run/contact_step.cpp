@@ -137,11 +137,16 @@ void ContactStep::set_places(const ModelState& state,
 
 void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion& motion) {
   if (&motion != &motions_[0]) motion.start = motions_[0].start;
-  surface_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, options_.threads,
-                 motion);
-  if (resident_ == nullptr) return;
+  frame_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, motion);
+  if (resident_ == nullptr) return move_vertices(fraction, motion);
   motion.resident = view_of(resident_->move(
       is_free_ ? std::span<const Point3>{} : std::span(velocity_), time_step_, fraction));
+}
+
+/// Of surfaces that move on a device, only what the end check finds needs them on the host.
+void ContactStep::move_vertices(std::span<const double> fraction, SurfaceMotion& motion) const {
+  vertex_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, options_.threads,
+                motion);
 }
 
 void ContactStep::report(bool is_first) {
@@ -209,9 +214,14 @@ void ContactStep::keep_apart(ContactPart& part) {
   part.islands = groups_.island_count();
   // A motion without pairs has passed a detection at a larger distance already.
   if (!has_pairs_) return;
-  const SurfaceMotion* motion = final_;
-  while (groups_.stop(detector_->check(*motion), *motion)) {
-    move_surfaces(fractions(), clamped_);
+  SurfaceMotion* motion = final_;
+  std::span<const double> fraction;
+  for (;;) {
+    const std::vector<TouchingPair>& hits = detector_->check(*motion);
+    if (resident_ != nullptr && !hits.empty()) move_vertices(fraction, *motion);
+    if (!groups_.stop(hits, *motion)) break;
+    fraction = fractions();
+    move_surfaces(fraction, clamped_);
     motion = &clamped_;
   }
   part.smallest_fraction = groups_.smallest_fraction();

@@ -132,6 +132,7 @@ class ContactStep {
                   const SurfacePlaces& of,
                   std::vector<BodyPlace>& places) const;
   void move_surfaces(std::span<const double> fraction, SurfaceMotion& motion);
+  void move_vertices(std::span<const double> fraction, SurfaceMotion& motion) const;
   void report(bool is_first);
   bool solve(BodyStepper& stepper, ContactPart& part);
   void find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part);
@@ -170,7 +171,7 @@ class ContactStep {
   std::vector<Point3> change_;            ///< see ContactMemory
   std::vector<SurfaceMotion> motions_;    ///< of the detections
   SurfaceMotion clamped_;                 ///< of the end check with fractions below 1
-  const SurfaceMotion* final_ = nullptr;
+  SurfaceMotion* final_ = nullptr;
   SurfacePlaces end_surfaces_;
   std::vector<BodyPlace> start_places_, end_places_;
   bool has_pairs_ = false;                                 ///< detection has found any
