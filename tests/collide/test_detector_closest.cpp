@@ -45,6 +45,30 @@ TEST(DetectorClosest, OfMixedScenesIsTheNearestOfAllPairs) {
   }
 }
 
+/// The pairs that the motion's detection has found serve where it ends, unless bodies stood still.
+TEST(DetectorClosest, AfterAStepKeepsItsPairs) {
+  for (unsigned seed = 31; seed < 35; ++seed) {
+    const CollideScene scene = mixed_scene(seed, 0.001);
+    const auto detector = make_cpu_detector(scene.surfaces, {});
+    const ClosestPair expected = detector->closest(scene.motion.end, 0.1);
+    detector->counts();
+    for (const bool has_still : {false, true}) {
+      std::vector<std::uint8_t> is_still(static_cast<std::size_t>(scene.body_count()), 1);
+      if (has_still) detector->set_still(is_still);
+      detector->begin_step();
+      detector->find_touches(scene.motion);
+
+      const ClosestPair found = detector->closest(scene.motion.end, 0.1);
+
+      EXPECT_EQ(found.distance, expected.distance);
+      EXPECT_EQ(found.kind, expected.kind);
+      EXPECT_EQ(found.a, expected.a);
+      EXPECT_EQ(found.b, expected.b);
+      EXPECT_EQ(detector->counts().reused, has_still ? 0 : 1);
+    }
+  }
+}
+
 /// A sheet above another: all vertices are equally far from their faces.
 TEST(DetectorClosest, IsTheFirstOfEqualPairs) {
   CollideScene scene;
