@@ -6,7 +6,7 @@
 
 #include "kernels/collide/pair_distance.hpp"
 #include "kernels/collide/pair_touch.hpp"
-#include "kernels/touch/pair_touch.hpp"
+#include "kernels/touch/touch.hpp"
 
 namespace tetwarp {
 

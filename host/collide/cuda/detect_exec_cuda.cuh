@@ -68,7 +68,7 @@ struct AppendWriteBody {
 
 /// Writes the value of one index.
 template <class Body, class T>
-struct FillBody {
+struct ListFillBody {
   Body body;
   View<T> values;  ///< out
   __device__ void operator()(std::int64_t i) const { values[i] = body(i); }
@@ -179,7 +179,7 @@ class CudaDetectExec {
   void fill(const char* label, std::int64_t count, const Body& body, DeviceList<T>& list) {
     list.clear();
     set_size(list, count);
-    exec_.for_each(label, count, FillBody<Body, T>{body, list.values()});
+    exec_.for_each(label, count, ListFillBody<Body, T>{body, list.values()});
   }
   void sort_pairs(const char* label, DeviceList<CellPair>& list, int key_bits) {
     exec_.sort_pairs(label, list.values_.view(list.size_), {}, key_bits);

@@ -1,4 +1,4 @@
-/// @file pair_touch.hpp
+/// @file touch.hpp
 /// Where and in which direction two features touch.
 #pragma once
 #include <cstdint>
