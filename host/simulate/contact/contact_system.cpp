@@ -184,11 +184,13 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
 void ContactSystem::State::add_block_impulses() {
   impulses.assign(index_of(model.block_count()), Point3{0, 0, 0});
   for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
+    const double* const r = solution.impulse.data() + 3 * c;
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
     for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
       Point3& own = impulses[index_of(rows.block[index_of(e)])];
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          own[i] += rows.value[index_of(e)][3 * axis + i] * solution.impulse[3 * c + axis];
+          own[i] += rows.value[index_of(e)][3 * axis + i] * r[axis];
         }
       }
     }

@@ -165,9 +165,7 @@ std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> to
   contacts_.resize(named_.size());
   parallel_for(threads_, static_cast<std::int64_t>(named_.size()),
                [this](std::int64_t c) { report(named_[index_of(c)], contacts_[index_of(c)]); });
-  if (patches_.reduce(contacts_, vertices, records)) {
-    std::ranges::sort(contacts_, {}, &ReportedContact::key);
-  }
+  patches_.reduce(contacts_, vertices, records);
   return contacts_;
 }
 

@@ -27,18 +27,15 @@ bool RigidPatches::is_rigid(const ReportedContact& contact) const {
          at(scene_.surfaces.bodies, contact.key.body_b).is_rigid;
 }
 
-bool RigidPatches::reduce(std::vector<ReportedContact>& contacts,
+void RigidPatches::reduce(std::vector<ReportedContact>& contacts,
                           const std::vector<Point3>& vertices,
                           std::span<const ContactRecord> records) {
   order_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (is_rigid(contacts[c])) order_.push_back(c);
   }
-  if (order_.empty()) return false;
+  if (order_.empty()) return;
   kept_.clear();
-  for (const ReportedContact& contact : contacts) {
-    if (!is_rigid(contact)) kept_.push_back(contact);
-  }
   std::sort(order_.begin(), order_.end(), [&](std::size_t i, std::size_t k) {
     return std::tuple(bodies_of(contacts[i]), contacts[i].key) <
            std::tuple(bodies_of(contacts[k]), contacts[k].key);
@@ -51,8 +48,14 @@ bool RigidPatches::reduce(std::vector<ReportedContact>& contacts,
     }
     reduce_pair(contacts, vertices, records);
   }
-  contacts.swap(kept_);
-  return true;
+  const auto by_key = [](const ReportedContact& p, const ReportedContact& q) {
+    return p.key < q.key;
+  };
+  std::erase_if(contacts, [this](const ReportedContact& contact) { return is_rigid(contact); });
+  const auto others = static_cast<std::ptrdiff_t>(contacts.size());
+  std::sort(kept_.begin(), kept_.end(), by_key);
+  contacts.insert(contacts.end(), kept_.begin(), kept_.end());
+  std::inplace_merge(contacts.begin(), contacts.begin() + others, contacts.end(), by_key);
 }
 
 void RigidPatches::reduce_pair(std::vector<ReportedContact>& contacts,

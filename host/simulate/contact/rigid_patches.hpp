@@ -35,11 +35,10 @@ class RigidPatches {
   RigidPatches(const SceneSurfaces& scene, const TouchAreas& areas)
       : scene_(scene), moments_(areas, scene.surfaces) {}
 
-  /// @param contacts  in: sides in the order of keys; out: reduced, in no order
+  /// @param contacts  sorted by key, with sides in the order of keys
   /// @param vertices  at the start of the step
   /// @param records   at the start of the step, sorted by key
-  /// @returns whether there are any to reduce
-  bool reduce(std::vector<ReportedContact>& contacts,
+  void reduce(std::vector<ReportedContact>& contacts,
               const std::vector<Point3>& vertices,
               std::span<const ContactRecord> records);
 
@@ -60,7 +59,7 @@ class RigidPatches {
   PatchSupports supports_;
   std::vector<std::size_t> order_, left_, next_left_, patch_, chosen_;
   std::vector<std::int32_t> slots_;    ///< of patches, taken, of the current pair
-  std::vector<ReportedContact> kept_;  ///< the result
+  std::vector<ReportedContact> kept_;  ///< of the rigid bodies
 };
 
 }  // namespace tetwarp
