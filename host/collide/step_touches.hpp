@@ -51,7 +51,8 @@ class StepTouches {
       : exec_(exec),
         thickness_(surfaces.thickness),
         vertex_count_(size_of(surfaces.vertex_body)),
-        feature_count_(vertex_count_ + size_of(surfaces.edges)) {
+        feature_count_(vertex_count_ + size_of(surfaces.edges)),
+        has_capsules_(std::ranges::any_of(surfaces.edge_radius, [](double r) { return r > 0; })) {
     const TouchAreas areas(surfaces);
     put(areas.start, area_start_);
     put(areas.triangle, area_triangle_);
@@ -62,7 +63,8 @@ class StepTouches {
   void begin_step() {
     pass_ = 0;
     known_.clear();
-    first_.clear();
+    exec_.resize(first_, 0);
+    ends_.clear();
     later_count_ = 0;
   }
 
@@ -75,12 +77,13 @@ class StepTouches {
   /// @returns the number of those that are new, or were only near and are hit now
   std::int64_t add(const CollideView& scene, const MotionView& motion, List<FeatureTouch>& found) {
     scene_ = scene;
+    start_ = motion.start;
     if (pass_ == 0) {
       first_end_view_ = exec_.keep(motion.end, first_end_);
       first_planes_view_ = exec_.keep(motion.plane_end, first_planes_);
-      exec_.append(label, found.size(), TouchBody{found.view(), view_of(motion), pass_}, first_);
+      make(found.view(), motion, first_, ends_);
       exec_.append(label, found.size(), HitBody{found.view()}, hits_);
-      start_ = motion.start;
+      exec_.wait();  // the caller may change the motion after this
       ++pass_;
       return found.size();
     }
@@ -88,10 +91,9 @@ class StepTouches {
     keep_new(exec_.on_host(found.view(), host_hits_));
     if (!new_.empty()) {
       put(new_, new_pairs_);
-      exec_.append(label, size_of(new_),
-                   TouchBody{exec_.view(std::as_const(new_pairs_)), view_of(motion), pass_},
-                   fresh_);
+      make(exec_.view(std::as_const(new_pairs_)), motion, fresh_, fresh_ends_);
       add_later();
+      exec_.wait();
     }
     ++pass_;
     return size_of(new_);
@@ -100,19 +102,20 @@ class StepTouches {
   /// The touches of the step that become contacts: those of a vertex and another body follow each
   /// other, the nearest first; edges come last. Valid until the next call.
   std::span<const ChosenTouch> choose() {
-    const TouchList touches{first_.view(), later()};
+    const TouchList touches{exec_.view(std::as_const(first_)), ends_.view(), later()};
     exec_.fill(label, touches.size(), TouchKeyBody{touches, vertex_count_}, order_);
     int bits = 1;
     while ((feature_count_ >> bits) > 0) ++bits;
     exec_.sort_pairs(label, order_, bits);
     exec_.resize(mark_, order_.size());
-    exec_.for_each(
-        label, order_.size(),
-        TouchChoiceBody{touches, scene_, thickness_, order_.values(), exec_.view(mark_)});
-    exec_.append(
-        label, order_.size(),
-        ChosenTouchBody{touches, areas(), start_, order_.view(), exec_.view(std::as_const(mark_))},
-        chosen_);
+    exec_.resize(ordered_, order_.size());
+    exec_.for_each(label, order_.size(),
+                   TouchChoiceBody{touches, scene_, thickness_, order_.view(), exec_.view(ordered_),
+                                   exec_.view(mark_)});
+    exec_.append(label, order_.size(),
+                 ChosenTouchBody{touches, areas(), start_, exec_.view(std::as_const(ordered_)),
+                                 exec_.view(std::as_const(mark_))},
+                 chosen_);
     const View<const ChosenTouch> chosen = exec_.on_host(chosen_.view(), host_chosen_);
     return {chosen.data, static_cast<std::size_t>(chosen.size)};
   }
@@ -156,11 +159,28 @@ class StepTouches {
     known_.insert(known_.end(), new_.begin(), new_.end());
     std::inplace_merge(known_.begin(), known_.begin() + middle, known_.end(), is_less);
   }
+  /// @param touches  out, [pairs]
+  /// @param ends     out
+  void make(View<const FeatureTouch> pairs,
+            const MotionView& motion,
+            Vector<PairTouch>& touches,
+            List<PairTouch>& ends) {
+    exec_.resize(touches, pairs.size);
+    exec_.for_each(label, pairs.size,
+                   TouchBody{pairs, view_of(motion), pass_, exec_.view(touches)});
+    ends.clear();
+    if (!has_capsules_) return;
+    exec_.append(label, pairs.size,
+                 EndTouchBody{pairs, exec_.view(std::as_const(touches)), view_of(motion), pass_},
+                 ends);
+  }
   void add_later() {
-    const std::int64_t count = later_count_ + fresh_.size();
+    const View<const PairTouch> fresh = exec_.view(std::as_const(fresh_));
+    const std::int64_t count = later_count_ + fresh.size + fresh_ends_.size();
     Vector<PairTouch>& joined = later_[1 - later_now_];
     exec_.resize(joined, count + count / 2);
-    exec_.for_each(label, count, TouchCopyBody{{later(), fresh_.view()}, exec_.view(joined)});
+    exec_.for_each(label, count,
+                   TouchCopyBody{{later(), fresh, fresh_ends_.view()}, exec_.view(joined)});
     later_now_ = 1 - later_now_;
     later_count_ = count;
   }
@@ -168,6 +188,7 @@ class StepTouches {
   Exec& exec_;
   double thickness_;
   std::int64_t vertex_count_, feature_count_;
+  bool has_capsules_;
   Vector<std::int32_t> area_start_, area_triangle_;
   Vector<double> vertex_area_, mean_area_;
 
@@ -178,7 +199,8 @@ class StepTouches {
   Vector<double> first_end_, first_planes_;
   View<const double> first_end_view_, first_planes_view_;
   std::vector<FeatureTouch> known_;         ///< hits, sorted
-  List<PairTouch> first_;                   ///< of the first detection
+  Vector<PairTouch> first_;                 ///< of the first detection
+  List<PairTouch> ends_;                    ///< the same, at ends of overlaps
   std::array<Vector<PairTouch>, 2> later_;  ///< of later ones: one of both
   std::size_t later_now_ = 0;
   std::int64_t later_count_ = 0;
@@ -187,8 +209,10 @@ class StepTouches {
   List<FeatureTouch> hits_;
   std::vector<FeatureTouch> host_hits_, sorted_, new_;
   Vector<FeatureTouch> new_pairs_;
-  List<PairTouch> fresh_;
+  Vector<PairTouch> fresh_;
+  List<PairTouch> fresh_ends_;
   List<CellPair> order_;
+  Vector<CellPair> ordered_;
   Vector<std::int8_t> mark_;
   List<ChosenTouch> chosen_;
   std::vector<ChosenTouch> host_chosen_;

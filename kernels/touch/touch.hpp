@@ -10,10 +10,13 @@
 
 namespace tetwarp {
 
-/// Side a is that of the pair's first feature.
+/// Side a is that of the pair's first feature. One that does not count only replaces earlier
+/// touches of its pair.
 struct PairTouch {
   PairKind kind = PairKind::vertex_face;
-  bool is_inside = true;      ///< nearest point inside a face; of two edges: between all ends
+  bool counts = true;     ///< false: of edges that touch at an end, or that are not what is nearest
+  bool has_ends = false;  ///< capsules side by side, which touch at both ends of their overlap, too
+  bool is_inside = true;  ///< nearest point inside a face; of two edges: between all ends
   std::int32_t a = 0, b = 0;  ///< the features, as in TouchingPair
   std::int32_t end = 0;       ///< 1, 2: at an end of the overlap of two capsules side by side
   std::int32_t pass = 0;      ///< the detection of the step that found it, from 0

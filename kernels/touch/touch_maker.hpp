@@ -49,7 +49,7 @@ class TouchMaker {
   }
 
   /// Whether two capsules are side by side, to 10 degrees.
-  /// @param part  out: [2] fractions of axis a between which the axes overlap
+  /// @param part  out, of any two capsules: [2] fractions of axis a between which the axes overlap
   TETWARP_ANY_EXEC bool overlaps(double* part) const {
     constexpr double parallel_sine = 0.17364817766693033;  // of 10 degrees
     if (!is_of_edges() || view_.scene.edge_radius[touch_.a] == 0 ||
@@ -60,12 +60,12 @@ class TouchMaker {
     const Vec3 from = place(p[0]), along = minus(place(p[1]), from);
     const Vec3 begin = place(q[0]), end = place(q[1]), other = minus(end, begin);
     const double square = dot(along, along);
-    if (norm(cross(along, other)) > parallel_sine * std::sqrt(square) * norm(other)) return false;
     const double s0 = dot(along, minus(begin, from)) / square;
     const double s1 = dot(along, minus(end, from)) / square;
     part[0] = max_of(0.0, min_of(s0, s1));
     part[1] = min_of(1.0, max_of(s0, s1));
-    return part[1] - part[0] > 1e-6;
+    return part[1] - part[0] > 1e-6 &&
+           !(norm(cross(along, other)) > parallel_sine * std::sqrt(square) * norm(other));
   }
   /// At a fraction s of axis a of two capsules.
   TETWARP_ANY_EXEC PairTouch make_at(double s, std::int32_t end) {

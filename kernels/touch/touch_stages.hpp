@@ -9,34 +9,30 @@
 
 namespace tetwarp {
 
-/// One index = one pair. Appends its touches: of two capsules side by side those at the ends of
-/// their overlap; of edges those that cross, and what is not hit only where the edges are what is
-/// nearest of their surfaces.
+/// One index = one pair. Writes its touch at the nearest points; any order.
 struct TouchBody {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
   View<const FeatureTouch> pairs;
   TouchView view;
   std::int32_t pass;
+  View<PairTouch> touches;  ///< out
 
-  template <class Emit>
-  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+  TETWARP_HD void operator()(std::int64_t i) const {
     TouchMaker maker(pairs[i], pass, view);
-    TouchMaker ends = maker;
-    const PairTouch touch = maker.make();
+    TouchMaker ends = maker, other = maker;
+    PairTouch touch = maker.make();
     double part[2];
-    if (ends.overlaps(part)) {
-      TouchMaker other = ends;
-      const PairTouch begin = ends.make_at(part[0], 1), end = other.make_at(part[1], 2);
-      emit(begin);
-      emit(end);
+    if (touch.kind == PairKind::edge_edge) {
+      touch.counts = touch.is_inside && (pairs[i].time <= 1 || is_nearest(touch));
+      touch.has_ends = ends.overlaps(part);
+    }
+    if (touch.has_ends) {
       // Between ends that are as near a third contact would change nothing.
-      if (min_of(begin.gap, end.gap) <= touch.gap + same_gap * view.thickness) return;
+      const double gap = min_of(ends.make_at(part[0], 1).gap, other.make_at(part[1], 2).gap);
+      touch.counts = touch.counts && gap > touch.gap + same_gap * view.thickness;
     }
-    if (touch.kind != PairKind::edge_edge ||
-        (touch.is_inside && (pairs[i].time <= 1 || is_nearest(touch)))) {
-      emit(touch);
-    }
+    touches[i] = touch;
   }
 
  private:
@@ -46,6 +42,25 @@ struct TouchBody {
     const View<const double> start = view.motion.start;
     return edge_is_nearest(view.areas, view.edge(touch.b), touch.normal, start) &&
            edge_is_nearest(view.areas, view.edge(touch.a), times(-1, touch.normal), start);
+  }
+};
+
+/// One index = one pair and its touch. Appends those at the ends of an overlap.
+struct EndTouchBody {
+  View<const FeatureTouch> pairs;
+  View<const PairTouch> touches;
+  TouchView view;
+  std::int32_t pass;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    if (!touches[i].has_ends) return;
+    TouchMaker begin(pairs[i], pass, view);
+    TouchMaker end = begin;
+    double part[2];
+    begin.overlaps(part);
+    emit(begin.make_at(part[0], 1));
+    emit(end.make_at(part[1], 2));
   }
 };
 
@@ -59,13 +74,16 @@ struct HitBody {
   }
 };
 
-/// The touches of a step: those of the first detection, then those of later ones.
+/// The touches of a step: those of the first detection, those at its ends of overlaps, and those of
+/// later detections.
 struct TouchList {
-  View<const PairTouch> first, later;
+  View<const PairTouch> first, ends, later;
 
-  TETWARP_HD std::int64_t size() const { return first.size + later.size; }
+  TETWARP_HD std::int64_t size() const { return first.size + ends.size + later.size; }
   TETWARP_HD const PairTouch& operator[](std::int64_t i) const {
-    return i < first.size ? first[i] : later[i - first.size];
+    if (i < first.size) return first[i];
+    const std::int64_t k = i - first.size;
+    return k < ends.size ? ends[k] : later[k - ends.size];
   }
 };
 
@@ -89,11 +107,11 @@ struct TouchKeyBody {
   }
 };
 
-/// One index = one touch, sorted by its first feature; that which is the first of a feature marks
-/// all of it. Of edges all count; a vertex touches another body once, at what is nearest: what is
-/// near at the start by distance, then what is hit on the way by time. Other parts of the body
-/// count, too, where they face elsewhere, see StepTouches. A pair that was only near and is hit in
-/// a later detection has the touch of the later one.
+/// One index = one touch, sorted by its first feature; that which is the first of a feature orders
+/// and marks all of it. Of edges all count; a vertex touches another body once, at what is nearest:
+/// what is near at the start by distance, then what is hit on the way by time. Other parts of the
+/// body count, too, where they face elsewhere, see StepTouches. A pair that was only near and is
+/// hit in a later detection has the touch of the later one.
 struct TouchChoiceBody {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
   enum Mark : std::int8_t { dropped, kept, kept_with_area };
@@ -101,15 +119,18 @@ struct TouchChoiceBody {
   TouchList touches;
   CollideView scene;
   double thickness;
-  View<CellPair> order;    ///< in: sorted by first feature; out: of vertices by body and distance
-  View<std::int8_t> mark;  ///< out [order] Mark
+  View<const CellPair> given;  ///< sorted by first feature
+  View<CellPair> order;        ///< out: the same, of vertices by body and distance
+  View<std::int8_t> mark;      ///< out [order] Mark
 
   TETWARP_HD void operator()(std::int64_t i) const {
-    if (i > 0 && cell_of(order[i - 1]) == cell_of(order[i])) return;
-    std::int64_t end = i + 1;
-    while (end < order.size && cell_of(order[end]) == cell_of(order[i])) ++end;
+    if (i > 0 && cell_of(given[i - 1]) == cell_of(given[i])) return;
+    std::int64_t end = i;
+    for (; end < given.size && cell_of(given[end]) == cell_of(given[i]); ++end) {
+      order[end] = given[end];
+    }
     if (touch_at(i).kind == PairKind::edge_edge) {
-      for (std::int64_t k = i; k < end; ++k) mark[k] = is_replaced(k, i, end) ? dropped : kept;
+      for (std::int64_t k = i; k < end; ++k) mark[k] = is_left_out(k, i, end) ? dropped : kept;
       return;
     }
     heap_sort(order.data + i, end - i, [this](CellPair p, CellPair q) {
@@ -132,10 +153,12 @@ struct TouchChoiceBody {
     if (p.b != q.b) return p.b < q.b;
     return p.end != q.end ? p.end < q.end : p.pass < q.pass;
   }
+  /// Whether a touch does not count, or its pair has a later one.
   /// @param begin, end  of the same first feature
-  TETWARP_HD bool is_replaced(std::int64_t k, std::int64_t begin, std::int64_t end) const {
-    if (touches.later.size == 0) return false;
+  TETWARP_HD bool is_left_out(std::int64_t k, std::int64_t begin, std::int64_t end) const {
     const PairTouch& own = touch_at(k);
+    if (!own.counts) return true;
+    if (touches.later.size == 0) return false;
     for (std::int64_t j = begin; j < end; ++j) {
       const PairTouch& other = touch_at(j);
       if (other.pass > own.pass && other.kind == own.kind && other.b == own.b) return true;
@@ -169,7 +192,7 @@ struct TouchChoiceBody {
     std::int64_t i = first;
     for (; i < end && touch_at(i).body_b == body; ++i) {
       const PairTouch& touch = touch_at(i);
-      Mark own = is_replaced(i, begin, end) ? dropped : kept_with_area;
+      Mark own = is_left_out(i, begin, end) ? dropped : kept_with_area;
       for (std::int64_t k = first; k < i && own != dropped; ++k) {
         if (mark[k] == dropped) continue;
         const PairTouch& nearer = touch_at(k);

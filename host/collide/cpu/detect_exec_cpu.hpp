@@ -146,6 +146,8 @@ class CpuDetectExec {
     for_each(label, count, [&](std::int64_t i) { values[i] = body(i); });
   }
 
+  /// Waits for all work.
+  void wait() const {}
   /// Stable sort by the upper 32 bits, of which the lowest `key_bits` count.
   void sort_pairs(const char* label, HostList<CellPair>& list, int key_bits) {
     exec_.sort_pairs(label, list.values_.view(list.size_), {&list.size_, 1}, key_bits);
