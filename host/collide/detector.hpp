@@ -66,7 +66,8 @@ class Detector {
 
   /// Starts a step: pairs and touches of earlier motions are forgotten.
   virtual void begin_step() = 0;
-  /// Bodies that do not move until the next call: pairs of two of them are left out.
+  /// Bodies that do not move until the next call: pairs of two of them are left out, but for
+  /// closest().
   /// @param is_still  [bodies], or empty: none
   virtual void set_still(std::span<const std::uint8_t> is_still) = 0;
   /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
@@ -86,7 +87,8 @@ class Detector {
   /// Bodies with unknowns that stand still, of the pairs of the last find_touches(), ascending.
   virtual const std::vector<std::int32_t>& reached() const = 0;
   /// Of all pairs of the step: those that become contacts, as StepTouches::choose(). Ways of
-  /// touches are those of the first motion. Valid until the next call.
+  /// touches are those of the first motion. To be called before other motions are looked at; valid
+  /// until the next call.
   virtual std::span<const ChosenTouch> touches() = 0;
   /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
   /// @param resident  a motion that stays at these places, as SurfaceMotion::resident

@@ -122,6 +122,7 @@ void DetectorPipeline<Exec>::find_pairs(const SurfaceMotion& motion,
   if (was_found && make_boxes(distance, false, 0, 0)) {
     ++counts_.reused;
   } else {
+    has_pairs_ = false;
     make_boxes(distance, true, found_thicknesses * surfaces_.thickness, found_fraction);
     find_item_pairs(is_still_);
     has_pairs_ = true;

@@ -145,7 +145,6 @@ struct ContactTrackerOptions {
   double touch_distance = 0;  ///< largest gap that counts as touching [m]
   double restitution_speed = 0;  ///< contacts that approach no faster do not rebound [m/s]
   EvolutionOptions evolution = {};
-  int threads = 1;  ///< at least 1; any number: same contacts
 };
 
 /// Stores the state of contacts through the steps of a simulation.
@@ -218,9 +217,9 @@ class TETWARP_EXPORT ContactTracker {
   ContactTrackerOptions options_;
   std::vector<ContactRecord> records_;
   std::vector<ContactRecord> start_records_;  ///< of the step that has begun
-  std::vector<ContactRecord> next_records_;   ///< only used within calls: keeps memory
+  std::vector<ContactRecord> next_records_;   ///< empty between calls: keeps memory
   std::vector<TrackedContact> contacts_;      ///< of the last step; in it, in the order of records_
-  std::vector<TrackedContact> next_contacts_;  ///< only used within calls: keeps memory
+  std::vector<TrackedContact> next_contacts_;  ///< empty between calls: keeps memory
   double time_step_ = 0;
   bool is_in_step_ = false;
 };

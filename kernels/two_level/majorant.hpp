@@ -7,7 +7,8 @@
 /// J M^-1 J^T. A body with a few contacts so does not slow down because another one has hundreds.
 ///
 /// lambda_b is estimated from below by a power iteration, times a margin. Where that has missed it,
-/// a step changes velocities by more than the majorant allows, and its caller doubles the majorant.
+/// a step changes velocities by more than 1.3 times what the majorant allows, and its caller
+/// doubles the majorant.
 #pragma once
 #include <cstdint>
 

@@ -15,19 +15,21 @@ namespace tetwarp {
 struct ProximalState {
   static constexpr int steps_at_once = 8;
 
-  /// At the last step: natural_square(); product of the step and the change; d . J M^-1 J^T d and
-  /// d . D d, d the change of the impulses `ahead` since the step before and D the majorant.
-  using Sums = PlainSums<4>;
+  /// At the last step: natural_square(); product of the step and the change; d . J M^-1 J^T d,
+  /// d . D d and r . D r, d the change of the impulses `ahead` r since the step before and D the
+  /// majorant.
+  using Sums = PlainSums<5>;
 
   Sums sums;
   std::int64_t age = 0;  ///< steps since the last restart, up to the present run of steps
 
   /// Whether the majorant is too small. The impulses need not diverge then: as none along a normal
   /// may be negative, they can go to and fro for ever. With momentum m, a mode grows whose product
-  /// is more than (2 + 2 m) / (1 + 2 m) > 4/3 times that of the majorant.
+  /// is more than (2 + 2 m) / (1 + 2 m) > 4/3 times that of the majorant. The products of changes
+  /// that are small beside the impulses are those of roundings.
   static bool has_missed(const Sums& sums) {
-    constexpr double harmless = 1.3;
-    return !(sums.value[2] <= harmless * sums.value[3]);
+    constexpr double harmless = 1.3, least_square = 1e-16;
+    return sums.value[2] > harmless * sums.value[3] && sums.value[3] > least_square * sums.value[4];
   }
 };
 
@@ -86,8 +88,10 @@ struct ProximalStepBody {
     for (int a = 0; a < 3; ++a) {
       const double change = r[a] - past[6 * contact + a];
       const bool has_own = a == 0 || switches.pyramid;  // as solve_contact() takes it
+      const double weight = has_own ? own.block[4 * a] : own.tangent_metric;
       sums.value[2] += change * (u[a] - past[6 * contact + 3 + a]);
-      sums.value[3] += change * change * (has_own ? own.block[4 * a] : own.tangent_metric);
+      sums.value[3] += change * change * weight;
+      sums.value[4] += r[a] * r[a] * weight;
     }
   }
 };

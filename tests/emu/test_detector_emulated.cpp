@@ -87,12 +87,15 @@ TEST(DetectorEmulated, EmptyScenesHaveNoPairs) {
 }
 
 /// Results must not depend on the order of threads.
-TEST(DetectorEmulated, EveryOrderOfThreadsGivesTheSamePairs) {
+TEST(DetectorEmulated, EveryOrderOfThreadsGivesTheSamePairsAndTouches) {
   const CollideScene scene = mixed_scene(43, 0.05);
   const auto expected = make_cpu_detector(scene.surfaces, {})->detect(scene.motion);
 
   simt::for_each_schedule([&](const simt::Schedule&) {
-    EXPECT_EQ(make_cuda_detector(scene.surfaces, {})->detect(scene.motion), expected);
+    const auto cpu = make_cpu_detector(scene.surfaces, {});
+    const auto cuda = make_cuda_detector(scene.surfaces, {});
+    EXPECT_EQ(cuda->detect(scene.motion), expected);
+    expect_same_touches(scene, *cpu, *cuda);
   });
 }
 

@@ -2,8 +2,7 @@
 """Checks that includes between folders point one way, from users down to what they use.
 
     folders.py           fails with one line per include that breaks the rules
-    folders.py --dot     prints the include graph of the folders for Graphviz; docs/pictures/folders.svg
-                         is that of: folders.py --dot | tred | dot -Tsvg
+    folders.py --dot     prints the include graph of the folders for Graphviz
     folders.py --test    checks this script on small made-up trees
 """
 import re
@@ -133,24 +132,8 @@ def graph(root):
     return edges
 
 
-COLORS = {"warp": "#d9e7f5", "contact": "#dcefdc", "collide": "#e6dcf2", "touch": "#e6dcf2",
-          "simulate": "#fbe3d0", "body": "#fbe3d0", "scene": "#fbe3d0", "two_level": "#fbe3d0",
-          "tetwarp": "#fff6c9"}  # by the last or the second part of a folder's name
-
-
-def color_of(folder):
-    parts = folder.split("/")
-    if parts[0] == "kernels" and parts[-1] == "tetwarp":
-        return "white"
-    subject = parts[2] if parts[:2] == ["host", "reference"] else parts[-1 if len(parts) < 3 else 1]
-    return COLORS.get(subject, "white")
-
-
 def print_dot(edges):
-    print('digraph folders {\n  rankdir=BT; edge [color="#666666", arrowsize=0.6];')
-    print('  node [shape=box, style="rounded,filled", color="#666666", fontname=Helvetica, fontsize=11];')
-    for folder in sorted({*edges, *(other for others in edges.values() for other in others)}):
-        print(f'  "{folder}" [fillcolor="{color_of(folder)}"];')
+    print("digraph folders {\n  rankdir=BT; node [shape=box, fontname=Helvetica];")
     for folder in sorted(edges):
         for other in sorted(edges[folder]):
             print(f'  "{folder}" -> "{other}";')

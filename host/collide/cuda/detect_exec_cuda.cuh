@@ -181,9 +181,7 @@ class CudaDetectExec {
     set_size(list, count);
     exec_.for_each(label, count, ListFillBody<Body, T>{body, list.values()});
   }
-  void wait() const {
-    check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize");
-  }
+  void wait() const { check_cuda(cudaStreamSynchronize(exec_.stream()), "cudaStreamSynchronize"); }
   void sort_pairs(const char* label, DeviceList<CellPair>& list, int key_bits) {
     exec_.sort_pairs(label, list.values_.view(list.size_), {}, key_bits);
   }

@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <tetwarp/contact_tracker.hpp>
 #include <utility>
 
-#include "host/base/parallel.hpp"
 #include "host/contact/tracker/geometry.hpp"
 #include "host/contact/tracker/input_checks.hpp"
 #include "host/contact/tracker/match.hpp"
@@ -53,17 +51,6 @@ void carry_anchor(ContactRecord& record,
   move_anchor(record, way, vector_of(contact.axes[0]), places);
 }
 
-/// body(c) of every contact, in any order.
-template <class Body>
-void for_contacts(int threads, std::size_t count, const Body& body) {
-  constexpr std::size_t run = 64;
-  parallel_tasks(threads, static_cast<std::int64_t>((count + run - 1) / run),
-                 [&](std::int64_t task) {
-                   const std::size_t first = run * static_cast<std::size_t>(task);
-                   for (std::size_t c = first; c < std::min(count, first + run); ++c) body(c);
-                 });
-}
-
 std::vector<BodyPlace> places_of(std::span<const BodyPose> poses) {
   std::vector<BodyPlace> places(poses.size());
   for (std::size_t b = 0; b < poses.size(); ++b) places[b].pose = poses[b];
@@ -103,40 +90,34 @@ const std::vector<TrackedContact>& ContactTracker::begin_step(
     if (match >= 0) is_matched[static_cast<std::size_t>(match)] = 1;
   }
 
-  // Contacts by key, each with its record before the step and its report: indices, or -1.
-  std::vector<std::array<std::int64_t, 2>> sources;
+  next_records_.clear();
+  next_contacts_.clear();
+  const auto add = [&](const ContactRecord& from, const ReportedContact* report) {
+    ContactRecord& record = next_records_.emplace_back(from);
+    if (report != nullptr) update_record(record, *report, places, options_);
+    TrackedContact& contact = next_contacts_.emplace_back(contact_of(record, report, places));
+    record.normal_world = contact.axes[0];
+    set_velocities(contact, report, options_, time_step);
+  };
   std::size_t k = 0;
   const auto add_kept = [&](const ContactKey* up_to) {
     for (; k < before.size() && (up_to == nullptr || before[k].key < *up_to); ++k) {
-      if (is_matched[k] == 0 && before[k].intensity > 0) {
-        sources.push_back({static_cast<std::int64_t>(k), -1});
-      }
+      if (is_matched[k] == 0 && before[k].intensity > 0) add(before[k], nullptr);
     }
   };
   for (std::size_t r = 0; r < reports.size(); ++r) {
     add_kept(&reports[r].key);
-    sources.push_back({matches[r], static_cast<std::int64_t>(r)});
+    add(matches[r] >= 0 ? before[static_cast<std::size_t>(matches[r])] : ContactRecord{},
+        &reports[r]);
   }
   add_kept(nullptr);
-  next_records_.resize(sources.size());
-  next_contacts_.resize(sources.size());
-  for_contacts(options_.threads, sources.size(), [&](std::size_t c) {
-    const auto [from, reported] = sources[c];
-    const ReportedContact* const report =
-        reported >= 0 ? &reports[static_cast<std::size_t>(reported)] : nullptr;
-    ContactRecord& record = next_records_[c];
-    record = from >= 0 ? before[static_cast<std::size_t>(from)] : ContactRecord{};
-    if (report != nullptr) update_record(record, *report, places, options_);
-    TrackedContact& contact = next_contacts_[c];
-    contact = contact_of(record, report, places);
-    record.normal_world = contact.axes[0];
-    set_velocities(contact, report, options_, time_step);
-  });
   time_step_ = time_step;
   if (!is_in_step_) start_records_.swap(records_);
   is_in_step_ = true;
   records_.swap(next_records_);
+  next_records_.clear();
   contacts_.swap(next_contacts_);
+  next_contacts_.clear();
   return contacts_;
 }
 
@@ -162,7 +143,7 @@ void ContactTracker::fill(ContactProblem& problem) const {
        {&problem.velocity_offset, &problem.impulse_guess, &adhesion.gap}) {
     vectors->resize(3 * count);
   }
-  for_contacts(options_.threads, count, [&](std::size_t c) {
+  for (std::size_t c = 0; c < count; ++c) {
     const ContactRecord& record = records_[c];
     const TrackedContact& contact = contacts_[c];
     const ContactMaterial& material = options_.materials[static_cast<std::size_t>(record.material)];
@@ -186,7 +167,7 @@ void ContactTracker::fill(ContactProblem& problem) const {
       problem.impulse_guess[3 * c + axis] =
           vector_of(contact.axes[axis]).dot(vector_of(record.impulse_world));
     }
-  });
+  }
 }
 
 AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
@@ -206,10 +187,9 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
   ContactProblem problem;
   fill(problem);
   AdhesionStep step = evolve_adhesion(problem, solution, options_.evolution);
-  next_records_.resize(contacts_.size());
-  for_contacts(options_.threads, contacts_.size(), [&](std::size_t c) {
-    ContactRecord& record = next_records_[c];
-    record = records_[c];
+  next_records_.clear();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    ContactRecord record = records_[c];
     const double before = record.intensity;
     record.intensity = record.area > 0 ? step.intensity[c] : 0;
     carry_anchor(record, contacts_[c], time_step_, places);
@@ -226,22 +206,14 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
     for (std::size_t axis = 0; axis < 3; ++axis) {
       impulse += solution.impulse[3 * c + axis] * vector_of(contacts_[c].axes[axis]);
     }
-    record.impulse_world = point_of(impulse);
-  });
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const ContactRecord& record = next_records_[c];
-    if (!vector_of(record.impulse_world).allFinite() || !std::isfinite(step.intensity[c])) {
+    if (!impulse.allFinite() || !std::isfinite(step.intensity[c])) {
       refuse(name_of(record.key), "has an impulse or a velocity beyond the range of numbers");
     }
+    record.impulse_world = point_of(impulse);
+    if (contacts_[c].is_reported || record.intensity > 0) next_records_.push_back(record);
   }
-  std::size_t count = 0;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    if (!contacts_[c].is_reported && !(next_records_[c].intensity > 0)) continue;
-    if (count != c) next_records_[count] = next_records_[c];
-    ++count;
-  }
-  next_records_.resize(count);
   records_.swap(next_records_);
+  next_records_.clear();
   start_records_.clear();
   is_in_step_ = false;
   return step;

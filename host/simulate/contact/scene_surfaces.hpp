@@ -77,7 +77,7 @@ void surface_motion(const SceneSurfaces& scene,
                     std::span<const double> fraction,
                     int threads,
                     SurfaceMotion& motion);
-/// The same in two parts: all but the vertices, whose ends and sagittas only get their size here;
+/// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
 void frame_motion(const SceneSurfaces& scene,
                   const Model& model,
                   const ModelState& state,
@@ -85,7 +85,7 @@ void frame_motion(const SceneSurfaces& scene,
                   double time_step,
                   std::span<const double> fraction,
                   SurfaceMotion& motion);
-/// and then the vertices.
+/// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
 void vertex_motion(const SceneSurfaces& scene,
                    const Model& model,
                    const ModelState& state,

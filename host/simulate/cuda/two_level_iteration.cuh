@@ -69,6 +69,7 @@ class TwoLevelIteration {
   };
   static constexpr std::int64_t most_steps = 1000;  ///< proximal ones of an outer iteration
   static constexpr std::int64_t most_of_solve = 20000;
+  static constexpr int most_growths = 10;  ///< of the majorants, of an outer iteration
   static constexpr const char* label = "body/contact";
 
   View<double> part(std::int64_t first, std::int64_t size) const {
@@ -193,12 +194,14 @@ class TwoLevelIteration {
     constexpr int count = ProximalState::steps_at_once;
     ProximalState* const state = state_.view().data;
     start_steps(state);
+    int growths = 0;
     for (std::int64_t steps = count;; steps += count) {
       make_run(state);
       const ProximalState::Sums sums = grid_.load(&state->sums);
       const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
       if (laws <= enough || steps >= most_steps) return steps;
-      if (ProximalState::has_missed(sums)) {
+      if (growths < most_growths && ProximalState::has_missed(sums)) {
+        ++growths;
         numbers_.grow_majorants(grid_);
         start_steps(state);
       } else {

@@ -39,7 +39,7 @@ std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
 }
 
 /// Every material twice: the second ones without adhesion of surfaces that are near at the start.
-ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads) {
+ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
   ContactTrackerOptions of;
   of.materials = surfaces.materials;
   of.materials.insert(of.materials.end(), surfaces.materials.begin(), surfaces.materials.end());
@@ -48,7 +48,6 @@ ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads
   }
   of.match_distance = surfaces.surfaces.thickness;
   of.touch_distance = surfaces.surfaces.thickness;
-  of.threads = threads;
   return of;
 }
 
@@ -103,7 +102,7 @@ ContactStep::ContactStep(const Scene& scene,
       options_(options),
       material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
-      tracker_options_(tracker_options(surfaces, options.threads)),
+      tracker_options_(tracker_options(surfaces)),
       pair_contacts_(surfaces, options.threads),
       tracker_(tracker_options_),
       system_(surfaces,
@@ -198,8 +197,9 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
       if (!is_new) return;
       report(is_first);
     }
+    const bool was_free = is_free_;
     const bool is_solved = solve(stepper, part);
-    const bool lets_go = is_expected && pass == 0 && contacts_->empty();
+    const bool lets_go = contacts_->empty() && !was_free;  // this pass was another motion
     if (!is_solved && !lets_go) return;
   }
   const Clock clock(part.detection_seconds);
@@ -215,13 +215,14 @@ void ContactStep::keep_apart(ContactPart& part) {
   // A motion without pairs has passed a detection at a larger distance already.
   if (!has_pairs_) return;
   SurfaceMotion* motion = final_;
-  std::span<const double> fraction;
+  bool is_whole = true;
   for (;;) {
     const std::vector<TouchingPair>& hits = detector_->check(*motion);
-    if (resident_ != nullptr && !hits.empty()) move_vertices(fraction, *motion);
+    // The groups see in the whole motion which bodies move.
+    if (resident_ != nullptr && is_whole && !hits.empty()) move_vertices({}, *motion);
     if (!groups_.stop(hits, *motion)) break;
-    fraction = fractions();
-    move_surfaces(fraction, clamped_);
+    is_whole = false;
+    move_surfaces(fractions(), clamped_);
     motion = &clamped_;
   }
   part.smallest_fraction = groups_.smallest_fraction();
