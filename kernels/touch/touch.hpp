@@ -10,6 +10,8 @@
 
 namespace tetwarp {
 
+constexpr double cosine_45 = 0.7071067811865476;  ///< parts that face elsewhere differ by more
+
 /// Side a is that of the pair's first feature. One that does not count only replaces earlier
 /// touches of its pair.
 struct PairTouch {
@@ -31,6 +33,7 @@ struct PairTouch {
   std::int32_t vertex_b[3] = {-1, -1, -1};    ///< of the face, edge or vertex b; none of a plane
   double weight_a[3] = {}, weight_b[3] = {};  ///< of these, of the nearest points; sum 1
 
+  TETWARP_HD bool is_of_edges() const { return kind == PairKind::edge_edge; }
   bool operator==(const PairTouch&) const = default;
 };
 

@@ -23,7 +23,7 @@ class TouchMaker {
     touch_.pass = pass;
     touch_.distance = pair.start_distance;
     touch_.time = pair.start_distance < 2 * view.thickness ? 0 : time_;
-    if (time_ > 0) origin_ = view.start(is_of_edges() ? view.edge(touch_.a)[0] : touch_.a);
+    if (time_ > 0) origin_ = view.start(touch_.is_of_edges() ? view.edge(touch_.a)[0] : touch_.a);
   }
 
   TETWARP_ANY_EXEC PairTouch make() {
@@ -52,7 +52,7 @@ class TouchMaker {
   /// @param part  out, of any two capsules: [2] fractions of axis a between which the axes overlap
   TETWARP_ANY_EXEC bool overlaps(double* part) const {
     constexpr double parallel_sine = 0.17364817766693033;  // of 10 degrees
-    if (!is_of_edges() || view_.scene.edge_radius[touch_.a] == 0 ||
+    if (!touch_.is_of_edges() || view_.scene.edge_radius[touch_.a] == 0 ||
         view_.scene.edge_radius[touch_.b] == 0) {
       return false;
     }
@@ -85,7 +85,6 @@ class TouchMaker {
   }
 
  private:
-  TETWARP_HD bool is_of_edges() const { return touch_.kind == PairKind::edge_edge; }
   /// At the hit. On the way relative to where the first vertex of the pair starts: far from zero no
   /// digits of distances are lost.
   TETWARP_HD Vec3 place(std::int32_t vertex) const {
@@ -173,7 +172,7 @@ class TouchMaker {
     set_gap();
   }
   /// The unit vector along `apart_`; where it vanishes, along or against `otherwise_`.
-  /// @param start  apart at the start of the motion: decides the side
+  /// @param start  apart at the start of the motion; the result points to the same side
   TETWARP_HD Vec3 normal_at(const Vec3& start) const {
     if (norm(apart_) > 0) return unit(apart_);
     const Vec3 normal = norm(otherwise_) > 0 ? unit(otherwise_) : Vec3{{0, 0, 1}};

@@ -23,7 +23,7 @@ struct TouchBody {
     TouchMaker ends = maker, other = maker;
     PairTouch touch = maker.make();
     double part[2];
-    if (touch.kind == PairKind::edge_edge) {
+    if (touch.is_of_edges()) {
       touch.counts = touch.is_inside && (pairs[i].time <= 1 || is_nearest(touch));
       touch.has_ends = ends.overlaps(part);
     }
@@ -102,7 +102,7 @@ struct TouchKeyBody {
 
   TETWARP_HD CellPair operator()(std::int64_t i) const {
     const PairTouch& touch = touches[i];
-    const std::int64_t first = touch.kind == PairKind::edge_edge ? vertex_count : 0;
+    const std::int64_t first = touch.is_of_edges() ? vertex_count : 0;
     return make_pair(first + touch.a, i, false);
   }
 };
@@ -129,7 +129,7 @@ struct TouchChoiceBody {
     for (; end < given.size && cell_of(given[end]) == cell_of(given[i]); ++end) {
       order[end] = given[end];
     }
-    if (touch_at(i).kind == PairKind::edge_edge) {
+    if (touch_at(i).is_of_edges()) {
       for (std::int64_t k = i; k < end; ++k) mark[k] = is_left_out(k, i, end) ? dropped : kept;
       return;
     }
@@ -141,7 +141,7 @@ struct TouchChoiceBody {
 
  private:
   static constexpr double level_gap = 0.25;  ///< thicknesses
-  static constexpr double cosine_45 = 0.7071067811865476, cosine_5 = 0.9961946980917455;
+  static constexpr double cosine_5 = 0.9961946980917455;
 
   TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[tet_of(order[k])]; }
 

@@ -58,7 +58,7 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   for (const auto& fractions : {std::vector<double>{}, fraction}) {
     SurfaceMotion expected;
     surface_places(touch.surfaces, model, model.start, 1, expected.start);
-    surface_motion(touch.surfaces, model, model.start, velocity, 0.01, fractions, 1, expected);
+    surface_motion({touch.surfaces, model, model.start, velocity, 0.01, fractions}, 1, expected);
     const ResidentMotion motion = surfaces->move(velocity, 0.01, fractions);
     EXPECT_TRUE(has_bits(motion.start, expected.start.vertices));
     EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
@@ -72,7 +72,7 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   const ResidentMotion motion = surfaces->move({}, 0.01, fraction);
   SurfaceMotion expected;
   surface_places(touch.surfaces, model, model.start, 1, expected.start);
-  surface_motion(touch.surfaces, model, model.start, velocity, 0.01, fraction, 1, expected);
+  surface_motion({touch.surfaces, model, model.start, velocity, 0.01, fraction}, 1, expected);
   EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
 }
 

@@ -165,7 +165,8 @@ class Steps {
   }
 
   const std::vector<ContactConstants<double>>& majorant() const { return of_.majorant; }
-  /// Runs with a majorant that is large enough; rounding decides once impulses hardly change.
+  /// Runs with a majorant that is large enough. Products of impulses that hardly change are
+  /// roundings.
   void expect_solve(int runs, const Solvable& known) {
     const double first = run().value[0];
     for (int n = 1; n < runs; ++n) {

@@ -65,7 +65,7 @@ SurfaceMotion motion_of(const TouchScene& touch,
                         int threads = 1) {
   SurfaceMotion motion;
   surface_places(touch.surfaces, touch.model, touch.model.start, threads, motion.start);
-  surface_motion(touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction,
+  surface_motion({touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction},
                  threads, motion);
   return motion;
 }

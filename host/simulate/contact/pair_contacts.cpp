@@ -11,11 +11,6 @@
 
 namespace tetwarp {
 namespace {
-constexpr double cosine_45 = 0.7071067811865476;
-
-bool is_of_edges(const PairTouch& touch) {
-  return touch.kind == PairKind::edge_edge;
-}
 
 ContactKey key_of(std::int32_t body_a,
                   std::int32_t feature_a,
@@ -150,10 +145,10 @@ std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> to
   for (std::size_t first = 0; first < touches.size();) {
     const PairTouch& touch = touches[first].touch;
     std::size_t end = first + 1;
-    if (is_of_edges(touch)) {
+    if (touch.is_of_edges()) {
       name(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
     } else {
-      while (end < touches.size() && !is_of_edges(touches[end].touch) &&
+      while (end < touches.size() && !touches[end].touch.is_of_edges() &&
              touches[end].touch.a == touch.a && touches[end].touch.body_b == touch.body_b) {
         ++end;
       }

@@ -65,34 +65,23 @@ void surface_places(const SceneSurfaces& scene,
                     int threads,
                     SurfacePlaces& places);
 
-/// How all surfaces move in a step of velocities `velocity` [block_count]: nodes straight, rigid
-/// bodies by exp(dt omega). As BodyStepper::move().
-/// @param fraction  [bodies, then obstacles] of the step that each moves, 0 to 1; empty: 1
-/// @param motion    in: its start from surface_places(); out: end, sagitta
-void surface_motion(const SceneSurfaces& scene,
-                    const Model& model,
-                    const ModelState& state,
-                    const std::vector<Point3>& velocity,
-                    double time_step,
-                    std::span<const double> fraction,
-                    int threads,
-                    SurfaceMotion& motion);
+/// How all surfaces move in a step: nodes straight, rigid bodies by exp(dt omega), as
+/// BodyStepper::move(). Owns nothing.
+struct SurfaceStep {
+  const SceneSurfaces& scene;
+  const Model& model;
+  const ModelState& state;                ///< at the start
+  const std::vector<Point3>& velocity;    ///< [block_count] [m/s, rad/s]
+  double time_step = 0;                   ///< [s]
+  std::span<const double> fraction = {};  ///< [bodies, then obstacles] of the step that each moves,
+                                          ///< 0 to 1; empty: 1
+};
+/// @param threads  any number: same motion
+/// @param motion   in: its start from surface_places(); out: all else but `resident`
+void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 /// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
-void frame_motion(const SceneSurfaces& scene,
-                  const Model& model,
-                  const ModelState& state,
-                  const std::vector<Point3>& velocity,
-                  double time_step,
-                  std::span<const double> fraction,
-                  SurfaceMotion& motion);
+void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
 /// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
-void vertex_motion(const SceneSurfaces& scene,
-                   const Model& model,
-                   const ModelState& state,
-                   const std::vector<Point3>& velocity,
-                   double time_step,
-                   std::span<const double> fraction,
-                   int threads,
-                   SurfaceMotion& motion);
+void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 
 }  // namespace tetwarp

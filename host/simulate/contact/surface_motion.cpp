@@ -32,6 +32,13 @@ const double* numbers_of(const T& value) {
 static_assert(sizeof(PlanePlace) == 6 * sizeof(double));
 static_assert(sizeof(TurningFrame) == 9 * sizeof(double));
 
+SurfaceState state_of(const SurfaceStep& step) {
+  return view_of_state(step.state, step.model.node_count);
+}
+SurfaceVelocity velocity_of(const SurfaceStep& step) {
+  return view_of_velocity(step.velocity, step.model.node_count, step.time_step, step.fraction);
+}
+
 }  // namespace
 
 SurfaceBinding binding_of(const SceneSurfaces& scene) {
@@ -73,16 +80,10 @@ void surface_places(const SceneSurfaces& scene,
   }
 }
 
-void vertex_motion(const SceneSurfaces& scene,
-                   const Model& model,
-                   const ModelState& state,
-                   const std::vector<Point3>& velocity,
-                   double time_step,
-                   std::span<const double> fraction,
-                   int threads,
-                   SurfaceMotion& motion) {
-  const SurfaceState at = view_of_state(state, model.node_count);
-  const SurfaceVelocity by = view_of_velocity(velocity, model.node_count, time_step, fraction);
+void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion) {
+  const SceneSurfaces& scene = step.scene;
+  const SurfaceState at = state_of(step);
+  const SurfaceVelocity by = velocity_of(step);
   for_ranges(threads, scene.vertex_point.size(), [&](std::size_t begin, std::size_t end) {
     MovedFrame frame{};
     std::int32_t rigid = -1;  // of the frame; successive vertices are often of the same body
@@ -99,15 +100,10 @@ void vertex_motion(const SceneSurfaces& scene,
   });
 }
 
-void frame_motion(const SceneSurfaces& scene,
-                  const Model& model,
-                  const ModelState& state,
-                  const std::vector<Point3>& velocity,
-                  double time_step,
-                  std::span<const double> fraction,
-                  SurfaceMotion& motion) {
-  const SurfaceState at = view_of_state(state, model.node_count);
-  const SurfaceVelocity by = view_of_velocity(velocity, model.node_count, time_step, fraction);
+void frame_motion(const SurfaceStep& step, SurfaceMotion& motion) {
+  const SceneSurfaces& scene = step.scene;
+  const SurfaceState at = state_of(step);
+  const SurfaceVelocity by = velocity_of(step);
   motion.end.vertices.resize(scene.vertex_point.size());
   motion.sagitta.resize(scene.vertex_point.size());
   motion.frames.resize(scene.body_rigid.size());
@@ -127,16 +123,9 @@ void frame_motion(const SceneSurfaces& scene,
   }
 }
 
-void surface_motion(const SceneSurfaces& scene,
-                    const Model& model,
-                    const ModelState& state,
-                    const std::vector<Point3>& velocity,
-                    double time_step,
-                    std::span<const double> fraction,
-                    int threads,
-                    SurfaceMotion& motion) {
-  frame_motion(scene, model, state, velocity, time_step, fraction, motion);
-  vertex_motion(scene, model, state, velocity, time_step, fraction, threads, motion);
+void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion) {
+  frame_motion(step, motion);
+  vertex_motion(step, threads, motion);
 }
 
 }  // namespace tetwarp

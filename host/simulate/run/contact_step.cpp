@@ -136,7 +136,7 @@ void ContactStep::set_places(const ModelState& state,
 
 void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion& motion) {
   if (&motion != &motions_[0]) motion.start = motions_[0].start;
-  frame_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, motion);
+  frame_motion({surfaces_, model_, *start_, velocity_, time_step_, fraction}, motion);
   if (resident_ == nullptr) return move_vertices(fraction, motion);
   motion.resident = view_of(resident_->move(
       is_free_ ? std::span<const Point3>{} : std::span(velocity_), time_step_, fraction));
@@ -144,7 +144,7 @@ void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion&
 
 /// Of surfaces that move on a device, only what the end check finds needs them on the host.
 void ContactStep::move_vertices(std::span<const double> fraction, SurfaceMotion& motion) const {
-  vertex_motion(surfaces_, model_, *start_, velocity_, time_step_, fraction, options_.threads,
+  vertex_motion({surfaces_, model_, *start_, velocity_, time_step_, fraction}, options_.threads,
                 motion);
 }
 

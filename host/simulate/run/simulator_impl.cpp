@@ -49,7 +49,7 @@ Simulator::Impl::Impl(Scene scene_of_caller, const SimulateOptions& options_of_c
   make_contact();
   stepper = make_stepper();
   largest_spin_ = largest_spin();
-  // The host keeps the records of contacts, and decides what sleeps.
+  // Records of contacts and the choice of sleeping bodies are on the host.
   resident_ = contact_ || sleep_.is_on() ? nullptr : stepper->resident_state();
   if (resident_ == nullptr) return;
   StatePlaces places;
