@@ -99,12 +99,13 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/contact_islands.cpp
   host/simulate/contact/contact_laws.cpp
   host/simulate/contact/contact_rows.cpp
+  host/simulate/contact/contact_sides.cpp
   host/simulate/contact/contact_shares.cpp
   host/simulate/contact/contact_system.cpp
   host/simulate/contact/contact_thickness.cpp
   host/simulate/contact/elastic_groups.cpp
   host/simulate/contact/two_level_on_device.cpp
-  host/simulate/contact/two_level_list_maker.cpp
+  host/simulate/contact/compliant_list_maker.cpp
   host/simulate/contact/elastic_space.cpp
   host/simulate/contact/flat_edges.cpp
   host/simulate/contact/medial_node.cpp
@@ -123,7 +124,9 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/solver_islands.cpp
   host/simulate/contact/start_check.cpp
   host/simulate/contact/start_shrink.cpp
+  host/simulate/contact/step_laws.cpp
   host/simulate/contact/step_problem.cpp
+  host/simulate/contact/step_rows.cpp
   host/simulate/contact/surface_motion.cpp
   host/simulate/contact/touching_blocks.cpp
   host/simulate/contact/touching_groups.cpp

@@ -30,6 +30,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_stepper_options.cpp
     tests/simulate/test_vector_assembly.cpp
     tests/simulate/test_vector_stages.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
     tests/emu/test_stepper_emulated.cpp
     tests/simulate/test_parity_cuda.cpp

@@ -15,6 +15,14 @@ TETWARP_HD void atomic_add(std::int64_t* counter, std::int64_t value) {
 #endif
 }
 
+TETWARP_HD void atomic_add(std::int32_t* counter, std::int32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(counter, value);
+#else
+  __atomic_fetch_add(counter, value, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Adds 1 and returns the value before: a number of its own for every caller, in no fixed order.
 TETWARP_HD std::uint32_t atomic_next(std::uint32_t* counter) {
 #if defined(__CUDA_ARCH__)

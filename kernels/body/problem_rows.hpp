@@ -24,6 +24,27 @@ struct ArmPlace {
   bool operator==(const ArmPlace&) const = default;
 };
 
+/// The numbers of J of one arm.
+/// @param axes   normal, tangent 1, tangent 2 of its contact
+/// @param first  out: place of the 3 numbers in the first row of the contact
+TETWARP_HD void set_arm_rows(const double* axes,
+                             const ContactArm& arm,
+                             std::int32_t stride,
+                             std::int32_t angular,
+                             double* first) {
+  const double* const lever = arm.lever;
+  for (int k = 0; k < 3; ++k) {
+    const double* const axis = axes + 3 * k;
+    double* const out = first + std::int64_t{k} * stride;
+    for (int i = 0; i < 3; ++i) out[i] = arm.weight * axis[i];
+    if (angular == 0) continue;
+    double* const turning = out + angular;
+    turning[0] = lever[1] * axis[2] - lever[2] * axis[1];
+    turning[1] = lever[2] * axis[0] - lever[0] * axis[2];
+    turning[2] = lever[0] * axis[1] - lever[1] * axis[0];
+  }
+}
+
 /// One index = one arm. Writes its own numbers; any order.
 struct ContactRowsBody {
   View<const double> axes;  ///< [contacts][9] normal, tangent 1, tangent 2
@@ -33,18 +54,8 @@ struct ContactRowsBody {
 
   TETWARP_HD void operator()(std::int64_t a) const {
     const ArmPlace& place = places[a];
-    const double weight = arms[a].weight;
-    const double* const lever = arms[a].lever;
-    for (int k = 0; k < 3; ++k) {
-      const double* const axis = axes.data + 9 * std::int64_t{place.contact} + 3 * k;
-      double* const out = jacobian.data + place.first + std::int64_t{k} * place.stride;
-      for (int i = 0; i < 3; ++i) out[i] = weight * axis[i];
-      if (place.angular == 0) continue;
-      double* const turning = out + place.angular;
-      turning[0] = lever[1] * axis[2] - lever[2] * axis[1];
-      turning[1] = lever[2] * axis[0] - lever[0] * axis[2];
-      turning[2] = lever[0] * axis[1] - lever[1] * axis[0];
-    }
+    set_arm_rows(axes.data + 9 * std::int64_t{place.contact}, arms[a], place.stride, place.angular,
+                 jacobian.data + place.first);
   }
 };
 

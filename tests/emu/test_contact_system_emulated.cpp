@@ -47,7 +47,7 @@ Course course_of(const HandScene& scene,
     course.copied = take_copied();
     course.calls = take_calls();
     course.impulse = system.solution().impulse;
-    course.block_impulses = system.block_impulses();
+    course.block_impulses = scene.block_impulses(state, contacts, course.impulse);
     EXPECT_TRUE(course.outcome.converged);
 
     // The velocities of the stepper are those of the solution, bit for bit.

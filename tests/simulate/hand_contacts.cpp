@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/contact_sides.hpp"
 #include "host/simulate/rotations.hpp"
 #include "tests/simulate/body_models.hpp"
 
@@ -19,6 +21,9 @@ void HandScene::make_surfaces(double body_size) {
   }
   for (std::int32_t n = 0; n < model.node_count; ++n) {
     surfaces.vertex_point.push_back(node_point(model, n));
+  }
+  for (std::size_t b = 0; b < bodies; ++b) {
+    surfaces.surfaces.vertex_body.resize(at(model.body_node[b + 1]), static_cast<std::int32_t>(b));
   }
 }
 
@@ -80,6 +85,24 @@ std::vector<TrackedContact> HandScene::begin(ContactTracker& tracker,
                                              const ModelState& state,
                                              double time_step) const {
   return tracker.begin_step(reports(state), places(state), time_step);
+}
+
+std::vector<Point3> HandScene::block_impulses(const ModelState& state,
+                                              const std::vector<TrackedContact>& contacts,
+                                              const std::vector<double>& impulse) const {
+  std::vector<ContactSides> sides;
+  set_contact_sides(surfaces, frames_of_bodies(surfaces, model), contacts, 1, sides);
+  ContactRows rows;
+  set_contact_rows(surfaces, model, state, sides, {}, 1, rows);
+  std::vector<Point3> sums(at(model.block_count()), Point3{0, 0, 0});
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    for (auto e = at(rows.start[c]); e < at(rows.start[c + 1]); ++e) {
+      for (std::size_t k = 0; k < 9; ++k) {
+        sums[at(rows.block[e])][k % 3] += rows.value[e][k] * impulse[3 * c + k / 3];
+      }
+    }
+  }
+  return sums;
 }
 
 MaterialPoint on_nodes(const std::array<std::int32_t, 3>& vertex,

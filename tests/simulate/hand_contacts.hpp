@@ -42,6 +42,11 @@ struct HandScene {
   std::vector<TrackedContact> begin(ContactTracker& tracker,
                                     const ModelState& state,
                                     double time_step) const;
+  /// J^T r on all blocks, [block_count].
+  /// @param impulse  r, [3 contacts]
+  std::vector<Point3> block_impulses(const ModelState& state,
+                                     const std::vector<TrackedContact>& contacts,
+                                     const std::vector<double>& impulse) const;
   /// Of all bodies; refers to the positions of the state.
   std::vector<BodyPlace> places(const ModelState& state) const;
 };

@@ -127,7 +127,8 @@ Solved solve(const HandScene& scene,
   solved.outcome =
       system.solve(*solved.stepper, scene.model.start, tracker, solved.contacts, solved.velocity);
   solved.solution = system.solution();
-  solved.impulses = system.block_impulses();
+  solved.impulses =
+      scene.block_impulses(scene.model.start, solved.contacts, solved.solution.impulse);
   return solved;
 }
 

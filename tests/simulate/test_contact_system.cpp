@@ -206,16 +206,19 @@ TEST(ContactIslands, KeepContactsThatMoveUnknownsByASmallShare) {
   Model model = empty_model();
   add_block(model, {.cells = {1, 1, 1}, .edge = 0.1});
   prescribe(model, 0);
-  const auto scaled = [](double share) {
-    return std::array<double, 9>{share, 0, 0, 0, share, 0, 0, 0, share};
-  };
-  ContactRows rows;
-  rows.start = {0, 2, 3, 5};
-  rows.block = {0, 1, 0, 0, 1};
-  rows.value = {scaled(0.9999), scaled(1e-4), scaled(1), scaled(1), scaled(1e-17)};
+  SceneSurfaces surfaces;
+  for (const std::int32_t node : {0, 1}) surfaces.vertex_point.push_back(node_point(model, node));
+  std::vector<ContactSides> contacts(3);
+  const double share[] = {1e-4, 0, 1e-17};
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    contacts[c].a.vertex[0] = 0;
+    contacts[c].a.vertex[1] = 1;
+    contacts[c].a.weight[0] = 1 - share[c];
+    contacts[c].a.weight[1] = share[c];
+  }
 
-  ContactIslands islands(model);
-  islands.join(rows);
+  ContactIslands islands(surfaces, model);
+  islands.join(contacts);
 
   EXPECT_EQ(islands.of_contact(), (std::vector<std::int32_t>{0, -1, -1}));
   EXPECT_EQ(islands.contact_island_count(), 1);

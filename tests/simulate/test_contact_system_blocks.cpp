@@ -14,7 +14,7 @@ constexpr double block_step = 8e-3;
 struct BlockRun {
   ModelState state;
   ContactSolution solution;
-  std::vector<Point3> impulses, supports;
+  std::vector<Point3> impulses, on_prescribed, supports;
 };
 
 BlockRun run(const HandScene& scene,
@@ -36,13 +36,14 @@ BlockRun run(const HandScene& scene,
     const std::vector<TrackedContact> contacts = scene.begin(tracker, result.state, block_step);
     stepper->get_velocities(velocity);
     system.solve(*stepper, result.state, tracker, contacts, velocity);
+    result.impulses = scene.block_impulses(result.state, contacts, system.solution().impulse);
     stepper->set_velocities(velocity);
     stepper->move(block_step, {});
     stepper->get_state(result.state);
     tracker.end_step(system.solution(), scene.places(result.state));
   }
   result.solution = system.solution();
-  result.impulses = system.block_impulses();
+  result.on_prescribed = system.block_impulses();
   result.supports = stepper->support_impulses();
   return result;
 }
@@ -87,6 +88,9 @@ TEST(ContactBlock, SupportOfAFrameHoldsTheWeight) {
 
   EXPECT_NEAR(rest.impulses[0][2], block_step * g, 1e-12);
   EXPECT_NEAR(rest.impulses[2][2], -block_step * g, 1e-12);
+  const Point3 none{0, 0, 0};
+  EXPECT_EQ(rest.on_prescribed,
+            (std::vector<Point3>{none, none, rest.impulses[2], rest.impulses[3]}));
   EXPECT_EQ(rest.supports[0], (Point3{0, 0, 0}));
 }
 

@@ -6,6 +6,7 @@
 
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/step_problem.hpp"
+#include "host/simulate/contact/step_rows.hpp"
 #include "tests/simulate/body_models.hpp"
 #include "tests/simulate/stack_scenes.hpp"
 
@@ -40,15 +41,15 @@ std::vector<StackStep> run_stack(const HandScene& scene,
     const StepSystem rows = stepper->system();
     step.outcome = system.solve(*stepper, state, tracker, contacts, step.velocity, change);
 
-    ContactIslands islands(scene.model);
-    ContactRows jacobian;
-    set_contact_rows(scene.surfaces, scene.model, frames_of_bodies(scene.surfaces, scene.model),
-                     state, contacts, 1, jacobian);
+    ContactIslands islands(scene.surfaces, scene.model);
+    StepRows jacobian(scene.surfaces, scene.model, 1);
+    jacobian.begin(state, contacts);
+    jacobian.set_all();
     std::vector<std::int32_t> all;
     for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
     StepProblem part;
     part.set_pattern(
-        rows.rows, islands, jacobian,
+        rows.rows, islands, jacobian.rows(),
         std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
     part.set_numbers(rows);
     tracker.fill(part.problem());

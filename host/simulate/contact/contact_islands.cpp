@@ -2,6 +2,7 @@
 #include "host/base/index_of.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace tetwarp {
@@ -11,8 +12,9 @@ constexpr double least_share = 1e-12;
 
 }  // namespace
 
-ContactIslands::ContactIslands(const Model& model)
-    : island_of_(index_of(model.block_count()), -1),
+ContactIslands::ContactIslands(const SceneSurfaces& scene, const Model& model)
+    : first_frame_(model.node_count),
+      island_of_(index_of(model.block_count()), -1),
       is_coupled_(index_of(model.island_count)),
       has_contacts_(index_of(model.island_count)),
       is_soft_(index_of(model.island_count)),
@@ -32,6 +34,16 @@ ContactIslands::ContactIslands(const Model& model)
     if (island >= 0 && (rigid < 0 || ++bodies[index_of(island)] > 1))
       is_coupled_[index_of(island)] = 1;
   }
+  for (const ModelPoint& point : scene.vertex_point) {
+    Unknowns& own = of_vertex_.emplace_back();
+    const auto add = [&](std::int32_t block, double weight) {
+      if (of_block(block) >= 0) own = {of_block(block), std::max(own.share, std::abs(weight))};
+    };
+    if (point.rigid >= 0) add(first_frame_ + 2 * point.rigid, 1);
+    for (std::size_t n = 0; n < 4 && point.rigid < 0; ++n) {
+      if (point.node[n] >= 0) add(point.node[n], point.weight[n]);
+    }
+  }
 }
 
 std::int32_t ContactIslands::root_of(std::int32_t island) {
@@ -42,29 +54,34 @@ std::int32_t ContactIslands::root_of(std::int32_t island) {
   return island;
 }
 
-bool ContactIslands::moves_unknowns(const ContactRows& rows, std::size_t contact) const {
-  for (std::int32_t e = rows.start[contact]; e < rows.start[contact + 1]; ++e) {
-    if (of_block(rows.block[index_of(e)]) < 0) continue;
-    const double* const normal = rows.value[index_of(e)].data();
-    const double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
-    if (square >= least_share * least_share) return true;
+ContactIslands::Unknowns ContactIslands::of_side(const ContactSide& side) const {
+  if (side.frame >= 0) {
+    const std::int32_t island = of_block(first_frame_ + 2 * side.frame);
+    return {island, island >= 0 ? 1.0 : 0.0};
   }
-  return false;
+  Unknowns sum;
+  for (int k = 0; k < 3; ++k) {
+    if (side.vertex[k] < 0) continue;
+    const Unknowns& own = of_vertex_[index_of(side.vertex[k])];
+    if (own.island < 0) continue;
+    sum = {own.island, std::max(sum.share, std::abs(side.weight[k]) * own.share)};
+  }
+  return sum;
 }
 
-void ContactIslands::join(const ContactRows& rows) {
+void ContactIslands::join(std::span<const ContactSides> contacts) {
   std::fill(has_contacts_.begin(), has_contacts_.end(), 0);
   std::iota(root_.begin(), root_.end(), 0);
-  of_contact_.assign(rows.start.size() - 1, -1);
+  of_contact_.assign(contacts.size(), -1);
   for (std::size_t c = 0; c < of_contact_.size(); ++c) {
-    if (!moves_unknowns(rows, c)) continue;
-    for (const std::int32_t block : rows.blocks_of(c)) {
-      const std::int32_t island = of_block(block);
+    const Unknowns a = of_side(contacts[c].a), b = of_side(contacts[c].b);
+    if (std::max(a.share, b.share) < least_share) continue;
+    for (const std::int32_t island : {a.island, b.island}) {
       if (island < 0) continue;
       has_contacts_[index_of(island)] = 1;
       if (of_contact_[c] < 0) of_contact_[c] = island;
-      const std::int32_t a = root_of(of_contact_[c]), b = root_of(island);
-      root_[index_of(std::max(a, b))] = std::min(a, b);
+      const std::int32_t root = root_of(of_contact_[c]), other = root_of(island);
+      root_[index_of(std::max(root, other))] = std::min(root, other);
     }
   }
   contact_island_count_ = 0;

@@ -2,18 +2,20 @@
 /// Which coupling islands have contacts, and how contacts join them to contact islands.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/scene_surfaces.hpp"
+#include "kernels/body/contact_arms.hpp"
 
 namespace tetwarp {
 
 class ContactIslands {
  public:
-  explicit ContactIslands(const Model& model);
+  ContactIslands(const SceneSurfaces& scene, const Model& model);
 
   /// Joins the islands that share a contact.
-  void join(const ContactRows& rows);
+  void join(std::span<const ContactSides> contacts);
 
   std::int32_t count() const { return static_cast<std::int32_t>(root_.size()); }
   /// Coupling island of a block with unknowns, or -1.
@@ -39,9 +41,16 @@ class ContactIslands {
 
  private:
   std::int32_t root_of(std::int32_t island);
-  bool moves_unknowns(const ContactRows& rows, std::size_t contact) const;
+  /// The blocks with unknowns that a vertex or a side of a contact moves with, all of one body.
+  struct Unknowns {
+    std::int32_t island = -1;  ///< their coupling island, -1: there are none
+    double share = 0;          ///< the largest weight
+  };
+  Unknowns of_side(const ContactSide& side) const;
 
+  std::int32_t first_frame_;                ///< its first block
   std::vector<std::int32_t> island_of_;     ///< [block_count]
+  std::vector<Unknowns> of_vertex_;         ///< [vertices]
   std::vector<std::uint8_t> is_coupled_;    ///< [islands] more than one rigid body
   std::vector<std::uint8_t> has_contacts_;  ///< [islands]
   std::vector<std::uint8_t> is_soft_;       ///< [islands] of roots

@@ -6,20 +6,13 @@
 #include <span>
 #include <vector>
 
-#include <tetwarp/contact_tracker.hpp>
-
 #include "host/simulate/contact/scene_surfaces.hpp"
-#include "kernels/body/problem_rows.hpp"
+#include "kernels/body/contact_arms.hpp"
 
 namespace tetwarp {
 
 /// Of each contact the blocks that it acts on, ascending, each once.
 struct ContactRows {
-  struct BlockArm {
-    std::int32_t block = 0;  ///< of a frame the first one
-    ContactArm arm;
-  };
-
   std::vector<std::int32_t> start;           ///< [contacts + 1]
   std::vector<std::int32_t> block;           ///< [entries] of the model
   std::vector<std::array<double, 9>> value;  ///< [entries] row k: velocity along axis k of the
@@ -44,20 +37,16 @@ struct ContactRows {
   }
 };
 
-/// Frame of the model of each body and obstacle that has one, else -1.
-std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Model& model);
-
-/// A point of a rigid body at x moves with v + omega x (x - centre); a point of a deformable body
-/// with the weighted mean of up to 12 nodes.
-/// @param frames   of frames_of_bodies()
 /// @param state    at the start of the step
+/// @param sides    [contacts]
+/// @param takes    [contacts] those that are not taken get no blocks; empty: all are taken
 /// @param threads  any number: same rows
 /// @param rows     out; memory is kept
 void set_contact_rows(const SceneSurfaces& scene,
                       const Model& model,
-                      std::span<const std::int32_t> frames,
                       const ModelState& state,
-                      const std::vector<TrackedContact>& contacts,
+                      std::span<const ContactSides> sides,
+                      std::span<const std::uint8_t> takes,
                       int threads,
                       ContactRows& rows);
 

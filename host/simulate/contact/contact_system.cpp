@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "host/simulate/contact/contact_islands.hpp"
-#include "host/simulate/contact/contact_laws.hpp"
-#include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/contact/contact_shares.hpp"
 #include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/contact/soft_islands.hpp"
 #include "host/simulate/contact/solver_islands.hpp"
+#include "host/simulate/contact/step_laws.hpp"
+#include "host/simulate/contact/step_rows.hpp"
 #include "host/simulate/resident_contacts.hpp"
 
 namespace tetwarp {
@@ -21,15 +21,12 @@ struct ContactSystem::State {
       : scene(surfaces),
         model(of),
         options(given),
-        frames(frames_of_bodies(surfaces, of)),
-        islands(of),
-        soft_islands(of, given.solver, given.factors),
+        rows(surfaces, of, given.solver.threads),
+        islands(surfaces, of),
+        laws(surfaces, given.recovery_fraction),
+        soft_islands(surfaces, of, given.solver, given.factors),
         solver_islands(given.solver) {}
 
-  void set_laws(const ContactTracker& tracker,
-                const std::vector<TrackedContact>& contacts,
-                const std::vector<Point3>& velocity);
-  void set_bond(const TrackedContact& contact, std::size_t c);
   void take_impulses(const ContactShare& share,
                      std::span<const double> impulse,
                      std::span<const double> velocity);
@@ -41,27 +38,21 @@ struct ContactSystem::State {
   void solve_other(BodyStepper& stepper,
                    std::vector<Point3>& velocity,
                    ContactSolveOutcome& outcome);
-  void add_block_impulses();
   bool stop_fast_turns(std::vector<Point3>& velocity);
-  double recovery_speed(const ContactKey& key) const;
   bool iterates_two_levels() const;
 
   const SceneSurfaces& scene;
   const Model& model;
   ContactSystemOptions options;
-  std::vector<std::int32_t> frames;  ///< [bodies, then obstacles]
-  ContactRows rows;
+  StepRows rows;
   ContactIslands islands;
-  ContactProblem laws;  ///< friction, offsets, adhesion, guess; no matrices
+  StepLaws laws;
   ContactShares shares;
   SoftIslands soft_islands;
   SolverIslands solver_islands;
   bool is_resident = false;  ///< all velocities that contacts have changed are on the device
   ResidentTwoLevel* resident_soft = nullptr;   ///< or null: none there
   ResidentContacts* resident_other = nullptr;  ///< or null: none there
-  std::vector<double> prescribed;  ///< [3 contacts] J_p v_p of prescribed velocities v_p
-  std::vector<double> recovered;   ///< [contacts] normal offset that was added to slow recovery, or
-                                   ///< because only a bond is left
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
@@ -73,58 +64,6 @@ bool ContactSystem::State::iterates_two_levels() const {
          options.solver.method == ContactMethod::automatic &&
          options.solver.coupling == ContactCoupling::automatic &&
          options.solver.measure == ContactMeasure::eta;
-}
-
-double ContactSystem::State::recovery_speed(const ContactKey& key) const {
-  return options.recovery_fraction *
-         std::min(scene.body_size[index_of(key.body_a)], scene.body_size[index_of(key.body_b)]);
-}
-
-/// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
-/// apart sideways, these pass each other without pushing. One whose normal has turned away, so that
-/// its ends seem to overlap, does nothing along it: pushing would oppose what does touch there.
-void ContactSystem::State::set_bond(const TrackedContact& contact, std::size_t c) {
-  double way = std::hypot(contact.gap[1], contact.gap[2]);
-  if (contact.gap[0] < 0) way += scene.surfaces.thickness - 2 * contact.gap[0];
-  if (contact.gap[0] <= 0) laws.adhesion.stiffness[c] = 0;
-  recovered[c] = std::max(recovered[c], way / laws.adhesion.time_step);
-}
-
-/// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and limits
-/// the normal ones, from which existing penetration is undone within the step.
-void ContactSystem::State::set_laws(const ContactTracker& tracker,
-                                    const std::vector<TrackedContact>& contacts,
-                                    const std::vector<Point3>& velocity) {
-  tracker.fill(laws);
-  const double time_step = laws.adhesion.time_step;
-  prescribed.assign(3 * contacts.size(), 0);
-  recovered.assign(contacts.size(), 0);
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
-      const std::int32_t block = rows.block[index_of(e)];
-      if (model.prescribed[index_of(block)] == 0) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          prescribed[3 * c + k] +=
-              rows.value[index_of(e)][3 * k + i] * velocity[index_of(block)][i];
-        }
-      }
-    }
-    const TrackedContact& contact = contacts[c];
-    const double closing = contact.gap[0] / time_step, limit = -recovery_speed(contact.key);
-    const bool rebounds = contact.rebound_speed > 0 && -contact.rebound_speed <= closing;
-    if (closing < limit && !rebounds) {
-      const double slowest =
-          contact.rebound_speed > 0 ? std::min(limit, -contact.rebound_speed) : limit;
-      recovered[c] = std::max(slowest - closing, 0.0);
-    }
-    if (!contact.is_reported) set_bond(contact, c);
-    laws.velocity_offset[3 * c] += recovered[c];
-    for (std::size_t k = 0; k < 3; ++k) {
-      laws.velocity_offset[3 * c + k] += prescribed[3 * c + k];
-    }
-    laws.adhesion.gap[3 * c] += time_step * prescribed[3 * c];
-  }
 }
 
 void ContactSystem::State::take_impulses(const ContactShare& share,
@@ -146,9 +85,11 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       ContactSolveOutcome& outcome) {
   resident_soft = nullptr;
   if (shares.soft.is_empty()) return;
-  const TwoLevelOutcome solved = soft_islands.solve(
-      stepper, {state, islands, rows, shares.soft.islands, shares.soft.contacts, laws, change},
-      velocity);
+  const TwoLevelOutcome solved =
+      soft_islands.solve(stepper,
+                         {state, islands, rows.sides(), rows.rows(), shares.soft.islands,
+                          shares.soft.contacts, laws.problem(), change},
+                         rows, velocity);
   outcome.outer_iterations += solved.outer_iterations;
   outcome.sweeps += solved.sweeps;
   if (solved.is_stopped) {
@@ -156,7 +97,7 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
     return;
   }
   if (!solved.is_result) {
-    shares.other.take(shares.soft);
+    shares.other.take(shares.soft);  // the host has all rows
     return shares.soft.clear(islands.count());
   }
   outcome.converged = solved.converged;
@@ -170,8 +111,8 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
                                        ContactSolveOutcome& outcome) {
   resident_other = nullptr;
   if (shares.other.is_empty()) return;
-  solution.report = solver_islands.solve(stepper, islands, rows, shares.other.islands,
-                                         shares.other.contacts, laws, velocity);
+  solution.report = solver_islands.solve(stepper, islands, rows.rows(), shares.other.islands,
+                                         shares.other.contacts, laws.problem(), velocity);
   take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
   resident_other = solver_islands.resident();
   const ContactReport& report = solution.report;
@@ -181,27 +122,11 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
   outcome.outer_iterations += report.outer_iterations;
 }
 
-void ContactSystem::State::add_block_impulses() {
-  impulses.assign(index_of(model.block_count()), Point3{0, 0, 0});
-  for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
-    const double* const r = solution.impulse.data() + 3 * c;
-    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-    for (std::int32_t e = rows.start[c]; e < rows.start[c + 1]; ++e) {
-      Point3& own = impulses[index_of(rows.block[index_of(e)])];
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          own[i] += rows.value[index_of(e)][3 * axis + i] * r[axis];
-        }
-      }
-    }
-  }
-}
-
 /// Contacts are linear in the velocities of a step. A body with corners that has no room between
 /// others can satisfy them by turning many times within the step, at any speed. One that contacts
 /// turn by more than half a turn stands still instead, without impulses. @returns whether one does
 bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
-  const double most = std::acos(-1.0) / laws.adhesion.time_step;
+  const double most = std::acos(-1.0) / laws.problem().adhesion.time_step;
   std::vector<std::uint8_t> is_stopped;
   for (std::int32_t r = 0; r < model.rigid_count; ++r) {
     const std::size_t block = index_of(model.node_count + 2 * r);
@@ -215,8 +140,9 @@ bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
   }
   if (is_stopped.empty()) return false;
   is_resident = false;
-  for (std::size_t c = 0; c + 1 < rows.start.size(); ++c) {
-    const auto blocks = rows.blocks_of(c);
+  rows.set_all();
+  for (std::size_t c = 0; c < rows.sides().size(); ++c) {
+    const auto blocks = rows.rows().blocks_of(c);
     if (std::ranges::any_of(blocks, [&](std::int32_t b) { return is_stopped[index_of(b)] != 0; })) {
       std::fill_n(solution.impulse.begin() + static_cast<std::ptrdiff_t>(3 * c), 3, 0.0);
     }
@@ -240,13 +166,18 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   State& s = *state_;
   static const std::vector<Point3> none;
   s.velocity_before = velocity;
-  set_contact_rows(s.scene, s.model, s.frames, state, contacts, s.options.solver.threads, s.rows);
-  s.islands.join(s.rows);
-  s.set_laws(tracker, contacts, velocity);
+  s.rows.begin(state, contacts);
+  s.islands.join(s.rows.sides());
   s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);
+  if (s.soft_islands.begin(stepper, s.shares.soft)) {
+    s.rows.set_for_host(s.shares.soft.contacts);
+  } else {
+    s.rows.set_all();
+  }
+  s.laws.set(tracker, contacts, s.rows, velocity);
   s.solution.report = {};
   s.solution.impulse.assign(3 * contacts.size(), 0);
-  s.solution.velocity = s.laws.velocity_offset;  // of contacts that act on no unknown
+  s.solution.velocity = s.laws.problem().velocity_offset;  // of contacts that act on no unknown
   ContactSolveOutcome outcome;
   outcome.islands = s.islands.contact_island_count();
   const std::vector<Point3>& last_change =
@@ -257,9 +188,11 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
                   (s.shares.other.is_empty() || s.resident_other != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
-  s.add_block_impulses();
+  s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
   // The tracker reads gaps from the velocities: without what slows recovery.
-  for (std::size_t c = 0; c < contacts.size(); ++c) s.solution.velocity[3 * c] -= s.recovered[c];
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    s.solution.velocity[3 * c] -= s.laws.recovered()[c];
+  }
   return outcome;
 }
 

@@ -64,7 +64,7 @@ class ContactSystem {
   /// Impulses and velocities of all contacts of the last solve(), in their order; for
   /// ContactTracker::end_step().
   const ContactSolution& solution() const;
-  /// J^T r of the last solve(): impulses on all blocks, also prescribed ones [block_count].
+  /// J^T r of the last solve() on prescribed blocks, 0 on others [block_count].
   const std::vector<Point3>& block_impulses() const;
 
  private:

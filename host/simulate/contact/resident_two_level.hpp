@@ -8,11 +8,13 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/simulate/contact/compliant_lists.hpp"
 #include "host/simulate/contact/contact_constants.hpp"
 #include "host/simulate/contact/two_level_control.hpp"
-#include "host/simulate/contact/two_level_lists.hpp"
 #include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/resident_contacts.hpp"
+#include "host/simulate/resident_surfaces.hpp"
+#include "kernels/body/contact_arms.hpp"
 
 namespace tetwarp {
 
@@ -20,10 +22,11 @@ namespace tetwarp {
 struct TwoLevelStart {
   double time_step = 0;          ///< [s]
   std::vector<double> rotation;  ///< R of the elastic bodies, [frames][9], rows first
-  ContactConstantsList laws;     ///< of the contacts
-  std::vector<double> offset;    ///< w, [3 contacts]
-  std::vector<double> impulse;   ///< guess of r, preload included, [3 contacts]
-  std::vector<double> change;    ///< added to the velocities without contact, [rows][3]; or empty
+  std::vector<ContactSides> contacts;
+  ContactConstantsList laws;    ///< of the contacts
+  std::vector<double> offset;   ///< w, [3 contacts]
+  std::vector<double> impulse;  ///< guess of r, preload included, [3 contacts]
+  std::vector<double> change;   ///< added to the velocities without contact, [rows][3]; or empty
 };
 
 class ResidentTwoLevel {
@@ -32,11 +35,13 @@ class ResidentTwoLevel {
   /// Rows of the system, in memory of the host.
   virtual SystemRows rows() = 0;
   /// The two-level iteration of TwoLevelSolver, from the system that BodyStepper::solve() has made.
+  /// @param surfaces  what contacts are on; the same in all calls
   /// @param lists    kept until it returns
   /// @param factors  of the elastic bodies, set to the length of the step; the inverse of each is
   ///                 copied to the device once per length
   /// @throws CudaError  a call of the device fails, as without memory for the inverses
-  virtual TwoLevelOutcome solve(const TwoLevelLists& lists,
+  virtual TwoLevelOutcome solve(const SurfaceBinding& surfaces,
+                                const CompliantLists& lists,
                                 const TwoLevelStart& start,
                                 RestFactors& factors,
                                 const ContactOptions& options) = 0;

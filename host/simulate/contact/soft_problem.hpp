@@ -2,6 +2,7 @@
 /// SoftProblem: islands and contacts for the two-level iteration.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <tetwarp/contact_problem.hpp>
@@ -15,9 +16,10 @@ namespace tetwarp {
 struct SoftProblem {
   const ModelState& state;  ///< at the start of the step
   const ContactIslands& islands;
-  const ContactRows& rows;
+  std::span<const ContactSides> sides;        ///< of all contacts
+  const ContactRows& rows;                    ///< of all contacts; only read on the host
   const std::vector<std::uint8_t>& takes;     ///< [coupling islands] which are taken
-  const std::vector<std::int32_t>& contacts;  ///< in `rows`, on these islands; ascending
+  const std::vector<std::int32_t>& contacts;  ///< on these islands; ascending
   const ContactProblem& laws;         ///< friction, offsets, adhesion and guess of these contacts
   const std::vector<Point3>& change;  ///< how contacts changed the velocities in the step before,
                                       ///< [block_count], or empty

@@ -11,28 +11,37 @@ namespace {
 constexpr std::int64_t most_nodes = 1000;
 constexpr std::int64_t most_numbers = std::int64_t{1} << 27;
 
-}  // namespace
-
-TwoLevelOnDevice::TwoLevelOnDevice(const Model& model,
-                                   const ContactOptions& options,
-                                   std::shared_ptr<RestFactors> factors)
-    : options_(options), factors_(std::move(factors)), body_of_(index_of(model.island_count), -1) {
+/// [coupling islands] elastic body that gives way by its inverse, or -1.
+std::vector<std::int32_t> bodies_with_inverses(const Model& model, const RestFactors& factors) {
+  std::vector<std::int32_t> body_of(index_of(model.island_count), -1);
   std::int64_t numbers = 0;
   for (std::int32_t island = 0; island < model.island_count; ++island) {
-    const std::int32_t body = factors_->body_of_island(island);
+    const std::int32_t body = factors.body_of_island(island);
     if (body < 0) continue;
     const std::int64_t nodes =
         model.body_node[index_of(body) + 1] - model.body_node[index_of(body)];
     if (nodes > most_nodes || numbers + 9 * nodes * nodes > most_numbers) continue;
     numbers += 9 * nodes * nodes;
-    body_of_[index_of(island)] = body;
+    body_of[index_of(island)] = body;
   }
+  return body_of;
 }
+
+}  // namespace
+
+TwoLevelOnDevice::TwoLevelOnDevice(const SceneSurfaces& scene,
+                                   const Model& model,
+                                   const ContactOptions& options,
+                                   std::shared_ptr<RestFactors> factors)
+    : scene_(scene),
+      options_(options),
+      factors_(std::move(factors)),
+      maker_(bodies_with_inverses(model, *factors_), TwoLevelControl::relaxation(options)) {}
 
 bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
   for (std::size_t i = 0; i < takes.size(); ++i) {
     const std::int32_t body = factors_->body_of_island(static_cast<std::int32_t>(i));
-    if (takes[i] != 0 && body >= 0 && body_of_[i] < 0) return false;
+    if (takes[i] != 0 && body >= 0 && !maker_.has_inverse(i)) return false;
   }
   return true;
 }
@@ -40,18 +49,22 @@ bool TwoLevelOnDevice::can_take(const std::vector<std::uint8_t>& takes) const {
 TwoLevelOutcome TwoLevelOnDevice::solve(ResidentTwoLevel& resident,
                                         const SoftProblem& problem,
                                         std::vector<Point3>& velocity) {
-  maker_.make(resident.rows(), problem.islands, body_of_, problem.rows, problem.takes,
-              problem.contacts, TwoLevelControl::relaxation(options_));
+  maker_.make(resident.rows(), problem.islands, problem.takes);
   set_start(problem);
-  const TwoLevelOutcome outcome = resident.solve(maker_.lists(), start_, *factors_, options_);
+  const TwoLevelOutcome outcome =
+      resident.solve(binding_of(scene_), maker_.lists(), start_, *factors_, options_);
   if (outcome.is_result) take_results(resident.results(), velocity);
   return outcome;
 }
 
 void TwoLevelOnDevice::set_start(const SoftProblem& problem) {
   const ContactProblem& laws = problem.laws;
-  const TwoLevelLists& lists = maker_.lists();
+  const CompliantLists& lists = maker_.lists();
   start_.time_step = laws.adhesion.time_step;
+  start_.contacts.clear();
+  for (const std::int32_t c : problem.contacts) {
+    start_.contacts.push_back(problem.sides[index_of(c)]);
+  }
   start_.laws.set(laws);
   start_.offset = laws.velocity_offset;
   start_.impulse = laws.impulse_guess;
@@ -73,7 +86,7 @@ void TwoLevelOnDevice::set_start(const SoftProblem& problem) {
 }
 
 void TwoLevelOnDevice::take_results(const ResidentResults& results, std::vector<Point3>& velocity) {
-  const TwoLevelLists& lists = maker_.lists();
+  const CompliantLists& lists = maker_.lists();
   impulse_.assign(results.impulse.begin(), results.impulse.end());
   contact_velocity_.assign(results.velocity.begin(), results.velocity.end());
   for (std::size_t c = 0; c < start_.laws.preload.size(); ++c) {

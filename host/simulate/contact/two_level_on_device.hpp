@@ -7,19 +7,20 @@
 
 #include <tetwarp/contact.hpp>
 
+#include "host/simulate/contact/compliant_list_maker.hpp"
 #include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/contact/soft_problem.hpp"
-#include "host/simulate/contact/two_level_list_maker.hpp"
 #include "host/simulate/stepper.hpp"
 
 namespace tetwarp {
 
-/// As TwoLevelSolver. Contacts and their laws go to the device; impulses and velocities come back.
-/// The system of the step stays there.
+/// As TwoLevelSolver. Contacts and their laws go to the device, which makes their rows and lists;
+/// impulses and velocities come back. The system of the step stays there.
 class TwoLevelOnDevice {
  public:
-  /// @param model  kept by the caller
-  TwoLevelOnDevice(const Model& model,
+  /// @param scene, model  kept by the caller
+  TwoLevelOnDevice(const SceneSurfaces& scene,
+                   const Model& model,
                    const ContactOptions& options,
                    std::shared_ptr<RestFactors> factors);
 
@@ -40,11 +41,10 @@ class TwoLevelOnDevice {
   void set_start(const SoftProblem& problem);
   void take_results(const ResidentResults& results, std::vector<Point3>& velocity);
 
+  const SceneSurfaces& scene_;
   ContactOptions options_;
   std::shared_ptr<RestFactors> factors_;
-  std::vector<std::int32_t> body_of_;  ///< [coupling islands] elastic body that gives way by its
-                                       ///< inverse, or -1
-  TwoLevelListMaker maker_;
+  CompliantListMaker maker_;
   TwoLevelStart start_;
   std::vector<double> impulse_, contact_velocity_;
 };

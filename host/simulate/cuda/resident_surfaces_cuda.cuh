@@ -21,10 +21,16 @@ class CudaResidentSurfaces final : public ResidentSurfaces {
 
   void begin(const SurfaceBinding& surfaces) override {
     const DeviceScope scope = exec_.enter();
-    if (!is_bound_) bind(surfaces);
+    points(surfaces);
     exec_.for_each(label, count(),
                    SurfaceStartBody{view(points_), view(plane_local_), view(plane_rigid_), state(),
                                     start_.view(), plane_start_.view()});
+  }
+
+  /// What the vertices are bound to, in memory of the device.
+  View<const SurfacePoint> points(const SurfaceBinding& surfaces) {
+    if (!is_bound_) bind(surfaces);
+    return view(points_);
   }
 
   ResidentMotion move(std::span<const Point3> velocity,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/simulate/body_pipeline.hpp"
+#include "host/simulate/cuda/resident_surfaces_cuda.cuh"
 #include "host/simulate/cuda/two_level_iteration.cuh"
 
 namespace tetwarp {
@@ -13,21 +14,27 @@ namespace tetwarp {
 template <class T>
 class CudaResidentTwoLevel final : public ResidentTwoLevel {
  public:
-  /// @param exec, model, pipeline  kept by the caller
+  /// @param exec, model, pipeline, surfaces  kept by the caller
   CudaResidentTwoLevel(CudaStepExec& exec,
                        const Model& model,
-                       BodyPipeline<CudaStepExec, T>& pipeline)
-      : exec_(exec), pipeline_(pipeline), iteration_(exec, model.node_count, model.rigid_count) {}
+                       BodyPipeline<CudaStepExec, T>& pipeline,
+                       CudaResidentSurfaces& surfaces)
+      : exec_(exec),
+        pipeline_(pipeline),
+        surfaces_(surfaces),
+        iteration_(exec, model.node_count, model.rigid_count) {}
 
   SystemRows rows() override { return pipeline_.host_rows(); }
 
-  TwoLevelOutcome solve(const TwoLevelLists& lists,
+  TwoLevelOutcome solve(const SurfaceBinding& surfaces,
+                        const CompliantLists& lists,
                         const TwoLevelStart& start,
                         RestFactors& factors,
                         const ContactOptions& options) override {
     const DeviceScope scope = exec_.enter();
-    contact_numbers_ = 3 * static_cast<std::size_t>(lists.contact_count());
-    return iteration_.solve(pipeline_.rows(), pipeline_.arrays(), lists, start, factors, options);
+    contact_numbers_ = 3 * start.contacts.size();
+    return iteration_.solve(pipeline_.rows(), pipeline_.arrays(), surfaces_.points(surfaces), lists,
+                            start, factors, options);
   }
 
   ResidentResults results() override {
@@ -50,6 +57,7 @@ class CudaResidentTwoLevel final : public ResidentTwoLevel {
  private:
   CudaStepExec& exec_;
   BodyPipeline<CudaStepExec, T>& pipeline_;
+  CudaResidentSurfaces& surfaces_;
   TwoLevelIteration iteration_;
   std::size_t contact_numbers_ = 0;
   std::vector<double> host_results_;

@@ -21,8 +21,8 @@ class CudaStepper final : public BodyStepper {
         pipeline_(exec_, model, options),
         resident_(exec_, model, pipeline_),
         contacts_(exec_, pipeline_),
-        two_level_(exec_, model, pipeline_),
         surfaces_(exec_, model, pipeline_.arrays()),
+        two_level_(exec_, model, pipeline_, surfaces_),
         name_(std::move(name)) {}
 
   std::string device() const override { return name_; }
@@ -73,8 +73,8 @@ class CudaStepper final : public BodyStepper {
   BodyPipeline<CudaStepExec, T> pipeline_;
   CudaResidentState<T> resident_;
   CudaResidentContacts<T> contacts_;
-  CudaResidentTwoLevel<T> two_level_;
   CudaResidentSurfaces surfaces_;
+  CudaResidentTwoLevel<T> two_level_;
   std::string name_;
 };
 

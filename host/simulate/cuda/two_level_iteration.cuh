@@ -29,9 +29,11 @@ class TwoLevelIteration {
 
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
+  /// @param points  of the surfaces, there
   TwoLevelOutcome solve(const SystemRows& rows,
                         const StepArrays<CudaStepExec>& arrays,
-                        const TwoLevelLists& lists,
+                        View<const SurfacePoint> points,
+                        const CompliantLists& lists,
                         const TwoLevelStart& start,
                         RestFactors& factors,
                         const ContactOptions& options) {
@@ -39,7 +41,7 @@ class TwoLevelIteration {
     lists_ = &lists;
     options_ = &options;
     switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
-    numbers_.set(exec_, grid_, rows, arrays, lists, start, factors);
+    numbers_.set(exec_, grid_, rows, arrays, points, lists, start, factors);
     resize();
     TwoLevelOutcome outcome;
     End end = End::diverges;
@@ -88,9 +90,9 @@ class TwoLevelIteration {
   }
 
   void resize() {
-    contact_numbers_ = 3 * lists_->contact_count();
+    contact_numbers_ = 3 * (rows().block_start.size - 1);
     row_numbers_ = 3 * lists_->row_count();
-    const auto nodes = 3 * static_cast<std::int64_t>(lists_->row_of_node.size());
+    const std::int64_t nodes = 3 * bodies().row_of_node.size;
     results_.resize(2 * contact_numbers_ + row_numbers_);
     results_data_ = results_.view().data;
     for (Vector* v : {&free_velocity_, &none_, &stepped_, &ahead_}) {
@@ -241,7 +243,7 @@ class TwoLevelIteration {
   GridContactExec grid_;
   GridContactExec run_grid_;  ///< of recorded runs: its sums stay where they are
   TwoLevelNumbers numbers_;
-  const TwoLevelLists* lists_ = nullptr;     ///< of the present solve
+  const CompliantLists* lists_ = nullptr;    ///< of the present solve
   const ContactOptions* options_ = nullptr;  ///< of the present solve
   ContactSwitches switches_;
   Stopwatch clock_;

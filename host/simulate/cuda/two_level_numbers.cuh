@@ -9,9 +9,7 @@
 #include "host/simulate/body_arrays.hpp"
 #include "host/simulate/contact/resident_two_level.hpp"
 #include "host/simulate/cuda/compliance_store.cuh"
-#include "kernels/contact/contact_grid.cuh"
-#include "kernels/exec/staged_arrays.cuh"
-#include "kernels/two_level/majorant.hpp"
+#include "host/simulate/cuda/touching_lists.cuh"
 #include "kernels/two_level/row_start.hpp"
 
 namespace tetwarp {
@@ -23,38 +21,42 @@ class TwoLevelNumbers {
   TwoLevelNumbers(std::int64_t node_count, std::int64_t rigid_count)
       : node_count_(node_count), rigid_count_(rigid_count) {}
 
-  /// Copies lists and laws to the device, and takes the numbers of the system there.
+  /// Copies bodies, contacts and laws to the device, makes the lists of contacts, and takes the
+  /// numbers of the system there.
   /// @param rows    of the system, in memory of the device
   /// @param arrays  of the step
   void set(CudaStepExec& exec,
            GridContactExec& grid,
            const SystemRows& rows,
            const StepArrays<CudaStepExec>& arrays,
-           const TwoLevelLists& lists,
+           View<const SurfacePoint> points,
+           const CompliantLists& lists,
            const TwoLevelStart& start,
            RestFactors& factors) {
     host_bodies_ = lists.bodies;
     store_.set_inverses(exec, factors, start.time_step, lists.model_body, host_bodies_);
-    upload(grid, lists, start);
+    lists_.set_bodies(grid, lists, host_bodies_);
+    upload(grid, start);
+    lists_.make(exec, grid,
+                {points, exec.view(arrays.centre), static_cast<std::int32_t>(node_count_)},
+                contacts_);
+    lists_.set(touching_);
     rows_ = rows;
     values_ = exec.view(arrays.values);
     load_ = exec.view(arrays.load);
     CompliantBodies& bodies = touching_.bodies;
     const std::int64_t blocks = touching_.rows.row.size, numbers = 3 * lists.row_count();
-    jacobian_.resize(9 * blocks);
     turned_.resize(9 * blocks);
     inverse_.resize(9 * std::int64_t{rows.unknown_count} + 36 * rigid_count_);
     start_velocity_.resize(numbers);
     weight_.resize(numbers);
     bodies.diagonal = {rows.pair, rows.block_of, rows.unknown_count, node_count_, inverse_.view()};
-    grid.for_each(label, diagonal_rows_.size,
-                  DiagonalInvertBody{diagonal_rows_, {rows, values_, bodies.diagonal}});
-    grid.for_each(label, places_.size, ContactRowsBody{axes_, arms_, places_, jacobian_.view()});
-    touching_.rows.jacobian = const_view(jacobian_);
+    grid.for_each(label, lists_.diagonal_rows().size,
+                  DiagonalInvertBody{lists_.diagonal_rows(), {rows, values_, bodies.diagonal}});
     grid.for_each(label, blocks, TurnJacobianBody{bodies, touching_.rows, turned_.view()});
     touching_.turned = const_view(turned_);
     grid.for_each(label, numbers / 3,
-                  RowStartBody{system_row_, rows, values_, exec.view(arrays.x),
+                  RowStartBody{lists_.system_row(), rows, values_, exec.view(arrays.x),
                                start_velocity_.view(), weight_.view()});
   }
 
@@ -65,14 +67,14 @@ class TwoLevelNumbers {
     const std::int64_t contacts = laws_.size, parts = touching_.part_body.size;
     const std::int64_t nodes = bodies.row_of_node.size;
     bodies.damping = damping;
-    compliance_.resize(compliance_size_);
+    compliance_.resize(9 * lists_.node_pairs());
     constants_.resize(contacts);
     majorant_.resize(contacts);
     part_diagonal_.resize(3 * parts);
     vector_.resize(3 * parts);
     scale_.resize(bodies.bodies.size);
     for (DeviceVector<double>* v : {&push_, &before_, &after_}) v->resize(3 * nodes);
-    exec.device_exec().for_each_item(label, pair_start_, compliance_size_ / 9,
+    exec.device_exec().for_each_item(label, lists_.pair_start(), lists_.node_pairs(),
                                      ComplianceBlockBody{bodies, compliance_.view()});
     bodies.compliance = View<const float>(compliance_.view());
     grid.copy(label, laws_, constants_.view());
@@ -94,7 +96,7 @@ class TwoLevelNumbers {
   View<const double> preload() const { return preload_; }                       ///< [3 contacts]
   View<const double> change() const { return change_; }  ///< [rows][3], or empty
   View<const double> weight() const { return weight_.view(); }
-  View<const std::int32_t> model_block() const { return model_block_; }
+  View<const std::int32_t> model_block() const { return lists_.model_block(); }
 
   /// b + J^T (impulse - preload) - A velocity, in frames.
   RowDefectBody defect(View<const double> velocity,
@@ -107,45 +109,30 @@ class TwoLevelNumbers {
  private:
   static constexpr const char* label = "body/contact";
 
-  /// Copies all lists in three transfers.
-  void upload(GridContactExec& grid, const TwoLevelLists& lists, const TwoLevelStart& start) {
+  /// In one transfer.
+  void upload(GridContactExec& grid, const TwoLevelStart& start) {
     host_preload_.assign(3 * start.laws.preload.size(), 0.0);
     for (std::size_t c = 0; c < start.laws.preload.size(); ++c) {
       host_preload_[3 * c] = start.laws.preload[c];
     }
-    CompliantBodies& bodies = touching_.bodies;
-    TouchingRows& rows = touching_.rows;
-    compliance_size_ = lists.compliance_size;
-    std::tie(bodies.bodies, bodies.body_of_row, bodies.row_of_node, bodies.rotation, system_row_,
-             model_block_, diagonal_rows_, pair_start_) =
-        for_bodies_.put(grid, host_bodies_, lists.body_of_row, lists.row_of_node, start.rotation,
-                        lists.system_row, lists.model_block, lists.diagonal_rows, lists.pair_start);
-    std::tie(rows.block_start, rows.row, rows.node, rows.contact, rows.part, rows.touch_start,
-             rows.touch, touching_.part_start, touching_.part_block, touching_.part_body, axes_,
-             arms_, places_) =
-        for_blocks_.put(grid, lists.block_start, lists.block_row, lists.block_node,
-                        lists.block_contact, lists.block_part, lists.touch_start, lists.touch,
-                        lists.part_start, lists.part_block, lists.part_body, lists.axes, lists.arms,
-                        lists.places);
-    std::tie(laws_, rows.offset, start_impulse_, preload_, change_) = for_laws_.put(
-        grid, start.laws.constants, start.offset, start.impulse, host_preload_, start.change);
+    std::tie(touching_.bodies.rotation, contacts_, laws_, touching_.rows.offset, start_impulse_,
+             preload_, change_) =
+        staged_.put(grid, start.rotation, start.contacts, start.laws.constants, start.offset,
+                    start.impulse, host_preload_, start.change);
   }
 
   std::int64_t node_count_, rigid_count_;
   ComplianceStore store_;
   std::vector<CompliantBody> host_bodies_;
   std::vector<double> host_preload_;
-  StagedArrays for_bodies_, for_blocks_, for_laws_;
+  StagedArrays staged_;
+  TouchingLists lists_;
   TouchingNodes touching_;
   SystemRows rows_;
-  std::int64_t compliance_size_ = 0;
-  View<const double> values_, load_, axes_, start_impulse_, preload_, change_;
-  View<const std::int32_t> system_row_, model_block_, diagonal_rows_;
-  View<const std::int64_t> pair_start_;
-  View<const ContactArm> arms_;
-  View<const ArmPlace> places_;
+  View<const double> values_, load_, start_impulse_, preload_, change_;
+  View<const ContactSides> contacts_;
   View<const ContactConstants<double>> laws_;
-  DeviceVector<double> jacobian_, turned_, inverse_, start_velocity_, weight_;
+  DeviceVector<double> turned_, inverse_, start_velocity_, weight_;
   DeviceVector<double> part_diagonal_, vector_, scale_;
   DeviceVector<double> push_, before_, after_;  ///< [nodes][3], of the power iteration
   DeviceVector<float> compliance_;

@@ -6,6 +6,7 @@
 
 #include "host/base/point3.hpp"
 #include "host/simulate/contact/contact_rows.hpp"
+#include "host/simulate/contact/contact_sides.hpp"
 #include "host/simulate/run/contact_step.hpp"
 
 namespace tetwarp {
@@ -119,9 +120,11 @@ void ContactStep::add_sleeping(const ModelState& state, double time_step, Contac
 void ContactStep::set_sleeping_forces(const ModelState& state) {
   std::vector<TrackedContact> contacts;
   for (const SleepingContact& contact : sleeping_) contacts.push_back(contact.contact);
+  std::vector<ContactSides> sides;
+  set_contact_sides(surfaces_, frames_of_bodies(surfaces_, model_), contacts, options_.threads,
+                    sides);
   ContactRows rows;
-  set_contact_rows(surfaces_, model_, frames_of_bodies(surfaces_, model_), state, contacts,
-                   options_.threads, rows);
+  set_contact_rows(surfaces_, model_, state, sides, {}, options_.threads, rows);
   sleeping_forces_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const SleepingContact& of = sleeping_[c];
