@@ -100,6 +100,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/test_following_motion.cpp
     tests/simulate/test_proximal_steps.cpp
     tests/simulate/test_two_level.cpp
+    tests/simulate/test_touch_lists.cpp
     tests/simulate/test_two_level_stages.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
