@@ -6,21 +6,12 @@
 namespace tetwarp {
 
 StepRows::StepRows(const SceneSurfaces& scene, const Model& model, int threads)
-    : scene_(scene),
-      model_(model),
-      threads_(threads),
-      frames_(frames_of_bodies(scene, model)),
-      has_prescribed_(frames_.size()) {
-  const auto frame_is = [&](std::int32_t frame) {
-    return frame >= 0 && is_prescribed(model.node_count + 2 * frame);
-  };
-  for (std::size_t b = 0; b < frames_.size(); ++b) has_prescribed_[b] = frame_is(frames_[b]);
-  for (std::size_t v = 0; v < scene.vertex_point.size(); ++v) {
-    const ModelPoint& point = scene.vertex_point[v];
-    const bool is = frame_is(point.rigid) || std::ranges::any_of(point.node, [&](std::int32_t n) {
-                      return n >= 0 && is_prescribed(n);
-                    });
-    if (is) has_prescribed_[index_of(scene.surfaces.vertex_body[v])] = 1;
+    : scene_(scene), model_(model), threads_(threads), frames_(frames_of_bodies(scene, model)) {
+  for (const ModelPoint& point : scene.vertex_point) {
+    has_prescribed_.push_back(is_frame_prescribed(point.rigid) ||
+                              std::ranges::any_of(point.node, [&](std::int32_t n) {
+                                return n >= 0 && is_prescribed(n);
+                              }));
   }
 }
 
@@ -28,9 +19,18 @@ bool StepRows::is_prescribed(std::int32_t block) const {
   return model_.prescribed[index_of(block)] != 0;
 }
 
+bool StepRows::is_frame_prescribed(std::int32_t frame) const {
+  return frame >= 0 && is_prescribed(model_.node_count + 2 * frame);
+}
+
+bool StepRows::has_prescribed(const ContactSide& side) const {
+  return is_frame_prescribed(side.frame) || std::ranges::any_of(side.vertex, [&](std::int32_t v) {
+           return v >= 0 && has_prescribed_[index_of(v)] != 0;
+         });
+}
+
 void StepRows::begin(const ModelState& state, std::span<const TrackedContact> contacts) {
   state_ = &state;
-  contacts_ = contacts;
   has_all_ = false;
   set_contact_sides(scene_, frames_, contacts, threads_, sides_);
 }
@@ -45,11 +45,10 @@ void StepRows::set_all() {
 }
 
 void StepRows::set_for_host(std::span<const std::int32_t> on_device) {
-  takes_.assign(contacts_.size(), 1);
+  takes_.assign(sides_.size(), 1);
   for (const std::int32_t c : on_device) {
-    const ContactKey& key = contacts_[index_of(c)].key;
-    takes_[index_of(c)] =
-        has_prescribed_[index_of(key.body_a)] != 0 || has_prescribed_[index_of(key.body_b)] != 0;
+    const ContactSides& of = sides_[index_of(c)];
+    takes_[index_of(c)] = has_prescribed(of.a) || has_prescribed(of.b);
   }
   set(takes_);
 }
@@ -72,7 +71,7 @@ Point3 StepRows::prescribed_velocity(std::size_t contact,
 void StepRows::prescribed_impulses(std::span<const double> impulse,
                                    std::vector<Point3>& sums) const {
   sums.assign(index_of(model_.block_count()), Point3{0, 0, 0});
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+  for (std::size_t c = 0; c < sides_.size(); ++c) {
     const double* const r = impulse.data() + 3 * c;
     if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
     for (std::int32_t e = rows_.start[c]; e < rows_.start[c + 1]; ++e) {

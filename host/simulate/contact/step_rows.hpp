@@ -18,12 +18,12 @@ class StepRows {
   StepRows(const SceneSurfaces& scene, const Model& model, int threads);
 
   /// Begins with the contacts of a step: sets their sides. No contact has rows.
-  /// @param state  at the start of the step; it and the contacts are kept by the caller
+  /// @param state  at the start of the step; kept by the caller
   void begin(const ModelState& state, std::span<const TrackedContact> contacts);
   /// Sets the rows of all contacts, unless they are set.
   void set_all();
-  /// Sets the rows of all contacts but those whose rows a device makes. Of these, only contacts of
-  /// bodies with prescribed blocks get rows here: the host adds velocities and impulses of such
+  /// Sets the rows of all contacts but those whose rows a device makes. Of these, only contacts
+  /// that act on prescribed blocks get rows here: the host adds velocities and impulses of such
   /// blocks.
   /// @param on_device  numbers of contacts
   void set_for_host(std::span<const std::int32_t> on_device);
@@ -41,16 +41,16 @@ class StepRows {
 
  private:
   bool is_prescribed(std::int32_t block) const;
+  bool is_frame_prescribed(std::int32_t frame) const;
+  bool has_prescribed(const ContactSide& side) const;
   void set(std::span<const std::uint8_t> takes);
 
   const SceneSurfaces& scene_;
   const Model& model_;
   int threads_;
   std::vector<std::int32_t> frames_;          ///< [bodies, then obstacles]
-  std::vector<std::uint8_t> has_prescribed_;  ///< [bodies, then obstacles] whether any block that
-                                              ///< the body moves with is prescribed
+  std::vector<std::uint8_t> has_prescribed_;  ///< [vertices] whether any block is prescribed
   const ModelState* state_ = nullptr;
-  std::span<const TrackedContact> contacts_;
   std::vector<ContactSides> sides_;
   std::vector<std::uint8_t> takes_;  ///< [contacts]
   ContactRows rows_;
