@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tetwarp/error.hpp>
+#include <utility>
 
 #include "io/h5_disk.hpp"
 #include "io/h5_rows.hpp"
@@ -44,7 +45,10 @@ struct StepMeshWriter::State {
   std::vector<StepArray> arrays;
   h5::Disk disk = {};
   std::vector<hsize_t> row_counts = {};  // of each array at a step
-  std::int64_t step_count = 0;
+  std::int64_t step_count = 0;  // in the file
+  // Of steps that are not written; one vector for each array.
+  std::vector<double> times = {};
+  std::vector<std::vector<double>> kept = std::vector<std::vector<double>>(arrays.size());
 
   void create(std::span<const Point3> points, const CellRows& cells);
 };
@@ -180,7 +184,15 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
 }
 
 StepMeshWriter::StepMeshWriter(StepMeshWriter&&) noexcept = default;
-StepMeshWriter::~StepMeshWriter() = default;
+
+StepMeshWriter::~StepMeshWriter() {
+  if (!state_) return;
+  try {
+    flush();
+  } catch (const IoError&) {
+    // The same error was thrown to a caller that flushed, or no caller is left.
+  }
+}
 
 void StepMeshWriter::drop_later() {
   const h5::Silence silence;
@@ -211,18 +223,43 @@ void StepMeshWriter::append(double time, std::span<const std::span<const double>
                         " s; the scene is unstable, choose a smaller time_step");
     }
   }
+  for (std::size_t a = 0; a < state.arrays.size(); ++a) {
+    state.kept[a].insert(state.kept[a].end(), values[a].begin(), values[a].end());
+  }
+  state.times.push_back(time);
+}
+
+std::size_t StepMeshWriter::kept_bytes() const {
+  std::size_t numbers = state_->times.size();
+  for (const std::vector<double>& values : state_->kept) numbers += values.size();
+  return numbers * sizeof(double);
+}
+
+void StepMeshWriter::flush() {
+  State& state = *state_;
+  if (state.times.empty()) return;
+  // Whatever happens, they are not written twice.
+  const std::vector<double> times = std::exchange(state.times, {});
+  const std::size_t count = times.size();
+  const h5::Silence silence;
   OpenFile open(h5::reopen_growing_file(state.path, state.disk));
+  std::vector<std::int64_t> column(count);
   for (std::size_t a = 0; a < state.arrays.size(); ++a) {
     h5::GrowingDataset own = open.values(state.arrays[a]);
-    const auto first = static_cast<std::int64_t>(own.rows());
-    own.append(H5T_NATIVE_DOUBLE, state.row_counts[a], values[a].data());
-    open.offsets(state.arrays[a]).append(H5T_NATIVE_INT64, 1, &first);
+    for (std::size_t step = 0; step < count; ++step) {
+      column[step] = static_cast<std::int64_t>(own.rows() + step * state.row_counts[a]);
+    }
+    const std::vector<double> values = std::exchange(state.kept[a], {});
+    own.append(H5T_NATIVE_DOUBLE, count * state.row_counts[a], values.data());
+    open.offsets(state.arrays[a]).append(H5T_NATIVE_INT64, count, column.data());
   }
-  for (const SteadyColumn& column : steady_columns) {
-    open.steady(column).append(H5T_NATIVE_INT64, 1, &column.value);
+  for (const SteadyColumn& steady : steady_columns) {
+    std::ranges::fill(column, steady.value);
+    open.steady(steady).append(H5T_NATIVE_INT64, count, column.data());
   }
-  open.times().append(H5T_NATIVE_DOUBLE, 1, &time);
-  open.close(++state.step_count, state.disk);
+  open.times().append(H5T_NATIVE_DOUBLE, count, times.data());
+  state.step_count += static_cast<std::int64_t>(count);
+  open.close(state.step_count, state.disk);
 }
 
 }  // namespace tetwarp

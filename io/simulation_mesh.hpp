@@ -22,8 +22,9 @@ struct StepArray {
 };
 
 /// Writes a VTKHDF UnstructuredGrid, Version [2,0], of fixed points and cells step by step. The
-/// file has its name from the beginning, and is complete and closed after every call: a program
-/// that ends early leaves a file with the steps so far. IoError where it cannot be written.
+/// file has its name from the beginning, and is complete and closed between calls: a program that
+/// ends early leaves a file with the steps up to the last flush(). IoError where it cannot be
+/// written.
 class TETWARP_IO_EXPORT StepMeshWriter {
  public:
   /// Creates the file; one of that name is replaced.
@@ -40,14 +41,17 @@ class TETWARP_IO_EXPORT StepMeshWriter {
                  const std::vector<StepArray>& arrays,
                  std::int64_t steps);
   StepMeshWriter(StepMeshWriter&&) noexcept;
-  ~StepMeshWriter();
+  ~StepMeshWriter();  ///< flushes without errors
 
   /// Removes the steps behind those that are kept.
   void drop_later();
 
-  /// Appends a step.
+  /// Appends a step, which flush() writes: several steps at once take little longer than one.
   /// @param values  one span per array, [row][component], finite
   void append(double time, std::span<const std::span<const double>> values);
+  /// Bytes of steps that are not written.
+  std::size_t kept_bytes() const;
+  void flush();
 
  private:
   struct State;

@@ -134,4 +134,14 @@ void BodyFiles::append() {
   }
 }
 
+std::size_t BodyFiles::kept_bytes() const {
+  std::size_t sum = 0;
+  for (const File& file : files_) sum += file.writer.kept_bytes();
+  return sum;
+}
+
+void BodyFiles::flush() {
+  for (File& file : files_) file.writer.flush();
+}
+
 }  // namespace tetwarp::cli

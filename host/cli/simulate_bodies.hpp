@@ -1,6 +1,7 @@
 /// @file simulate_bodies.hpp
 /// The mesh files of the bodies of a simulation: NAME.vtkhdf and NAME.surface.vtkhdf.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -25,8 +26,10 @@ class BodyFiles {
   /// Removes the steps of an earlier run that are not kept.
   void drop_later();
 
-  /// Appends the state of the simulator to all files.
+  /// Appends the state of the simulator to all files, which flush() writes.
   void append();
+  std::size_t kept_bytes() const;
+  void flush();
 
   /// Names of the files.
   const std::vector<std::string>& paths() const { return paths_; }

@@ -19,7 +19,8 @@
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 namespace {
-constexpr double flush_interval = 0.5;      // seconds between writes of the series
+constexpr double flush_interval = 0.5;      // seconds between writes of results
+constexpr std::size_t most_kept_bytes = std::size_t{1} << 26;
 constexpr double last_picture_seconds = 1;  // for which a film shows its last picture
 
 Scene load(const SimulateArguments& arguments) {
@@ -145,10 +146,21 @@ void SimulateRun::open_files() {
 
 void SimulateRun::write_row() {
   series_file_->append(series_->row_of(simulator_->record()));
-  if (since_flush_.seconds() < flush_interval) return;
+}
+
+/// Results are kept for a while: to open and close all files for every frame would take as long as
+/// the steps between.
+void SimulateRun::flush_if_due() {
+  if (since_flush_.seconds() >= flush_interval || bodies_->kept_bytes() > most_kept_bytes) flush();
+}
+
+void SimulateRun::flush() {
+  const Stopwatch writing;
   const SignalHold until_complete;
-  series_file_->flush();
+  if (series_file_) series_file_->flush();
+  if (bodies_) bodies_->flush();
   since_flush_ = {};
+  result_.write_seconds += writing.seconds();
 }
 
 double SimulateRun::frame_seconds(std::int64_t frame) const {
@@ -170,7 +182,9 @@ void SimulateRun::write_frame(std::int64_t frame) {
   ++result_.frames;
 }
 
+/// Not before all results up to it, with which a later run goes on.
 void SimulateRun::write_checkpoint() {
+  flush();
   const Stopwatch writing;
   const std::vector<std::byte> bytes = simulator_->checkpoint();
   write_finished_file(arguments_.checkpoint,
@@ -190,6 +204,7 @@ void SimulateRun::take_steps(ProgressBar& bar) {
     if (next_frame_ < frames_->count() && frames_->step_of(next_frame_) == step) {
       write_frame(next_frame_++);
     }
+    flush_if_due();
     if (arguments_.checkpoint_every > 0 && step % arguments_.checkpoint_every == 0) {
       write_checkpoint();
     }
@@ -216,9 +231,9 @@ const SimulateResult& SimulateRun::run() {
 }
 
 void SimulateRun::finish() {
+  flush();
   {
     const SignalHold until_complete;
-    if (series_file_) series_file_->flush();
     series_file_.reset();
     if (contacts_) contacts_->close();
   }

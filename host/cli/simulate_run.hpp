@@ -54,6 +54,8 @@ class SimulateRun {
   void write_row();
   void write_frame(std::int64_t frame);
   void write_checkpoint();
+  void flush_if_due();
+  void flush();
   void take_steps(ProgressBar& bar);
   void finish();
   double frame_seconds(std::int64_t frame) const;

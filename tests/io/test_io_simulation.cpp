@@ -35,12 +35,16 @@ void append(StepMeshWriter& writer, double time, double shift) {
 
 const std::vector<StepArray> arrays{{"displacement", false, 3}, {"stress", true, 1}};
 
-TEST(StepMeshWriter, LeavesAFileThatIsCompleteAfterEveryStep) {
+TEST(StepMeshWriter, LeavesAFileThatIsCompleteAfterEveryFlush) {
   const ScratchFolder folder;
   const std::string path = folder / "grows.vtkhdf";
   StepMeshWriter writer(path, one_tet(), arrays);
   for (int step = 0; step < 3; ++step) {
     append(writer, 0.5 * step, step);
+    EXPECT_EQ(writer.kept_bytes(), (12 + 1 + 1) * sizeof(double));
+    EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), static_cast<std::size_t>(step));
+    writer.flush();
+    EXPECT_EQ(writer.kept_bytes(), 0u);
 
     const MeshReader reader(path);
 
@@ -51,6 +55,29 @@ TEST(StepMeshWriter, LeavesAFileThatIsCompleteAfterEveryStep) {
               static_cast<std::size_t>(step) + 1);
   }
   EXPECT_EQ(MeshReader(path).mesh().tets, one_tet().tets);
+}
+
+TEST(StepMeshWriter, WritesStepsAtOnceAsOneByOne) {
+  const ScratchFolder folder;
+  const std::string together = folder / "together.vtkhdf", one_by_one = folder / "one.vtkhdf";
+  {
+    StepMeshWriter first(together, one_tet(), arrays), second(one_by_one, one_tet(), arrays);
+    for (int step = 0; step < 5; ++step) {
+      append(first, step, 3 * step);
+      append(second, step, 3 * step);
+      if (step == 1) first.flush();
+      second.flush();
+    }
+  }
+  for (const char* const name :
+       {"Steps/Values", "Steps/PartOffsets", "Steps/NumberOfParts", "Steps/PointOffsets",
+        "Steps/CellOffsets", "Steps/PointDataOffsets/displacement",
+        "Steps/CellDataOffsets/stress", "PointData/displacement", "CellData/stress"}) {
+    const std::string path = std::string("VTKHDF/") + name;
+    EXPECT_EQ(h5_numbers(together, path), h5_numbers(one_by_one, path)) << name;
+  }
+  EXPECT_EQ(MeshReader(together).header().times, (std::vector<double>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(MeshReader(together).read_step(4)[0], (Point3{12, 12, 12}));
 }
 
 TEST(StepMeshWriter, GoesOnBehindAStep) {
@@ -65,7 +92,7 @@ TEST(StepMeshWriter, GoesOnBehindAStep) {
     EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), 4u) << "nothing is changed yet";
     writer.drop_later();
     append(writer, 10, 7);
-  }
+  }  // flushes
 
   EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values"), (std::vector<double>{0, 1, 10}));
   EXPECT_EQ(h5_numbers(path, "VTKHDF/CellData/stress"), (std::vector<double>{0, 1, 7}));
@@ -81,7 +108,10 @@ TEST(StepMeshWriter, KeepsNoFileOpenBetweenSteps) {
   for (int n = 0; n < 5; ++n) {
     writers.emplace_back(folder / ("body" + std::to_string(n) + ".vtkhdf"), one_tet(), arrays);
   }
-  for (StepMeshWriter& writer : writers) append(writer, 0, 1);
+  for (StepMeshWriter& writer : writers) {
+    append(writer, 0, 1);
+    writer.flush();
+  }
 
   EXPECT_EQ(H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL), 0);
 }
@@ -93,6 +123,7 @@ TEST(StepMeshWriter, RefusesNumbersThatAreNotFinite) {
   append(writer, 0, 0);
 
   EXPECT_THROW(append(writer, 1, std::numeric_limits<double>::quiet_NaN()), IoError);
+  writer.flush();
 
   EXPECT_EQ(h5_numbers(path, "VTKHDF/Steps/Values").size(), 1u);
 }
