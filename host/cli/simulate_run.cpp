@@ -19,7 +19,8 @@
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 namespace {
-constexpr double flush_interval = 0.5;      // seconds between writes of results
+constexpr double flush_interval = 0.5;      // seconds between writes of results, at least
+constexpr double most_flush_share = 0.05;   // of the time, if results fit `most_kept_bytes`
 constexpr std::size_t most_kept_bytes = std::size_t{1} << 26;
 constexpr double last_picture_seconds = 1;  // for which a film shows its last picture
 
@@ -151,7 +152,8 @@ void SimulateRun::write_row() {
 /// Results are kept for a while: to open and close all files for every frame would take as long as
 /// the steps between.
 void SimulateRun::flush_if_due() {
-  if (since_flush_.seconds() >= flush_interval || bodies_->kept_bytes() > most_kept_bytes) flush();
+  const double interval = std::max(flush_interval, flush_seconds_ / most_flush_share);
+  if (since_flush_.seconds() >= interval || bodies_->kept_bytes() > most_kept_bytes) flush();
 }
 
 void SimulateRun::flush() {
@@ -160,7 +162,8 @@ void SimulateRun::flush() {
   if (series_file_) series_file_->flush();
   if (bodies_) bodies_->flush();
   since_flush_ = {};
-  result_.write_seconds += writing.seconds();
+  flush_seconds_ = writing.seconds();
+  result_.write_seconds += flush_seconds_;
 }
 
 double SimulateRun::frame_seconds(std::int64_t frame) const {

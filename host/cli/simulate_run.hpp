@@ -74,6 +74,7 @@ class SimulateRun {
   std::optional<BodyWarps> warps_;
   std::optional<ScenePictures> pictures_;
   Stopwatch since_flush_;
+  double flush_seconds_ = 0;  ///< of the last flush()
 };
 
 /// The report as JSON.

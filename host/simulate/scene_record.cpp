@@ -57,7 +57,7 @@ TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
 
 /// Of ranges of fixed length, then of the ranges in order.
 TetSums all_tets(const Model& model, const ModelState& state, int threads) {
-  constexpr std::size_t range = 2048;
+  constexpr std::size_t range = 512;
   const std::size_t count = model.tets.nodes.size();
   std::vector<TetSums> parts((count + range - 1) / range);
   parallel_for(threads, static_cast<std::int64_t>(parts.size()), [&](std::int64_t p) {
