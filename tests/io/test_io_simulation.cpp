@@ -71,8 +71,8 @@ TEST(StepMeshWriter, WritesStepsAtOnceAsOneByOne) {
   }
   for (const char* const name :
        {"Steps/Values", "Steps/PartOffsets", "Steps/NumberOfParts", "Steps/PointOffsets",
-        "Steps/CellOffsets", "Steps/PointDataOffsets/displacement",
-        "Steps/CellDataOffsets/stress", "PointData/displacement", "CellData/stress"}) {
+        "Steps/CellOffsets", "Steps/PointDataOffsets/displacement", "Steps/CellDataOffsets/stress",
+        "PointData/displacement", "CellData/stress"}) {
     const std::string path = std::string("VTKHDF/") + name;
     EXPECT_EQ(h5_numbers(together, path), h5_numbers(one_by_one, path)) << name;
   }
