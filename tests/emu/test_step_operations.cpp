@@ -18,9 +18,9 @@ namespace {
 class ResidentSeries {
  public:
   explicit ResidentSeries(bool has_classes)
-      : grid_(scenes::unit_grid(256, 160, 122)),
+      : grid_(scenes::unit_grid(128, 80, 61)),
         source_(scenes::wavy_volume(grid_, PixelType::float32)),
-        mesh_(scenes::lattice({7, 5, 4}, {8, 8, 8}, {248, 152, 114})),
+        mesh_(scenes::lattice({7, 5, 4}, {4, 4, 4}, {124, 76, 57})),
         warper_(source_, mesh_, options(grid_, has_classes)) {
     cudaMalloc(&output_, static_cast<std::size_t>(grid_.voxel_count()) * sizeof(float));
   }
