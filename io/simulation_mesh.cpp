@@ -45,7 +45,7 @@ struct StepMeshWriter::State {
   std::vector<StepArray> arrays;
   h5::Disk disk = {};
   std::vector<hsize_t> row_counts = {};  // of each array at a step
-  std::int64_t step_count = 0;  // in the file
+  std::int64_t step_count = 0;           // in the file
   // Of steps that are not written; one vector for each array.
   std::vector<double> times = {};
   std::vector<std::vector<double>> kept = std::vector<std::vector<double>>(arrays.size());
@@ -54,8 +54,8 @@ struct StepMeshWriter::State {
 };
 
 namespace {
-/// A file while it is changed. It is closed between steps: each open file takes megabytes, and
-/// HDF5 1.10 passes over the datasets of all open files whenever it flushes one.
+/// A file while it is changed. It is closed between calls of flush(): each open file takes
+/// megabytes, and HDF5 1.10 passes over the datasets of all open files whenever it flushes one.
 class OpenFile {
  public:
   explicit OpenFile(h5::Object opened)
@@ -229,17 +229,11 @@ void StepMeshWriter::append(double time, std::span<const std::span<const double>
   state.times.push_back(time);
 }
 
-std::size_t StepMeshWriter::kept_bytes() const {
-  std::size_t numbers = state_->times.size();
-  for (const std::vector<double>& values : state_->kept) numbers += values.size();
-  return numbers * sizeof(double);
-}
-
 void StepMeshWriter::flush() {
   State& state = *state_;
   if (state.times.empty()) return;
-  // Whatever happens, they are not written twice.
   const std::vector<double> times = std::exchange(state.times, {});
+  const auto kept = std::exchange(state.kept, std::vector<std::vector<double>>(state.kept.size()));
   const std::size_t count = times.size();
   const h5::Silence silence;
   OpenFile open(h5::reopen_growing_file(state.path, state.disk));
@@ -249,8 +243,7 @@ void StepMeshWriter::flush() {
     for (std::size_t step = 0; step < count; ++step) {
       column[step] = static_cast<std::int64_t>(own.rows() + step * state.row_counts[a]);
     }
-    const std::vector<double> values = std::exchange(state.kept[a], {});
-    own.append(H5T_NATIVE_DOUBLE, count * state.row_counts[a], values.data());
+    own.append(H5T_NATIVE_DOUBLE, count * state.row_counts[a], kept[a].data());
     open.offsets(state.arrays[a]).append(H5T_NATIVE_INT64, count, column.data());
   }
   for (const SteadyColumn& steady : steady_columns) {

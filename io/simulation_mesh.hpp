@@ -49,8 +49,7 @@ class TETWARP_IO_EXPORT StepMeshWriter {
   /// Appends a step, which flush() writes: several steps at once take little longer than one.
   /// @param values  one span per array, [row][component], finite
   void append(double time, std::span<const std::span<const double>> values);
-  /// Bytes of steps that are not written.
-  std::size_t kept_bytes() const;
+  /// After an error the steps that it was to write are lost.
   void flush();
 
  private:

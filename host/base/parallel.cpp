@@ -3,11 +3,13 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace tetwarp {
@@ -23,11 +25,28 @@ struct Loop {
   int free_places;                     ///< threads of the pool that may still join
   std::atomic<std::int64_t> next = 0;  ///< first task that no thread has taken
   std::atomic<int> helpers = 0;        ///< threads of the pool that execute tasks
+  std::mutex error_mutex = {};
+  std::exception_ptr error = {};  ///< what a task has thrown
+  std::int64_t thrown_by = 0;     ///< that task
 
   void run_tasks() {
     is_in_task = true;
-    for (std::int64_t i = next++; i < count; i = next++) call(context, i);
+    for (std::int64_t i = next++; i < count; i = next++) {
+      try {
+        call(context, i);
+      } catch (...) {
+        end_with(std::current_exception(), i);
+      }
+    }
     is_in_task = false;
+  }
+  /// All tasks before this one have begun, so that the one that is kept is the same in every run.
+  void end_with(std::exception_ptr thrown, std::int64_t task) {
+    const std::lock_guard lock(error_mutex);
+    if (error && thrown_by < task) return;
+    error = std::move(thrown);
+    thrown_by = task;
+    next = count;
   }
 };
 
@@ -146,6 +165,7 @@ void run_parallel_tasks(int threads,
   const auto helpers = std::min<std::int64_t>({threads, count, max_threads}) - 1;
   Loop loop{count, context, call, static_cast<int>(helpers)};
   thread_pool().run(loop);
+  if (loop.error) std::rethrow_exception(loop.error);
 }
 
 }  // namespace tetwarp

@@ -29,7 +29,7 @@ class InterruptFlag {
 };
 
 /// While one exists a signal does not end the process, so that a file that is changed in place is
-/// left complete; the process ends when the last one is gone. For work of milliseconds.
+/// left complete; the process ends when the last one is gone. For short work.
 class SignalHold {
  public:
   SignalHold();

@@ -7,6 +7,8 @@
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 namespace {
+constexpr std::size_t most_kept_bytes = std::size_t{1} << 26;
+
 std::vector<double> flat(const std::vector<Point3>& points) {
   std::vector<double> numbers;
   numbers.reserve(3 * points.size());
@@ -131,17 +133,14 @@ void BodyFiles::append() {
     for (const StepArray& array : file.arrays) values.push_back(values_of(file, array));
     const std::vector<std::span<const double>> views(values.begin(), values.end());
     file.writer.append(simulator_.time(), views);
+    for (const std::vector<double>& own : values) kept_bytes_ += own.size() * sizeof(double);
+    if (kept_bytes_ > most_kept_bytes) flush();
   }
-}
-
-std::size_t BodyFiles::kept_bytes() const {
-  std::size_t sum = 0;
-  for (const File& file : files_) sum += file.writer.kept_bytes();
-  return sum;
 }
 
 void BodyFiles::flush() {
   for (File& file : files_) file.writer.flush();
+  kept_bytes_ = 0;
 }
 
 }  // namespace tetwarp::cli

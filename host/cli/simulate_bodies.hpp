@@ -26,9 +26,9 @@ class BodyFiles {
   /// Removes the steps of an earlier run that are not kept.
   void drop_later();
 
-  /// Appends the state of the simulator to all files, which flush() writes.
+  /// Appends the state of the simulator to all files. It is kept for flush() to write, up to 64 MiB
+  /// in all.
   void append();
-  std::size_t kept_bytes() const;
   void flush();
 
   /// Names of the files.
@@ -52,6 +52,7 @@ class BodyFiles {
   Simulator& simulator_;
   std::vector<File> files_;
   std::vector<std::string> paths_;
+  std::size_t kept_bytes_ = 0;
   std::vector<ContactFields> contacts_;  ///< of the state that append() writes
 };
 

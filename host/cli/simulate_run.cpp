@@ -20,8 +20,7 @@ namespace tetwarp::cli {
 namespace fs = std::filesystem;
 namespace {
 constexpr double flush_interval = 0.5;      // seconds between writes of results, at least
-constexpr double most_flush_share = 0.05;   // of the time, if results fit `most_kept_bytes`
-constexpr std::size_t most_kept_bytes = std::size_t{1} << 26;
+constexpr double most_flush_share = 0.05;   // of the time of a run
 constexpr double last_picture_seconds = 1;  // for which a film shows its last picture
 
 Scene load(const SimulateArguments& arguments) {
@@ -143,27 +142,33 @@ void SimulateRun::open_files() {
   }
   write_row();
   if (frames_->step_of(next_frame_ - 1) == step) write_frame(next_frame_ - 1);
+  flush();
 }
 
 void SimulateRun::write_row() {
   series_file_->append(series_->row_of(simulator_->record()));
+  has_unwritten_ = true;
 }
 
 /// Results are kept for a while: to open and close all files for every frame would take as long as
 /// the steps between.
 void SimulateRun::flush_if_due() {
   const double interval = std::max(flush_interval, flush_seconds_ / most_flush_share);
-  if (since_flush_.seconds() >= interval || bodies_->kept_bytes() > most_kept_bytes) flush();
+  if (since_flush_.seconds() >= interval) flush();
 }
 
 void SimulateRun::flush() {
+  if (!has_unwritten_) return;
   const Stopwatch writing;
-  const SignalHold until_complete;
-  if (series_file_) series_file_->flush();
-  if (bodies_) bodies_->flush();
+  if (!until_complete_) until_complete_.emplace();
+  series_file_->flush();
+  bodies_->flush();
+  has_unwritten_ = false;
   since_flush_ = {};
   flush_seconds_ = writing.seconds();
   result_.write_seconds += flush_seconds_;
+  // Where a signal has come meanwhile, finish() follows, which must not be cut short.
+  if (!is_interrupted()) until_complete_.reset();
 }
 
 double SimulateRun::frame_seconds(std::int64_t frame) const {
@@ -180,6 +185,7 @@ void SimulateRun::write_frame(std::int64_t frame) {
     if (contacts_) contacts_->append(*simulator_);
   }
   result_.write_seconds += writing.seconds();
+  flush_if_due();  // what follows may take long
   if (warps_) warps_->write_frame(frame);
   if (pictures_) pictures_->draw_frame(frame, frame_seconds(frame));
   ++result_.frames;
@@ -234,12 +240,10 @@ const SimulateResult& SimulateRun::run() {
 }
 
 void SimulateRun::finish() {
+  if (!until_complete_) until_complete_.emplace();
   flush();
-  {
-    const SignalHold until_complete;
-    series_file_.reset();
-    if (contacts_) contacts_->close();
-  }
+  series_file_.reset();
+  if (contacts_) contacts_->close();
   if (!arguments_.checkpoint.empty()) write_checkpoint();
   if (pictures_ && result_.frames > 0) {
     pictures_->finish();
@@ -263,6 +267,7 @@ void SimulateRun::finish() {
                                  ? (fs::path(arguments_.folder) / "report.json").string()
                                  : arguments_.report;
   write_finished_file(report, report_json(arguments_, *simulator_, *series_, result_) + "\n");
+  until_complete_.reset();
 }
 
 }  // namespace tetwarp::cli

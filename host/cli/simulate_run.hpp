@@ -10,6 +10,7 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/base/stopwatch.hpp"
+#include "host/cli/interrupt.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/simulate_arguments.hpp"
 #include "host/cli/simulate_bodies.hpp"
@@ -73,8 +74,10 @@ class SimulateRun {
   std::optional<ContactFile> contacts_;
   std::optional<BodyWarps> warps_;
   std::optional<ScenePictures> pictures_;
+  bool has_unwritten_ = false;  ///< rows or frames
   Stopwatch since_flush_;
-  double flush_seconds_ = 0;  ///< of the last flush()
+  double flush_seconds_ = 0;                  ///< of the last flush()
+  std::optional<SignalHold> until_complete_;  ///< while files are changed
 };
 
 /// The report as JSON.

@@ -20,8 +20,8 @@ struct TouchListInput {
   View<const std::int32_t> row_of_block;  ///< [blocks of the model], or -1: not in the solve
   View<const std::int32_t> body_of_row;   ///< [rows]
 
-  /// add(first row, arm, is it a frame) for the arms of a contact on rows of the solve, by row. A
-  /// frame has two rows.
+  /// add(first row, arm, is it a frame) for the arms of a contact on rows of the solve, in the
+  /// order of their blocks: those of a body follow each other. A frame has two rows.
   template <class Add>
   TETWARP_HD void for_arms(std::int64_t contact, const Add& add) const {
     ArmList arms;
@@ -33,7 +33,9 @@ struct TouchListInput {
   }
 };
 
-/// Counts of blocks and parts of contacts, and whether rows are nodes; then sums of those before.
+/// Numbers of blocks and parts of contacts, and of nodes. Before the sums over all before are made:
+/// block_count(), part_count(), and is_node() with 0 or 1; after it first_block(), first_part() and
+/// first_node(). Each list has an end.
 struct TouchSums {
   View<std::int64_t> sums;  ///< [contacts + 1], [contacts + 1], [rows + 1]
   std::int64_t contacts;
@@ -56,7 +58,7 @@ struct TouchSums {
   }
 };
 
-/// One index = one contact. Counts are zero before.
+/// One index = one contact. Counts are zero before. All contacts on a row store the same 1.
 struct TouchCountBody {
   TouchListInput in;
   TouchSums out;
@@ -97,7 +99,7 @@ struct BodyNodesBody {
 struct TouchTotals {
   std::int64_t blocks, parts, nodes, node_pairs;
 };
-/// One index.
+/// One index: the sizes of the lists.
 struct TouchTotalsBody {
   TouchSums counted;
   std::int64_t rows;

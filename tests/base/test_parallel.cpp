@@ -6,6 +6,7 @@
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -47,6 +48,32 @@ TEST(Parallel, TasksRunAtTheSameTime) {
     while (arrived < 2) std::this_thread::yield();
   });
   EXPECT_EQ(arrived, 2);
+}
+
+TEST(Parallel, ThrowsWhatTheFirstOfTheFailingTasksThrows) {
+  for (const int threads : {1, 2, 8}) {
+    for (int repetition = 0; repetition < 100; ++repetition) {
+      std::vector<std::atomic<int>> calls(100);
+      try {
+        parallel_tasks(threads, 100, [&](std::int64_t i) {
+          ++calls[static_cast<std::size_t>(i)];
+          parallel_tasks(threads, 2, [&](std::int64_t) {
+            if (i % 40 == 39) throw std::runtime_error(std::to_string(i));
+          });
+        });
+        ADD_FAILURE() << "nothing was thrown";
+      } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "39");
+      }
+      for (std::size_t i = 0; i < calls.size(); ++i) {
+        EXPECT_LE(calls[i], 1);
+        EXPECT_TRUE(i > 39 || calls[i] == 1);
+      }
+    }
+  }
+  std::atomic<int> sum = 0;
+  parallel_tasks(4, 100, [&](std::int64_t) { ++sum; });
+  EXPECT_EQ(sum, 100);
 }
 
 TEST(Parallel, LoopsWithinTasksAndFromManyThreadsEnd) {

@@ -56,6 +56,40 @@ TEST(Simulate, LeavesReadableFilesWhenKilled) {
   EXPECT_EQ(command.wait().exit_code, 137);
 
   EXPECT_GT(h5_numbers(scene.in("out", "series.h5"), "time").size(), 1u);
+  EXPECT_GT(h5_numbers(scene.in("out", "beam.vtkhdf"), "VTKHDF/Steps/Values").size(), 1u);
+}
+
+/// Everything that a checkpoint continues is in the files when it is written.
+TEST(Simulate, GoesOnInItsFilesAfterItWasKilled) {
+  const SimulateScene scene;
+  const Names words{
+      "simulate", "scene.json",         "-o", "out", "--steps", "100000000", "--checkpoint",
+      "state",    "--checkpoint-every", "7"};
+  {
+    RunningCommand command(scene, words);
+    for (int tries = 0; tries < 600 && !fs::exists(scene / "state"); ++tries) usleep(50'000);
+    usleep(300'000);
+    kill(command.process(), SIGKILL);
+    EXPECT_EQ(command.wait().exit_code, 137);
+  }
+  Names again = words;
+  again.insert(again.end(), {"--restart", "state"});
+  RunningCommand command(scene, again);
+  usleep(1'500'000);
+  kill(command.process(), SIGINT);
+  EXPECT_EQ(command.wait().exit_code, 130);
+
+  const std::vector<double> times = h5_numbers(scene.in("out", "series.h5"), "time");
+  EXPECT_GT(times.size(), 7u);
+  for (std::size_t n = 0; n < times.size(); ++n) {
+    ASSERT_NEAR(times[n], 0.01 * static_cast<double>(n), 1e-9 * static_cast<double>(n));
+  }
+  const std::vector<double> frames =
+      h5_numbers(scene.in("out", "beam.vtkhdf"), "VTKHDF/Steps/Values");
+  EXPECT_GT(frames.size(), 2u);
+  for (std::size_t n = 0; n + 1 < frames.size(); ++n) {
+    ASSERT_NEAR(frames[n], 0.05 * static_cast<double>(n), 1e-9 * static_cast<double>(n));
+  }
 }
 
 TEST(Simulate, ExitsWith3AfterAStepAboveItsTolerance) {

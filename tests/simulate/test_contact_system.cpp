@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/base/point3.hpp"
+#include "host/simulate/contact/compliant_list_maker.hpp"
 #include "host/simulate/contact/contact_islands.hpp"
 #include "host/simulate/rotations.hpp"
 #include "tests/simulate/body_models.hpp"
@@ -222,6 +223,37 @@ TEST(ContactIslands, KeepContactsThatMoveUnknownsByASmallShare) {
 
   EXPECT_EQ(islands.of_contact(), (std::vector<std::int32_t>{0, -1, -1}));
   EXPECT_EQ(islands.contact_island_count(), 1);
+}
+
+/// Lists on a device are sent anew only where others are needed.
+TEST(CompliantListMaker, KeepsListsWhileTheSameIslandsAreTaken) {
+  Model model = empty_model();
+  add_block(model, {.cells = {1, 1, 1}, .edge = 0.1});
+  add_rigid(model, 1, {1, 1, 1}, {0, 0, 1});
+  prescribe(model, 3);
+  const auto stepper = make_cpu_stepper(model, {});
+  stepper->solve(input_for(model, dt, {0, 0, 0}));
+  const SystemRows rows = stepper->system().rows;
+  const ContactIslands islands({}, model);
+  CompliantListMaker maker({0, -1}, 0.5), other({0, -1}, 0.5);
+
+  maker.make(rows, islands, {1, 1});
+  const CompliantLists both = maker.lists();
+  ASSERT_EQ(both.bodies.size(), 2u);
+  EXPECT_EQ(both.bodies[0].count, 7);
+  EXPECT_EQ(both.bodies[1].first, 7);
+  EXPECT_EQ(both.bodies[1].relaxation, 1);
+  EXPECT_EQ(both.model_body, std::vector<std::int32_t>{0});
+  EXPECT_EQ(both.row_of_block, (std::vector<std::int32_t>{0, 1, 2, -1, 3, 4, 5, 6, 7, 8}));
+  maker.make(rows, islands, {1, 1});
+  EXPECT_EQ(maker.lists().version, both.version);
+
+  maker.make(rows, islands, {0, 1});
+  EXPECT_NE(maker.lists().version, both.version);
+  EXPECT_EQ(maker.lists().row_count(), 2);
+  EXPECT_EQ(maker.lists().row_of_block[0], -1);
+  other.make(rows, islands, {0, 1});
+  EXPECT_NE(other.lists().version, maker.lists().version);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "host/base/parallel.hpp"
-#include "host/base/point3.hpp"
 
 namespace tetwarp {
 namespace {

@@ -20,13 +20,13 @@ namespace tetwarp {
 
 /// What a solve starts from.
 struct TwoLevelStart {
-  double time_step = 0;          ///< [s]
-  std::vector<double> rotation;  ///< R of the elastic bodies, [frames][9], rows first
-  std::vector<ContactSides> contacts;
-  ContactConstantsList laws;    ///< of the contacts
-  std::vector<double> offset;   ///< w, [3 contacts]
-  std::vector<double> impulse;  ///< guess of r, preload included, [3 contacts]
-  std::vector<double> change;   ///< added to the velocities without contact, [rows][3]; or empty
+  double time_step = 0;                ///< [s]
+  std::vector<double> rotation;        ///< R of the elastic bodies, [frames][9], rows first
+  std::vector<ContactSides> contacts;  ///< that are solved
+  ContactConstantsList laws;           ///< of the contacts
+  std::vector<double> offset;          ///< w, [3 contacts]
+  std::vector<double> impulse;         ///< guess of r, preload included, [3 contacts]
+  std::vector<double> change;  ///< added to the velocities without contact, [rows][3]; or empty
 };
 
 class ResidentTwoLevel {
@@ -36,8 +36,8 @@ class ResidentTwoLevel {
   virtual SystemRows rows() = 0;
   /// The two-level iteration of TwoLevelSolver, from the system that BodyStepper::solve() has made.
   /// @param surfaces  what contacts are on; the same in all calls
-  /// @param lists    kept until it returns
-  /// @param factors  of the elastic bodies, set to the length of the step; the inverse of each is
+  /// @param lists     kept until it returns
+  /// @param factors   of the elastic bodies, set to the length of the step; the inverse of each is
   ///                 copied to the device once per length
   /// @throws CudaError  a call of the device fails, as without memory for the inverses
   virtual TwoLevelOutcome solve(const SurfaceBinding& surfaces,

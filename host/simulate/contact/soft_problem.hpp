@@ -17,7 +17,7 @@ struct SoftProblem {
   const ModelState& state;  ///< at the start of the step
   const ContactIslands& islands;
   std::span<const ContactSides> sides;        ///< of all contacts
-  const ContactRows& rows;                    ///< of all contacts; only read on the host
+  const ContactRows& rows;                    ///< of all contacts where the host solves
   const std::vector<std::uint8_t>& takes;     ///< [coupling islands] which are taken
   const std::vector<std::int32_t>& contacts;  ///< on these islands; ascending
   const ContactProblem& laws;         ///< friction, offsets, adhesion and guess of these contacts

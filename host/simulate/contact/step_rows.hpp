@@ -17,7 +17,7 @@ class StepRows {
   /// @param scene, model  kept by the caller
   StepRows(const SceneSurfaces& scene, const Model& model, int threads);
 
-  /// Begins with the contacts of a step: sets their sides. No contact has rows.
+  /// Begins with the contacts of a step: sets their sides. set_all() or set_for_host() must follow.
   /// @param state  at the start of the step; kept by the caller
   void begin(const ModelState& state, std::span<const TrackedContact> contacts);
   /// Sets the rows of all contacts, unless they are set.

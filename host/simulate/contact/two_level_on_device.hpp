@@ -18,7 +18,7 @@ namespace tetwarp {
 /// impulses and velocities come back. The system of the step stays there.
 class TwoLevelOnDevice {
  public:
-  /// @param scene, model  kept by the caller
+  /// @param scene  kept by the caller
   TwoLevelOnDevice(const SceneSurfaces& scene,
                    const Model& model,
                    const ContactOptions& options,

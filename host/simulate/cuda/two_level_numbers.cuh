@@ -3,7 +3,6 @@
 #pragma once
 #include <cstdint>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "host/simulate/body_arrays.hpp"
