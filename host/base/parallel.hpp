@@ -27,9 +27,8 @@ void run_parallel_tasks(int threads,
 /// one included. It returns when all tasks are done. The calling thread also takes the tasks that
 /// no other thread has started, so a processor that is busy with other programs delays it by one
 /// task at most. Calls from within a task run on the thread of that task alone.
-/// @throws what a task throws, as std::bad_alloc, of several the one with the smallest i. Tasks
-/// that
-///         have not begun when one throws may be left out.
+/// @throws what a task throws; of several the one with the smallest i, in every run. Tasks that
+/// have not begun when one throws may be left out.
 template <class Task>
 void parallel_tasks(int threads, std::int64_t count, const Task& task) {
   if (threads <= 1 || count <= 1) {

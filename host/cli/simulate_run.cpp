@@ -240,8 +240,8 @@ const SimulateResult& SimulateRun::run() {
 }
 
 void SimulateRun::finish() {
-  if (!until_complete_) until_complete_.emplace();
   flush();
+  if (!until_complete_) until_complete_.emplace();
   series_file_.reset();
   if (contacts_) contacts_->close();
   if (!arguments_.checkpoint.empty()) write_checkpoint();

@@ -50,7 +50,7 @@ class ContactIslands {
   };
   Unknowns of_side(const ContactSide& side) const;
 
-  std::int32_t first_frame_;                ///< its first block
+  std::int32_t first_frame_;                ///< first block of frames
   std::vector<std::int32_t> island_of_;     ///< [block_count]
   std::vector<Unknowns> of_vertex_;         ///< [vertices]
   std::vector<std::uint8_t> is_coupled_;    ///< [islands] more than one rigid body

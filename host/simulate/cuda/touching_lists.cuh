@@ -25,7 +25,7 @@ struct SurfacesOnDevice {
 class TouchingLists {
  public:
   /// Copies the bodies of a solve to the device; their lists only if they have changed.
-  /// @param bodies  those of the lists, with inverses; [row_count] at least
+  /// @param bodies  those of the lists, with inverses
   void set_bodies(GridContactExec& grid,
                   const CompliantLists& lists,
                   const std::vector<CompliantBody>& bodies) {
