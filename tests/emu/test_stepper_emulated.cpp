@@ -1,6 +1,6 @@
 /// @file test_stepper_emulated.cpp
-/// What the stepper of back end cuda asks of a device; the emulated one records it. Inverses of
-/// systems at rest that are kept there.
+/// Calls of the CUDA runtime in steps of back end cuda, which the emulated device records; inverses
+/// of systems at rest that are kept in its memory.
 #include <gtest/gtest.h>
 
 #include <cstdint>

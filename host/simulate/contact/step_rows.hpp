@@ -35,7 +35,7 @@ class StepRows {
   /// @param velocity  [block_count]
   Point3 prescribed_velocity(std::size_t contact, const std::vector<Point3>& velocity) const;
   /// J^T r on prescribed blocks.
-  /// @param impulse  r, [3 contacts]
+  /// @param impulse  r, [3 contacts] [N s], or forces [N]
   /// @param sums     out, [block_count]; 0 on blocks that are not prescribed
   void prescribed_impulses(std::span<const double> impulse, std::vector<Point3>& sums) const;
 

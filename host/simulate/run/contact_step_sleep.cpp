@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/contact/contact_rows.hpp"
-#include "host/simulate/contact/contact_sides.hpp"
+#include "host/simulate/contact/step_rows.hpp"
 #include "host/simulate/run/contact_step.hpp"
 
 namespace tetwarp {
@@ -119,25 +118,22 @@ void ContactStep::add_sleeping(const ModelState& state, double time_step, Contac
 
 void ContactStep::set_sleeping_forces(const ModelState& state) {
   std::vector<TrackedContact> contacts;
-  for (const SleepingContact& contact : sleeping_) contacts.push_back(contact.contact);
-  std::vector<ContactSides> sides;
-  set_contact_sides(surfaces_, frames_of_bodies(surfaces_, model_), contacts, options_.threads,
-                    sides);
-  ContactRows rows;
-  set_contact_rows(surfaces_, model_, state, sides, {}, options_.threads, rows);
-  sleeping_forces_.clear();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const SleepingContact& of = sleeping_[c];
-    for (auto k = static_cast<std::size_t>(rows.start[c]);
-         k < static_cast<std::size_t>(rows.start[c + 1]); ++k) {
-      if (model_.prescribed[static_cast<std::size_t>(rows.block[k])] == 0) continue;
-      Point3 force{0, 0, 0};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double along = dot(of.point.impulse, of.contact.axes[axis]) / of.time_step;
-        for (std::size_t i = 0; i < 3; ++i) force[i] += along * rows.value[k][3 * axis + i];
-      }
-      sleeping_forces_.emplace_back(rows.block[k], force);
+  std::vector<double> forces;  // along the axes of each contact
+  for (const SleepingContact& of : sleeping_) {
+    contacts.push_back(of.contact);
+    for (const Point3& axis : of.contact.axes) {
+      forces.push_back(dot(of.point.impulse, axis) / of.time_step);
     }
+  }
+  StepRows rows(surfaces_, model_, options_.threads);
+  rows.begin(state, contacts);
+  rows.set_all();
+  std::vector<Point3> sums;
+  rows.prescribed_impulses(forces, sums);
+  sleeping_forces_.clear();
+  for (std::size_t block = 0; block < sums.size(); ++block) {
+    if (sums[block] == Point3{0, 0, 0}) continue;
+    sleeping_forces_.emplace_back(static_cast<std::int32_t>(block), sums[block]);
   }
   has_sleeping_forces_ = true;
 }
