@@ -108,6 +108,7 @@ set(tetwarp_touch_sources    # host/simulate/contact: surfaces, contacts, their 
   host/simulate/contact/compliant_list_maker.cpp
   host/simulate/contact/elastic_space.cpp
   host/simulate/contact/flat_edges.cpp
+  host/simulate/contact/kept_places.cpp
   host/simulate/contact/medial_node.cpp
   host/simulate/contact/near_pair.cpp
   host/simulate/contact/pair_contacts.cpp

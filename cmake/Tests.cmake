@@ -176,6 +176,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/contact/test_contact.cpp
     tests/contact/test_contact_reference_limits.cpp
     tests/contact/test_contact_tracker.cpp
+    tests/contact/test_contact_tracker_threads.cpp
     tests/contact/test_contact_report.cpp
     tests/contact/test_body_relax.cpp
     tests/contact/test_contact_adhesion.cpp

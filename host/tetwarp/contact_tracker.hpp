@@ -145,6 +145,7 @@ struct ContactTrackerOptions {
   double touch_distance = 0;  ///< largest gap that counts as touching [m]
   double restitution_speed = 0;  ///< contacts that approach no faster do not rebound [m/s]
   EvolutionOptions evolution = {};
+  int threads = 1;  ///< to 1024, 0: one per processor; any number: same bits
 };
 
 /// Stores the state of contacts through the steps of a simulation.
@@ -165,7 +166,8 @@ struct ContactTrackerOptions {
 class TETWARP_EXPORT ContactTracker {
  public:
   /// @param records  records() of an earlier tracker that this one continues; sorted by key
-  /// @throws std::invalid_argument  a material or record is out of range; the text names it
+  /// @throws std::invalid_argument  a material, a record or the number of threads is out of range;
+  ///                                the text names it
   explicit ContactTracker(ContactTrackerOptions options = {},
                           std::vector<ContactRecord> records = {});
 
@@ -217,9 +219,10 @@ class TETWARP_EXPORT ContactTracker {
   ContactTrackerOptions options_;
   std::vector<ContactRecord> records_;
   std::vector<ContactRecord> start_records_;  ///< of the step that has begun
-  std::vector<ContactRecord> next_records_;   ///< empty between calls: keeps memory
   std::vector<TrackedContact> contacts_;      ///< of the last step; in it, in the order of records_
-  std::vector<TrackedContact> next_contacts_;  ///< empty between calls: keeps memory
+  std::vector<ContactRecord> next_records_;   ///< of calls, keeps memory; as the next two
+  std::vector<TrackedContact> next_contacts_;
+  ContactProblem problem_;
   double time_step_ = 0;
   bool is_in_step_ = false;
 };

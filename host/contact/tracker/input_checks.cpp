@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "host/base/parallel.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/tracker/geometry.hpp"
 
@@ -33,6 +34,26 @@ void check_material(const ContactKey& key, const BodyPlace& place, const Materia
   refuse(name_of(key),
          "needs a material point on its deformable body: one to three of the body's " +
              std::to_string(place.vertices.size()) + " vertices, with weights of sum 1");
+}
+
+void check_place(std::size_t body, const BodyPlace& place) {
+  if (!place.is_rigid()) {
+    // Without a way out of the loop, so that compilers make vectors of it.
+    constexpr double most = std::numeric_limits<double>::max();
+    bool is_bad = false;
+    for (const Point3& vertex : place.vertices) {
+      for (const double x : vertex) is_bad |= !(std::abs(x) <= most);
+    }
+    if (is_bad) refuse("body " + std::to_string(body), "has a vertex whose position is not finite");
+    return;
+  }
+  const BodyPose& pose = place.pose;
+  if (are_finite({pose.position}) && std::abs(rotation_of(pose).norm() - 1) <= 1e-6) return;
+  const std::string name = "the pose of body " + std::to_string(body);
+  if (!are_finite({pose.position})) refuse(name, "has a position that is not finite");
+  const double length = rotation_of(pose).norm();
+  refuse(name, "has a rotation of length " + text_of(length) +
+                   ", expected 1 within 1e-6: normalize the quaternion");
 }
 
 void check_bodies(const ContactKey& key, std::span<const BodyPlace> places) {
@@ -131,35 +152,20 @@ void check_records(const std::vector<ContactRecord>& records, std::size_t materi
   }
 }
 
-void check_record_bodies(const std::vector<ContactRecord>& records,
-                         std::span<const BodyPlace> places) {
-  for (const ContactRecord& record : records) {
-    check_bodies(record.key, places);
-    check_material(record.key, place_of(places, record.key.body_a), record.material_a);
-    check_material(record.key, place_of(places, record.key.body_b), record.material_b);
-  }
+void check_record_bodies(const ContactRecord& record, std::span<const BodyPlace> places) {
+  check_bodies(record.key, places);
+  check_material(record.key, place_of(places, record.key.body_a), record.material_a);
+  check_material(record.key, place_of(places, record.key.body_b), record.material_b);
 }
 
-void check_places(std::span<const BodyPlace> places) {
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    if (!places[b].is_rigid()) {
-      // Without a way out of the loop, so that compilers make vectors of it.
-      constexpr double most = std::numeric_limits<double>::max();
-      bool is_bad = false;
-      for (const Point3& vertex : places[b].vertices) {
-        for (const double x : vertex) is_bad |= !(std::abs(x) <= most);
-      }
-      if (is_bad) refuse("body " + std::to_string(b), "has a vertex whose position is not finite");
-      continue;
-    }
-    const BodyPose& pose = places[b].pose;
-    if (are_finite({pose.position}) && std::abs(rotation_of(pose).norm() - 1) <= 1e-6) continue;
-    const std::string name = "the pose of body " + std::to_string(b);
-    if (!are_finite({pose.position})) refuse(name, "has a position that is not finite");
-    const double length = rotation_of(pose).norm();
-    refuse(name, "has a rotation of length " + text_of(length) +
-                     ", expected 1 within 1e-6: normalize the quaternion");
-  }
+void check_places(std::span<const BodyPlace> places, int threads) {
+  constexpr std::size_t vertices_per_thread = 16384;
+  std::size_t vertices = 0;
+  for (const BodyPlace& place : places) vertices += place.vertices.size();
+  if (vertices < 2 * vertices_per_thread) threads = 1;
+  parallel_tasks(threads, std::ssize(places), [&](std::int64_t b) {
+    check_place(static_cast<std::size_t>(b), places[static_cast<std::size_t>(b)]);
+  });
 }
 
 void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts) {

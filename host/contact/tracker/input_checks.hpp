@@ -24,12 +24,11 @@ void check_report(const ReportedContact& report,
 
 void check_records(const std::vector<ContactRecord>& records, std::size_t material_count);
 
-/// The bodies of records exist, and have the vertices of their material points.
-void check_record_bodies(const std::vector<ContactRecord>& records,
-                         std::span<const BodyPlace> places);
+/// The bodies of a record exist, and have the vertices of its material points.
+void check_record_bodies(const ContactRecord& record, std::span<const BodyPlace> places);
 
-/// Positions are finite, rotations of length 1 within 1e-6.
-void check_places(std::span<const BodyPlace> places);
+/// Positions are finite, rotations of length 1 within 1e-6. Any number of threads: same error.
+void check_places(std::span<const BodyPlace> places, int threads);
 
 /// Three finite impulses and velocities for each contact.
 void check_solution(const ContactSolution& solution, const std::vector<TrackedContact>& contacts);

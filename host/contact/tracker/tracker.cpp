@@ -4,6 +4,7 @@
 #include <tetwarp/contact_tracker.hpp>
 #include <utility>
 
+#include "host/base/parallel.hpp"
 #include "host/contact/tracker/geometry.hpp"
 #include "host/contact/tracker/input_checks.hpp"
 #include "host/contact/tracker/match.hpp"
@@ -12,6 +13,48 @@
 namespace tetwarp {
 namespace {
 using Eigen::Vector3d;
+
+/// body(i) for i in [0, count); few contacts are not worth the start of a thread.
+template <class Body>
+void for_contacts(int threads, std::size_t count, const Body& body) {
+  constexpr std::int64_t per_thread = 256;
+  const auto size = static_cast<std::int64_t>(count);
+  const auto used = static_cast<int>(std::min<std::int64_t>(threads, 1 + size / per_thread));
+  parallel_for(used, size, [&](std::int64_t i) { body(static_cast<std::size_t>(i)); });
+}
+
+/// What a contact of a step continues: at least one of both is not null.
+struct Source {
+  const ContactRecord* record;
+  const ReportedContact* report;
+};
+
+/// The sources of the contacts of a step, in the order of keys: of all reports, and of records with
+/// adhesion that no report matches.
+std::vector<Source> sources_of(std::span<const ReportedContact> reports,
+                               std::span<const ContactRecord> records,
+                               std::span<const std::int64_t> matches) {
+  std::vector<std::uint8_t> is_matched(records.size());
+  for (const std::int64_t match : matches) {
+    if (match >= 0) is_matched[static_cast<std::size_t>(match)] = 1;
+  }
+  std::vector<Source> sources;
+  sources.reserve(reports.size() + records.size());
+  std::size_t k = 0;
+  const auto add_kept = [&](const ContactKey* up_to) {
+    for (; k < records.size() && (up_to == nullptr || records[k].key < *up_to); ++k) {
+      if (is_matched[k] == 0 && records[k].intensity > 0) sources.push_back({&records[k], nullptr});
+    }
+  };
+  for (std::size_t r = 0; r < reports.size(); ++r) {
+    add_kept(&reports[r].key);
+    const std::int64_t match = matches[r];
+    sources.push_back(
+        {match >= 0 ? &records[static_cast<std::size_t>(match)] : nullptr, &reports[r]});
+  }
+  add_kept(nullptr);
+  return sources;
+}
 
 /// Sets what the report prescribes; a contact that is not reported keeps zeros.
 /// @param report  or null
@@ -65,6 +108,7 @@ ContactTracker::ContactTracker(ContactTrackerOptions options, std::vector<Contac
     refuse("match_distance and touch_distance", "must not be negative");
   }
   if (!(options_.restitution_speed >= 0)) refuse("restitution_speed", "must not be negative");
+  options_.threads = thread_count(options_.threads);
   check_records(records_, options_.materials.size());
 }
 
@@ -75,49 +119,34 @@ const std::vector<TrackedContact>& ContactTracker::begin_step(
   if (!(time_step > 0) || !std::isfinite(time_step)) {
     refuse("time_step", "must be a finite time of more than 0 s");
   }
-  check_places(places);
+  check_places(places, options_.threads);
   std::vector<ReportedContact> storage;
   const std::span<const ReportedContact> reports = sorted_reports(unsorted, storage);
-  for (const ReportedContact& report : reports) {
-    check_report(report, places, options_.materials.size());
-  }
+  for_contacts(options_.threads, reports.size(),
+               [&](std::size_t r) { check_report(reports[r], places, options_.materials.size()); });
   const std::vector<ContactRecord>& before = start_records();
-  check_record_bodies(before, places);
+  for_contacts(options_.threads, before.size(),
+               [&](std::size_t k) { check_record_bodies(before[k], places); });
   const std::vector<std::int64_t> matches =
       match_contacts(reports, before, places, options_.match_distance);
-  std::vector<std::uint8_t> is_matched(before.size());
-  for (const std::int64_t match : matches) {
-    if (match >= 0) is_matched[static_cast<std::size_t>(match)] = 1;
-  }
-
-  next_records_.clear();
-  next_contacts_.clear();
-  const auto add = [&](const ContactRecord& from, const ReportedContact* report) {
-    ContactRecord& record = next_records_.emplace_back(from);
+  const std::vector<Source> sources = sources_of(reports, before, matches);
+  next_records_.resize(sources.size());
+  next_contacts_.resize(sources.size());
+  for_contacts(options_.threads, sources.size(), [&](std::size_t c) {
+    const auto [from, report] = sources[c];
+    ContactRecord& record = next_records_[c];
+    record = from != nullptr ? *from : ContactRecord{};
     if (report != nullptr) update_record(record, *report, places, options_);
-    TrackedContact& contact = next_contacts_.emplace_back(contact_of(record, report, places));
+    TrackedContact& contact = next_contacts_[c];
+    contact = contact_of(record, report, places);
     record.normal_world = contact.axes[0];
     set_velocities(contact, report, options_, time_step);
-  };
-  std::size_t k = 0;
-  const auto add_kept = [&](const ContactKey* up_to) {
-    for (; k < before.size() && (up_to == nullptr || before[k].key < *up_to); ++k) {
-      if (is_matched[k] == 0 && before[k].intensity > 0) add(before[k], nullptr);
-    }
-  };
-  for (std::size_t r = 0; r < reports.size(); ++r) {
-    add_kept(&reports[r].key);
-    add(matches[r] >= 0 ? before[static_cast<std::size_t>(matches[r])] : ContactRecord{},
-        &reports[r]);
-  }
-  add_kept(nullptr);
+  });
   time_step_ = time_step;
   if (!is_in_step_) start_records_.swap(records_);
   is_in_step_ = true;
   records_.swap(next_records_);
-  next_records_.clear();
   contacts_.swap(next_contacts_);
-  next_contacts_.clear();
   return contacts_;
 }
 
@@ -143,7 +172,7 @@ void ContactTracker::fill(ContactProblem& problem) const {
        {&problem.velocity_offset, &problem.impulse_guess, &adhesion.gap}) {
     vectors->resize(3 * count);
   }
-  for (std::size_t c = 0; c < count; ++c) {
+  for_contacts(options_.threads, count, [&](std::size_t c) {
     const ContactRecord& record = records_[c];
     const TrackedContact& contact = contacts_[c];
     const ContactMaterial& material = options_.materials[static_cast<std::size_t>(record.material)];
@@ -167,7 +196,7 @@ void ContactTracker::fill(ContactProblem& problem) const {
       problem.impulse_guess[3 * c + axis] =
           vector_of(contact.axes[axis]).dot(vector_of(record.impulse_world));
     }
-  }
+  });
 }
 
 AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
@@ -181,15 +210,16 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
     throw std::logic_error(
         "ContactTracker: end_step() without a step, call begin_step() before each end_step()");
   }
-  check_places(places);
-  check_record_bodies(records_, places);
+  check_places(places, options_.threads);
+  for_contacts(options_.threads, records_.size(),
+               [&](std::size_t c) { check_record_bodies(records_[c], places); });
   check_solution(solution, contacts_);
-  ContactProblem problem;
-  fill(problem);
-  AdhesionStep step = evolve_adhesion(problem, solution, options_.evolution);
-  next_records_.clear();
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    ContactRecord record = records_[c];
+  fill(problem_);
+  AdhesionStep step = evolve_adhesion(problem_, solution, options_.evolution);
+  next_records_.resize(records_.size());
+  for_contacts(options_.threads, records_.size(), [&](std::size_t c) {
+    ContactRecord& record = next_records_[c];
+    record = records_[c];
     const double before = record.intensity;
     record.intensity = record.area > 0 ? step.intensity[c] : 0;
     carry_anchor(record, contacts_[c], time_step_, places);
@@ -210,10 +240,15 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
       refuse(name_of(record.key), "has an impulse or a velocity beyond the range of numbers");
     }
     record.impulse_world = point_of(impulse);
-    if (contacts_[c].is_reported || record.intensity > 0) next_records_.push_back(record);
+  });
+  std::size_t kept = 0;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    if (!contacts_[c].is_reported && !(next_records_[c].intensity > 0)) continue;
+    if (kept != c) next_records_[kept] = next_records_[c];
+    ++kept;
   }
+  next_records_.resize(kept);
   records_.swap(next_records_);
-  next_records_.clear();
   start_records_.clear();
   is_in_step_ = false;
   return step;

@@ -7,7 +7,6 @@
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
-#include "host/simulate/contact/find_record.hpp"
 
 namespace tetwarp {
 namespace {
@@ -23,37 +22,69 @@ ContactKey key_of(std::int32_t body_a,
 
 }  // namespace
 
+PairContacts::NamedTouch PairContacts::named(const PairTouch& touch,
+                                             std::int32_t feature_a,
+                                             std::int32_t feature_b,
+                                             double area) {
+  const ContactKey key = key_of(touch.body_a, feature_a, touch.body_b, feature_b);
+  const bool is_turned = key.body_a != touch.body_a || key.feature_a != feature_a;
+  return {key, &touch, area, is_turned};
+}
+
 PairContacts::PairContacts(const SceneSurfaces& scene, int threads)
     : scene_(scene), threads_(threads), areas_(scene.surfaces), patches_(scene, areas_) {}
 
-std::int32_t PairContacts::slot_of(const PairTouch& touch,
-                                   std::span<const ContactRecord> records) const {
+void PairContacts::list_groups(std::span<const ChosenTouch> touches) {
+  groups_.clear();
+  for (std::size_t begin = 0; begin < touches.size();) {
+    const PairTouch& touch = touches[begin].touch;
+    std::size_t end = begin + 1;
+    while (!touch.is_of_edges() && end < touches.size() && !touches[end].touch.is_of_edges() &&
+           touches[end].touch.a == touch.a && touches[end].touch.body_b == touch.body_b) {
+      ++end;
+    }
+    groups_.push_back({begin, end});
+    begin = end;
+  }
+}
+
+/// Sets the number of a touch: that of the record whose normal is nearest, or one that is free.
+/// @returns the record of this number, or null
+const ContactRecord* PairContacts::set_slot(std::span<const ChosenTouch> touches,
+                                            const Group& group,
+                                            std::size_t t,
+                                            std::span<const ContactRecord> records) {
   constexpr std::int32_t last = -64;
+  const PairTouch& touch = touches[t].touch;
   const auto own = std::ranges::equal_range(
       vertex_records_, std::pair(touch.a, touch.body_b), {},
       [](const VertexRecord& record) { return std::pair(record.vertex, record.body); });
   const auto is_taken = [&](std::int32_t slot) {
-    return std::find(slots_.begin(), slots_.end(), slot) != slots_.end();
+    const std::span<const std::int32_t> taken(slots_.data() + group.begin, t - group.begin);
+    return std::ranges::find(taken, slot) != taken.end();
   };
-  std::int32_t best = 0;
+  const ContactRecord* best = nullptr;
   double closest = cosine_45;
   for (const VertexRecord& of : own) {
     if (is_taken(of.slot)) continue;
     const ContactRecord& record = records[of.record];
-    if (record.normal_world == Point3{0, 0, 0}) return of.slot;
+    const bool is_known = record.normal_world != Point3{0, 0, 0};
     const double sign = record.key.feature_a == touch.a ? 1 : -1;
-    const double cosine = sign * dot(record.normal_world, point_of(touch.normal));
-    if (cosine <= closest) continue;
+    const double cosine = is_known ? sign * dot(record.normal_world, point_of(touch.normal)) : 1;
+    if (is_known && cosine <= closest) continue;
     closest = cosine;
-    best = of.slot;
+    best = &record;
+    slots_[t] = of.slot;
+    if (!is_known) break;
   }
-  if (best != 0) return best;
+  if (best != nullptr) return best;
   const auto has_record = [&](std::int32_t slot) {
     return std::ranges::find(own, slot, &VertexRecord::slot) != own.end();
   };
   std::int32_t free = -1;
   while (free > last && (is_taken(free) || has_record(free))) --free;
-  return free;
+  slots_[t] = free;
+  return nullptr;
 }
 
 /// Lists the records of contacts of vertices.
@@ -110,55 +141,39 @@ void PairContacts::report(const NamedTouch& named, ReportedContact& contact) con
   }
 }
 
-void PairContacts::name(const PairTouch& touch,
-                        std::int32_t feature_a,
-                        std::int32_t feature_b,
-                        double area) {
-  const ContactKey key = key_of(touch.body_a, feature_a, touch.body_b, feature_b);
-  const bool is_turned = key.body_a != touch.body_a || key.feature_a != feature_a;
-  named_.push_back({key, &touch, area, is_turned});
-}
-
 /// Names the touches of a vertex and a body.
 void PairContacts::name_vertex(std::span<const ChosenTouch> touches,
+                               const Group& group,
                                std::span<const ContactRecord> records) {
-  slots_.clear();
-  for (const ChosenTouch& chosen : touches) {
-    const PairTouch& touch = chosen.touch;
-    slots_.push_back(slot_of(touch, records));
+  for (std::size_t t = group.begin; t < group.end; ++t) {
+    const PairTouch& touch = touches[t].touch;
     // A bond keeps its area as the surfaces turn away from each other.
-    const ContactRecord* const record =
-        find_record(records, key_of(touch.body_a, touch.a, touch.body_b, slots_.back()));
+    const ContactRecord* const record = set_slot(touches, group, t, records);
     const bool is_bonded = record != nullptr && record->intensity > 0;
-    name(touch, touch.a, slots_.back(),
-         is_bonded ? std::max(chosen.area, record->area) : chosen.area);
+    const double area = touches[t].area;
+    named_[t] = named(touch, touch.a, slots_[t], is_bonded ? std::max(area, record->area) : area);
   }
 }
 
 std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> touches,
                                                  const std::vector<Point3>& vertices,
                                                  std::span<const ContactRecord> records) {
-  named_.clear();
   list_records(records);
+  list_groups(touches);
+  slots_.resize(touches.size());
+  named_.resize(touches.size());
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
   const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());
-  for (std::size_t first = 0; first < touches.size();) {
-    const PairTouch& touch = touches[first].touch;
-    std::size_t end = first + 1;
-    if (touch.is_of_edges()) {
-      name(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
-    } else {
-      while (end < touches.size() && !touches[end].touch.is_of_edges() &&
-             touches[end].touch.a == touch.a && touches[end].touch.body_b == touch.body_b) {
-        ++end;
-      }
-      name_vertex(touches.subspan(first, end - first), records);
-    }
-    first = end;
-  }
+  parallel_for(threads_, std::ssize(groups_), [&](std::int64_t g) {
+    const Group& group = groups_[index_of(g)];
+    const PairTouch& touch = touches[group.begin].touch;
+    if (!touch.is_of_edges()) return name_vertex(touches, group, records);
+    named_[group.begin] =
+        named(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
+  });
   std::ranges::sort(named_, {}, &NamedTouch::key);
   contacts_.resize(named_.size());
-  parallel_for(threads_, static_cast<std::int64_t>(named_.size()),
+  parallel_for(threads_, std::ssize(named_),
                [this](std::int64_t c) { report(named_[index_of(c)], contacts_[index_of(c)]); });
   patches_.reduce(contacts_, vertices, records);
   return contacts_;

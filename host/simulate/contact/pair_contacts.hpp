@@ -56,20 +56,35 @@ class PairContacts {
     bool is_turned = false;
   };
 
-  std::int32_t slot_of(const PairTouch& touch, std::span<const ContactRecord> records) const;
+  /// Touches of a vertex and a body, or one of edges.
+  struct Group {
+    std::size_t begin = 0, end = 0;
+  };
+
+  void list_groups(std::span<const ChosenTouch> touches);
   void list_records(std::span<const ContactRecord> records);
-  void name(const PairTouch& touch, std::int32_t feature_a, std::int32_t feature_b, double area);
+  const ContactRecord* set_slot(std::span<const ChosenTouch> touches,
+                                const Group& group,
+                                std::size_t touch,
+                                std::span<const ContactRecord> records);
   MaterialPoint material_of(const std::int32_t* vertex,
                             const double* weight,
                             std::int32_t body) const;
-  void name_vertex(std::span<const ChosenTouch> touches, std::span<const ContactRecord> records);
+  void name_vertex(std::span<const ChosenTouch> touches,
+                   const Group& group,
+                   std::span<const ContactRecord> records);
+  static NamedTouch named(const PairTouch& touch,
+                          std::int32_t feature_a,
+                          std::int32_t feature_b,
+                          double area);
   void report(const NamedTouch& named, ReportedContact& contact) const;
 
   const SceneSurfaces& scene_;
   int threads_;
   TouchAreas areas_;
   RigidPatches patches_;
-  std::vector<std::int32_t> slots_;           ///< taken, of the current vertex and body
+  std::vector<Group> groups_;
+  std::vector<std::int32_t> slots_;           ///< [touches] of vertices, below 0
   std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted by all but the record
   std::vector<NamedTouch> named_;
   std::vector<ReportedContact> contacts_;

@@ -39,7 +39,7 @@ std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
 }
 
 /// Every material twice: the second ones without adhesion of surfaces that are near at the start.
-ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
+ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads) {
   ContactTrackerOptions of;
   of.materials = surfaces.materials;
   of.materials.insert(of.materials.end(), surfaces.materials.begin(), surfaces.materials.end());
@@ -48,6 +48,7 @@ ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces) {
   }
   of.match_distance = surfaces.surfaces.thickness;
   of.touch_distance = surfaces.surfaces.thickness;
+  of.threads = threads;
   return of;
 }
 
@@ -102,7 +103,7 @@ ContactStep::ContactStep(const Scene& scene,
       options_(options),
       material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
-      tracker_options_(tracker_options(surfaces)),
+      tracker_options_(tracker_options(surfaces, options.threads)),
       pair_contacts_(surfaces, options.threads),
       tracker_(tracker_options_),
       system_(surfaces,
@@ -114,6 +115,7 @@ ContactStep::ContactStep(const Scene& scene,
                                return !was_ended_;
                              })),
       groups_(model, surfaces.surfaces),
+      places_(surfaces, model, options.threads),
       motions_(static_cast<std::size_t>(std::max(1, scene.solver.max_passes))) {}
 
 void ContactStep::set_places(const ModelState& state,
@@ -135,7 +137,8 @@ void ContactStep::set_places(const ModelState& state,
 }
 
 void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion& motion) {
-  if (&motion != &motions_[0]) motion.start = motions_[0].start;
+  if (&motion != final_) std::swap(motion.start, final_->start);
+  final_ = &motion;
   frame_motion({surfaces_, model_, *start_, velocity_, time_step_, fraction}, motion);
   if (resident_ == nullptr) return move_vertices(fraction, motion);
   motion.resident = view_of(resident_->move(
@@ -149,13 +152,13 @@ void ContactStep::move_vertices(std::span<const double> fraction, SurfaceMotion&
 }
 
 void ContactStep::report(bool is_first) {
-  std::vector<ReportedContact>& reports = pair_contacts_.find(
-      detector_->touches(), motions_[0].start.vertices, tracker_.start_records());
+  std::vector<ReportedContact>& reports =
+      pair_contacts_.find(detector_->touches(), final_->start.vertices, tracker_.start_records());
   for (ReportedContact& report : reports) {
     const double gap = dot(report.normal, minus(report.point_a_world, report.point_b_world));
     if (!is_first || gap > surfaces_.surfaces.thickness) report.material += material_count_;
   }
-  set_places(*start_, motions_[0].start, start_places_);
+  set_places(*start_, final_->start, start_places_);
   contacts_ = &tracker_.begin_step(reports, start_places_, time_step_);
 }
 
@@ -187,7 +190,6 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
     {
       const Clock clock(part.detection_seconds);
       move_surfaces({}, motions_[pass]);
-      final_ = &motions_[pass];
       const std::int64_t added = detector_->find_touches(motions_[pass]);
       ++part.passes;
       has_pairs_ = has_pairs_ || added > 0;
@@ -204,7 +206,6 @@ void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPa
   }
   const Clock clock(part.detection_seconds);
   move_surfaces({}, clamped_);
-  final_ = &clamped_;
 }
 
 void ContactStep::keep_apart(ContactPart& part) {
@@ -214,16 +215,14 @@ void ContactStep::keep_apart(ContactPart& part) {
   part.islands = groups_.island_count();
   // A motion without pairs has passed a detection at a larger distance already.
   if (!has_pairs_) return;
-  SurfaceMotion* motion = final_;
   bool is_whole = true;
   for (;;) {
-    const std::vector<TouchingPair>& hits = detector_->check(*motion);
+    const std::vector<TouchingPair>& hits = detector_->check(*final_);
     // The groups see in the whole motion which bodies move.
-    if (resident_ != nullptr && is_whole && !hits.empty()) move_vertices({}, *motion);
-    if (!groups_.stop(hits, *motion)) break;
+    if (resident_ != nullptr && is_whole && !hits.empty()) move_vertices({}, *final_);
+    if (!groups_.stop(hits, *final_)) break;
     is_whole = false;
     move_surfaces(fractions(), clamped_);
-    motion = &clamped_;
   }
   part.smallest_fraction = groups_.smallest_fraction();
   if (groups_.all_move()) return;
@@ -259,7 +258,8 @@ ContactPart ContactStep::advance(const ModelState& start,
   if (are_finite(free_velocity_)) {
     {
       const Clock clock(part.detection_seconds);
-      surface_places(surfaces_, model_, start, options_.threads, motions_[0].start);
+      final_ = &motions_[0];
+      places_.take(start, final_->start);
       resident_ = stepper.resident_surfaces();
       if (resident_ != nullptr) resident_->begin(binding_of(surfaces_));
       detector_->begin_step();

@@ -18,6 +18,7 @@
 #include "host/collide/detector.hpp"
 
 #include "host/simulate/contact/contact_system.hpp"
+#include "host/simulate/contact/kept_places.hpp"
 #include "host/simulate/contact/pair_contacts.hpp"
 #include "host/simulate/contact/scene_surfaces.hpp"
 #include "host/simulate/resident_surfaces.hpp"
@@ -96,8 +97,9 @@ class ContactStep {
   /// Of the last part: impulses of contacts on blocks [block_count], and on bodies, then obstacles.
   const std::vector<Point3>& block_impulses() const { return block_impulses_; }
   const std::vector<Point3>& body_impulses() const { return body_impulses_; }
-  /// The contacts at the end of the last part.
-  const std::vector<ContactPoint>& points() const { return points_; }
+  /// Moves the contacts at the end of the last part to `points`, once; what was there is memory for
+  /// later parts.
+  void take_points(std::vector<ContactPoint>& points) { points.swap(points_); }
 
   void remember(ContactMemory& memory) const {
     memory.time_step = time_step_;
@@ -142,7 +144,7 @@ class ContactStep {
   ContactPlace place_of(std::size_t body, const MaterialPoint& point) const;
   void set_points();
   bool both_still(const BodyLink& bodies) const;
-  std::vector<ContactRecord> all_records() const;
+  std::vector<ContactRecord> bonds() const;
   void add_sleeping(const ModelState& state, double time_step, ContactPart& part);
   void set_sleeping(std::vector<SleepingContact> contacts);
   void set_sleeping_forces(const ModelState& state);
@@ -169,10 +171,10 @@ class ContactStep {
   bool is_free_ = true;                   ///< velocity_ is what the stepper has
   ResidentSurfaces* resident_ = nullptr;  ///< of the stepper
   std::vector<Point3> change_;            ///< see ContactMemory
-  std::vector<SurfaceMotion> motions_;    ///< of the detections
-  SurfaceMotion clamped_;                 ///< of the end check with fractions below 1
-  SurfaceMotion* final_ = nullptr;
-  SurfacePlaces end_surfaces_;
+  KeptPlaces places_;
+  std::vector<SurfaceMotion> motions_;  ///< of the detections
+  SurfaceMotion clamped_;               ///< of the end check with fractions below 1
+  SurfaceMotion* final_ = nullptr;      ///< the last of these; it alone has the start
   std::vector<BodyPlace> start_places_, end_places_;
   bool has_pairs_ = false;                                 ///< detection has found any
   const std::vector<TrackedContact>* contacts_ = nullptr;  ///< null: nothing touches

@@ -1,6 +1,8 @@
 // What a step with contact leaves: impulses on bodies, contacts at its end, records, energies.
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/rotations.hpp"
 #include "host/simulate/run/contact_step.hpp"
@@ -123,7 +125,8 @@ void ContactStep::set_points() {
   own_points_.resize(contacts_->size());
   if (own_points_.empty()) return;
   const double* impulse = system_.solution().impulse.data();
-  for (std::size_t c = 0; c < own_points_.size(); ++c) {
+  parallel_for(options_.threads, std::ssize(own_points_), [&](std::int64_t i) {
+    const std::size_t c = index_of(i);
     const TrackedContact& contact = (*contacts_)[c];
     const auto a = static_cast<std::size_t>(contact.key.body_a);
     const auto b = static_cast<std::size_t>(contact.key.body_b);
@@ -142,23 +145,24 @@ void ContactStep::set_points() {
     point.area = tracker_.records()[c].area;
     point.place_a = place_of(a, contact.material_a);
     point.place_b = place_of(b, contact.material_b);
-  }
+  });
 }
 
 void ContactStep::end(const ModelState& after, ContactPart& part) {
-  own_points_.clear();
   if (contacts_ == nullptr) {
+    own_points_.clear();
     if (options_.sleeps) note_rest({});
     merge_points();
     return;
   }
   const Stopwatch stopwatch;
-  surface_places(surfaces_, model_, after, options_.threads, end_surfaces_);
-  set_places(after, end_surfaces_, end_places_);
+  set_places(after, places_.of(after), end_places_);
   static const ContactSolution nothing;
   set_points();
   std::vector<double> before;
-  for (const ContactRecord& record : tracker_.records()) before.push_back(record.intensity);
+  if (options_.sleeps) {
+    for (const ContactRecord& record : tracker_.records()) before.push_back(record.intensity);
+  }
   const AdhesionStep adhesion =
       tracker_.end_step(contacts_->empty() ? nothing : system_.solution(), end_places_);
   for (std::size_t c = 0; c < own_points_.size(); ++c) {
@@ -191,16 +195,16 @@ void ContactStep::restore(const ContactMemory& memory) {
 }
 
 void ContactStep::record(const ModelState& state, StepRecord& record) {
-  surface_places(surfaces_, model_, state, options_.threads, end_surfaces_);
+  const SurfacePlaces& places = places_.of(state);
   const double cap = 100 * surfaces_.surfaces.thickness;
   MotionView on_device;
   if (resident_ != nullptr) {
     resident_->begin(binding_of(surfaces_));
     on_device = view_of(resident_->move({}, 0, {}));
   }
-  record.smallest_distance = detector_->closest(end_surfaces_, cap, on_device).distance;
-  ContactTracker now(tracker_options_, all_records());
-  set_places(state, end_surfaces_, end_places_);
+  record.smallest_distance = detector_->closest(places, cap, on_device).distance;
+  ContactTracker now(tracker_options_, bonds());
+  set_places(state, places, end_places_);
   // Without reports the contacts are those that adhere, between their anchors.
   const std::vector<TrackedContact>& bonds = now.begin_step({}, end_places_, scene_.time_step);
   for (std::size_t c = 0; c < bonds.size(); ++c) {

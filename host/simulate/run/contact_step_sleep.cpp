@@ -35,12 +35,16 @@ bool ContactStep::both_still(const BodyLink& bodies) const {
          still_[static_cast<std::size_t>(bodies[1])] != 0;
 }
 
-std::vector<ContactRecord> ContactStep::all_records() const {
-  std::vector<ContactRecord> sleeping, all;
-  for (const SleepingContact& contact : sleeping_) sleeping.push_back(contact.record);
-  const std::vector<ContactRecord>& awake = tracker_.start_records();
-  std::merge(awake.begin(), awake.end(), sleeping.begin(), sleeping.end(), std::back_inserter(all),
-             key_is_less);
+/// The records of contacts that adhere.
+std::vector<ContactRecord> ContactStep::bonds() const {
+  std::vector<ContactRecord> all;
+  const auto add = [&](const ContactRecord& record) {
+    if (record.intensity > 0) all.push_back(record);
+  };
+  std::ranges::for_each(tracker_.start_records(), add);
+  const auto awake = std::ssize(all);
+  std::ranges::for_each(sleeping_, add, &SleepingContact::record);
+  std::inplace_merge(all.begin(), all.begin() + awake, all.end(), key_is_less);
   return all;
 }
 
@@ -140,6 +144,7 @@ void ContactStep::set_sleeping_forces(const ModelState& state) {
 
 /// Points of all contacts, those between bodies that stand still included, in the order of keys.
 void ContactStep::merge_points() {
+  if (sleeping_.empty() && !options_.sleeps) return points_.swap(own_points_);
   points_.clear();
   std::size_t s = 0;
   const auto add_sleeping = [&] { points_.push_back(sleeping_[s++].point); };

@@ -153,7 +153,7 @@ void Simulator::Impl::accept(const Attempt& made, int parts, const StepSeconds& 
   }
   if (sleep_.is_on()) fall_asleep(made);
   contact_points.clear();
-  if (contact_) contact_points = contact_->points();
+  if (contact_) contact_->take_points(contact_points);
 }
 
 bool Simulator::Impl::take_steps() {
