@@ -145,7 +145,8 @@ set(tetwarp_contact_step_sources  # host/simulate: the step with contact
   host/simulate/run/simulator_record.cpp
   host/simulate/run/simulator_sleep.cpp
   host/simulate/run/simulator_state.cpp
-  host/simulate/run/step_groups.cpp)
+  host/simulate/run/step_groups.cpp
+  host/simulate/run/tet_energies.cpp)
 target_sources(tetwarp PRIVATE ${tetwarp_collide_sources} ${tetwarp_touch_sources}
   ${tetwarp_contact_step_sources})
 target_sources(tetwarp PRIVATE ${tetwarp_geometry_sources} ${tetwarp_model_sources}

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/base/parallel.hpp"
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/rotations.hpp"
-#include "kernels/body/tet_rotation.hpp"
+#include "kernels/body/lane_math.hpp"
 
 namespace tetwarp {
 namespace {
-
-struct TetSums {
-  double energy = 0;
-  std::int64_t inverted = 0;
-};
 
 void deformation_gradient(const Model& model, const ModelState& state, std::size_t t, double* f) {
   const auto& nodes = model.tets.nodes[t];
@@ -34,48 +28,6 @@ bool is_inverted(const double* f) {
   double cofactors[3];
   cross3(f + 3, f + 6, cofactors);
   return dot3(f, cofactors) < 0;
-}
-
-/// V (mu |e|^2 + lambda/2 tr(e)^2), e = sym(R^T F) - 1.
-TetSums tet_sums(const Model& model, const ModelState& state, std::size_t t) {
-  double f[9], r[9], s[9];
-  deformation_gradient(model, state, t, f);
-  tet_rotation(f, r);
-  product3_transposed(r, f, s);
-  double square = 0, trace = 0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double strain = (s[3 * i + j] + s[3 * j + i]) / 2 - (i == j ? 1 : 0);
-      square += strain * strain;
-      trace += i == j ? strain : 0;
-    }
-  }
-  return {
-      model.tets.volume[t] * (model.tets.mu[t] * square + model.tets.lambda[t] / 2 * trace * trace),
-      is_inverted(f) ? 1 : 0};
-}
-
-/// Of ranges of fixed length, then of the ranges in order.
-TetSums all_tets(const Model& model, const ModelState& state, int threads) {
-  constexpr std::size_t range = 512;
-  const std::size_t count = model.tets.nodes.size();
-  std::vector<TetSums> parts((count + range - 1) / range);
-  parallel_for(threads, static_cast<std::int64_t>(parts.size()), [&](std::int64_t p) {
-    const std::size_t begin = static_cast<std::size_t>(p) * range;
-    TetSums sum;
-    for (std::size_t t = begin; t < std::min(begin + range, count); ++t) {
-      const TetSums one = tet_sums(model, state, t);
-      sum.energy += one.energy;
-      sum.inverted += one.inverted;
-    }
-    parts[static_cast<std::size_t>(p)] = sum;
-  });
-  TetSums sum;
-  for (const TetSums& part : parts) {
-    sum.energy += part.energy;
-    sum.inverted += part.inverted;
-  }
-  return sum;
 }
 
 double spring_energy(const Model& model,
@@ -202,11 +154,8 @@ void record_state(const Model& model,
                   const ModelState& state,
                   const Point3& gravity,
                   const std::vector<std::optional<Point3>>& handles,
-                  int threads,
                   StepRecord& record) {
-  const TetSums tets = all_tets(model, state, threads);
-  record.inverted = tets.inverted;
-  record.energy.elastic = tets.energy + spring_energy(model, state, handles);
+  record.energy.elastic += spring_energy(model, state, handles);
   record_nodes(model, state, record);
   record_rigid(model, state, record);
   for (std::size_t n = 0; n < model.node_mass.size(); ++n) {

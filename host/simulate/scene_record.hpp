@@ -20,16 +20,15 @@ std::int64_t inverted_count(const Model& model, const ModelState& state);
 /// omega = R I^-1 R^T L of a rigid body; of a prescribed frame 0.
 Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid);
 
-/// Fills energies without work, momenta, `inverted`, and of each body centre, velocity, angular
-/// momentum, rotation and angular velocity. Sums are in index order, or trees that depend on
-/// counts alone: the same bits for any number of threads.
+/// Fills energies without work, momenta, and of each body centre, velocity, angular momentum,
+/// rotation and angular velocity; to the elastic energy, which is that of tetrahedra before, those
+/// of springs and bending are added. Sums are in index order.
 /// @param handles  displacements of the anchors of each handle; nothing: let go
 /// @param record   `bodies` has one entry per body of the scene
 void record_state(const Model& model,
                   const ModelState& state,
                   const Point3& gravity,
                   const std::vector<std::optional<Point3>>& handles,
-                  int threads,
                   StepRecord& record);
 
 }  // namespace tetwarp

@@ -45,6 +45,23 @@ TETWARP_HD void deformation_gradient(const Real* x, const Real* g, Real* f) {
   }
 }
 
+/// Energy V (mu |e|^2 + lambda / 2 tr(e)^2).
+/// @param f, r  F and R
+template <class Real>
+TETWARP_HD Real corotated_energy(const Real* f, const Real* r, Real volume, Real lambda, Real mu) {
+  const Real half = Real(0.5);
+  Real s[9], square = Real(0.0), trace = Real(0.0);
+  product3_transposed(r, f, s);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Real strain = half * (s[3 * i + j] + s[3 * j + i]) - Real(i == j ? 1.0 : 0.0);
+      square = square + strain * strain;
+      if (i == j) trace = trace + strain;
+    }
+  }
+  return volume * (mu * square + half * lambda * trace * trace);
+}
+
 /// @param f, r     F and R
 /// @param g        g_1 to g_3
 /// @param turned   out: R g_a of corners 0 to 3, [4][3]

@@ -56,7 +56,8 @@ ALLOWED = {
     "host/scene": ["host/base", "host/exec", "kernels/warp", *BASE],
     "host/simulate": ["host/reference/simulate", *SIMULATE],
     "host/simulate/run": [
-        "host/simulate", "host/simulate/contact", "host/collide", *COLLIDE, *SIMULATE],
+        "host/simulate", "host/simulate/contact", "host/simulate/cpu", "host/collide", *COLLIDE,
+        *SIMULATE],
     "host/simulate/contact": [
         "host/simulate", "host/simulate/cpu", "host/collide", "kernels/contact", "kernels/two_level",
         *COLLIDE, *SIMULATE],

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -33,6 +34,7 @@ class TetScene {
     for (std::size_t t = 0; t < tets; ++t) {
       for (std::size_t a = 0; a < 4; ++a) {
         corner_[a * tets + t] = static_cast<std::int32_t>(4 * t + a);
+        node_.push_back(static_cast<std::int32_t>(4 * t + a));
       }
       double* const x = position_.data() + 12 * t;
       for (int k = 0; k < 12; ++k) {
@@ -82,10 +84,15 @@ class TetScene {
     return result;
   }
 
+  TetShapes shapes() const {
+    return {const_view(node_),   const_view(gradient_), const_view(mu_),
+            const_view(lambda_), const_view(mu_),       const_view(position_)};
+  }
+
  private:
   std::mt19937 random_{5};
   std::normal_distribution<double> normal_;
-  std::vector<std::int32_t> corner_;
+  std::vector<std::int32_t> corner_, node_;
   std::vector<double> position_, gradient_, lambda_, mu_;
   std::vector<std::uint8_t> moved_;
 };
@@ -101,6 +108,52 @@ TEST(VectorStages, ForcesHaveTheBitsOfSingleTetrahedra) {
           scene.result_of([&](const TetForceBody& body) { stages->tet_forces(body, 0, count); });
 
       EXPECT_TRUE(vectors == single) << stages->name << " " << count;
+    }
+  }
+}
+
+/// V (mu sum (s - 1)^2 + lambda / 2 (sum (s - 1))^2) of the singular values s of F, the least one
+/// with the sign of det F.
+TetSums energy_of(const TetShapes& tets, std::int64_t t) {
+  Eigen::Matrix3d edges;
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < 3; ++i) {
+      edges(i, a) = tets.position[12 * t + 3 * (a + 1) + i] - tets.position[12 * t + i];
+    }
+  }
+  const Eigen::Matrix3d gradient =
+      Eigen::Map<const Eigen::Matrix3d>(tets.gradient.data + 9 * t).transpose();
+  const Eigen::Matrix3d f = edges * gradient;
+  Eigen::Array3d s = Eigen::JacobiSVD<Eigen::Matrix3d>(f).singularValues();
+  if (f.determinant() < 0) s[2] = -s[2];
+  const double trace = (s - 1).sum();
+  return {
+      tets.volume[t] * (tets.mu[t] * (s - 1).square().sum() + tets.lambda[t] / 2 * trace * trace),
+      f.determinant() < 0 ? 1 : 0};
+}
+
+TEST(VectorStages, EnergiesAreThoseOfSingularValues) {
+  for (const int count : {0, 1, 3, 8, 31, 1025}) {
+    const TetScene scene(count);
+    const TetShapes tets = scene.shapes();
+    TetSums of_base;
+    for (const VectorStages* stages : usable_stages()) {
+      TetSums sum;
+      for (std::int64_t t = 0; t < count; ++t) {
+        const TetSums expected = energy_of(tets, t), one = stages->tet_energies(tets, t, t + 1);
+        ASSERT_NEAR(one.energy, expected.energy, 1e-11 * (1 + expected.energy)) << t;
+        const bool has_volume = t % 7 == 0 || t % 7 > 3;
+        if (has_volume) {
+          ASSERT_EQ(one.inverted, expected.inverted) << t;
+        }
+        sum.energy += one.energy;
+        sum.inverted += one.inverted;
+      }
+      const TetSums all = stages->tet_energies(tets, 0, count);
+      EXPECT_EQ(all.energy, sum.energy) << stages->name << " " << count;
+      EXPECT_EQ(all.inverted, sum.inverted) << stages->name << " " << count;
+      if (stages == &vector_stages_base) of_base = all;
+      EXPECT_EQ(all.energy, of_base.energy) << stages->name << " " << count;
     }
   }
 }

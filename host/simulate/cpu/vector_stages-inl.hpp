@@ -11,6 +11,19 @@
 
 namespace tetwarp {
 
+/// R of count <= width lanes.
+template <int width>
+inline void lane_rotations(const Lanes<width>* f, int count, Lanes<width>* r) {
+  const LaneMask<width> is_valid = rotation_by_quartic(f, r);
+  for (int k = 0; k < count; ++k) {
+    if (is_valid[k]) continue;
+    double lane_f[9], lane_r[9];
+    for (int i = 0; i < 9; ++i) lane_f[i] = f[i].v[k];
+    nearest_rotation(lane_f, lane_r);
+    for (int i = 0; i < 9; ++i) r[i].v[k] = lane_r[i];
+  }
+}
+
 /// Tetrahedra index[0] to index[count - 1], count <= width; lanes from count on repeat the last.
 template <int width>
 inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index, int count) {
@@ -35,14 +48,7 @@ inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index,
     mu.v[k] = tets.volume_mu[own[k]];
   }
   deformation_gradient(x, g, f);
-  const LaneMask<width> is_valid = rotation_by_quartic(f, r);
-  for (int k = 0; k < count; ++k) {
-    if (is_valid[k]) continue;
-    double lane_f[9], lane_r[9];
-    for (int i = 0; i < 9; ++i) lane_f[i] = f[i].v[k];
-    nearest_rotation(lane_f, lane_r);
-    for (int i = 0; i < 9; ++i) r[i].v[k] = lane_r[i];
-  }
+  lane_rotations(f, count, r);
   corotated_forces(f, r, g, lambda, mu, gradient, force);
   alignas(64) double gradients[12][width], forces[12][width];
   for (int i = 0; i < 12; ++i) {
@@ -69,6 +75,47 @@ void tet_forces_of(const TetForceBody& body, std::int64_t begin, std::int64_t en
     count = 0;
   }
   if (count > 0) tet_force_lanes<width>(body, index, count);
+}
+
+/// The tetrahedra from `first` on, count <= width of them; adds their sums in order.
+template <int width>
+inline void tet_energy_lanes(const TetShapes& tets, std::int64_t first, int count, TetSums& sums) {
+  using Real = Lanes<width>;
+  Real x[12], g[9], f[9], r[9], cofactors[3], volume, lambda, mu;
+  std::int64_t own[width];  // lanes from count on repeat the last
+  for (int k = 0; k < width; ++k) own[k] = first + (k < count ? k : count - 1);
+  for (int a = 0; a < 4; ++a) {
+    for (int k = 0; k < width; ++k) {
+      const double* const p = tets.position.data + 3 * std::int64_t{tets.nodes[4 * own[k] + a]};
+      for (int i = 0; i < 3; ++i) x[3 * a + i].v[k] = p[i];
+    }
+  }
+  for (int c = 0; c < 9; ++c) {
+    for (int k = 0; k < width; ++k) g[c].v[k] = tets.gradient[9 * own[k] + c];
+  }
+  for (int k = 0; k < width; ++k) {
+    volume.v[k] = tets.volume[own[k]];
+    lambda.v[k] = tets.lambda[own[k]];
+    mu.v[k] = tets.mu[own[k]];
+  }
+  deformation_gradient(x, g, f);
+  lane_rotations(f, count, r);
+  cross3(f + 3, f + 6, cofactors);
+  const Real energy = corotated_energy(f, r, volume, lambda, mu);
+  const Real determinant = dot3(f, cofactors);
+  for (int k = 0; k < count; ++k) {
+    sums.energy += energy.v[k];
+    sums.inverted += determinant.v[k] < 0;
+  }
+}
+
+template <int width>
+TetSums tet_energies_of(const TetShapes& tets, std::int64_t begin, std::int64_t end) {
+  TetSums sums;
+  std::int64_t t = begin;
+  for (; t + width <= end; t += width) tet_energy_lanes<width>(tets, t, width, sums);
+  if (t < end) tet_energy_lanes<width>(tets, t, static_cast<int>(end - t), sums);
+  return sums;
 }
 
 template <int width>
@@ -208,6 +255,7 @@ template <int width>
 constexpr VectorStages vector_stages_of(const char* name) {
   return {name,
           tet_forces_of<width>,
+          tet_energies_of<width>,
           assemble_of<width>,
           product_of<width, double>,
           product_of<width, float>,

@@ -17,10 +17,24 @@ struct BlockFactor {
   View<const float> diagonal;      ///< [columns][6] inverses of the lower triangles, rows first
 };
 
+/// Tetrahedra of a model, one array entry per tetrahedron.
+struct TetShapes {
+  View<const std::int32_t> nodes;  ///< [tets][4]
+  View<const double> gradient;     ///< [tets][9] g_1, g_2, g_3 [1/m]
+  View<const double> volume, lambda, mu;
+  View<const double> position;  ///< [nodes][3]
+};
+struct TetSums {
+  double energy = 0;
+  std::int64_t inverted = 0;  ///< of negative volume
+};
+
 /// Each function does the indices [begin, end) of its stage.
 struct VectorStages {
   const char* name;  ///< of the instruction set
   void (*tet_forces)(const TetForceBody& body, std::int64_t begin, std::int64_t end);
+  /// @returns sums in the order of indices
+  TetSums (*tet_energies)(const TetShapes& tets, std::int64_t begin, std::int64_t end);
   void (*assemble)(const BlockAssembleBody& body, std::int64_t begin, std::int64_t end);
   PlainSums<1> (*product)(const GradientArrays<double>& a, std::int64_t begin, std::int64_t end);
   PlainSums<1> (*product_float)(const GradientArrays<float>& a,

@@ -1,6 +1,7 @@
 #include "host/base/parallel.hpp"
 #include "host/simulate/rotations.hpp"
 #include "host/simulate/run/simulator_impl.hpp"
+#include "host/simulate/run/tet_energies.hpp"
 #include "host/simulate/scene_record.hpp"
 
 namespace tetwarp {
@@ -12,8 +13,10 @@ const StepRecord& Simulator::Impl::record() {
   record.bodies.resize(scene.bodies.size());
   record.obstacle_forces.assign(scene.obstacles.size(), {0, 0, 0});
   record.coupling_forces.assign(scene.couplings.size(), {0, 0, 0});
-  record_state(model, state(), scene.gravity, drive.handles(), thread_count(options.threads),
-               record);
+  const TetSums tets = tet_energies(model, state(), thread_count(options.threads));
+  record.energy.elastic = tets.energy;
+  record.inverted = tets.inverted;
+  record_state(model, state(), scene.gravity, drive.handles(), record);
   record.energy.work = work_;
   record.smallest_distance = 100 * contact_surfaces.surfaces.thickness;
   if (contact_) contact_->record(state(), record);
