@@ -17,6 +17,12 @@
 
 namespace tetwarp {
 
+/// Numbers of an executor, and where on the host they are copied to.
+struct HostCopy {
+  View<const double> from;
+  double* to;
+};
+
 template <class T>
 std::int64_t count_of(const std::vector<T>& values) {
   return static_cast<std::int64_t>(values.size());

@@ -48,16 +48,16 @@ class BodyPipeline {
   }
 
   void get_state(ModelState& state) const {
-    const auto nodes = static_cast<std::size_t>(model_.node_count);
     const auto rigid = static_cast<std::size_t>(model_.rigid_count);
-    state.position.resize(nodes + rigid);
+    state.position.resize(static_cast<std::size_t>(model_.node_count) + rigid);
     state.rotation.resize(rigid);
     state.angular_momentum.resize(rigid);
-    get(now_.position, state.position.data());
-    get(now_.centre, state.position.data() + nodes);
-    get(now_.rotation, state.rotation.data());
-    get(now_.angular_momentum, state.angular_momentum.data());
-    get_blocks(now_.velocity, state.velocity);
+    state.velocity.resize(static_cast<std::size_t>(model_.block_count()));
+    exec_.get_all({to_host(now_.position, state.position.data()),
+                   to_host(now_.centre, state.position.data() + model_.node_count),
+                   to_host(now_.rotation, state.rotation.data()),
+                   to_host(now_.angular_momentum, state.angular_momentum.data()),
+                   to_host(now_.velocity, state.velocity.data())});
   }
 
   StepOutcome solve(const StepInput& input) {
@@ -144,13 +144,13 @@ class BodyPipeline {
     exec_.renew(host.data, host.size, own);
   }
   template <class Array, class Numbers>
-  void get(const Array& own, Numbers* to) const {
-    exec_.get(exec_.view(own), reinterpret_cast<double*>(to));
+  HostCopy to_host(const Array& own, Numbers* to) const {
+    return {exec_.view(own), reinterpret_cast<double*>(to)};
   }
   template <class Array>
   void get_blocks(const Array& own, std::vector<Point3>& to) const {
     to.resize(static_cast<std::size_t>(model_.block_count()));
-    get(own, to.data());
+    exec_.get_all({to_host(own, to.data())});
   }
 
   void upload(const StepInput& input) {

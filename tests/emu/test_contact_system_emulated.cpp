@@ -151,5 +151,56 @@ TEST(ContactSystemEmulated, TheHostGoesOnWhereTheDeviceStops) {
   EXPECT_EQ(found.outcome.sweeps, built_on_host.outcome.sweeps);
 }
 
+/// A contact far from the centre of the last rigid box, which would drive it away and turn it by
+/// more than half a turn: of the box and a frame, or of an elastic block and the box.
+HandScene hit_box(bool by_elastic_block) {
+  HandScene scene = stack_on_frame(1);
+  scene.touches.resize(1);
+  if (by_elastic_block) {
+    scene.model = empty_model();
+    add_block(scene.model, {.cells = {1, 1, 1}});
+    add_rigid(scene.model, 1, {0.0125 / 3, 0.0125 / 3, 0.02 / 3}, {0, 0, -0.05});
+    scene.make_surfaces(0.2);
+    scene.touches[0].body_b = 1;
+    scene.touches[0].point_a = on_nodes({0, 1, 2}, {0.2, 0.3, 0.5});
+    scene.touches[0].point_b = on_rigid({0.1, 0.1, 0.05});
+  }
+  scene.touches[0].obstacle_velocity = {0, 0, -1e5};
+  for (CollisionBody& body : scene.surfaces.surfaces.bodies) {
+    body.triangle_end = body.first_triangle + 1;
+  }
+  return scene;
+}
+
+TEST(ContactSystemEmulated, ABoxThatWouldTurnTooFarStandsStill) {
+  for (const bool by_elastic_block : {false, true}) {
+    const HandScene scene = hit_box(by_elastic_block);
+    for (const Backend backend : {Backend::cpu, Backend::cuda}) {
+      const auto stepper = backend == Backend::cuda ? make_cuda_stepper(scene.model, {})
+                                                    : make_cpu_stepper(scene.model, {});
+      ContactSystem system(scene.surfaces, scene.model, exact(backend));
+      ContactTracker tracker(materials(0));
+      const StepInput input = input_for(scene.model, mixed_step, {0, 0, -9.81});
+      stepper->solve(input);
+      const auto contacts = scene.begin(tracker, scene.model.start, mixed_step);
+      std::vector<Point3> velocity, of_stepper;
+      stepper->get_velocities(velocity);
+      take_calls();
+      const ContactSolveOutcome outcome =
+          system.solve(*stepper, scene.model.start, tracker, contacts, velocity);
+      EXPECT_EQ(take_calls().count(DeviceCall::launch) > 0, backend == Backend::cuda);
+      system.set_velocities(velocity, *stepper);
+      stepper->get_velocities(of_stepper);
+
+      EXPECT_FALSE(outcome.converged);
+      const std::size_t box = at(scene.model.node_count);
+      EXPECT_EQ(velocity[box], (Point3{0, 0, 0}));
+      EXPECT_EQ(velocity[box + 1], (Point3{0, 0, 0}));
+      EXPECT_EQ(system.solution().impulse, std::vector<double>(3));
+      EXPECT_EQ(of_stepper, velocity);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tetwarp::test

@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <type_traits>
 #include <vector>
 
 #include "host/base/parallel.hpp"
+#include "host/simulate/body_arrays.hpp"
 #include "host/simulate/cpu/gradient_exec_cpu.hpp"
 #include "host/simulate/cpu/huge_pages.hpp"
 #include "host/simulate/cpu/rest_gradients.hpp"
@@ -56,6 +58,9 @@ class CpuStepExec {
   template <class T>
   void get(View<const T> values, T* host) const {
     std::copy_n(values.data, values.size, host);
+  }
+  void get_all(std::initializer_list<HostCopy> copies) const {
+    for (const HostCopy& copy : copies) get(copy.from, copy.to);
   }
   template <class T>
   View<T> view(Vector<T>& values) const {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "host/simulate/body_arrays.hpp"
 #include "host/simulate/cuda/grid_gradients.cuh"
 #include "host/simulate/stepper.hpp"
 #include "kernels/body/block_assemble.hpp"
@@ -100,6 +102,28 @@ class CudaStepExec {
   void get(View<const T> values, T* host) {
     if (values.size > 0) exec_.read(values, host);
   }
+  /// With one wait for all.
+  void get_all(std::initializer_list<HostCopy> copies) {
+    std::int64_t size = 0;
+    for (const HostCopy& copy : copies) size += copy.from.size;
+    host_numbers_.reserve(size);
+    double* const numbers = host_numbers_.view(size).data;
+    double* next = numbers;
+    for (const HostCopy& copy : copies) {
+      if (copy.from.size == 0) continue;
+      check_cuda(cudaMemcpyAsync(next, copy.from.data,
+                                 static_cast<std::size_t>(copy.from.size) * sizeof(double),
+                                 cudaMemcpyDeviceToHost, exec_.stream()),
+                 "cudaMemcpyAsync to host");
+      next += copy.from.size;
+    }
+    wait();
+    next = numbers;
+    for (const HostCopy& copy : copies) {
+      std::copy_n(next, copy.from.size, copy.to);
+      next += copy.from.size;
+    }
+  }
   template <class T>
   View<T> view(Vector<T>& values) const {
     return values.view();
@@ -192,6 +216,7 @@ class CudaStepExec {
   DeviceSums sums_;
   DeviceVector<GradientScalars> scalars_;
   PinnedBuffer<GradientScalars> pinned_;
+  PinnedBuffer<double> host_numbers_;
   DeviceVector<IslandRows> small_;
   DeviceVector<GradientEnd> ends_;
   PinnedBuffer<GradientEnd> host_ends_;
