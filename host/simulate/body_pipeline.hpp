@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "host/simulate/body_arrays.hpp"
@@ -48,10 +49,9 @@ class BodyPipeline {
   }
 
   void get_state(ModelState& state) const {
-    const auto rigid = static_cast<std::size_t>(model_.rigid_count);
-    state.position.resize(static_cast<std::size_t>(model_.node_count) + rigid);
-    state.rotation.resize(rigid);
-    state.angular_momentum.resize(rigid);
+    state.rotation.resize(static_cast<std::size_t>(model_.rigid_count));
+    state.position.resize(static_cast<std::size_t>(model_.node_count) + state.rotation.size());
+    state.angular_momentum.resize(state.rotation.size());
     state.velocity.resize(static_cast<std::size_t>(model_.block_count()));
     exec_.get_all({to_host(now_.position, state.position.data()),
                    to_host(now_.centre, state.position.data() + model_.node_count),
@@ -68,8 +68,8 @@ class BodyPipeline {
     forces(input);
     assemble(input);
     solve(outcome);
-    outcome.skipped_rotations = exec_.count_ones(exec_.view(now_.tet_is_skipped));
-    outcome.skipped_blocks = exec_.count_ones(exec_.view(now_.block_is_skipped));
+    std::tie(outcome.skipped_rotations, outcome.skipped_blocks) =
+        exec_.count_ones(const_view(now_.tet_is_skipped), const_view(now_.block_is_skipped));
     exec_.read_times(outcome.seconds);
     return outcome;
   }

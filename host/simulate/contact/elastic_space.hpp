@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/simulate/contact/contact_islands.hpp"
+#include "host/simulate/contact/contact_rows.hpp"
 #include "host/simulate/cpu/rest_factors.hpp"
 #include "host/simulate/stepper.hpp"
 

@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <numeric>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "host/base/parallel.hpp"
@@ -87,10 +89,12 @@ class CpuStepExec {
       vector_stages().assemble(body, begin, end);
     });
   }
-  std::int64_t count_ones(View<const std::uint8_t> flags) const {
-    std::int64_t ones = 0;
-    for (std::int64_t i = 0; i < flags.size; ++i) ones += flags[i];
-    return ones;
+  std::pair<std::int64_t, std::int64_t> count_ones(View<const std::uint8_t> first,
+                                                   View<const std::uint8_t> second) const {
+    const auto ones_in = [](View<const std::uint8_t> flags) {
+      return std::accumulate(flags.data, flags.data + flags.size, std::int64_t{0});
+    };
+    return {ones_in(first), ones_in(second)};
   }
 
   /// Reserves memory for solve_islands(); sorts the islands by whether one thread solves them.

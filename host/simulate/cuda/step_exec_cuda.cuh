@@ -6,6 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/simulate/body_arrays.hpp"
@@ -39,6 +40,7 @@ class CudaStepExec {
 
   explicit CudaStepExec(int device) : exec_(device) {
     scalars_.resize(1);
+    ones_.resize(2);
     pinned_.reserve(1);
   }
 
@@ -143,12 +145,15 @@ class CudaStepExec {
   void assemble(const char* label, const BlockAssembleBody& body) {
     exec_.for_each(label, body.rows.upper.size, body);
   }
-  std::int64_t count_ones(View<const std::uint8_t> flags) {
-    PlainSums<1>* const out = &scalars_.view().data->next;
-    sums_.sum_to(exec_.stream(), 0, flags.size, FlagSumBody{flags}, out);
-    PlainSums<1> total;
-    exec_.read(View<const PlainSums<1>>{out, 1}, &total);
-    return static_cast<std::int64_t>(total.value[0]);
+  std::pair<std::int64_t, std::int64_t> count_ones(View<const std::uint8_t> first,
+                                                   View<const std::uint8_t> second) {
+    PlainSums<1>* const out = ones_.view().data;
+    sums_.sum_to(exec_.stream(), 0, first.size, FlagSumBody{first}, out);
+    sums_.sum_to(exec_.stream(), 0, second.size, FlagSumBody{second}, out + 1);
+    PlainSums<1> totals[2];
+    exec_.read(View<const PlainSums<1>>{out, 2}, totals);
+    return {static_cast<std::int64_t>(totals[0].value[0]),
+            static_cast<std::int64_t>(totals[1].value[0])};
   }
 
   /// Sorts the islands by whether one block solves them.
@@ -215,6 +220,7 @@ class CudaStepExec {
   CudaExec exec_;
   DeviceSums sums_;
   DeviceVector<GradientScalars> scalars_;
+  DeviceVector<PlainSums<1>> ones_;
   PinnedBuffer<GradientScalars> pinned_;
   PinnedBuffer<double> host_numbers_;
   DeviceVector<IslandRows> small_;
