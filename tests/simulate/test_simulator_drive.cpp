@@ -81,7 +81,11 @@ TEST(Script, CanBeMovedByHand) {
   Simulator simulator(scene);
   run(simulator, 300);
   const Point3 before = simulator.record().bodies[1].centre;
+  const std::vector<Point3> at_rest = simulator.node_positions(0);
   simulator.move_script("jaw", {0.3, 0.1, 0}, {0, 0, 0});
+  EXPECT_EQ(simulator.node_positions(0), at_rest);  // it follows from the next step on
+  simulator.step();
+  EXPECT_LT(distance_of(simulator.node_positions(0)[0], plus(at_rest[0], {0.3, 0.1, 0})), 1e-12);
   run(simulator, 600);
 
   EXPECT_LT(distance_of(simulator.record().bodies[1].centre, plus(before, {0.3, 0.1, 0})), 1e-6);

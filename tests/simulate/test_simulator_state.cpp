@@ -81,6 +81,26 @@ TEST(Checkpoint, RefusesOtherScenesAndDamagedBytes) {
   EXPECT_EQ(places(simulator), before);
 }
 
+/// What loads and paths act on is in no list of the model.
+TEST(Checkpoint, RefusesLoadsAndPathsOfOtherNodes) {
+  Scene scene = coupled();
+  scene.loads = {{.body = "top", .select = {AllSelection{}}, .force = Point3{0, 0, 1}}};
+  scene.bodies[0].fixed = {};
+  scene.bodies[0].driven = {{{NodeSelection{{0, 1}}}, {{0, Point3{0, 0, 0}}}},
+                            {{NodeSelection{{2, 3}}}, {{0, Point3{0, 0, 0.1}}}}};
+  const auto bytes = Simulator(scene).checkpoint();
+  Scene on_cloth = scene, on_nodes = scene, exchanged = scene;
+  on_cloth.loads[0].body = "cloth";
+  on_nodes.loads[0].body = "held";
+  on_nodes.loads[0].select = {NodeSelection{{5}}};
+  std::swap(exchanged.bodies[0].driven[0].select, exchanged.bodies[0].driven[1].select);
+
+  EXPECT_NO_THROW(Simulator(scene).restore(bytes));
+  for (const Scene& other : {on_cloth, on_nodes, exchanged}) {
+    EXPECT_THROW(Simulator(other).restore(bytes), std::invalid_argument);
+  }
+}
+
 TEST(Simulator, HasTheSameBitsForAnyNumberOfThreads) {
   Simulator one(coupled(), {.threads = 1}), three(coupled(), {.threads = 3});
   run(one, 10);

@@ -99,6 +99,43 @@ TEST(Sleep, ACheckpointOfSleepGoesOnBitForBit) {
 }
 
 /// A box on a table, until the table goes away.
+TEST(Sleep, GoesOnFromADamagedCheckpointOrRefusesIt) {
+  Simulator simulator(stack_and_flying_ball(true));
+  run(simulator, 100);
+  ASSERT_GT(simulator.record().sleeping, 0);
+  const auto bytes = simulator.checkpoint();
+  std::mt19937 random(2);
+  int refused = 0;
+  for (int n = 0; n < 60; ++n) {
+    try {
+      simulator.restore(damaged(bytes, random));
+      simulator.step();
+    } catch (const std::exception&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+/// The ball spins, so that steps have parts until after the stack sleeps.
+TEST(Sleep, ImpulsesAreThoseOfTheStepWhateverItsParts) {
+  Scene scene = stack_and_flying_ball(true);
+  scene.bodies[3].velocity = {0, 0, 0};
+  scene.bodies[3].angular_velocity = {0, 0, 115};
+  scene.bodies[3].damping.alpha = 1;
+  Simulator simulator(scene);
+  while (simulator.record().sleeping == 0) simulator.step();
+  ASSERT_GT(simulator.record().substeps, 1);
+  while (simulator.record().substeps > 1) simulator.step();
+  ASSERT_GT(simulator.record().sleeping, 0);
+  double sum = 0;
+  for (const ContactPoint& contact : simulator.contacts()) {
+    if (contact.body_a == 4) sum += contact.impulse[2];
+    if (contact.body_b == 4) sum -= contact.impulse[2];
+  }
+  EXPECT_NEAR(sum, scene.time_step * simulator.record().obstacle_forces[0][2], 1e-9);
+}
+
 TEST(Sleep, EndsWhenTheSupportMoves) {
   Obstacle table = plate_at(0, 0.2);
   table.path = {{0, Point3{0, 0, 0}}, {1.2, Point3{0, 0, 0}}, {1.4, Point3{0, 0, -0.4}}};

@@ -73,6 +73,28 @@ TEST(TouchState, ACheckpointInMidContactGoesOnBitForBit) {
   EXPECT_EQ(first.checkpoint(), second.checkpoint());
 }
 
+TEST(TouchState, ADamagedCheckpointIsRefusedOrHasContactsOfTheScene) {
+  Simulator simulator(pile());
+  run(simulator, 20);
+  const auto bytes = simulator.checkpoint();
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int n = 0; n < 1000; ++n) {
+    simulator.restore(bytes);
+    try {
+      simulator.restore(damaged(bytes, random));
+    } catch (const std::invalid_argument&) {
+      ++refused;
+      ASSERT_EQ(simulator.checkpoint(), bytes);
+    }
+    for (const ContactPoint& contact : simulator.contacts()) {
+      ASSERT_LT(std::max(contact.body_a, contact.body_b), 5U);
+      for (const std::int32_t point : contact.place_a.point) ASSERT_LT(point, 1000);
+    }
+  }
+  EXPECT_GT(refused, 20);
+}
+
 TEST(TouchState, AnOlderCheckpointIsRefused) {
   Simulator simulator(pile());
   auto bytes = simulator.checkpoint();

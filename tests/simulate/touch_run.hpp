@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +15,14 @@
 #include "tests/simulate/touch_scenes.hpp"
 
 namespace tetwarp::test {
+
+/// Replaces four bytes at random by a number beyond all indices.
+inline std::vector<std::byte> damaged(std::vector<std::byte> bytes, std::mt19937& random) {
+  const std::int32_t number = 1'000'000;
+  std::uniform_int_distribution<std::size_t> place(4, bytes.size() / 4 - 1);
+  std::memcpy(bytes.data() + 4 * place(random), &number, sizeof number);
+  return bytes;
+}
 
 inline Obstacle plane_at(double height) {
   Obstacle plane;

@@ -16,6 +16,7 @@
 #include <tetwarp/scene.hpp>
 #include <tetwarp/simulate.hpp>
 
+#include "host/scene/scene_geometry.hpp"
 #include "host/simulate/contact/scene_surfaces.hpp"
 #include "host/simulate/model.hpp"
 
@@ -69,6 +70,12 @@ class CheckpointReader {
   void read(T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
     std::memcpy(&value, take(sizeof(T)), sizeof(T));
+  }
+  void read(bool& value) {
+    std::uint8_t byte = 0;
+    read(byte);
+    if (byte > 1) throw std::invalid_argument("checkpoint: damaged, a flag is neither 0 nor 1");
+    value = byte != 0;
   }
   /// @param list  of the length that the checkpoint must have
   template <class T>
@@ -124,6 +131,7 @@ class CheckpointReader {
 /// and contact materials, of what drives them, and of how steps are solved. Equal for equal scenes
 /// and options; threads, the device and work that is skipped are not part of it.
 std::uint64_t fingerprint_of(const Scene& scene,
+                             const SceneGeometry& geometry,
                              const SimulateOptions& options,
                              const Model& model,
                              const SceneSurfaces& surfaces);

@@ -188,8 +188,8 @@ void ContactStep::set_time_step(double time_step) {
 }
 
 void ContactStep::restore(const ContactMemory& memory) {
-  time_step_ = memory.time_step;
   tracker_ = ContactTracker(tracker_options_, memory.records);
+  time_step_ = memory.time_step;
   change_ = memory.change;
   set_sleeping(memory.sleeping);
 }

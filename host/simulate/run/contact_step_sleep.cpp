@@ -58,6 +58,8 @@ void ContactStep::thaw(std::span<const std::uint8_t> is_still) {
       still.push_back(contact);
     } else {
       woken.push_back(contact.record);
+      Point3& impulse = woken.back().impulse_world;
+      impulse = times(time_step_ / contact.time_step, impulse);
     }
   }
   const std::vector<ContactRecord>& awake = tracker_.start_records();
@@ -147,7 +149,11 @@ void ContactStep::merge_points() {
   if (sleeping_.empty() && !options_.sleeps) return points_.swap(own_points_);
   points_.clear();
   std::size_t s = 0;
-  const auto add_sleeping = [&] { points_.push_back(sleeping_[s++].point); };
+  const auto add_sleeping = [&] {
+    const SleepingContact& contact = sleeping_[s++];
+    Point3& impulse = points_.emplace_back(contact.point).impulse;
+    impulse = times(time_step_ / contact.time_step, impulse);
+  };
   for (std::size_t c = 0; c < own_points_.size(); ++c) {
     const ContactKey& key = (*contacts_)[c].key;
     while (s < sleeping_.size() && sleeping_[s].record.key < key) add_sleeping();

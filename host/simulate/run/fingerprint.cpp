@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "host/simulate/run/checkpoint.hpp"
 
 namespace tetwarp {
@@ -72,7 +74,7 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-void add_scene(const Scene& scene, Hash& hash) {
+void add_scene(const Scene& scene, const SceneGeometry& geometry, Hash& hash) {
   hash.add(scene.time_step);
   hash.add(scene.gravity);
   hash.add(scene.solver.linear_tolerance);
@@ -88,6 +90,9 @@ void add_scene(const Scene& scene, Hash& hash) {
     std::visit([&](const auto& motion) { hash.add(motion); }, body.motion);
     for (const DrivenNodes& driven : body.driven) hash.add(driven.path);
   }
+  for (const BodyGeometry& body : geometry.bodies) {
+    for (const DrivenGroup& group : body.driven) hash.add(group.nodes);
+  }
   for (const Obstacle& obstacle : scene.obstacles) hash.add(obstacle.path);
   for (const Handle& handle : scene.handles) hash.add(handle.path);
   for (const Load& load : scene.loads) {
@@ -95,7 +100,9 @@ void add_scene(const Scene& scene, Hash& hash) {
     hash.add(load.pressure.value_or(0));
     hash.add(load.from);
     hash.add(load.to);
+    hash.add(std::ranges::find(scene.bodies, load.body, &Body::name) - scene.bodies.begin());
   }
+  hash.add(geometry.load_nodes);
 }
 
 void add_options(const SimulateOptions& options, Hash& hash) {
@@ -133,11 +140,12 @@ void add_surfaces(const SceneSurfaces& scene, Hash& hash) {
 }  // namespace
 
 std::uint64_t fingerprint_of(const Scene& scene,
+                             const SceneGeometry& geometry,
                              const SimulateOptions& options,
                              const Model& model,
                              const SceneSurfaces& surfaces) {
   Hash hash;
-  add_scene(scene, hash);
+  add_scene(scene, geometry, hash);
   add_options(options, hash);
   add_surfaces(surfaces, hash);
   hash.add(model.body_node);

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <stdexcept>
 
+#include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
 #include "host/simulate/run/checkpoint.hpp"
 #include "host/simulate/run/simulator_impl.hpp"
 #include "host/simulate/scene_record.hpp"
@@ -8,7 +11,7 @@ namespace tetwarp {
 namespace {
 
 constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
-constexpr std::uint64_t checkpoint_version = checkpoint_kind + 4;
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 5;
 
 // Each of these functions writes with a CheckpointWriter and reads with a CheckpointReader.
 
@@ -97,6 +100,52 @@ void pass_state(Stream& stream, State& state) {
   stream(state.angular_momentum);
 }
 
+[[noreturn]] void refuse_contact() {
+  throw std::invalid_argument("checkpoint: damaged, a contact is not on bodies of its scene");
+}
+
+/// Bodies and vertices of contacts exist; the tracker checks the rest.
+void check_contacts(const ContactMemory& memory, const SceneSurfaces& scene) {
+  const auto check_side = [&](std::int32_t body, const MaterialPoint& point) {
+    if (body < 0 || body >= scene.body_count()) refuse_contact();
+    const CollisionBody& of = at(scene.surfaces.bodies, body);
+    for (const std::int32_t vertex : point.vertex) {
+      if (vertex >= of.vertex_end - of.first_vertex) refuse_contact();
+    }
+  };
+  const auto check_record = [&](const ContactRecord& record) {
+    check_side(record.key.body_a, record.material_a);
+    check_side(record.key.body_b, record.material_b);
+  };
+  std::ranges::for_each(memory.records, check_record);
+  for (const SleepingContact& sleeping : memory.sleeping) {
+    const ContactKey& key = sleeping.record.key;
+    check_record(sleeping.record);
+    check_side(key.body_a, sleeping.contact.material_a);
+    check_side(key.body_b, sleeping.contact.material_b);
+    if (sleeping.point.body_a != index_of(key.body_a) ||
+        sleeping.point.body_b != index_of(key.body_b) || !(sleeping.time_step > 0)) {
+      refuse_contact();
+    }
+  }
+}
+
+void check_points(const std::vector<ContactPoint>& points,
+                  const SceneSurfaces& scene,
+                  const std::vector<BodyMesh>& meshes) {
+  const auto check_side = [&](std::size_t body, const ContactPlace& place) {
+    if (body >= scene.surfaces.bodies.size()) refuse_contact();
+    const std::int64_t count = body < meshes.size() ? std::ssize(meshes[body].surface.points) : 0;
+    for (const std::int32_t point : place.point) {
+      if (point >= count) refuse_contact();
+    }
+  };
+  for (const ContactPoint& point : points) {
+    check_side(point.body_a, point.place_a);
+    check_side(point.body_b, point.place_b);
+  }
+}
+
 }  // namespace
 
 /// What a checkpoint holds, besides its version and fingerprint.
@@ -166,7 +215,7 @@ Simulator::Impl::Saved Simulator::Impl::saved() const {
 std::vector<std::byte> Simulator::Impl::checkpoint() const {
   CheckpointWriter writer;
   writer.add(checkpoint_version);
-  writer.add(fingerprint_of(scene, options, model, contact_surfaces));
+  writer.add(fingerprint_of(scene, geometry, options, model, contact_surfaces));
   const Saved now = saved();
   Saved::pass(writer, now);
   return writer.take();
@@ -184,12 +233,14 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
             : "checkpoint: not a checkpoint of this version of tetwarp on this kind of machine");
   }
   reader.read(fingerprint);
-  if (fingerprint != fingerprint_of(scene, options, model, contact_surfaces)) {
+  if (fingerprint != fingerprint_of(scene, geometry, options, model, contact_surfaces)) {
     throw std::invalid_argument(
         "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
   }
-  // All is read before anything changes.
+  // All is read and checked before anything changes.
   Saved read = saved();
+  read.outcome = {};
+  read.contact = {};
   Saved::pass(reader, read);
   if (!reader.is_at_end() || read.steps < 0) {
     throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
@@ -200,6 +251,10 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
   if (!read.memory.change.empty() && read.memory.change.size() != state_.velocity.size()) {
     throw std::invalid_argument("checkpoint: damaged, changes of velocities have another length");
   }
+  check_contacts(read.memory, contact_surfaces);
+  check_points(read.points, contact_surfaces, meshes);
+  for (SleepingContact& contact : read.memory.sleeping) contact.contact.key = contact.record.key;
+  if (contact_) contact_->restore(read.memory);
   step_index = read.steps;
   work_ = read.work;
   substeps_ = read.substeps;
@@ -212,8 +267,6 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
   drive.handles() = std::move(read.handles);
   drive.overrides() = std::move(read.overrides);
   drive.delays() = std::move(read.delays);
-  for (SleepingContact& contact : read.memory.sleeping) contact.contact.key = contact.record.key;
-  if (contact_) contact_->restore(read.memory);
   sleep_.set_state(std::move(read.sleep));
   sleeping_ = sleep_.is_on() ? sleep_.group_count(sleeping_links()) : 0;
   contact_points = std::move(read.points);

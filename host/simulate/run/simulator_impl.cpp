@@ -135,8 +135,10 @@ void Simulator::Impl::check_body(std::size_t index) const {
 
 std::vector<Point3> Simulator::Impl::node_positions(std::size_t index) const {
   check_body(index);
-  // A script that was stopped is between two places of its path.
-  if (scene.bodies[index].kind == BodyKind::scripted && drive.delays()[index] == 0) {
+  // A script that was stopped is between two places of its path; one that a hand has moved follows
+  // from the next step on.
+  const bool is_on_path = drive.delays()[index] == 0 && !drive.overrides().scripts[index];
+  if (scene.bodies[index].kind == BodyKind::scripted && is_on_path) {
     return drive.scripted_positions(index, time_of(static_cast<double>(step_index)));
   }
   const auto first = state().position.begin() + model.body_node[index];

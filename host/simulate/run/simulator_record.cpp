@@ -8,7 +8,7 @@ namespace tetwarp {
 
 const StepRecord& Simulator::Impl::record() {
   if (record_) return *record_;
-  StepRecord& record = record_.emplace();
+  StepRecord record;
   record.time = time_of(static_cast<double>(step_index));
   record.bodies.resize(scene.bodies.size());
   record.obstacle_forces.assign(scene.obstacles.size(), {0, 0, 0});
@@ -22,7 +22,7 @@ const StepRecord& Simulator::Impl::record() {
   if (contact_) contact_->record(state(), record);
   if (step_index == 0) {
     record.inverted = 0;
-    return record;
+    return record_.emplace(std::move(record));
   }
   const auto force = [&](const Point3& impulse) { return times(1 / scene.time_step, impulse); };
   for (std::size_t b = 0; b < record.bodies.size(); ++b) {
@@ -54,7 +54,7 @@ const StepRecord& Simulator::Impl::record() {
   record.outer_iterations = contact_of_step_.outer_iterations;
   record.contact_residual = contact_of_step_.residual;
   record.seconds = outcome_.seconds;
-  return record;
+  return record_.emplace(std::move(record));
 }
 
 }  // namespace tetwarp

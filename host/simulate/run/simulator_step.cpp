@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "host/simulate/run/simulator_impl.hpp"
 #include "host/simulate/scene_record.hpp"
@@ -41,19 +41,14 @@ int Simulator::Impl::parts_for_spin() const {
 }
 
 bool Simulator::Impl::is_good(const Attempt& result, const ContactPart& part, double time_step) {
+  const std::int64_t counted = std::exchange(inverted_, -1);
   if (!result.is_finite || !result.outcome.converged) return false;
   if (turns_too_far(time_step)) return false;
-  if (undivided_steps_ > 0) {
-    inverted_ = -1;
-    return true;
-  }
+  if (undivided_steps_ > 0) return true;
   if (!result.contact.converged) return false;
   if (part.smallest_fraction < held_fraction && held_steps_ >= most_held_steps) return false;
-  if (part.contacts == 0) {
-    inverted_ = -1;
-    return true;
-  }
-  const std::int64_t before = inverted_ >= 0 ? inverted_ : inverted_count(model, part_start_);
+  if (part.contacts == 0) return true;
+  const std::int64_t before = counted >= 0 ? counted : inverted_count(model, part_start_);
   inverted_ = inverted_count(model, state());
   return inverted_ <= before;
 }
@@ -82,8 +77,7 @@ void Simulator::Impl::end_part(double time_step) {
 /// @returns false if `progress` ended it
 bool Simulator::Impl::advance(int part, double time_step, Attempt& result) {
   if (contact_) input_.guess = contact_->guess(state_, time_step);
-  const StepOutcome outcome = stepper->solve(input_);
-  add_outcome(outcome, result.outcome);
+  StepOutcome outcome = stepper->solve(input_);
   add_seconds(outcome.seconds, result.outcome.seconds);
   iterations_before_ += outcome.linear_iterations;
   if (!outcome.completed) return false;
@@ -93,6 +87,10 @@ bool Simulator::Impl::advance(int part, double time_step, Attempt& result) {
     contact = contact_->advance(state_, time_step, is_first, *stepper, result.outcome.seconds);
     if (!contact.is_completed) return false;
     if (!contact.woken.empty()) {
+      // The part is solved again: whether these solves have converged does not count.
+      outcome.converged = contact.converged = true;
+      outcome.linear_residual = contact.residual = 0;
+      add_outcome(outcome, result.outcome);
       add_part(contact, result.contact);
       wake(contact.woken);
       return advance(part, time_step, result);
@@ -102,8 +100,9 @@ bool Simulator::Impl::advance(int part, double time_step, Attempt& result) {
   }
   result.is_finite = take_state();
   if (contact_ && result.is_finite) contact_->end(state_, contact);
+  add_outcome(outcome, result.outcome);
   add_part(contact, result.contact);
-  result.is_good = is_good(result, contact, time_step);
+  result.is_good = is_good(result, contact, time_step) && result.is_good;
   return true;
 }
 
@@ -151,7 +150,6 @@ void Simulator::Impl::accept(const Attempt& made, int parts, const StepSeconds& 
   } else if (undivided_steps_ > 0) {
     --undivided_steps_;
   }
-  if (sleep_.is_on()) fall_asleep(made);
   contact_points.clear();
   if (contact_) contact_->take_points(contact_points);
 }
@@ -171,6 +169,7 @@ bool Simulator::Impl::take_steps() {
     inverted_ = -1;
     if (contact_) contact_->restore(contact_start_);
     sleep_.set_state(sleep_start_);
+    sums_ = sums;
   };
   StepSeconds seconds;
   iterations_before_ = 0;
@@ -180,7 +179,6 @@ bool Simulator::Impl::take_steps() {
       made = attempt(parts);
     } catch (...) {
       go_back();
-      sums_ = sums;
       throw;
     }
     add_seconds(made.outcome.seconds, seconds);
@@ -188,7 +186,6 @@ bool Simulator::Impl::take_steps() {
     seconds.contact += made.contact.contact_seconds;
     if (!made.is_completed) {
       go_back();
-      sums_ = sums;
       return false;
     }
     const bool is_last = made.is_good || 2 * parts > scene.solver.max_substeps;
@@ -198,10 +195,15 @@ bool Simulator::Impl::take_steps() {
     }
     if (!made.is_finite) {
       go_back();
-      sums_ = sums;
       throw std::runtime_error("step " + std::to_string(step_index) +
                                ": positions would not be finite, also in " + std::to_string(parts) +
                                " substeps; reduce time_step or the stiffness");
+    }
+    try {
+      if (sleep_.is_on()) fall_asleep(made);
+    } catch (...) {
+      go_back();
+      throw;
     }
     const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start;
     seconds.total = total.count();
