@@ -40,6 +40,13 @@ void parallel_tasks(int threads, std::int64_t count, const Task& task) {
   });
 }
 
+/// Threads for a loop over `count` indices of about a tenth of a microsecond each: fewer indices
+/// than this per thread are not worth its start.
+inline int threads_for(int threads, std::int64_t count) {
+  constexpr std::int64_t per_thread = 256;
+  return static_cast<int>(std::min<std::int64_t>(threads, 1 + count / per_thread));
+}
+
 /// body(i) once for every i in [0, count), as parallel_tasks(), in contiguous ranges: four per
 /// thread, so that threads which start late take fewer.
 /// @param body  copied, so that the compiler can keep its members in registers

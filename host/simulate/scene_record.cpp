@@ -6,29 +6,10 @@
 
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/rotations.hpp"
-#include "kernels/body/lane_math.hpp"
+#include "kernels/body/tet_force.hpp"
 
 namespace tetwarp {
 namespace {
-
-void deformation_gradient(const Model& model, const ModelState& state, std::size_t t, double* f) {
-  const auto& nodes = model.tets.nodes[t];
-  const auto& gradient = model.tets.gradient[t];
-  const Point3& x0 = at(state.position, nodes[0]);
-  std::fill(f, f + 9, 0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    const Point3 edge = minus(at(state.position, nodes[a + 1]), x0);
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) f[3 * i + j] += edge[i] * gradient[3 * a + j];
-    }
-  }
-}
-
-bool is_inverted(const double* f) {
-  double cofactors[3];
-  cross3(f + 3, f + 6, cofactors);
-  return dot3(f, cofactors) < 0;
-}
 
 double spring_energy(const Model& model,
                      const ModelState& state,
@@ -132,10 +113,15 @@ bool is_finite_state(const ModelState& state) {
 
 std::int64_t inverted_count(const Model& model, const ModelState& state) {
   std::int64_t count = 0;
-  double f[9];
   for (std::size_t t = 0; t < model.tets.nodes.size(); ++t) {
-    deformation_gradient(model, state, t, f);
-    count += is_inverted(f);
+    double x[12], f[9], cofactors[3];
+    double* next = x;
+    for (const std::int32_t n : model.tets.nodes[t]) {
+      next = std::ranges::copy(at(state.position, n), next).out;
+    }
+    deformation_gradient(x, model.tets.gradient[t].data(), f);
+    cross3(f + 3, f + 6, cofactors);
+    count += dot3(f, cofactors) < 0;
   }
   return count;
 }

@@ -21,10 +21,10 @@ std::int64_t inverted_count(const Model& model, const ModelState& state);
 Point3 angular_velocity_of(const Model& model, const ModelState& state, std::int32_t rigid);
 
 /// Fills energies without work, momenta, and of each body centre, velocity, angular momentum,
-/// rotation and angular velocity; to the elastic energy, which is that of tetrahedra before, those
-/// of springs and bending are added. Sums are in index order.
+/// rotation and angular velocity. Sums are in index order.
 /// @param handles  displacements of the anchors of each handle; nothing: let go
-/// @param record   `bodies` has one entry per body of the scene
+/// @param record   `bodies` has one entry per body of the scene; `energy.elastic` is that of the
+///                 tetrahedra, those of springs and bending are added
 void record_state(const Model& model,
                   const ModelState& state,
                   const Point3& gravity,

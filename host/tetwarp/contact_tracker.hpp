@@ -180,8 +180,9 @@ class TETWARP_EXPORT ContactTracker {
   ///                                normal is not a unit vector, an area is negative, a material
   ///                                does not exist, a position, velocity or pose is not finite, a
   ///                                rotation is not of length 1, time_step is not > 0 and finite,
-  ///                                or a contact has no material point on a deformable body, or one
-  ///                                on a rigid body, with vertices or weights out of range
+  ///                                a contact has no material point on a deformable body or one
+  ///                                with vertices or weights out of range, a bonded share is not
+  ///                                above 0 and at most 1, or a body of a record has no pose
   const std::vector<TrackedContact>& begin_step(std::span<const ReportedContact> reports,
                                                 std::span<const BodyPlace> places,
                                                 double time_step);
@@ -220,7 +221,7 @@ class TETWARP_EXPORT ContactTracker {
   std::vector<ContactRecord> records_;
   std::vector<ContactRecord> start_records_;  ///< of the step that has begun
   std::vector<TrackedContact> contacts_;      ///< of the last step; in it, in the order of records_
-  std::vector<ContactRecord> next_records_;   ///< of calls, keeps memory; as the next two
+  std::vector<ContactRecord> next_records_;   ///< scratch memory of calls, as the next two
   std::vector<TrackedContact> next_contacts_;
   ContactProblem problem_;
   double time_step_ = 0;

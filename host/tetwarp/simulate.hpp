@@ -94,7 +94,7 @@ struct ContactPoint {
   std::size_t body_a = 0, body_b = 0;  ///< in Scene::bodies; from their number on: obstacle
   Point3 position{};                   ///< in the middle between both surfaces [m]
   Point3 normal{};                     ///< unit, from b to a
-  Point3 impulse{};                    ///< on a over the step, world axes [N s]
+  Point3 impulse{};                    ///< on a over the last part of the step, world axes [N s]
   double gap = 0;                      ///< along the normal, less the thickness [m]
   double area = 0;                     ///< [m^2]
   double intensity = 0;                ///< beta, of the adhesion

@@ -14,13 +14,12 @@ namespace tetwarp {
 namespace {
 using Eigen::Vector3d;
 
-/// body(i) for i in [0, count); few contacts are not worth the start of a thread.
+/// body(i) for i in [0, count).
 template <class Body>
 void for_contacts(int threads, std::size_t count, const Body& body) {
-  constexpr std::int64_t per_thread = 256;
   const auto size = static_cast<std::int64_t>(count);
-  const auto used = static_cast<int>(std::min<std::int64_t>(threads, 1 + size / per_thread));
-  parallel_for(used, size, [&](std::int64_t i) { body(static_cast<std::size_t>(i)); });
+  parallel_for(threads_for(threads, size), size,
+               [&](std::int64_t i) { body(static_cast<std::size_t>(i)); });
 }
 
 /// What a contact of a step continues: at least one of both is not null.

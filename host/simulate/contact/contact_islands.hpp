@@ -34,9 +34,8 @@ class ContactIslands {
     return is_soft_[static_cast<std::size_t>(root_[static_cast<std::size_t>(island)])] != 0;
   }
   /// Of each contact any of its coupling islands; -1: all blocks that it acts on are prescribed.
-  /// Every other pair that the end check of a step watches is a contact, however small its share:
-  /// above 1e-12 of what one of its points moves with. The two sides are not weighed against each
-  /// other.
+  /// Blocks that a point moves with by a weight below 1e-12, which is rounding of zero, do not
+  /// count. One side with unknowns is enough, however small its weights against the other side's.
   const std::vector<std::int32_t>& of_contact() const { return of_contact_; }
   /// Coupling islands with contacts, joined by contacts.
   std::int64_t contact_island_count() const { return contact_island_count_; }

@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// Makes places again only where positions or rotations have changed since the last call.
+/// Makes places again only if the positions or rotations differ from those of the last call.
 class KeptPlaces {
  public:
   /// @param scene, model  kept by the caller

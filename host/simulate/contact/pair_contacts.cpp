@@ -164,16 +164,17 @@ std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> to
   named_.resize(touches.size());
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
   const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());
-  parallel_for(threads_, std::ssize(groups_), [&](std::int64_t g) {
-    const Group& group = groups_[index_of(g)];
-    const PairTouch& touch = touches[group.begin].touch;
-    if (!touch.is_of_edges()) return name_vertex(touches, group, records);
-    named_[group.begin] =
-        named(touch, touch.a + vertex_count + touch.end * edge_count, touch.b + vertex_count, 0);
-  });
+  parallel_for(threads_for(threads_, std::ssize(groups_)), std::ssize(groups_),
+               [&](std::int64_t g) {
+                 const Group& group = groups_[index_of(g)];
+                 const PairTouch& touch = touches[group.begin].touch;
+                 if (!touch.is_of_edges()) return name_vertex(touches, group, records);
+                 named_[group.begin] = named(touch, touch.a + vertex_count + touch.end * edge_count,
+                                             touch.b + vertex_count, 0);
+               });
   std::ranges::sort(named_, {}, &NamedTouch::key);
   contacts_.resize(named_.size());
-  parallel_for(threads_, std::ssize(named_),
+  parallel_for(threads_for(threads_, std::ssize(named_)), std::ssize(named_),
                [this](std::int64_t c) { report(named_[index_of(c)], contacts_[index_of(c)]); });
   patches_.reduce(contacts_, vertices, records);
   return contacts_;

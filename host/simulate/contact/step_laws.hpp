@@ -1,7 +1,6 @@
 /// @file step_laws.hpp
 /// StepLaws: friction, offsets, adhesion and guess of the contacts of a step.
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include <tetwarp/contact_problem.hpp>
@@ -18,8 +17,8 @@ class StepLaws {
   StepLaws(const SceneSurfaces& scene, double recovery_fraction)
       : scene_(scene), recovery_fraction_(recovery_fraction) {}
 
-  /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and limits
-  /// the normal ones, from which existing penetration is undone within the step.
+  /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and raises
+  /// the normal ones so that existing penetration is undone no faster than recovery_fraction says.
   /// @param rows      with those of all contacts with prescribed blocks
   /// @param velocity  [block_count]
   void set(const ContactTracker& tracker,
@@ -29,7 +28,8 @@ class StepLaws {
 
   /// Without matrices.
   const ContactProblem& problem() const { return laws_; }
-  /// [contacts] normal offset that was added to slow recovery, or because only a bond is left.
+  /// [contacts] normal offset that was added to slow recovery, or because only a bond is left
+  /// [m/s].
   const std::vector<double>& recovered() const { return recovered_; }
 
  private:

@@ -1,7 +1,6 @@
 #include "host/simulate/run/contact_step.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "host/base/index_of.hpp"

@@ -97,8 +97,8 @@ class ContactStep {
   /// Of the last part: impulses of contacts on blocks [block_count], and on bodies, then obstacles.
   const std::vector<Point3>& block_impulses() const { return block_impulses_; }
   const std::vector<Point3>& body_impulses() const { return body_impulses_; }
-  /// Moves the contacts at the end of the last part to `points`, once; what was there is memory for
-  /// later parts.
+  /// Moves the contacts at the end of the last part to `points`, and what was there to here, as
+  /// memory for later parts. A second call before the next part moves them back.
   void take_points(std::vector<ContactPoint>& points) { points.swap(points_); }
 
   void remember(ContactMemory& memory) const {

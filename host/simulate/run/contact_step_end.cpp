@@ -125,7 +125,8 @@ void ContactStep::set_points() {
   own_points_.resize(contacts_->size());
   if (own_points_.empty()) return;
   const double* impulse = system_.solution().impulse.data();
-  parallel_for(options_.threads, std::ssize(own_points_), [&](std::int64_t i) {
+  const std::int64_t count = std::ssize(own_points_);
+  parallel_for(threads_for(options_.threads, count), count, [&](std::int64_t i) {
     const std::size_t c = index_of(i);
     const TrackedContact& contact = (*contacts_)[c];
     const auto a = static_cast<std::size_t>(contact.key.body_a);

@@ -146,7 +146,7 @@ void ContactStep::set_sleeping_forces(const ModelState& state) {
 
 /// Points of all contacts, those between bodies that stand still included, in the order of keys.
 void ContactStep::merge_points() {
-  if (sleeping_.empty() && !options_.sleeps) return points_.swap(own_points_);
+  if (!options_.sleeps) return points_.swap(own_points_);
   points_.clear();
   std::size_t s = 0;
   const auto add_sleeping = [&] {

@@ -1,11 +1,11 @@
 #include <algorithm>
 
+#include "host/base/number_hash.hpp"
 #include "host/simulate/run/checkpoint.hpp"
 
 namespace tetwarp {
 namespace {
 
-/// Source: Fowler, Noll, Vo (FNV-1a, 64 bits), eight bytes at a time.
 class Hash {
  public:
   template <class T>
@@ -19,13 +19,7 @@ class Hash {
   }
   template <class T>
   requires std::is_arithmetic_v<T>
-  void add(T number) {
-    const auto wide = static_cast<double>(number);
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &wide, sizeof bits);
-    value_ = (value_ ^ bits) * 0x100000001b3U;
-    value_ ^= value_ >> 29;
-  }
+  void add(T number) { numbers_.add(static_cast<double>(number)); }
   void add(const ModelPoint& point) {
     add(point.body);
     add(point.node);
@@ -68,10 +62,10 @@ class Hash {
     add(pair.bodies);
     add(pair.material);
   }
-  std::uint64_t value() const { return value_; }
+  std::uint64_t value() const { return numbers_.value(); }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
+  NumberHash numbers_;
 };
 
 void add_scene(const Scene& scene, const SceneGeometry& geometry, Hash& hash) {

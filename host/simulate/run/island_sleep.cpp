@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "host/base/number_hash.hpp"
 #include "host/base/point3.hpp"
 
 namespace tetwarp {
@@ -13,15 +13,8 @@ namespace {
 
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
-/// Source: Fowler, Noll, Vo (FNV-1a, 64 bits), eight bytes at a time.
-void add_to(std::uint64_t& hash, double number) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, &number, sizeof bits);
-  hash = (hash ^ bits) * 0x100000001b3U;
-  hash ^= hash >> 29;
-}
-void add_to(std::uint64_t& hash, const Point3& x) {
-  for (const double number : x) add_to(hash, number + 0.0);  // -0 as 0
+void add_to(NumberHash& hash, const Point3& x) {
+  for (const double number : x) hash.add(number + 0.0);  // -0 as 0
 }
 
 std::int32_t root_of(std::vector<std::int32_t>& parent, std::size_t island) {
@@ -72,13 +65,13 @@ void IslandSleep::note_what_moves(const ModelState& state, const StepInput& inpu
 }
 
 std::uint64_t IslandSleep::hash_of(const Island& island, const StepInput& input) const {
-  std::uint64_t hash = 0xcbf29ce484222325U;
+  NumberHash hash;
   for (const std::int32_t block : island.blocks) add_to(hash, input.block_force[index_of(block)]);
   for (const std::int32_t s : island.springs) {
-    add_to(hash, double{input.is_active[index_of(s)] != 0 ? 1.0 : 0.0});
+    hash.add(input.is_active[index_of(s)] != 0 ? 1.0 : 0.0);
     if (input.is_active[index_of(s)] != 0) add_to(hash, input.anchor[index_of(s)]);
   }
-  return hash;
+  return hash.value();
 }
 
 void IslandSleep::set_still() {

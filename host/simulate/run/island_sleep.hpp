@@ -46,7 +46,6 @@ class IslandSleep {
 
   /// Whether the scene asks for it; if not, nothing ever sleeps.
   bool is_on() const { return is_on_; }
-  bool any_asleep() const;
   const SleepState& state() const { return now_; }
   /// Whether bodies are asleep or do not move in the step; [bodies, then obstacles], empty where
   /// nothing sleeps. Valid from begin() on.
@@ -85,6 +84,7 @@ class IslandSleep {
     double size = 0;                    ///< of its smallest body [m]
   };
 
+  bool any_asleep() const;
   std::int32_t island_of(std::int32_t body) const;
   bool moves(std::int32_t block, const ModelState& state, const StepInput& input) const;
   void note_what_moves(const ModelState& state, const StepInput& input);

@@ -66,7 +66,7 @@ class Simulator::Impl {
   bool advance(int part, double time_step, Attempt& result);
   bool is_good(const Attempt& result, const ContactPart& part, double time_step);
   void end_part(double time_step);
-  std::vector<BodyLink> sleeping_links() const;
+  const std::vector<BodyLink>& sleeping_links() const;
   void begin_sleep();
   void wake(std::span<const std::int32_t> bodies);
   void fall_asleep(const Attempt& made);
@@ -103,7 +103,7 @@ class Simulator::Impl {
   std::int64_t sleeping_ = 0;         ///< contact islands that sleep
   ContactMemory contact_start_;       ///< of the running step
   ContactPart contact_of_step_;       ///< of the last step
-  std::int64_t inverted_ = -1;        ///< tetrahedra in `state`; -1: not counted
+  std::int64_t inverted_ = -1;        ///< inverted tetrahedra in state_; -1: not counted
   std::int64_t held_steps_ = 0;       ///< successive ones whose bodies hardly moved
   std::int64_t undivided_steps_ = 0;  ///< to come, which contact does not divide
   std::int64_t substeps_ = 0;

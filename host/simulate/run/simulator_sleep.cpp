@@ -3,8 +3,9 @@
 
 namespace tetwarp {
 
-std::vector<BodyLink> Simulator::Impl::sleeping_links() const {
-  return contact_ ? contact_->sleeping_links() : std::vector<BodyLink>{};
+const std::vector<BodyLink>& Simulator::Impl::sleeping_links() const {
+  static const std::vector<BodyLink> none;
+  return contact_ ? contact_->sleeping_links() : none;
 }
 
 /// Before the solve of a part, whose input is filled.
@@ -26,11 +27,12 @@ void Simulator::Impl::wake(std::span<const std::int32_t> bodies) {
 }
 
 void Simulator::Impl::fall_asleep(const Attempt& made) {
+  static const ContactRest no_contacts;
   const bool grows =
       !growth_.empty() && time_of(static_cast<double>(step_index)) < RestGrowth::duration;
   if (!made.is_good || grows) {
     sleep_.interrupt();
-  } else if (sleep_.end(input_, contact_ ? contact_->rest() : ContactRest{}, scene.time_step,
+  } else if (sleep_.end(input_, contact_ ? contact_->rest() : no_contacts, scene.time_step,
                         state_)) {
     stepper->set_state(state_);
     if (contact_) contact_->freeze(sleep_.still());

@@ -13,18 +13,13 @@ constexpr double kept_share = 0.9;  // of the way to a hit
 // share falls with the square of the fraction.
 constexpr double share_at_once = 0.25;
 
-template <class T>
-T entry(const std::vector<T>& list, std::int32_t i) {
-  return list[static_cast<std::size_t>(i)];
-}
-
 /// The bodies or obstacles of the features of a pair.
 std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionSurfaces& surfaces) {
-  const auto of_vertex = [&](std::int32_t v) { return entry(surfaces.vertex_body, v); };
-  const auto of_edge = [&](std::int32_t e) { return of_vertex(entry(surfaces.edges, e)[0]); };
+  const auto of_vertex = [&](std::int32_t v) { return at(surfaces.vertex_body, v); };
+  const auto of_edge = [&](std::int32_t e) { return of_vertex(at(surfaces.edges, e)[0]); };
   switch (pair.kind) {
     case PairKind::vertex_face:
-      return {of_vertex(pair.a), of_vertex(entry(surfaces.triangles, pair.b)[0])};
+      return {of_vertex(pair.a), of_vertex(at(surfaces.triangles, pair.b)[0])};
     case PairKind::edge_edge:
       return {of_edge(pair.a), of_edge(pair.b)};
     case PairKind::vertex_edge:
@@ -34,7 +29,7 @@ std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionS
     case PairKind::vertex_plane:
       break;
   }
-  return {of_vertex(pair.a), entry(surfaces.plane_body, pair.b)};
+  return {of_vertex(pair.a), at(surfaces.plane_body, pair.b)};
 }
 
 }  // namespace
@@ -57,9 +52,9 @@ StepGroups::StepGroups(const Model& model, const CollisionSurfaces& surfaces)
 }
 
 std::int32_t StepGroups::root_of(std::int32_t body) {
-  while (entry(parent_, body) != body) {
+  while (at(parent_, body) != body) {
     auto& above = parent_[static_cast<std::size_t>(body)];
-    above = entry(parent_, above);
+    above = at(parent_, above);
     body = above;
   }
   return body;
@@ -117,8 +112,8 @@ bool StepGroups::stop(const std::vector<TouchingPair>& hits, const SurfaceMotion
     double left = 1;
     std::array<bool, 2> moves{};
     for (std::size_t side = 0; side < 2; ++side) {
-      moves[side] = entry(moves_, bodies[side]) != 0 && entry(fraction_, bodies[side]) > 0;
-      if (moves[side]) left = std::min(left, entry(fraction_, bodies[side]));
+      moves[side] = at(moves_, bodies[side]) != 0 && at(fraction_, bodies[side]) > 0;
+      if (moves[side]) left = std::min(left, at(fraction_, bodies[side]));
     }
     if (!moves[0] && !moves[1]) continue;
     has_changed = true;
@@ -133,10 +128,10 @@ bool StepGroups::stop(const std::vector<TouchingPair>& hits, const SurfaceMotion
   // The root is the smallest of its group, so that it comes first.
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(parent_.size()); ++b) {
     auto& of_root = next_[static_cast<std::size_t>(root_of(b))];
-    of_root = std::min(of_root, entry(next_, b));
+    of_root = std::min(of_root, at(next_, b));
   }
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(parent_.size()); ++b) {
-    fraction_[static_cast<std::size_t>(b)] = entry(next_, root_of(b));
+    fraction_[static_cast<std::size_t>(b)] = at(next_, root_of(b));
   }
   ++rounds_;
   return has_changed;
@@ -151,7 +146,7 @@ std::int32_t StepGroups::roots_with_unknowns(bool only_stopped) const {
   for (std::size_t b = 0; b < model_.body_island.size(); ++b) {
     if (model_.body_island[b] < 0 || (only_stopped && fraction_[b] == 1)) continue;
     auto root = static_cast<std::int32_t>(b);
-    while (entry(parent_, root) != root) root = entry(parent_, root);
+    while (at(parent_, root) != root) root = at(parent_, root);
     roots.push_back(root);
   }
   std::sort(roots.begin(), roots.end());
