@@ -82,7 +82,9 @@ class Detector {
   /// Finds the pairs of a motion, as detect() in the first call of a step and as detect_hits() in
   /// later ones, and where they touch. All motions of a step have the same start, and are kept by
   /// the caller.
-  /// @returns the number of pairs that no earlier call of the step found, or found near only
+  /// @returns the number of pairs that no earlier call of the step found, or found near only; if
+  ///          there are none, of those of two rigid bodies that are hit again, which then touch as
+  ///          they do in this motion
   virtual std::int64_t find_touches(const SurfaceMotion& motion) = 0;
   /// Bodies with unknowns that stand still, of the pairs of the last find_touches(), ascending.
   virtual const std::vector<std::int32_t>& reached() const = 0;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "host/collide/pair_bodies.hpp"
 #include "host/collide/touch_areas.hpp"
 #include "kernels/touch/touch_stages.hpp"
 
@@ -49,6 +50,7 @@ class StepTouches {
   /// @param surfaces  kept by the caller
   StepTouches(Exec& exec, const CollisionSurfaces& surfaces)
       : exec_(exec),
+        surfaces_(surfaces),
         thickness_(surfaces.thickness),
         vertex_count_(size_of(surfaces.vertex_body)),
         feature_count_(vertex_count_ + size_of(surfaces.edges)),
@@ -74,7 +76,8 @@ class StepTouches {
   /// Adds the pairs of a detection.
   /// @param found    of the first detection of a step all that are near or hit, of later ones those
   ///                 that are hit
-  /// @returns the number of those that are new, or were only near and are hit now
+  /// @returns the number of those that are new, or were only near and are hit now; if there are
+  ///          none, of those of two rigid bodies that are hit again
   std::int64_t add(const CollideView& scene, const MotionView& motion, List<FeatureTouch>& found) {
     scene_ = scene;
     start_ = motion.start;
@@ -89,6 +92,7 @@ class StepTouches {
     }
     if (pass_ == 1) keep_new(exec_.on_host(hits_.view(), host_hits_));
     keep_new(exec_.on_host(found.view(), host_hits_));
+    if (new_.empty()) add_hit_again();
     if (!new_.empty()) {
       put(new_, new_pairs_);
       make(exec_.view(std::as_const(new_pairs_)), motion, fresh_, fresh_ends_);
@@ -159,6 +163,16 @@ class StepTouches {
     known_.insert(known_.end(), new_.begin(), new_.end());
     std::inplace_merge(known_.begin(), known_.begin() + middle, known_.end(), is_less);
   }
+  /// Adds the hits of two rigid bodies: their ways bend as they turn, so that a contact along the
+  /// normal at an earlier hit may not keep them apart. Of deformable bodies that costs more, in
+  /// solves, than it helps.
+  void add_hit_again() {
+    std::ranges::copy_if(sorted_, std::back_inserter(new_), [this](const FeatureTouch& touch) {
+      return std::ranges::all_of(bodies_of(touch.pair, surfaces_), [this](std::int32_t body) {
+        return at(surfaces_.bodies, body).is_rigid;
+      });
+    });
+  }
   /// @param touches  out, [pairs]
   /// @param ends     out
   void make(View<const FeatureTouch> pairs,
@@ -186,6 +200,7 @@ class StepTouches {
   }
 
   Exec& exec_;
+  const CollisionSurfaces& surfaces_;
   double thickness_;
   std::int64_t vertex_count_, feature_count_;
   bool has_capsules_;

@@ -1,4 +1,5 @@
 /// Capsules that lie along others: held at both ends of what they share, they do not tip.
+#include <array>
 #include <cmath>
 
 #include "tests/simulate/touch_run.hpp"
@@ -110,6 +111,39 @@ TEST(Boxes, LieOnParallelEdges) {
   EXPECT_GE(rest.contacts, 4);
   EXPECT_LE(rest.turn, 1e-9);
   EXPECT_NEAR(rest.drop, 1e-6, 1e-7);
+}
+
+/// They hit off their centres and turn as they slide: a contact along the normal at the first hit
+/// does not keep them apart. They must go on, not be held up: the way is that of the velocities.
+TEST(Capsules, ACapsuleAndABallSlidePastEachOther) {
+  Body capsule = rigid_capsule("capsule", 0.02, 0.1, {-0.006, -0.013, 0.013});
+  capsule.pose.rotation = {std::cos(0.49), 0, std::sin(0.49), 0};
+  capsule.velocity = {1, 0, 0};
+  Body ball = rigid_ball("ball", 0.03, {0.14, -0.004, -0.003});
+  ball.velocity = {-1, 0, 0};
+  Scene scene = scene_of({capsule, ball}, 0.005);
+  scene.gravity = {0, 0, 0};
+  scene.contact.material.friction = 0;
+  Simulator simulator(scene);
+  std::array<Point3, 2> way{};
+  const StepRecord start = simulator.record();
+  int held_steps = 0;
+  for (int n = 0; n < 100; ++n) {
+    simulator.step();
+    const StepRecord& record = simulator.record();
+    held_steps += record.clamped_islands > 0;
+    for (std::size_t b = 0; b < 2; ++b) {
+      way[b] = plus(way[b], times(scene.time_step, record.bodies[b].velocity));
+    }
+    EXPECT_LE(record.energy.total(), start.energy.total() * (1 + 1e-9));
+  }
+  const StepRecord& end = simulator.record();
+  EXPECT_LT(norm(end.momentum), norm(start.momentum) + 1e-9);
+  EXPECT_LE(held_steps, 5);
+  for (std::size_t b = 0; b < 2; ++b) {
+    const Point3 moved = minus(end.bodies[b].centre, start.bodies[b].centre);
+    EXPECT_LT(norm(minus(moved, way[b])), 0.05 * norm(way[b])) << b;
+  }
 }
 
 }  // namespace

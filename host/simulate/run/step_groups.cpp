@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/base/point3.hpp"
+#include "host/collide/pair_bodies.hpp"
 
 namespace tetwarp {
 namespace {
@@ -12,25 +13,6 @@ constexpr double kept_share = 0.9;  // of the way to a hit
 // A pair of a turning body may count as near at its start, because its way is not straight; that
 // share falls with the square of the fraction.
 constexpr double share_at_once = 0.25;
-
-/// The bodies or obstacles of the features of a pair.
-std::array<std::int32_t, 2> bodies_of(const TouchingPair& pair, const CollisionSurfaces& surfaces) {
-  const auto of_vertex = [&](std::int32_t v) { return at(surfaces.vertex_body, v); };
-  const auto of_edge = [&](std::int32_t e) { return of_vertex(at(surfaces.edges, e)[0]); };
-  switch (pair.kind) {
-    case PairKind::vertex_face:
-      return {of_vertex(pair.a), of_vertex(at(surfaces.triangles, pair.b)[0])};
-    case PairKind::edge_edge:
-      return {of_edge(pair.a), of_edge(pair.b)};
-    case PairKind::vertex_edge:
-      return {of_vertex(pair.a), of_edge(pair.b)};
-    case PairKind::vertex_vertex:
-      return {of_vertex(pair.a), of_vertex(pair.b)};
-    case PairKind::vertex_plane:
-      break;
-  }
-  return {of_vertex(pair.a), at(surfaces.plane_body, pair.b)};
-}
 
 }  // namespace
 
