@@ -78,6 +78,17 @@ class OpenFile {
         h5::open_group(steps_, std::string(group_of(array)) + "Offsets"), array.name, 0);
   }
 
+  std::size_t array_count() const {
+    std::size_t count = 0;
+    for (const char* const group : {"PointDataOffsets", "CellDataOffsets"}) {
+      const h5::Object offsets = h5::open_group(steps_, group);
+      H5G_info_t info;
+      if (H5Gget_info(offsets.id(), &info) < 0) offsets.fail("cannot be read");
+      count += static_cast<std::size_t>(info.nlinks);
+    }
+    return count;
+  }
+
   /// Writes the number of steps and closes the file.
   void close(std::int64_t step_count, const h5::Disk& disk) {
     h5::Handle attribute(H5Aopen(steps_.id(), "NSteps", H5P_DEFAULT), H5Aclose);
@@ -174,6 +185,12 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
                       " up to the checkpoint; name the folder of the run that is continued");
   }
   for (const SteadyColumn& column : steady_columns) open.steady(column);
+  if (open.array_count() != arrays.size()) {
+    open.root().fail(
+        "has other fields than output.fields of the scene asks for; ask for those of the run that "
+        "is "
+        "continued, or name a new folder");
+  }
   for (const StepArray& array : arrays) {
     state.row_counts.push_back(static_cast<hsize_t>(array.is_of_cells ? cells[0] : points[0]));
     if (open.values(array).rows() < state.row_counts.back() * kept ||

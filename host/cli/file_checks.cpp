@@ -13,6 +13,9 @@ namespace fs = std::filesystem;
 
 void check_output_folder(const std::string& folder, const std::string& output) {
   std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    throw IoError(output, "", "'" + folder + "' is not a folder; name another one");
+  }
   if (!fs::is_directory(folder, error)) {
     throw IoError(output, "", "folder '" + folder + "' does not exist; create it first");
   }

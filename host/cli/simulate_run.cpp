@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 #include <tetwarp/error.hpp>
@@ -51,22 +52,37 @@ void check_files(const SimulateArguments& arguments) {
   }
 }
 
-/// The file of contacts must not be that of a body.
-void check_contact_file(const SimulateArguments& arguments, const Scene& scene) {
-  if (arguments.contacts.empty()) return;
+/// No two results are written to one file.
+void check_results(const SimulateArguments& arguments, const Scene& scene) {
+  std::map<std::string, std::string> taken;  // what each path is
+  const auto add = [&](const fs::path& path, const std::string& what, const char* option) {
+    const auto [place, is_new] = taken.try_emplace(canonical_path(path.string()), what);
+    if (is_new) return;
+    throw IoError(path.string(), "", "is " + place->second + "; choose another name for " + option);
+  };
+  const fs::path folder = arguments.folder;
+  add(folder / "series.h5", "the series of the run", "-o");
   for (const Body& body : scene.bodies) {
     for (const char* const end : {".vtkhdf", ".surface.vtkhdf"}) {
-      const fs::path file = fs::path(arguments.folder) / (body.name + end);
-      if (canonical_path(file.string()) != canonical_path(arguments.contacts)) continue;
-      throw IoError(arguments.contacts, "",
-                    "is the file of body '" + body.name + "'; choose another name for --contacts");
+      taken.emplace(canonical_path(folder / (body.name + end)),
+                    "the file of body '" + body.name + "'");
     }
   }
+  if (arguments.report.empty()) add(folder / "report.json", "the report of the run", "-o");
+  const auto add_option = [&](const std::string& path, const char* option) {
+    if (!path.empty()) add(path, std::string("the file of ") + option, option);
+  };
+  add_option(arguments.report, "--report");
+  add_option(arguments.checkpoint, "--checkpoint");
+  add_option(arguments.contacts, "--contacts");
+  add_option(arguments.film, "--film");
 }
 
 std::vector<std::byte> bytes_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw IoError(path, "", "cannot be opened; name a file that --checkpoint wrote");
+  std::error_code error;
+  if (!file || fs::is_directory(path, error))
+    throw IoError(path, "", "cannot be opened; name a file that --checkpoint wrote");
   const std::vector<char> chars{std::istreambuf_iterator<char>(file), {}};
   std::vector<std::byte> bytes(chars.size());
   std::ranges::transform(chars, bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
@@ -79,7 +95,7 @@ SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(argume
   const Stopwatch reading;
   Scene scene = load(arguments);
   result_.read_seconds = reading.seconds();
-  check_contact_file(arguments, scene);
+  check_results(arguments, scene);
   last_step_ = arguments.steps.value_or(scene.step_count());
   frames_.emplace(scene.output, scene.time_step, last_step_);
   SimulateOptions options = arguments.simulate;

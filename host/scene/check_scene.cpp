@@ -110,6 +110,10 @@ void check_handle(const std::string& place, const Handle& handle, const SceneNam
   check_positive(key_of(place, "stiffness"), handle.stiffness, "N/m in total");
   check_not_negative(key_of(place, "damping"), handle.damping, "N s/m in total");
   check_path(key_of(place, "path"), handle.path, true);
+  for (const PathPoint& point : handle.path) {
+    if (point.axis_angle == Point3{0, 0, 0}) continue;
+    fail_at(key_of(place, "path"), "turns, but anchors of handles only move; leave out the turns");
+  }
 }
 
 void check_load(const std::string& place, const Load& load, const SceneNames& names) {

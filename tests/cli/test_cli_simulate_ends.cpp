@@ -126,7 +126,11 @@ TEST(SimulateErrors, AreOneLineAndWriteNothing) {
       {{"scene.json", "-o", "out", "--restart", "missing"}, "missing"},
       {{"scene.json", "-o", "out", "--picture", "--camera", "1,1,1,1,1,1"}, "camera"},
       {{"scene.json", "-o", "missing/deeper/out", "--film", "missing/film.gif"}, "film.gif"},
-      {{"scene.json", "-o", "scene.json"}, "scene.json"},
+      {{"scene.json", "-o", "scene.json"}, "'scene.json' is not a folder"},
+      {{"scene.json", "-o", "out", "--restart", "."}, "name a file that --checkpoint wrote"},
+      {{"scene.json", "-o", "out", "--checkpoint", "out/beam.vtkhdf"}, "another name for --check"},
+      {{"scene.json", "-o", "out", "--report", "out/series.h5"}, "is the series of the run"},
+      {{"scene.json", "-o", "out", "--report", "x", "--checkpoint", "x"}, "file of --report"},
       {{"--scene", "nobody", "-o", "out"}, "nobody"}};
   for (const auto& [words, named] : cases) {
     Names all = words;
@@ -155,6 +159,22 @@ TEST(SimulateErrors, LeaveTheFolderOfAnotherRunAsItIs) {
   EXPECT_TRUE(result.has_one_line_error()) << result.err;
   EXPECT_NE(result.err.find("beam.vtkhdf"), std::string::npos) << result.err;
   EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "time").size(), 9u);
+}
+
+/// Of which steps before the checkpoint would have other fields than later ones.
+TEST(SimulateErrors, RefuseOtherFieldsInTheFolderThatGoesOn) {
+  const SimulateScene scene;
+  nlohmann::json with_fields = nlohmann::json::parse(small_scene);
+  with_fields["output"]["fields"] = {"velocity"};
+  write_text(scene / "scene.json", with_fields.dump());
+  ASSERT_EQ(scene.simulate({"-o", "out", "--steps", "4", "--checkpoint", "state"}).exit_code, 0);
+  write_text(scene / "scene.json", small_scene);
+
+  const CommandResult result = scene.simulate({"-o", "out", "--restart", "state", "--steps", "6"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("has other fields"), std::string::npos) << result.err;
+  EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "time").size(), 5u);
 }
 
 TEST(SimulateErrors, OfUsageExitWith2) {

@@ -131,6 +131,15 @@ TEST(CheckScene, RefusesActionsOnNothing) {
               s.handles.assign(2, handle);
             }),
             "handles[1].name: 'h' names two of the handles; rename one");
+  EXPECT_EQ(problem_after([](Scene& s, Body&) {
+              Handle handle;
+              handle.body = "block";
+              handle.select = {AllSelection{}};
+              handle.stiffness = 1;
+              handle.path = {{0, Point3{0, 0, 0}}, {1, Point3{0, 0, 0}, {0, 0, 1}}};
+              s.handles = {handle};
+            }),
+            "handles[0].path: turns, but anchors of handles only move; leave out the turns");
   EXPECT_EQ(problem_after([](Scene&, Body& b) {
               b.driven.push_back({{AllSelection{}}, {}});
             }),

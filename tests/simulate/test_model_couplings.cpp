@@ -96,6 +96,21 @@ TEST(Coupling, LeavesOutWhatIsTooFar) {
   EXPECT_NEAR(total(model.springs.stiffness), 600, 1e-10);
 }
 
+TEST(Coupling, RefusesPointsFarOutsideOfElasticBodies) {
+  Scene scene = two_boxes({1, 1, 1});
+  scene.couplings[0].select_a = {};
+  scene.couplings[0].points = {{0, 0, 1}};
+  try {
+    model_of(scene);
+    FAIL() << "ties a point far from both bodies";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()).find("couplings[0].points[0]: is 0.9 m outside"), 0U)
+        << error.what();
+  }
+  scene.couplings[0].within = 1;
+  EXPECT_EQ(model_of(scene).springs.a.size(), 1U);
+}
+
 /// Springs to a plane end on its surface, to a moving obstacle in its frame; a rigid body is solid.
 TEST(Coupling, TiesToObstaclesAndRigidBodies) {
   Scene scene = two_boxes({1, 1, 1});

@@ -206,6 +206,7 @@ TEST(SceneSurfaces, PairsThatNeverTouchAreForbidden) {
       {.a = "box", .b = "world", .points = {{0, 0, 1}}, .stiffness = 1},
       {.a = "box", .b = "dome", .points = {{0, 0, 1}}, .stiffness = 1},
       {.a = "sheet", .b = "elastic", .points = {{0, 0, 1}}, .stiffness = 1, .collide = true}};
+  for (Coupling& coupling : scene.couplings) coupling.within = 10;
   const TouchScene touch(scene);
 
   EXPECT_EQ(touch.surfaces.surfaces.forbidden, (Pairs{{0, 1}, {1, 2}, {1, 8}, {2, 2}}));

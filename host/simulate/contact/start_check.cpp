@@ -241,10 +241,20 @@ void check_start(const Scene& scene,
   if (conflicts.size() > 1) {
     what += " (" + std::to_string(conflicts.size()) + " pairs of bodies in all)";
   }
-  what += a == b
-              ? "; set its self to false, make the thickness smaller or change its shape"
-              : "; move them apart, set cage_start of an elastic one, use the option untangle, or "
-                "set collide to false for the pair in contact.pairs";
+  const auto is_any = [&](BodyKind kind) {
+    return std::ranges::any_of(worst.bodies, [&](std::int32_t body) {
+      const auto index = static_cast<std::size_t>(body);
+      return index < scene.bodies.size() && scene.bodies[index].kind == kind;
+    });
+  };
+  if (a == b) {
+    what += "; set its self to false, make the thickness smaller or change its shape";
+  } else {
+    what += "; move them apart, ";
+    if (is_any(BodyKind::fem)) what += "set cage_start of an elastic one, ";
+    if (is_any(BodyKind::fem) || is_any(BodyKind::cloth)) what += "use the option untangle, ";
+    what += "or set collide to false for the pair in contact.pairs";
+  }
   throw std::invalid_argument(what);
 }
 

@@ -1,6 +1,9 @@
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
+#include "host/base/point3.hpp"
+#include "host/scene/scene_checks.hpp"
 #include "host/simulate/body_points.hpp"
 #include "host/simulate/model/model_parts.hpp"
 
@@ -31,6 +34,28 @@ void add_list(const SpringList& list,
   }
 }
 
+constexpr double most_outside = 0.05;  ///< of the size of a body: points there are tied to it
+
+/// Whether a body is elastic or cloth: points of others are tied where they are.
+bool gives_way(const Scene& scene, std::int32_t body) {
+  const auto index = static_cast<std::size_t>(body);
+  if (body < 0 || index >= scene.bodies.size()) return false;
+  return scene.bodies[index].kind == BodyKind::fem || scene.bodies[index].kind == BodyKind::cloth;
+}
+
+/// Diagonal of the box around the nodes of a body that has any [m].
+double size_of_body(const SceneGeometry& geometry, std::int32_t body) {
+  const std::vector<Point3>& nodes = geometry.bodies[static_cast<std::size_t>(body)].nodes;
+  Point3 low = nodes.front(), high = nodes.front();
+  for (const Point3& x : nodes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], x[i]);
+      high[i] = std::max(high[i], x[i]);
+    }
+  }
+  return norm(minus(high, low));
+}
+
 std::int32_t body_named(const Scene& scene, const std::string& name, const std::string& where) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (scene.bodies[b].name == name) return static_cast<std::int32_t>(b);
@@ -49,9 +74,21 @@ SpringList coupling_springs(const Scene& scene,
     throw std::invalid_argument(where + ": couples body \"" + coupling.a + "\" to itself");
   }
   SpringList list;
-  for (const Point3& x : coupling.points) {
-    list.a.push_back(finder.fixed_at(coupling.a, x));
-    list.b.push_back(finder.fixed_at(coupling.b, x));
+  for (std::size_t p = 0; p < coupling.points.size(); ++p) {
+    const Point3& x = coupling.points[p];
+    const auto tied = [&](const std::string& body) {
+      const ModelPoint point = finder.fixed_at(body, x);
+      const double distance = norm(minus(position_of(point, model.start, model.node_count), x));
+      if (!gives_way(scene, point.body) ||
+          distance <= coupling.within.value_or(most_outside * size_of_body(geometry, point.body))) {
+        return point;
+      }
+      throw std::invalid_argument(where + ".points[" + std::to_string(p) + "]: is " +
+                                  number_text(distance) + " m outside body \"" + body +
+                                  "\"; move it to the body, or say how far it may be by within");
+    };
+    list.a.push_back(tied(coupling.a));
+    list.b.push_back(tied(coupling.b));
     list.share.push_back(1);
   }
   if (!coupling.points.empty()) return list;
