@@ -1,17 +1,16 @@
 /// @file number_hash.hpp
 /// A hash of numbers.
 #pragma once
+#include <bit>
 #include <cstdint>
-#include <cstring>
 
 namespace tetwarp {
 
 /// Source: Fowler, Noll, Vo (FNV-1a, 64 bits), eight bytes at a time.
 class NumberHash {
  public:
-  void add(double number) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof bits);
+  void add(double number) { add_bits(std::bit_cast<std::uint64_t>(number)); }
+  void add_bits(std::uint64_t bits) {
     value_ = (value_ ^ bits) * 0x100000001b3U;
     value_ ^= value_ >> 29;
   }

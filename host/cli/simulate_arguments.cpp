@@ -1,5 +1,6 @@
 #include "host/cli/simulate_arguments.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/base/parallel.hpp"
@@ -125,6 +126,10 @@ void check_complete(const SimulateArguments& arguments) {
   if (arguments.camera) {
     for (const double number : *arguments.camera) {
       if (!std::isfinite(number)) refuse("--camera", "a number is not finite");
+    }
+    if (std::equal(arguments.camera->begin(), arguments.camera->begin() + 3,
+                   arguments.camera->begin() + 3)) {
+      refuse("--camera", "the eye and what it looks at are the same point");
     }
   }
   check_sampling(arguments.warp);

@@ -78,6 +78,12 @@ TEST(Checkpoint, RefusesOtherScenesAndDamagedBytes) {
   }
   bytes.push_back(std::byte{0});
   EXPECT_THROW(simulator.restore(bytes), std::invalid_argument);
+  bytes.pop_back();
+  for (std::size_t place = 0; place < bytes.size(); place += 97) {
+    bytes[place] ^= std::byte{4};
+    EXPECT_THROW(simulator.restore(bytes), std::invalid_argument) << place;
+    bytes[place] ^= std::byte{4};
+  }
   EXPECT_EQ(places(simulator), before);
 }
 

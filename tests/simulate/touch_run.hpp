@@ -12,15 +12,20 @@
 #include <utility>
 #include <vector>
 
+#include "host/simulate/run/checkpoint.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 
 namespace tetwarp::test {
 
-/// Replaces four bytes at random by a number beyond all indices.
+/// Replaces four bytes of a checkpoint at random by a number beyond all indices, with its checksum.
 inline std::vector<std::byte> damaged(std::vector<std::byte> bytes, std::mt19937& random) {
   const std::int32_t number = 1'000'000;
-  std::uniform_int_distribution<std::size_t> place(4, bytes.size() / 4 - 1);
+  std::uint64_t checksum = 0;
+  const std::size_t end = bytes.size() - sizeof checksum;
+  std::uniform_int_distribution<std::size_t> place(4, end / 4 - 1);
   std::memcpy(bytes.data() + 4 * place(random), &number, sizeof number);
+  checksum = checksum_of({bytes.data(), end});
+  std::memcpy(bytes.data() + end, &checksum, sizeof checksum);
   return bytes;
 }
 

@@ -127,6 +127,9 @@ class CheckpointReader {
   std::span<const std::byte> bytes_;
 };
 
+/// A hash of bytes, which a checkpoint ends with.
+std::uint64_t checksum_of(std::span<const std::byte> bytes);
+
 /// A hash of all that the results of a simulation depend on: the numbers of the model, of surfaces
 /// and contact materials, of what drives them, and of how steps are solved. Equal for equal scenes
 /// and options; threads, the device and work that is skipped are not part of it.

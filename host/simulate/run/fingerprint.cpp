@@ -133,6 +133,16 @@ void add_surfaces(const SceneSurfaces& scene, Hash& hash) {
 
 }  // namespace
 
+std::uint64_t checksum_of(std::span<const std::byte> bytes) {
+  NumberHash hash;
+  for (; !bytes.empty(); bytes = bytes.subspan(std::min<std::size_t>(8, bytes.size()))) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, bytes.data(), std::min<std::size_t>(8, bytes.size()));
+    hash.add_bits(bits);
+  }
+  return hash.value();
+}
+
 std::uint64_t fingerprint_of(const Scene& scene,
                              const SceneGeometry& geometry,
                              const SimulateOptions& options,

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 #include "host/base/index_of.hpp"
@@ -98,6 +99,14 @@ void pass_state(Stream& stream, State& state) {
   stream(state.rotation);
   stream(state.velocity);
   stream(state.angular_momentum);
+}
+
+bool has_checksum(std::span<const std::byte> bytes) {
+  std::uint64_t checksum = 0;
+  if (bytes.size() < sizeof checksum) return false;
+  const auto of_bytes = bytes.first(bytes.size() - sizeof checksum);
+  std::memcpy(&checksum, bytes.data() + of_bytes.size(), sizeof checksum);
+  return checksum == checksum_of(of_bytes);
 }
 
 [[noreturn]] void refuse_contact() {
@@ -218,7 +227,11 @@ std::vector<std::byte> Simulator::Impl::checkpoint() const {
   writer.add(fingerprint_of(scene, geometry, options, model, contact_surfaces));
   const Saved now = saved();
   Saved::pass(writer, now);
-  return writer.take();
+  std::vector<std::byte> bytes = writer.take();
+  writer.add(checksum_of(bytes));
+  const std::vector<std::byte> checksum = writer.take();
+  bytes.insert(bytes.end(), checksum.begin(), checksum.end());
+  return bytes;
 }
 
 void Simulator::Impl::restore(std::span<const std::byte> bytes) {
@@ -232,6 +245,10 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
               "the scene from its start"
             : "checkpoint: not a checkpoint of this version of tetwarp on this kind of machine");
   }
+  if (!has_checksum(bytes)) {
+    throw std::invalid_argument(
+        "checkpoint: damaged or incomplete, its checksum is another; use an earlier one");
+  }
   reader.read(fingerprint);
   if (fingerprint != fingerprint_of(scene, geometry, options, model, contact_surfaces)) {
     throw std::invalid_argument(
@@ -242,6 +259,8 @@ void Simulator::Impl::restore(std::span<const std::byte> bytes) {
   read.outcome = {};
   read.contact = {};
   Saved::pass(reader, read);
+  std::uint64_t checksum = 0;
+  reader.read(checksum);
   if (!reader.is_at_end() || read.steps < 0) {
     throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
   }
