@@ -81,8 +81,9 @@ void check_results(const SimulateArguments& arguments, const Scene& scene) {
 std::vector<std::byte> bytes_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
-  if (!file || fs::is_directory(path, error))
+  if (!file || fs::is_directory(path, error)) {
     throw IoError(path, "", "cannot be opened; name a file that --checkpoint wrote");
+  }
   const std::vector<char> chars{std::istreambuf_iterator<char>(file), {}};
   std::vector<std::byte> bytes(chars.size());
   std::ranges::transform(chars, bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
