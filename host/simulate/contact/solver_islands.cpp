@@ -7,13 +7,26 @@
 
 namespace tetwarp {
 
-SolverIslands::SolverIslands(const ContactOptions& options)
-    : runs_on_cuda_(options.backend == Backend::cuda), solver_(options) {}
+SolverIslands::SolverIslands(const ContactOptions& options) : options_(options), of_few_(options) {}
+
+/// Newton's method follows where sweeps have not converged. Its factors of many contacts take as
+/// long as hundreds of sweeps, of few contacts as long as some ten.
+ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
+  constexpr std::size_t many_contacts = 200;
+  constexpr std::int64_t many_sweeps = 5000;
+  if (contact_count < many_contacts || options_.max_sweeps >= many_sweeps) return of_few_;
+  if (of_many_ == nullptr) {
+    ContactOptions options = options_;
+    options.max_sweeps = many_sweeps;
+    of_many_ = std::make_unique<ContactSolver>(options);
+  }
+  return *of_many_;
+}
 
 bool SolverIslands::can_be_resident(const ContactIslands& islands,
                                     const std::vector<std::uint8_t>& takes,
                                     std::size_t contact_count) const {
-  if (!runs_on_cuda_ || contact_count == 0) return false;
+  if (options_.backend != Backend::cuda || contact_count == 0) return false;
   for (std::int32_t i = 0; i < islands.count(); ++i) {
     if (takes[static_cast<std::size_t>(i)] != 0 && islands.is_coupled(i)) return false;
   }
@@ -30,6 +43,7 @@ ContactReport SolverIslands::solve(BodyStepper& stepper,
   resident_ =
       can_be_resident(islands, takes, contacts.size()) ? stepper.resident_contacts() : nullptr;
   const SystemRows system_rows = resident_ != nullptr ? resident_->rows() : stepper.system().rows;
+  solver_ = &solver_for(contacts.size());  // another one only where the pattern is another
   const bool is_other = part_.set_pattern(system_rows, islands, rows, takes, contacts);
   gather_laws(contacts, laws, part_.problem());
   return resident_ != nullptr ? solve_on_device(is_other, velocity)
@@ -39,7 +53,7 @@ ContactReport SolverIslands::solve(BodyStepper& stepper,
 ContactReport SolverIslands::solve_on_host(BodyStepper& stepper, std::vector<Point3>& velocity) {
   with_pattern_ = nullptr;
   part_.set_numbers(stepper.system());
-  solution_ = solver_.solve(part_.problem());
+  solution_ = solver_->solve(part_.problem());
   part_.scatter(solution_.body_velocity, velocity);
   impulse_ = solution_.impulse;
   contact_velocity_ = solution_.velocity;
@@ -60,12 +74,12 @@ ContactReport SolverIslands::solve_on_device(bool is_other_pattern, std::vector<
   if (is_other_pattern || with_pattern_ != resident_) {
     with_pattern_ = nullptr;
     part_.set_sample();
-    solver_.set_structure(part_.problem());
+    solver_->set_structure(part_.problem());
     resident_->set_places(part_.places());
     with_pattern_ = resident_;
   }
   const ResidentStepProblem problem = resident_->set_contacts(part_.arms(), part_.problem());
-  const ContactReport report = solver_.solve(problem.arrays, problem.target);
+  const ContactReport report = solver_->solve(problem.arrays, problem.target);
   const ResidentResults results = resident_->results();
   part_.scatter(results.body_velocity, velocity);
   impulse_ = results.impulse;

@@ -2,6 +2,7 @@
 /// SolverIslands: coupling islands of a step that the contact solver takes, with their contacts.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -44,13 +45,16 @@ class SolverIslands {
   bool can_be_resident(const ContactIslands& islands,
                        const std::vector<std::uint8_t>& takes,
                        std::size_t contact_count) const;
+  ContactSolver& solver_for(std::size_t contact_count);
   ContactReport solve_on_host(BodyStepper& stepper, std::vector<Point3>& velocity);
   ContactReport solve_on_device(bool is_other_pattern, std::vector<Point3>& velocity);
 
-  bool runs_on_cuda_;
+  ContactOptions options_;
   StepProblem part_;
-  ContactSolver solver_;
-  ContactSolution solution_;  ///< of a problem built on the host
+  ContactSolver of_few_;                    ///< contacts
+  std::unique_ptr<ContactSolver> of_many_;  ///< made when first needed
+  ContactSolver* solver_ = &of_few_;        ///< of the present problem
+  ContactSolution solution_;                ///< of a problem built on the host
   std::span<const double> impulse_, contact_velocity_;
   ResidentContacts* resident_ = nullptr;
   ResidentContacts* with_pattern_ = nullptr;  ///< has the places of the problem, or null: none has

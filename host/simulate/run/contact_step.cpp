@@ -62,9 +62,10 @@ ContactSystemOptions system_options(const Scene& scene,
   of.solver.device = options.device;
   of.solver.threads = options.threads;
   // Islands that these sweeps do not solve follow with Newton's method: a few contacts with
-  // friction between two bodies, as of a stone on an edge, may take any number of sweeps. Of large
-  // islands a factor takes as long as hundreds of sweeps. A step that is not solved is divided.
-  of.solver.max_sweeps = 5000;
+  // friction between two bodies, as of a stone on an edge, may take thousands of sweeps. A step
+  // that is not solved is divided. Very tight tolerances take many sweeps also where all is well,
+  // and so do many contacts, see SolverIslands.
+  of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? 5000 : 300;
   of.solver.max_newton = 20000;
   // A solver that remembers systems would not go on from a checkpoint bit for bit.
   of.solver.skip.constant_systems = false;
