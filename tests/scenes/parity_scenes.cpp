@@ -182,6 +182,7 @@ Scene coupled(std::uint64_t seed) {
                      {"floor", PlaneObstacle{{0, 0, 1}, {0, 0, -0.4}}, {}, {}}};
   Coupling points = coupling_of("block", "brick", {}, noise);
   points.points = {noise.point(0.2), noise.point(0.3)};
+  points.within = 10;
   Coupling close = coupling_of("other", "block", {AllSelection{}}, noise);
   close.within = 0.25;
   scene.couplings = {points,
