@@ -78,6 +78,7 @@ class OpenFile {
         h5::open_group(steps_, std::string(group_of(array)) + "Offsets"), array.name, 0);
   }
 
+  /// Arrays of points and of cells.
   std::size_t array_count() const {
     std::size_t count = 0;
     for (const char* const group : {"PointDataOffsets", "CellDataOffsets"}) {
@@ -187,8 +188,7 @@ StepMeshWriter::StepMeshWriter(const std::string& path,
   for (const SteadyColumn& column : steady_columns) open.steady(column);
   if (open.array_count() != arrays.size()) {
     open.root().fail(
-        "has other fields than output.fields of the scene asks for; ask for those of the run that "
-        "is "
+        "has other fields than output.fields of the scene; ask for those of the run that is "
         "continued, or name a new folder");
   }
   for (const StepArray& array : arrays) {

@@ -70,7 +70,9 @@ struct Coupling {
   std::string a = {}, b = {};  ///< bodies or obstacles; b may be "world"
   Selection select_a = {};
   std::vector<Point3> points = {};    ///< instead of a selection: both bodies are tied there
-  std::optional<double> within = {};  ///< farthest material point of b [m]
+  std::optional<double> within = {};  ///< farthest material point of b [m]; of `points` how far
+                                      ///< outside of an elastic body or cloth they may be, without
+                                      ///< a twentieth of the diagonal of its box
   double stiffness = 0;               ///< in total [N/m]
   double damping = 0;                 ///< in total [N s/m]
   bool collide = false;
@@ -82,7 +84,7 @@ struct Handle {
   Selection select = {};
   double stiffness = 0;  ///< in total [N/m]
   double damping = 0;    ///< in total [N s/m]
-  Path path = {};
+  Path path = {};        ///< of the anchors, without turns
 };
 struct Load {
   std::string body = {};

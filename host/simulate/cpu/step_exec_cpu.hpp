@@ -61,6 +61,7 @@ class CpuStepExec {
   void get(View<const T> values, T* host) const {
     std::copy_n(values.data, values.size, host);
   }
+  /// Several arrays of numbers; a device waits once for all.
   void get_all(std::initializer_list<HostCopy> copies) const {
     for (const HostCopy& copy : copies) get(copy.from, copy.to);
   }
@@ -89,6 +90,7 @@ class CpuStepExec {
       vector_stages().assemble(body, begin, end);
     });
   }
+  /// Numbers of ones in two arrays of 0 and 1.
   std::pair<std::int64_t, std::int64_t> count_ones(View<const std::uint8_t> first,
                                                    View<const std::uint8_t> second) const {
     const auto ones_in = [](View<const std::uint8_t> flags) {

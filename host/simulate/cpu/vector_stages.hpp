@@ -21,11 +21,12 @@ struct BlockFactor {
 struct TetShapes {
   View<const std::int32_t> nodes;  ///< [tets][4]
   View<const double> gradient;     ///< [tets][9] g_1, g_2, g_3 [1/m]
-  View<const double> volume, lambda, mu;
-  View<const double> position;  ///< [nodes][3]
+  View<const double> volume;       ///< [tets] [m^3]
+  View<const double> lambda, mu;   ///< [tets] [Pa]
+  View<const double> position;     ///< [nodes][3]
 };
 struct TetSums {
-  double energy = 0;
+  double energy = 0;          ///< [J]
   std::int64_t inverted = 0;  ///< of negative volume
 };
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -43,17 +42,11 @@ bool gives_way(const Scene& scene, std::int32_t body) {
   return scene.bodies[index].kind == BodyKind::fem || scene.bodies[index].kind == BodyKind::cloth;
 }
 
-/// Diagonal of the box around the nodes of a body that has any [m].
-double size_of_body(const SceneGeometry& geometry, std::int32_t body) {
-  const std::vector<Point3>& nodes = geometry.bodies[static_cast<std::size_t>(body)].nodes;
-  Point3 low = nodes.front(), high = nodes.front();
-  for (const Point3& x : nodes) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], x[i]);
-      high[i] = std::max(high[i], x[i]);
-    }
-  }
-  return norm(minus(high, low));
+/// How far outside of an elastic body or cloth a point of a coupling may be [m].
+double reach_of(const Coupling& coupling, const BodyGeometry& body) {
+  if (coupling.within) return *coupling.within;
+  const Bounds bounds = bounds_of(body.nodes);
+  return most_outside * norm(minus(bounds.high, bounds.low));
 }
 
 std::int32_t body_named(const Scene& scene, const std::string& name, const std::string& where) {
@@ -77,14 +70,12 @@ SpringList coupling_springs(const Scene& scene,
   for (std::size_t p = 0; p < coupling.points.size(); ++p) {
     const Point3& x = coupling.points[p];
     const auto tied = [&](const std::string& body) {
-      const ModelPoint point = finder.fixed_at(body, x);
-      const double distance = norm(minus(position_of(point, model.start, model.node_count), x));
-      if (!gives_way(scene, point.body) ||
-          distance <= coupling.within.value_or(most_outside * size_of_body(geometry, point.body))) {
-        return point;
-      }
+      const NearestMaterial found = finder.nearest(body, x);
+      if (!gives_way(scene, found.point.body)) return finder.fixed_at(body, x);
+      const auto index = static_cast<std::size_t>(found.point.body);
+      if (found.distance <= reach_of(coupling, geometry.bodies[index])) return found.point;
       throw std::invalid_argument(where + ".points[" + std::to_string(p) + "]: is " +
-                                  number_text(distance) + " m outside body \"" + body +
+                                  number_text(found.distance) + " m outside body \"" + body +
                                   "\"; move it to the body, or say how far it may be by within");
     };
     list.a.push_back(tied(coupling.a));

@@ -54,6 +54,7 @@ class CheckpointWriter {
   void operator()(const T& value) {
     add(value);
   }
+  std::span<const std::byte> bytes() const { return bytes_; }
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:

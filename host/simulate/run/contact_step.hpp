@@ -98,7 +98,7 @@ class ContactStep {
   const std::vector<Point3>& block_impulses() const { return block_impulses_; }
   const std::vector<Point3>& body_impulses() const { return body_impulses_; }
   /// Moves the contacts at the end of the last part to `points`, and what was there to here, as
-  /// memory for later parts. A second call before the next part moves them back.
+  /// memory for later parts. Once per part.
   void take_points(std::vector<ContactPoint>& points) { points.swap(points_); }
 
   void remember(ContactMemory& memory) const {

@@ -11,14 +11,8 @@ namespace {
 
 double diagonal_of(const std::vector<Point3>& points) {
   if (points.empty()) return 0;
-  Point3 low = points[0], high = points[0];
-  for (const Point3& x : points) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = std::min(low[k], x[k]);
-      high[k] = std::max(high[k], x[k]);
-    }
-  }
-  return norm(minus(high, low));
+  const Bounds bounds = bounds_of(points);
+  return norm(minus(bounds.high, bounds.low));
 }
 
 }  // namespace

@@ -227,11 +227,8 @@ std::vector<std::byte> Simulator::Impl::checkpoint() const {
   writer.add(fingerprint_of(scene, geometry, options, model, contact_surfaces));
   const Saved now = saved();
   Saved::pass(writer, now);
-  std::vector<std::byte> bytes = writer.take();
-  writer.add(checksum_of(bytes));
-  const std::vector<std::byte> checksum = writer.take();
-  bytes.insert(bytes.end(), checksum.begin(), checksum.end());
-  return bytes;
+  writer.add(checksum_of(writer.bytes()));
+  return writer.take();
 }
 
 void Simulator::Impl::restore(std::span<const std::byte> bytes) {

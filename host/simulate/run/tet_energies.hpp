@@ -6,6 +6,7 @@
 
 namespace tetwarp {
 
+/// @returns the elastic energy [J] of all tetrahedra, and how many have a negative volume
 /// @param threads  any number: same bits
 TetSums tet_energies(const Model& model, const ModelState& state, int threads);
 
