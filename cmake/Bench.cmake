@@ -36,7 +36,7 @@ add_executable(tetwarp_bench
   bench/warp/truth.cpp
   bench/warp/warp_job.cpp
   bench/warp/workloads.cpp
-  tests/scenes/scenes.cpp)
+  tests/support/scenes.cpp)
 if(TETWARP_HAS_CUDA)
   target_sources(tetwarp_bench PRIVATE
     bench/measure/device_floors.cu bench/measure/device_memory.cu)
@@ -101,10 +101,10 @@ if(TETWARP_IO)
     bench/measure/program.cpp
     bench/measure/row.cpp
     bench/measure/timing.cpp
-    tests/scenes/contact_scenes.cpp
-    tests/scenes/contact_scenes_slab.cpp
-    tests/scenes/contact_scenes_tray.cpp
-    tests/scenes/scenes.cpp)
+    tests/support/contact_scenes.cpp
+    tests/support/contact_scenes_slab.cpp
+    tests/support/contact_scenes_tray.cpp
+    tests/support/scenes.cpp)
   target_include_directories(tetwarp_bench_contact PRIVATE
     ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/bench_info)
   target_link_libraries(tetwarp_bench_contact PRIVATE
@@ -134,7 +134,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     bench/warp/truth.cpp
     bench/warp/warp_job.cpp
     bench/warp/workloads.cpp
-    tests/scenes/scenes.cpp)
+    tests/support/scenes.cpp)
   if(VTK_FOUND)
     set(TETWARP_PEER_VTK true)
     target_sources(tetwarp_bench_peers PRIVATE bench/peers/vtk_locator.cpp)

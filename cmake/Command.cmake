@@ -1,58 +1,25 @@
 # The command `tetwarp`.
-add_executable(tetwarp_command
-  host/cli/main.cpp
-  host/cli/array_checks.cpp
-  host/cli/batch.cpp
-  host/cli/batch_file.cpp
-  host/cli/cmd_contact.cpp
-  host/cli/cmd_deform.cpp
-  host/cli/cmd_demo.cpp
-  host/cli/cmd_export.cpp
-  host/cli/cmd_import.cpp
-  host/cli/cmd_info.cpp
-  host/cli/cmd_mesh.cpp
-  host/cli/cmd_render.cpp
-  host/cli/cmd_simulate.cpp
-  host/cli/cmd_warp.cpp
-  host/cli/contact_arguments.cpp
-  host/cli/declare.cpp
-  host/cli/displacement.cpp
-  host/cli/file_checks.cpp
-  host/cli/fingerprint.cpp
-  host/cli/interrupt.cpp
-  host/cli/job_plan.cpp
-  host/cli/job_share.cpp
-  host/cli/memory_plan.cpp
-  host/cli/obstacle_surface.cpp
-  host/cli/output_files.cpp
-  host/cli/output_writer.cpp
-  host/cli/output_grid.cpp
-  host/cli/progress_bar.cpp
-  host/cli/ranks.cpp
-  host/cli/ranks_$<IF:$<BOOL:${TETWARP_HAS_MPI}>,mpi,nompi>.cpp
-  host/cli/read_array.cpp
-  host/cli/report_exchange.cpp
-  host/cli/simulate_arguments.cpp
-  host/cli/simulate_bodies.cpp
-  host/cli/simulate_contacts.cpp
-  host/cli/simulate_frames.cpp
-  host/cli/simulate_pictures.cpp
-  host/cli/simulate_report.cpp
-  host/cli/simulate_run.cpp
-  host/cli/simulate_series.cpp
-  host/cli/simulate_warp.cpp
-  host/cli/source_scan.cpp
-  host/cli/step_selection.cpp
-  host/cli/volume_run.cpp
-  host/cli/volume_run_queue.cpp
-  host/cli/volume_run_parts.cpp
-  host/cli/volume_run_step.cpp
-  host/cli/warnings.cpp
-  host/cli/warp_arguments.cpp
-  host/cli/warp_job.cpp)
-# Eight files per unit: parsing and instantiating their common includes is most of the work.
+add_executable(tetwarp_command)
+tetwarp_sources(tetwarp_command host/cli
+  main.cpp)
+tetwarp_sources(tetwarp_command host/cli/common
+  declare.cpp file_checks.cpp interrupt.cpp progress_bar.cpp ranks.cpp ranks_${tetwarp_mpi}.cpp)
+tetwarp_sources(tetwarp_command host/cli/contact
+  cmd_contact.cpp contact_arguments.cpp)
+tetwarp_sources(tetwarp_command host/cli/simulate
+  cmd_simulate.cpp obstacle_surface.cpp simulate_arguments.cpp simulate_bodies.cpp
+  simulate_contacts.cpp simulate_frames.cpp simulate_pictures.cpp simulate_report.cpp
+  simulate_run.cpp simulate_series.cpp simulate_warp.cpp)
+tetwarp_sources(tetwarp_command host/cli/tools
+  cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp cmd_mesh.cpp
+  cmd_render.cpp displacement.cpp read_array.cpp)
+tetwarp_sources(tetwarp_command host/cli/warp
+  array_checks.cpp batch.cpp batch_file.cpp cmd_warp.cpp fingerprint.cpp job_plan.cpp job_share.cpp
+  memory_plan.cpp output_files.cpp output_grid.cpp output_writer.cpp report_exchange.cpp
+  source_scan.cpp step_selection.cpp volume_run.cpp volume_run_parts.cpp volume_run_queue.cpp
+  volume_run_step.cpp warnings.cpp warp_arguments.cpp warp_job.cpp)
 set_target_properties(tetwarp_command PROPERTIES
-  OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_command PRIVATE ${PROJECT_SOURCE_DIR})
 target_link_libraries(tetwarp_command PRIVATE
   tetwarp_io CLI11::CLI11 fmt::fmt nlohmann_json::nlohmann_json tetwarp_options)

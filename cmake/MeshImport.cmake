@@ -8,7 +8,6 @@ foreach(name VTK Gmsh)
     set(TETWARP_${upper} OFF)
   endif()
 endforeach()
-set(tetwarp_import_sources io/mesh_arrays.cpp io/mesh_import.cpp)
 add_library(tetwarp_mesh_import INTERFACE)
 
 set(TETWARP_HAS_VTK FALSE)
@@ -28,9 +27,6 @@ if(TETWARP_HAS_VTK)
     target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE "$<BUILD_INTERFACE:${folders}>")
   endforeach()
   target_link_libraries(tetwarp_mesh_import INTERFACE ${tetwarp_vtk_libraries})
-  list(APPEND tetwarp_import_sources io/mesh_vtk.cpp io/mesh_vtk_arrays.cpp)
-else()
-  list(APPEND tetwarp_import_sources io/mesh_novtk.cpp)
 endif()
 
 set(TETWARP_HAS_GMSH FALSE)
@@ -43,17 +39,14 @@ if(NOT TETWARP_GMSH STREQUAL "OFF")
     message(FATAL_ERROR "TETWARP_GMSH=ON, but Gmsh's C library was not found; install libgmsh-dev")
   endif()
 endif()
-if(TETWARP_HAS_GMSH)  # loaded at run time, see io/gmsh_library.hpp
+if(TETWARP_HAS_GMSH)  # loaded at run time, see io/import/gmsh_library.hpp
   file(REAL_PATH ${TETWARP_GMSH_LIBRARY} library)
   get_filename_component(library ${library} NAME)
   string(REGEX REPLACE "(\\.so\\.[0-9]+\\.[0-9]+).*" "\\1" library ${library})
-  set_source_files_properties(io/mesh_gmsh.cpp PROPERTIES
+  set_source_files_properties(io/import/mesh_gmsh.cpp PROPERTIES
     COMPILE_DEFINITIONS TETWARP_GMSH_SONAME="${library}")
   target_include_directories(tetwarp_mesh_import SYSTEM INTERFACE
     $<BUILD_INTERFACE:${TETWARP_GMSH_INCLUDE}>)
   target_link_libraries(tetwarp_mesh_import INTERFACE ${CMAKE_DL_LIBS})
-  list(APPEND tetwarp_import_sources io/mesh_gmsh.cpp)
-else()
-  list(APPEND tetwarp_import_sources io/mesh_nogmsh.cpp)
 endif()
 message(STATUS "tetwarp: meshes of other programs: VTK: ${TETWARP_HAS_VTK}, Gmsh: ${TETWARP_HAS_GMSH}")

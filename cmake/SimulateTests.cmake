@@ -10,41 +10,41 @@ if(NOT BUILD_SHARED_LIBS)
     tests/scene/test_shape_surface.cpp
     tests/scene/test_surface_lattice.cpp)
   set(tetwarp_model_tests       # masses, elements, springs, the Simulator
-    tests/simulate/test_model_cloth.cpp
-    tests/simulate/test_model_couplings.cpp
-    tests/simulate/test_model_masses.cpp
-    tests/simulate/test_model_rigid.cpp
-    tests/simulate/test_simulator_drive.cpp
-    tests/simulate/test_simulator_laws.cpp
-    tests/simulate/test_simulator_records.cpp
-    tests/simulate/test_simulator_state.cpp)
+    tests/simulate/step/test_model_cloth.cpp
+    tests/simulate/step/test_model_couplings.cpp
+    tests/simulate/step/test_model_masses.cpp
+    tests/simulate/step/test_model_rigid.cpp
+    tests/simulate/state/test_simulator_drive.cpp
+    tests/simulate/laws/test_simulator_laws.cpp
+    tests/simulate/state/test_simulator_records.cpp
+    tests/simulate/state/test_simulator_state.cpp)
   set(tetwarp_body_tests        # kernels of bodies, emulated cuda
     tests/simulate/body_measures.cpp
     tests/simulate/body_models.cpp
-    tests/simulate/test_tet_rotation.cpp
-    tests/simulate/test_elastic_forces.cpp
-    tests/simulate/test_edge_spring.cpp
-    tests/simulate/test_stepper_bodies.cpp
-    tests/simulate/test_stepper_move.cpp
-    tests/simulate/test_rest_gradients.cpp
-    tests/simulate/test_stepper_options.cpp
-    tests/simulate/test_vector_assembly.cpp
-    tests/simulate/test_vector_stages.cpp
+    tests/simulate/step/test_tet_rotation.cpp
+    tests/simulate/step/test_elastic_forces.cpp
+    tests/simulate/step/test_edge_spring.cpp
+    tests/simulate/step/test_stepper_bodies.cpp
+    tests/simulate/step/test_stepper_move.cpp
+    tests/simulate/step/test_rest_gradients.cpp
+    tests/simulate/step/test_stepper_options.cpp
+    tests/simulate/step/test_vector_assembly.cpp
+    tests/simulate/step/test_vector_stages.cpp
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
-    tests/emu/test_stepper_emulated.cpp
-    tests/simulate/test_parity_cuda.cpp
-    tests/simulate/test_stepper_parity.cpp
-    tests/scenes/parity_scenes.cpp)
+    tests/emulated/test_stepper_emulated.cpp
+    tests/simulate/step/test_parity_cuda.cpp
+    tests/simulate/step/test_stepper_parity.cpp
+    tests/support/parity_scenes.cpp)
   set(tetwarp_reference_twin_tests  # closed forms on the reference, parity with it
-    tests/scenes/parity_scenes.cpp
-    tests/simulate/test_reference_cantilever.cpp
-    tests/simulate/test_reference_elements.cpp
-    tests/simulate/test_reference_hanging.cpp
-    tests/simulate/test_reference_image.cpp
-    tests/simulate/test_reference_motion.cpp
-    tests/simulate/test_reference_parity.cpp
-    tests/simulate/test_reference_recovery.cpp)
+    tests/support/parity_scenes.cpp
+    tests/simulate/reference/test_reference_cantilever.cpp
+    tests/simulate/reference/test_reference_elements.cpp
+    tests/simulate/reference/test_reference_hanging.cpp
+    tests/simulate/reference/test_reference_image.cpp
+    tests/simulate/reference/test_reference_motion.cpp
+    tests/simulate/reference/test_reference_parity.cpp
+    tests/simulate/reference/test_reference_recovery.cpp)
   set(tetwarp_ccd_tests         # distances and times of pairs of features, the interval reference
     tests/collide/constructed_hits.cpp
     tests/collide/cubic_ccd.cpp
@@ -67,26 +67,26 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/test_detector_turns.cpp
     $<TARGET_OBJECTS:tetwarp_emulated_detector>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
-    tests/emu/test_detector_emulated.cpp)
+    tests/emulated/test_detector_emulated.cpp)
   # Replaces the allocation functions of the program: not to be inlined into other files.
   set_source_files_properties(tests/collide/counted_memory.cpp PROPERTIES
     SKIP_UNITY_BUILD_INCLUSION ON)
   set(tetwarp_surfaces_tests    # surfaces of scenes, their motion, starts without collisions
-    tests/simulate/test_pair_materials.cpp
-    tests/simulate/test_rest_growth.cpp
-    tests/simulate/test_scene_surfaces.cpp
-    tests/simulate/test_start_cages.cpp
-    tests/simulate/test_start_check.cpp
-    tests/simulate/test_surface_motion.cpp
-    tests/simulate/test_untangle_run.cpp
+    tests/simulate/touch/test_pair_materials.cpp
+    tests/simulate/touch/test_rest_growth.cpp
+    tests/simulate/touch/test_scene_surfaces.cpp
+    tests/simulate/touch/test_start_cages.cpp
+    tests/simulate/touch/test_start_check.cpp
+    tests/simulate/touch/test_surface_motion.cpp
+    tests/simulate/touch/test_untangle_run.cpp
     )
   set(tetwarp_pair_contact_tests  # contacts of pairs, reduction, tracker of deformable bodies
     tests/simulate/pair_scene.cpp
-    tests/simulate/test_flat_edges.cpp
-    tests/simulate/test_pair_contacts.cpp
-    tests/simulate/test_rigid_patches.cpp
-    tests/simulate/test_tracker_places.cpp
-    tests/simulate/test_vertex_contacts.cpp
+    tests/simulate/touch/test_flat_edges.cpp
+    tests/simulate/touch/test_pair_contacts.cpp
+    tests/simulate/touch/test_rigid_patches.cpp
+    tests/simulate/touch/test_tracker_places.cpp
+    tests/simulate/touch/test_vertex_contacts.cpp
     )
   set(tetwarp_contact_system_tests  # contact problems of steps and their solutions
     tests/simulate/body_measures.cpp
@@ -94,34 +94,34 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
     tests/simulate/stack_scenes.cpp
-    tests/simulate/test_contact_bonds.cpp
-    tests/simulate/test_contact_system.cpp
-    tests/simulate/test_contact_system_blocks.cpp
-    tests/simulate/test_following_motion.cpp
-    tests/simulate/test_proximal_steps.cpp
-    tests/simulate/test_two_level.cpp
-    tests/simulate/test_touch_lists.cpp
-    tests/simulate/test_two_level_stages.cpp
+    tests/simulate/solve/test_contact_bonds.cpp
+    tests/simulate/solve/test_contact_system.cpp
+    tests/simulate/solve/test_contact_system_blocks.cpp
+    tests/simulate/solve/test_following_motion.cpp
+    tests/simulate/solve/test_proximal_steps.cpp
+    tests/simulate/solve/test_two_level.cpp
+    tests/simulate/solve/test_touch_lists.cpp
+    tests/simulate/solve/test_two_level_stages.cpp
     )
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/body_models.cpp
-    tests/simulate/test_expected_motion.cpp
-    tests/simulate/test_touch_capsules.cpp
-    tests/simulate/test_touch_edges.cpp
-    tests/simulate/test_touch_fall.cpp
-    tests/simulate/test_touch_records.cpp
-    tests/simulate/test_touch_self.cpp
-    tests/simulate/test_touch_sleep.cpp
-    tests/simulate/test_touch_state.cpp
-    tests/simulate/test_touch_throw.cpp
+    tests/simulate/touch/test_expected_motion.cpp
+    tests/simulate/touch/test_touch_capsules.cpp
+    tests/simulate/touch/test_touch_edges.cpp
+    tests/simulate/touch/test_touch_fall.cpp
+    tests/simulate/touch/test_touch_records.cpp
+    tests/simulate/touch/test_touch_self.cpp
+    tests/simulate/touch/test_touch_sleep.cpp
+    tests/simulate/touch/test_touch_state.cpp
+    tests/simulate/touch/test_touch_throw.cpp
     )
   set(tetwarp_contact_law_tests  # closed forms of contact, through the Simulator
-    tests/simulate/test_law_adhesion.cpp
-    tests/simulate/test_law_balances.cpp
-    tests/simulate/test_law_repeats.cpp
-    tests/simulate/test_law_slopes.cpp
-    tests/simulate/test_law_soft.cpp
-    tests/simulate/test_law_throws.cpp
+    tests/simulate/laws/test_law_adhesion.cpp
+    tests/simulate/laws/test_law_balances.cpp
+    tests/simulate/laws/test_law_repeats.cpp
+    tests/simulate/laws/test_law_slopes.cpp
+    tests/simulate/laws/test_law_soft.cpp
+    tests/simulate/laws/test_law_throws.cpp
     )
   set(tetwarp_emulated_simulator_tests  # the Simulator on emulated cuda, its detector and a Warper
     $<TARGET_OBJECTS:tetwarp_emulated_backend>
@@ -129,15 +129,15 @@ if(NOT BUILD_SHARED_LIBS)
     $<TARGET_OBJECTS:tetwarp_emulated_detector>
     $<TARGET_OBJECTS:tetwarp_emulated_primitives>
     $<TARGET_OBJECTS:tetwarp_emulated_stepper>
-    tests/emu/test_contact_system_emulated.cpp
-    tests/emu/test_two_level_emulated.cpp
-    tests/emu/test_simulator_emulated.cpp
-    tests/emu/test_surfaces_emulated.cpp
+    tests/emulated/test_contact_system_emulated.cpp
+    tests/emulated/test_two_level_emulated.cpp
+    tests/emulated/test_simulator_emulated.cpp
+    tests/emulated/test_surfaces_emulated.cpp
     tests/simulate/body_models.cpp
     tests/simulate/hand_contacts.cpp
     tests/simulate/mixed_contacts.cpp
     tests/simulate/stack_scenes.cpp
-    tests/simulate/test_contact_cuda.cpp)
+    tests/simulate/solve/test_contact_cuda.cpp)
   foreach(name scene model body emulated_simulator reference_twin ccd detector surfaces
                pair_contact contact_system touch contact_law)
     if(tetwarp_${name}_tests)
@@ -150,11 +150,11 @@ if(NOT BUILD_SHARED_LIBS)
     tetwarp_add_tests(tetwarp_device_simulate_tests SOURCES
       tests/simulate/body_measures.cpp
       tests/simulate/body_models.cpp
-      tests/simulate/test_contact_cuda.cpp
-      tests/simulate/test_device.cpp
-      tests/simulate/test_parity_cuda.cpp
-      tests/simulate/test_stepper_parity.cpp
-      tests/scenes/parity_scenes.cpp)
+      tests/simulate/solve/test_contact_cuda.cpp
+      tests/simulate/step/test_device.cpp
+      tests/simulate/step/test_parity_cuda.cpp
+      tests/simulate/step/test_stepper_parity.cpp
+      tests/support/parity_scenes.cpp)
     gtest_discover_tests(tetwarp_device_simulate_tests DISCOVERY_TIMEOUT 120
       PROPERTIES LABELS parity TIMEOUT 300 RESOURCE_LOCK gpu)
   endif()
@@ -172,11 +172,11 @@ if(NOT BUILD_SHARED_LIBS)
     set_tests_properties(collision_ipctk PROPERTIES LABELS unit TIMEOUT 300 SKIP_RETURN_CODE 77)
   endif()
   tetwarp_add_tests(tetwarp_simulate_large_tests SOURCES
-    tests/simulate/test_contact_large.cpp
-    tests/simulate/test_contact_stress.cpp
-    tests/simulate/test_law_peel.cpp
-    tests/simulate/test_simulator_large.cpp
-    tests/simulate/test_touch_energy.cpp)
+    tests/simulate/solve/test_contact_large.cpp
+    tests/simulate/solve/test_contact_stress.cpp
+    tests/simulate/laws/test_law_peel.cpp
+    tests/simulate/state/test_simulator_large.cpp
+    tests/simulate/laws/test_touch_energy.cpp)
   tetwarp_discover(tetwarp_simulate_large_tests long)
   if(TETWARP_IO)
     tetwarp_add_tests(tetwarp_scene_file_tests UNITY 4
@@ -195,7 +195,7 @@ if(NOT BUILD_SHARED_LIBS)
       TETWARP_SCENE_PAGE="${PROJECT_SOURCE_DIR}/docs/scenes.md")
     tetwarp_discover(tetwarp_scene_file_tests io)
     tetwarp_add_tests(tetwarp_scene_law_tests LIBRARIES tetwarp_io SOURCES
-      tests/simulate/test_scene_laws.cpp)
+      tests/simulate/laws/test_scene_laws.cpp)
     tetwarp_discover(tetwarp_scene_law_tests long)
   endif()
 endif()

@@ -11,41 +11,46 @@ find_package(GTest REQUIRED)
 include(GoogleTest)
 include(cmake/OpenMp.cmake)
 
-# Shared by several programs: synthetic inputs, and precompiled headers.
-add_library(tetwarp_scenes STATIC
-  tests/scenes/contact_samples.cpp
-  tests/scenes/contact_scenes.cpp
-  tests/scenes/contact_scenes_slab.cpp
-  tests/scenes/contact_scenes_tray.cpp
-  tests/scenes/contact_transforms.cpp
-  tests/scenes/elastic_block.cpp
-  tests/scenes/rigid_bodies.cpp
-  tests/scenes/scenes.cpp)
-target_precompile_headers(tetwarp_scenes PRIVATE
+# Shared by several programs: synthetic inputs, oracles, and precompiled headers.
+add_library(tetwarp_support STATIC
+  tests/oracles/exact_sign.cpp
+  tests/oracles/intersecting_triangles.cpp
+  tests/oracles/interval_ccd.cpp
+  tests/oracles/triangle_intersection.cpp
+  tests/support/contact_samples.cpp
+  tests/support/contact_scenes.cpp
+  tests/support/contact_scenes_slab.cpp
+  tests/support/contact_scenes_tray.cpp
+  tests/support/contact_transforms.cpp
+  tests/support/elastic_block.cpp
+  tests/support/rigid_bodies.cpp
+  tests/support/scenes.cpp)
+target_precompile_headers(tetwarp_support PRIVATE
   <gtest/gtest.h> <Eigen/Dense> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <numeric> <optional> <random> <span> <string> <tetwarp/tetwarp.hpp> <vector>)
 
 # Compile options of all programs. Tests compute little themselves: -O3 would take longer to compile
 # than it saves. The emulated device jumps between stacks, which _FORTIFY_SOURCE forbids.
 function(tetwarp_test_target target)
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}
+    $<$<COMPILE_LANGUAGE:CXX>:${PROJECT_SOURCE_DIR}/tests/emulator/include>)
   target_link_libraries(${target} PRIVATE
     tetwarp ${ARGN} tetwarp_openmp tetwarp_options Eigen3::Eigen GTest::gtest_main)
   target_compile_options(${target} PRIVATE
     -U_FORTIFY_SOURCE $<$<AND:$<CONFIG:Release>,$<COMPILE_LANGUAGE:CXX>>:-O1>)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
-  if(NOT target STREQUAL tetwarp_scenes)
-    target_precompile_headers(${target} REUSE_FROM tetwarp_scenes)
+  if(NOT target STREQUAL tetwarp_support)
+    target_precompile_headers(${target} REUSE_FROM tetwarp_support)
   endif()
 endfunction()
-tetwarp_test_target(tetwarp_scenes)
+tetwarp_test_target(tetwarp_support)
 
 # tetwarp_add_tests(PROGRAM [UNITY count] [LIBRARIES ...] SOURCES ...)
 # UNITY: number of files per unit, which share the parsing and instantiation of headers.
 function(tetwarp_add_tests program)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "UNITY" "LIBRARIES;SOURCES")
   add_executable(${program} ${arg_SOURCES})
-  tetwarp_test_target(${program} tetwarp_scenes ${arg_LIBRARIES})
+  tetwarp_test_target(${program} tetwarp_support ${arg_LIBRARIES})
   if(arg_UNITY)
     set_target_properties(${program} PROPERTIES
       UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE ${arg_UNITY})
@@ -205,10 +210,10 @@ if(NOT BUILD_SHARED_LIBS)
 
   # A separate program, because the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
-    tests/emu/test_affine_simt.cpp tests/emu/test_anderson_simt.cpp
-    tests/emu/test_cell_interior_simt.cpp tests/emu/test_cell_raster_simt.cpp
-    tests/emu/test_contact_grid_simt.cpp tests/emu/test_contact_simt.cpp
-    tests/emu/test_grouped_scan_simt.cpp tests/emu/test_simt.cpp)
+    tests/emulated/test_affine_simt.cpp tests/emulated/test_anderson_simt.cpp
+    tests/emulated/test_cell_interior_simt.cpp tests/emulated/test_cell_raster_simt.cpp
+    tests/emulated/test_contact_grid_simt.cpp tests/emulated/test_contact_simt.cpp
+    tests/emulated/test_grouped_scan_simt.cpp tests/emulated/test_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)
 
   # Every back end through the public calls, compiled once for two programs: in one of them back end
@@ -223,20 +228,20 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_test_target(tetwarp_backend_tests)
   set_target_properties(tetwarp_backend_tests PROPERTIES UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_BATCH_SIZE 5)
   if(TETWARP_FUSED_EMULATION)
-    set_source_files_properties(tests/emu/emulated_backend.cpp tests/emu/emulated_contact.cpp
+    set_source_files_properties(tests/emulated/emulated_backend.cpp tests/emulated/emulated_contact.cpp
       PROPERTIES COMPILE_OPTIONS "-march=x86-64-v3;-ffp-contract=fast" SKIP_PRECOMPILE_HEADERS ON)
   endif()
   foreach(part backend contact detector primitives stepper)  # compiled once for several programs
-    add_library(tetwarp_emulated_${part} OBJECT tests/emu/emulated_${part}.cpp)
+    add_library(tetwarp_emulated_${part} OBJECT tests/emulated/emulated_${part}.cpp)
     tetwarp_test_target(tetwarp_emulated_${part})
   endforeach()
   tetwarp_add_tests(tetwarp_emulated_tests SOURCES
     $<TARGET_OBJECTS:tetwarp_emulated_backend> $<TARGET_OBJECTS:tetwarp_emulated_contact>
-    $<TARGET_OBJECTS:tetwarp_emulated_primitives> tests/emu/test_cell_list_emulated.cpp
-    tests/emu/test_contact_arrays_emulated.cpp tests/emu/test_contact_emulated.cpp
-    tests/emu/test_device_errors.cpp tests/emu/test_step_operations.cpp
-    tests/emu/test_warp_emulated.cpp tests/emu/test_warp_emulated_copies.cpp
-    tests/emu/test_warp_emulated_memory.cpp tests/emu/test_warp_emulated_overlap.cpp
+    $<TARGET_OBJECTS:tetwarp_emulated_primitives> tests/emulated/test_cell_list_emulated.cpp
+    tests/emulated/test_contact_arrays_emulated.cpp tests/emulated/test_contact_emulated.cpp
+    tests/emulated/test_device_errors.cpp tests/emulated/test_step_operations.cpp
+    tests/emulated/test_warp_emulated.cpp tests/emulated/test_warp_emulated_copies.cpp
+    tests/emulated/test_warp_emulated_memory.cpp tests/emulated/test_warp_emulated_overlap.cpp
     $<TARGET_OBJECTS:tetwarp_backend_tests>)
   tetwarp_discover(tetwarp_emulated_tests parity)
   if(tetwarp_device_tests)

@@ -9,7 +9,7 @@
 #include <tetwarp/names.hpp>
 
 #include "host/contact/sweeps/method_names.hpp"
-#include "tests/scenes/contact_scenes.hpp"
+#include "tests/support/contact_scenes.hpp"
 
 namespace tetwarp::bench {
 namespace {

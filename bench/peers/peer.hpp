@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "bench/measure/floors.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::bench {
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "bench/measure/affine_device.cuh"
-#include "kernels/warp/cell_class.cuh"
-#include "kernels/warp/cell_interior.cuh"
-#include "kernels/warp/cell_raster.cuh"
-#include "kernels/warp/cell_tested.cuh"
+#include "kernels/warp/cuda/cell_class.cuh"
+#include "kernels/warp/cuda/cell_interior.cuh"
+#include "kernels/warp/cuda/cell_raster.cuh"
+#include "kernels/warp/cuda/cell_tested.cuh"
 
 namespace tetwarp {
 template __global__ void cell_raster_kernel<float, false>(RasterJob<float>);

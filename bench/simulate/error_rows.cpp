@@ -11,8 +11,8 @@
 
 #include "bench/measure/row.hpp"
 #include "bench/simulate/rows.hpp"
-#include "tests/scenes/cantilever.hpp"
 #include "tests/simulate/body_models.hpp"
+#include "tests/support/cantilever.hpp"
 
 namespace tetwarp::bench {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "bench/measure/program.hpp"
 #include "bench/simulate/rows.hpp"
-#include "host/simulate/cpu/vector_stages.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
 
 int main(int argc, char** argv) {
   using namespace tetwarp;

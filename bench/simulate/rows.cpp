@@ -10,9 +10,9 @@
 
 #include "bench/measure/row.hpp"
 #include "host/base/parallel.hpp"
-#include "host/simulate/cpu/huge_pages.hpp"
-#include "host/simulate/cpu/vector_stages.hpp"
-#include "host/simulate/system_pattern.hpp"
+#include "host/simulate/step/cpu/huge_pages.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
+#include "host/simulate/step/system_pattern.hpp"
 #include "tests/simulate/body_models.hpp"
 
 namespace tetwarp::bench {

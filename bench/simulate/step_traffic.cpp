@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "host/simulate/system_pattern.hpp"
+#include "host/simulate/step/system_pattern.hpp"
 #include "kernels/body/tet_force.hpp"
 #include "tests/simulate/body_models.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <tetwarp/warp.hpp>
 
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::bench {
 

@@ -12,7 +12,7 @@
 #include <tetwarp/volume.hpp>
 
 #include "bench/measure/buffer.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::bench {
 

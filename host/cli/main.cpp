@@ -14,10 +14,10 @@
 #include <tetwarp/version.hpp>
 #include <vector>
 
-#include "host/cli/commands.hpp"
-#include "host/cli/declare.hpp"
-#include "host/cli/interrupt.hpp"
-#include "host/cli/ranks.hpp"
+#include "host/cli/common/commands.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/common/interrupt.hpp"
+#include "host/cli/common/ranks.hpp"
 
 namespace tetwarp::cli {
 namespace {

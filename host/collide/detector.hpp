@@ -13,7 +13,7 @@
 
 #include "host/collide/collision_surfaces.hpp"
 #include "kernels/collide/pair_kind.hpp"
-#include "kernels/touch/touch.hpp"
+#include "kernels/collide/touch.hpp"
 
 namespace tetwarp {
 

@@ -11,7 +11,7 @@
 
 #include "host/collide/pair_bodies.hpp"
 #include "host/collide/touch_areas.hpp"
-#include "kernels/touch/touch_stages.hpp"
+#include "kernels/collide/touch_stages.hpp"
 
 namespace tetwarp {
 

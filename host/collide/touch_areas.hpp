@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/collide/collision_surfaces.hpp"
-#include "kernels/touch/touch_area.hpp"
+#include "kernels/collide/touch_area.hpp"
 
 namespace tetwarp {
 
@@ -15,7 +15,7 @@ class TouchAreas {
   /// @param surfaces  kept by the caller
   explicit TouchAreas(const CollisionSurfaces& surfaces);
 
-  /// For the functions of kernels/touch/touch_area.hpp, on the host.
+  /// For the functions of kernels/collide/touch_area.hpp, on the host.
   TouchAreaView view() const;
 
   std::span<const std::int32_t> triangles_around(std::int32_t vertex) const {

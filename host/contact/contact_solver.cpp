@@ -17,8 +17,8 @@
 #include "host/contact/problem/imbalance.hpp"
 #include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
+#include "host/contact/solve/status.hpp"
 #include "host/contact/solver_state.hpp"
-#include "host/contact/status.hpp"
 #include "host/reference/contact/contact.hpp"
 
 namespace tetwarp {

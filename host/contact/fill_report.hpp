@@ -3,8 +3,8 @@
 #pragma once
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/engine_result.hpp"
-#include "host/contact/status.hpp"
+#include "host/contact/solve/engine_result.hpp"
+#include "host/contact/solve/status.hpp"
 
 namespace tetwarp {
 

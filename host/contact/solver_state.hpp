@@ -8,7 +8,7 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/cuda/device.hpp"
-#include "host/contact/engine.hpp"
+#include "host/contact/solve/engine.hpp"
 
 namespace tetwarp {
 

@@ -4,9 +4,9 @@
 #include <utility>
 #include <variant>
 
+#include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/image_lattice.hpp"
 #include "host/scene/isosurface.hpp"
-#include "host/scene/scene_checks.hpp"
 #include "host/scene/shape.hpp"
 #include "host/scene/shape_lattice.hpp"
 #include "host/scene/sheet.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/lattice_search.hpp"
-#include "host/scene/scene_checks.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 

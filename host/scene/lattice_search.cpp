@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "host/scene/scene_checks.hpp"
+#include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "host/base/five_tets.hpp"
-#include "host/scene/scene_checks.hpp"
+#include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {
 namespace {

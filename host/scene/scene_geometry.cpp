@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "host/scene/body_geometry.hpp"
+#include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/pose.hpp"
-#include "host/scene/scene_checks.hpp"
 #include "host/scene/selection.hpp"
 
 namespace tetwarp {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <variant>
 
+#include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/pose.hpp"
-#include "host/scene/scene_checks.hpp"
 #include "host/scene/voxel_owner.hpp"
 
 namespace tetwarp {

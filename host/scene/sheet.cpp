@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "host/base/point3.hpp"
-#include "host/scene/scene_checks.hpp"
+#include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {
 namespace {

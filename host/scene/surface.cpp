@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "host/scene/scene_checks.hpp"
+#include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,6 +1,7 @@
 /// @file lane_math.hpp
-/// Functions that stages use on numbers and, with the overloads of host/simulate/cpu/lanes.hpp, on
-/// vectors of numbers; small matrices of either. A matrix is row-major, [9].
+/// Functions that stages use on numbers and, with the overloads of
+/// host/simulate/step/cpu/lanes.hpp, on vectors of numbers; small matrices of either. A matrix is
+/// row-major, [9].
 #pragma once
 #include "kernels/base/hd.hpp"
 

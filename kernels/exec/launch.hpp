@@ -1,19 +1,18 @@
 /// @file launch.hpp
-/// Launches kernels: on a GPU if compiled by nvcc, else on the CPU by the emulation. `.cuh` files
-/// include this instead of CUDA's headers.
+/// Launches kernels: on a GPU if compiled by nvcc, else on an emulated device, whose
+/// `cuda_runtime.h` the tests provide. `.cuh` files include this instead of CUDA's headers.
 #pragma once
+#include <cuda_runtime.h>
+
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
 
 #if defined(__CUDACC__)
 #include <cooperative_groups.h>
-#include <cuda_runtime.h>
 
 #include <string>
 #include <tetwarp/error.hpp>
-#else
-#include "kernels/emu/runtime.hpp"
 #endif
 
 namespace tetwarp {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "tests/scenes/each_exec.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/each_exec.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 

@@ -10,7 +10,7 @@
 #include <tetwarp/report.hpp>
 #include <tetwarp/version.hpp>
 
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,7 +13,7 @@
 #include "bench/measure/timing.hpp"
 #include "bench/warp/truth.hpp"
 #include "bench/warp/workloads.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::bench {
 namespace {

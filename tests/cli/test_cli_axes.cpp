@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/nifti_files.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/nifti_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/foreign_meshes.hpp"
-#include "tests/scenes/refused_line.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/foreign_meshes.hpp"
+#include "tests/support/refused_line.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -7,7 +7,7 @@
 #include <tetwarp/backend.hpp>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
+#include "tests/support/cli_scene.hpp"
 
 namespace tetwarp::test {
 namespace {

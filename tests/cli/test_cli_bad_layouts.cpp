@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/refused_line.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/refused_line.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/contact_command.hpp"
-#include "tests/scenes/contact_samples.hpp"
+#include "tests/support/contact_command.hpp"
+#include "tests/support/contact_samples.hpp"
 
 namespace tetwarp::test {
 namespace {

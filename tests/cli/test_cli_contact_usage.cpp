@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/contact_command.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/contact_command.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <tetwarp/make.hpp>
 #include <vector>
 
-#include "tests/scenes/running_scene.hpp"
+#include "tests/support/running_scene.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

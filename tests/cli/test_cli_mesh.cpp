@@ -7,8 +7,8 @@
 #include <tetwarp/surface.hpp>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/cli_scene.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

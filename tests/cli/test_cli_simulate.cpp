@@ -7,8 +7,8 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "tests/scenes/h5_numbers.hpp"
-#include "tests/scenes/simulate_scene.hpp"
+#include "tests/support/h5_numbers.hpp"
+#include "tests/support/simulate_scene.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <tetwarp/io.hpp>
 
-#include "tests/scenes/run_command.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/run_command.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <tetwarp/warp.hpp>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
+#include "tests/support/cli_scene.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/cli_scene.hpp"
+#include "tests/support/cli_scene.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -2,8 +2,8 @@
 /// The interval reference finds the constructed meetings, and the kernels miss none of its own.
 #include <gtest/gtest.h>
 
-#include "host/reference/simulate/interval_ccd.hpp"
 #include "tests/collide/constructed_hits.hpp"
+#include "tests/oracles/interval_ccd.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
-#include "host/reference/simulate/exact_sign.hpp"
-#include "host/reference/simulate/triangle_intersection.hpp"
+#include "tests/oracles/exact_sign.hpp"
+#include "tests/oracles/triangle_intersection.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/body_relax.hpp"
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/contact_stages.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

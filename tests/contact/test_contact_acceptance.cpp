@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "host/contact/tracker/geometry.hpp"
-#include "tests/scenes/block_scenes.hpp"
-#include "tests/scenes/contact_transforms.hpp"
-#include "tests/scenes/elastic_block.hpp"
+#include "tests/support/block_scenes.hpp"
+#include "tests/support/contact_transforms.hpp"
+#include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -9,9 +9,9 @@
 #include <tetwarp/contact_analysis.hpp>
 #include <vector>
 
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "host/contact/condense.hpp"
 #include "host/contact/newton/associated.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "tests/scenes/contact_scenes.hpp"
+#include "host/contact/solve/condense.hpp"
+#include "tests/support/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

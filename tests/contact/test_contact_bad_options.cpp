@@ -9,7 +9,7 @@
 #include <tetwarp/contact.hpp>
 #include <tetwarp/error.hpp>
 
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

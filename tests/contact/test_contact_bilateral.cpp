@@ -8,9 +8,9 @@
 #include <tetwarp/contact.hpp>
 #include <vector>
 
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_rows.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_rows.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

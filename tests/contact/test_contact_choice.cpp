@@ -11,12 +11,12 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/method_choice.hpp"
 #include "host/contact/newton/contact_assembly.hpp"
 #include "host/contact/newton/newton.hpp"
 #include "host/contact/newton/newton_system.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "tests/scenes/contact_scenes.hpp"
+#include "host/contact/solve/method_choice.hpp"
+#include "tests/support/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,11 +10,11 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "host/contact/condense.hpp"
 #include "host/contact/problem/matrix.hpp"
+#include "host/contact/solve/condense.hpp"
 #include "host/contact/structure/system.hpp"
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_scenes.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

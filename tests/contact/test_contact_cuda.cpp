@@ -13,11 +13,11 @@
 #include "host/base/warp_backend.hpp"
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/structure/structure.hpp"
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_rows.hpp"
-#include "tests/scenes/contact_scenes.hpp"
-#include "tests/scenes/contact_stages.hpp"
-#include "tests/scenes/elastic_block.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_rows.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact_stages.hpp"
+#include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {

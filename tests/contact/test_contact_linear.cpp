@@ -14,9 +14,9 @@
 
 #include "host/contact/block_jacobi/coupled_system.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/contact_stages.hpp"
-#include "tests/scenes/elastic_block.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact_stages.hpp"
+#include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -16,10 +16,10 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/block_jacobi/block_jacobi.hpp"
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_scenes.hpp"
-#include "tests/scenes/contact_stages.hpp"
-#include "tests/scenes/elastic_block.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact_stages.hpp"
+#include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {

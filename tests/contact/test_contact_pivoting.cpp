@@ -11,7 +11,7 @@
 
 #include "host/contact/newton/pivoting.hpp"
 #include "host/reference/contact/dense.hpp"
-#include "tests/scenes/solvability.hpp"
+#include "tests/support/solvability.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,7 +10,7 @@
 #include "host/reference/contact/contact.hpp"
 #include "host/reference/contact/dense.hpp"
 #include "host/reference/contact/gauss_seidel.hpp"
-#include "tests/scenes/contact_samples.hpp"
+#include "tests/support/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/reference/contact/contact.hpp"
-#include "tests/scenes/contact_samples.hpp"
+#include "tests/support/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

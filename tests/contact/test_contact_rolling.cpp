@@ -8,10 +8,10 @@
 #include <tetwarp/contact.hpp>
 #include <vector>
 
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_rows.hpp"
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_rows.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <tetwarp/contact.hpp>
 
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/contact_stages.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

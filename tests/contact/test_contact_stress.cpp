@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernels/contact/contact_adhesion.hpp"
-#include "tests/scenes/block_scenes.hpp"
+#include "tests/support/block_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/scenes/block_scenes.hpp"
-#include "tests/scenes/contact_transforms.hpp"
+#include "tests/support/block_scenes.hpp"
+#include "tests/support/contact_transforms.hpp"
 
 namespace tetwarp::test {
 namespace {

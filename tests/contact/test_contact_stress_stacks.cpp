@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/scenes/block_scenes.hpp"
+#include "tests/support/block_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/truth.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/truth.hpp"
 
 namespace tetwarp::test {
 using samples::Solvability;

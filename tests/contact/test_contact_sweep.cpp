@@ -12,8 +12,8 @@
 #include "host/exec/contact_exec_cpu.hpp"
 #include "host/reference/contact/dense.hpp"
 #include "kernels/contact/contact_sweep.hpp"
-#include "tests/scenes/contact_samples.hpp"
-#include "tests/scenes/contact_stages.hpp"
+#include "tests/support/contact_samples.hpp"
+#include "tests/support/contact_stages.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -9,8 +9,8 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/reference/contact/dense.hpp"
-#include "tests/scenes/solvability.hpp"
-#include "tests/scenes/truth.hpp"
+#include "tests/support/solvability.hpp"
+#include "tests/support/truth.hpp"
 
 namespace tetwarp::test {
 using samples::Solvability;

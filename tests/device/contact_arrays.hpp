@@ -13,9 +13,9 @@
 
 #include "host/base/warp_backend.hpp"
 #include "kernels/exec/exec_stream.cuh"
-#include "tests/scenes/contact_methods.hpp"
-#include "tests/scenes/contact_scenes.hpp"
-#include "tests/scenes/device_array.hpp"
+#include "tests/support/contact_methods.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/device_array.hpp"
 
 namespace tetwarp::test {
 

@@ -27,7 +27,7 @@
 #include "tests/io/fuzz_contact.hpp"
 #include "tests/io/fuzz_memory.hpp"
 #include "tests/io/fuzz_values.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace {
 using namespace tetwarp;

@@ -23,8 +23,8 @@
 #include <tetwarp/error.hpp>
 #include <vector>
 
-#include "io/child_process.hpp"
-#include "io/mesh_import.hpp"
+#include "io/import/child_process.hpp"
+#include "io/import/mesh_import.hpp"
 #include "tests/io/fuzz_bytes.hpp"
 #include "tests/io/fuzz_mesh_files.hpp"
 

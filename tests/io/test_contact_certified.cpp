@@ -13,8 +13,8 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "io/fclib.hpp"
-#include "tests/scenes/elastic_block.hpp"
+#include "io/fclib/fclib.hpp"
+#include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {
 namespace {

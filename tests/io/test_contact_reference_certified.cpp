@@ -15,8 +15,8 @@
 
 #include "host/contact/problem/matrix.hpp"
 #include "host/reference/contact/contact.hpp"
-#include "tests/scenes/contact_files.hpp"
-#include "tests/scenes/contact_samples.hpp"
+#include "tests/support/contact_files.hpp"
+#include "tests/support/contact_samples.hpp"
 
 namespace tetwarp {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

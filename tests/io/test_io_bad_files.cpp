@@ -6,8 +6,8 @@
 #include <csignal>
 #include <limits>
 
-#include "io/finished_file.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "io/files/finished_file.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

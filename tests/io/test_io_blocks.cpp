@@ -9,7 +9,7 @@
 #include <cstring>
 #include <vector>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <tetwarp/contact_io.hpp>
 
-#include "tests/scenes/io_files.hpp"
-#include "tests/scenes/rigid_bodies.hpp"
+#include "tests/support/io_files.hpp"
+#include "tests/support/rigid_bodies.hpp"
 
 namespace tetwarp::test {
 namespace {

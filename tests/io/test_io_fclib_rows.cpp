@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/contact_files.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/contact_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/io_files.hpp"
-#include "tests/scenes/nifti_files.hpp"
+#include "tests/support/io_files.hpp"
+#include "tests/support/nifti_files.hpp"
 
 namespace tetwarp::test {
 namespace {

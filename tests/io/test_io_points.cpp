@@ -9,9 +9,9 @@
 #include <tetwarp/error.hpp>
 #include <vector>
 
-#include "io/simulation_points.hpp"
-#include "tests/scenes/h5_numbers.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "io/vtkhdf/simulation_points.hpp"
+#include "tests/support/h5_numbers.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

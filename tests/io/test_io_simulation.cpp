@@ -16,11 +16,11 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "io/palette.hpp"
-#include "io/simulation_mesh.hpp"
-#include "io/simulation_series.hpp"
-#include "tests/scenes/h5_numbers.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "io/picture/palette.hpp"
+#include "io/vtkhdf/simulation_mesh.hpp"
+#include "io/vtkhdf/simulation_series.hpp"
+#include "tests/support/h5_numbers.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

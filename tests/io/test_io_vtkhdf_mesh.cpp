@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

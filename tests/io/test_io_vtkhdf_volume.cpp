@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/field_buffers.hpp"
-#include "tests/scenes/io_files.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/field_buffers.hpp"
+#include "tests/support/io_files.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

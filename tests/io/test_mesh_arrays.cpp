@@ -10,7 +10,7 @@
 
 #include <tetwarp/mesh_import.hpp>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "io/child_message.hpp"
-#include "io/mesh_child.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "io/import/child_message.hpp"
+#include "io/import/mesh_child.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/warp.hpp>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

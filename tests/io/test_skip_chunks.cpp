@@ -7,7 +7,7 @@
 
 #include <tetwarp/io.hpp>
 
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

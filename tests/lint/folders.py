@@ -14,24 +14,34 @@ from pathlib import Path
 # include nothing of the project, so a new folder needs a line here.
 BASE = ["kernels/base", "kernels/base/tetwarp", "host/tetwarp"]
 CONTACT = ["host/base", "host/exec", "kernels/contact", *BASE]
-COLLIDE = ["host/base", "host/exec", "kernels/collide", "kernels/touch", *BASE]
-SIMULATE = ["host/scene", "host/base", "host/exec", "kernels/body", *BASE]
+COLLIDE = ["host/base", "host/exec", "kernels/collide", *BASE]
+MODEL = ["host/scene", "host/scene/checks", "host/base", "host/exec", "kernels/body", *BASE]
+STEP = ["host/simulate/model", *MODEL]
+SURFACES = ["host/simulate/step", "host/simulate/step/cpu", "host/collide", *STEP, *COLLIDE]
+SOLVE = ["host/simulate/surfaces", "kernels/contact", *SURFACES]
+CLI = ["io/tetwarp", "io/files", "host/base", "host/warp", *BASE]
+IO = ["io/tetwarp", "host/base", *BASE]
 ALLOWED = {
     "kernels/base": ["kernels/base/tetwarp"],
     "kernels/base/tetwarp": [],
-    "kernels/emu": ["kernels/base"],
-    "kernels/exec": ["kernels/base", "kernels/base/tetwarp", "kernels/emu"],
+    "kernels/exec": ["kernels/base", "kernels/base/tetwarp"],
     "kernels/warp": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
-    "kernels/contact": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/warp/cuda": ["kernels/warp", "kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
+    "kernels/contact": ["kernels/base", "kernels/base/tetwarp", "kernels/body", "kernels/exec"],
+    "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
     "host/tetwarp": ["kernels/base/tetwarp"],
     "host/base": BASE,
     "host/exec": ["host/base", *BASE],
     "host/make": ["host/base", *BASE],
     "host/warp": ["host/base", "kernels/warp", *BASE],
     "host/warp/cpu": ["host/warp", "host/base", "host/exec", "kernels/warp", *BASE],
-    "host/warp/cuda": ["host/warp", "host/base", "kernels/exec", "kernels/warp", *BASE],
+    "host/warp/cuda": [
+        "host/warp", "host/base", "kernels/exec", "kernels/warp", "kernels/warp/cuda", *BASE],
     "host/reference/warp": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
     "host/reference/contact": ["host/base", "host/tetwarp", "kernels/base/tetwarp"],
+    "host/reference/simulate": [
+        "host/base", "host/scene", "host/scene/checks", "host/tetwarp", "kernels/base/tetwarp"],
     "host/contact/problem": CONTACT,
     "host/contact/structure": ["host/contact/problem", *CONTACT],
     "host/contact/newton": ["host/contact/problem", *CONTACT],
@@ -42,34 +52,50 @@ ALLOWED = {
         "host/contact/problem", "host/contact/block_jacobi", "host/contact/structure",
         "host/contact/sweeps", "kernels/exec", *CONTACT],
     "host/contact/tracker": ["host/contact/problem", *CONTACT],
-    "host/contact": [
+    "host/contact/solve": [
         "host/contact/problem", "host/contact/structure", "host/contact/newton",
         "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
         "host/reference/contact", *CONTACT],
-    "kernels/body": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
-    "kernels/two_level": ["kernels/base", "kernels/body", "kernels/contact"],
-    "kernels/collide": ["kernels/base", "kernels/base/tetwarp", "kernels/exec"],
-    "kernels/touch": ["kernels/base", "kernels/collide"],
+    "host/contact": [
+        "host/contact/problem", "host/contact/structure", "host/contact/newton",
+        "host/contact/sweeps", "host/contact/block_jacobi", "host/contact/cuda",
+        "host/contact/solve", "host/reference/contact", *CONTACT],
     "host/collide": COLLIDE,
     "host/collide/cpu": ["host/collide", *COLLIDE],
     "host/collide/cuda": ["host/collide", "kernels/exec", *COLLIDE],
-    "host/scene": ["host/base", "host/exec", "kernels/warp", *BASE],
-    "host/simulate": ["host/reference/simulate", *SIMULATE],
+    "host/scene/checks": ["host/base", *BASE],
+    "host/scene": ["host/scene/checks", "host/base", "host/exec", "kernels/warp", *BASE],
+    "host/simulate/model": MODEL,
+    "host/simulate/step": ["host/reference/simulate", *STEP],
+    "host/simulate/step/cpu": ["host/simulate/step", *STEP],
+    "host/simulate/surfaces": SURFACES,
+    "host/simulate/start": ["host/simulate/surfaces", *SURFACES],
+    "host/simulate/patches": ["host/simulate/surfaces", *SURFACES],
+    "host/simulate/solve/problem": SOLVE,
+    "host/simulate/solve/two_level": ["host/simulate/solve/problem", *SOLVE],
+    "host/simulate/solve": [
+        "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
+    "host/simulate/step/cuda": [
+        "host/simulate/solve/problem", "host/simulate/solve/two_level", "kernels/exec", *SOLVE],
     "host/simulate/run": [
-        "host/simulate", "host/simulate/contact", "host/simulate/cpu", "host/collide", *COLLIDE,
-        *SIMULATE],
-    "host/simulate/contact": [
-        "host/simulate", "host/simulate/cpu", "host/collide", "kernels/contact", "kernels/two_level",
-        *COLLIDE, *SIMULATE],
-    "host/simulate/model": ["host/simulate", *SIMULATE],
-    "host/simulate/cpu": ["host/simulate", *SIMULATE],
-    "host/simulate/cuda": [
-        "host/simulate", "host/simulate/contact", "host/simulate/cpu", "kernels/contact",
-        "kernels/exec", "kernels/two_level", *SIMULATE],
-    "host/reference/simulate": ["host/base", "host/scene", "host/tetwarp", "kernels/base/tetwarp"],
-    "io": ["io/tetwarp", "host/base", *BASE],
+        "host/simulate/start", "host/simulate/patches", "host/simulate/solve",
+        "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],
-    "host/cli": ["io", "io/tetwarp", "host/base", "host/warp", *BASE],
+    "io/files": IO,
+    "io/h5": ["io/files", *IO],
+    "io/fclib": ["io/h5", "io/files", *IO],
+    "io/nifti": ["io/h5", "io/files", *IO],
+    "io/vtkhdf": ["io/nifti", "io/h5", "io/files", *IO],
+    "io/volume": ["io/vtkhdf", "io/nifti", "io/h5", "io/files", *IO],
+    "io/import": ["io/volume", "io/h5", "io/files", *IO],
+    "io/scene": ["io/files", *IO],
+    "io/picture": ["io/files", *IO],
+    "host/cli/common": CLI,
+    "host/cli/contact": ["host/cli/common", *CLI],
+    "host/cli/warp": ["host/cli/common", *CLI],
+    "host/cli/simulate": ["host/cli/common", "host/cli/warp", "io/vtkhdf", *CLI],
+    "host/cli/tools": ["host/cli/common", "host/cli/warp", *CLI],
+    "host/cli": ["host/cli/common", *CLI],
 }
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')

@@ -12,7 +12,7 @@
 #include <tetwarp/make.hpp>
 #include <vector>
 
-#include "tests/scenes/make_checks.hpp"
+#include "tests/support/make_checks.hpp"
 
 namespace tetwarp {
 namespace {

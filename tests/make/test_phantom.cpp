@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tetwarp/make.hpp>
 
-#include "tests/scenes/make_checks.hpp"
+#include "tests/support/make_checks.hpp"
 
 namespace tetwarp {
 namespace {

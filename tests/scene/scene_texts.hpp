@@ -5,7 +5,7 @@
 
 #include <tetwarp/scene_io.hpp>
 
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 

@@ -8,7 +8,7 @@
 #include <tetwarp/make.hpp>
 #include <tetwarp/scene.hpp>
 
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

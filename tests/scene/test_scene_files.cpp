@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "tests/scene/scene_texts.hpp"
-#include "tests/scenes/foreign_meshes.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/foreign_meshes.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

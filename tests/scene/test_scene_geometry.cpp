@@ -13,7 +13,7 @@
 #include "host/scene/surface.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp {
 namespace {

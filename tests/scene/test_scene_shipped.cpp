@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "tests/scene/scene_texts.hpp"
-#include "tests/scenes/io_files.hpp"
+#include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -15,7 +15,7 @@
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp {
 namespace {

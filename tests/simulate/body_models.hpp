@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "host/simulate/model.hpp"
-#include "host/simulate/stepper.hpp"
+#include "host/simulate/model/model.hpp"
+#include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp::test {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/reference/simulate/triangle_intersection.hpp"
+#include "tests/oracles/triangle_intersection.hpp"
 
 namespace tetwarp::test {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "host/simulate/contact/contact_rows.hpp"
-#include "host/simulate/contact/contact_sides.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/rotations.hpp"
+#include "host/simulate/solve/problem/contact_rows.hpp"
+#include "host/simulate/solve/problem/contact_sides.hpp"
 #include "tests/simulate/body_models.hpp"
 
 namespace tetwarp::test {

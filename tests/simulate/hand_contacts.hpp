@@ -8,8 +8,8 @@
 
 #include <tetwarp/contact_tracker.hpp>
 
-#include "host/simulate/contact/contact_system.hpp"
-#include "host/simulate/stepper.hpp"
+#include "host/simulate/solve/contact_system.hpp"
+#include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp::test {
 

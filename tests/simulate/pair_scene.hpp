@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/contact/pair_contacts.hpp"
+#include "host/simulate/patches/pair_contacts.hpp"
 
 namespace tetwarp::test {
 

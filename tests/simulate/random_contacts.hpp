@@ -10,7 +10,7 @@
 
 #include <Eigen/Dense>
 
-#include "kernels/two_level/majorant.hpp"
+#include "kernels/contact/majorant.hpp"
 
 namespace tetwarp::test {
 

@@ -1,5 +1,5 @@
 /// @file random_step.hpp
-/// A random system of a step with contacts on its rows, as the stages of kernels/two_level have it
+/// A random system of a step with contacts on its rows, as the stages of kernels/contact have it
 /// and as sparse matrices of Eigen.
 #pragma once
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <Eigen/SparseCore>
 
 #include "host/base/index_of.hpp"
-#include "kernels/two_level/row_start.hpp"
+#include "kernels/contact/row_start.hpp"
 #include "tests/simulate/random_contacts.hpp"
 
 namespace tetwarp::test {

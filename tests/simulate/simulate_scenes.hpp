@@ -8,8 +8,8 @@
 
 #include "host/base/point3.hpp"
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/model.hpp"
-#include "tests/scenes/largest_distance.hpp"
+#include "host/simulate/model/model.hpp"
+#include "tests/support/largest_distance.hpp"
 
 namespace tetwarp::test {
 

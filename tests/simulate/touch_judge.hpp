@@ -1,9 +1,9 @@
 /// @file touch_judge.hpp
 /// Whether the surfaces of a simulation are apart, by a test of all pairs of triangles.
 #pragma once
-#include "host/reference/simulate/triangle_intersection.hpp"
-#include "host/simulate/motion.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/motion.hpp"
+#include "host/simulate/model/rotations.hpp"
+#include "tests/oracles/triangle_intersection.hpp"
 #include "tests/simulate/touch_run.hpp"
 
 namespace tetwarp::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "host/simulate/contact/scene_surfaces.hpp"
+#include "host/simulate/surfaces/scene_surfaces.hpp"
 #include "tests/simulate/simulate_scenes.hpp"
 
 namespace tetwarp::test {

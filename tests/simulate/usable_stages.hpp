@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/simulate/cpu/vector_stages.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp::test {
 

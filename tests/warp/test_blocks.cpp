@@ -14,11 +14,11 @@
 #include <tetwarp/blocks.hpp>
 
 #include "host/warp/hex_split.hpp"
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/hex_scenes.hpp"
-#include "tests/scenes/message_of.hpp"
-#include "tests/scenes/scenes.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/hex_scenes.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

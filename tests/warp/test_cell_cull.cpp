@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/scenes/brute_force.hpp"
-#include "tests/scenes/stages.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/stages.hpp"
 
 namespace tetwarp::test {
 namespace {

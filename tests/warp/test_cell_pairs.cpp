@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/scenes/stages.hpp"
+#include "tests/support/stages.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/warp/cell_work.hpp"
-#include "tests/scenes/stages.hpp"
+#include "tests/support/stages.hpp"
 
 namespace tetwarp::test {
 namespace {

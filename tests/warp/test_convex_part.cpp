@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "kernels/warp/convex_part.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

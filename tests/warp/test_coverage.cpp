@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/brute_force.hpp"
-#include "tests/scenes/each_scene.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/each_scene.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

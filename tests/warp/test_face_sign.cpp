@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "kernels/warp/face_sign.hpp"
-#include "tests/scenes/brute_force.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

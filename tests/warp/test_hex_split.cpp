@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/warp/hex_split.hpp"
-#include "tests/scenes/hex_scenes.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/hex_scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

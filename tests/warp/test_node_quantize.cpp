@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "kernels/warp/node_quantize.hpp"
-#include "tests/scenes/brute_force.hpp"
-#include "tests/scenes/each_exec.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/brute_force.hpp"
+#include "tests/support/each_exec.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <tetwarp/make.hpp>
 #include <tetwarp/warp.hpp>
 
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/base/warp_backend.hpp"
-#include "tests/scenes/each_scene.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_scene.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

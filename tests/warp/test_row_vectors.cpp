@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "host/base/pixel_dispatch.hpp"
-#include "tests/scenes/row_bench.hpp"
+#include "tests/support/row_bench.hpp"
 
 namespace tetwarp::test {
 namespace {

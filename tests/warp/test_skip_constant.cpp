@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/base/pixel_dispatch.hpp"
-#include "tests/scenes/skip_series.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/skip_series.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

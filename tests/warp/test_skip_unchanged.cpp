@@ -13,8 +13,8 @@
 #include <tetwarp/error.hpp>
 
 #include "host/base/warp_backend.hpp"
-#include "tests/scenes/each_scene.hpp"
-#include "tests/scenes/skip_series.hpp"
+#include "tests/support/each_scene.hpp"
+#include "tests/support/skip_series.hpp"
 
 namespace tetwarp::test {
 namespace {

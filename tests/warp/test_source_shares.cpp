@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "kernels/warp/voxel_part.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

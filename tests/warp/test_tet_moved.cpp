@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/warp/tet_moved.hpp"
-#include "tests/scenes/stages.hpp"
+#include "tests/support/stages.hpp"
 
 namespace tetwarp::test {
 namespace {

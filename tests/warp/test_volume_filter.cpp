@@ -14,7 +14,7 @@
 #include "host/warp/cpu/cell_cull_cpu.hpp"
 #include "kernels/warp/cell_raster.hpp"
 #include "kernels/warp/volume_prefilter.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

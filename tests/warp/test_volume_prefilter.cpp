@@ -7,8 +7,8 @@
 
 #include "host/reference/warp/sample.hpp"
 #include "kernels/warp/volume_prefilter.hpp"
-#include "tests/scenes/each_exec.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/each_exec.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/warp/volume_range.hpp"
-#include "tests/scenes/each_exec.hpp"
+#include "tests/support/each_exec.hpp"
 
 namespace tetwarp::test {
 namespace {

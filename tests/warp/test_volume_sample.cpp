@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kernels/warp/volume_sample.hpp"
-#include "tests/scenes/scenes.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

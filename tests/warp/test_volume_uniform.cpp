@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "kernels/warp/volume_uniform.hpp"
-#include "tests/scenes/each_exec.hpp"
-#include "tests/scenes/scenes.hpp"
-#include "tests/scenes/stages.hpp"
+#include "tests/support/each_exec.hpp"
+#include "tests/support/scenes.hpp"
+#include "tests/support/stages.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/scenes/affine_scenes.hpp"
-#include "tests/scenes/skip_series.hpp"
+#include "tests/support/affine_scenes.hpp"
+#include "tests/support/skip_series.hpp"
 
 namespace tetwarp::test {
 namespace {

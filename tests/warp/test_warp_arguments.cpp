@@ -16,8 +16,8 @@
 #include <tetwarp/error.hpp>
 
 #include "host/base/warp_backend.hpp"
-#include "tests/scenes/message_of.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

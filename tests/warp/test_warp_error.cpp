@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/warp_laws.hpp"
+#include "tests/support/warp_laws.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/field_buffers.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/field_buffers.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

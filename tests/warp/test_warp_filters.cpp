@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

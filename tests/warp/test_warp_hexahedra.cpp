@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "host/warp/hex_split.hpp"
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/field_buffers.hpp"
-#include "tests/scenes/hex_scenes.hpp"
-#include "tests/scenes/message_of.hpp"
-#include "tests/scenes/skip_series.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/field_buffers.hpp"
+#include "tests/support/hex_scenes.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/skip_series.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/skip_series.hpp"
-#include "tests/scenes/steps_in_flight.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/skip_series.hpp"
+#include "tests/support/steps_in_flight.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -7,10 +7,10 @@
 #include <tetwarp/make.hpp>
 #include <vector>
 
-#include "tests/scenes/affine_scenes.hpp"
-#include "tests/scenes/intensity_run.hpp"
-#include "tests/scenes/skip_series.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/affine_scenes.hpp"
+#include "tests/support/intensity_run.hpp"
+#include "tests/support/skip_series.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

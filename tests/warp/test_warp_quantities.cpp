@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "tests/scenes/affine_scenes.hpp"
-#include "tests/scenes/message_of.hpp"
+#include "tests/support/affine_scenes.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {

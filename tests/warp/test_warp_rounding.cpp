@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "kernels/base/stochastic_rounding.hpp"
-#include "tests/scenes/affine_scenes.hpp"
-#include "tests/scenes/intensity_run.hpp"
-#include "tests/scenes/skip_series.hpp"
+#include "tests/support/affine_scenes.hpp"
+#include "tests/support/intensity_run.hpp"
+#include "tests/support/skip_series.hpp"
 
 namespace tetwarp::test {
 namespace {

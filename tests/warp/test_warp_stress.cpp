@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/warp_laws.hpp"
+#include "tests/support/warp_laws.hpp"
 
 namespace tetwarp::test {
 namespace {

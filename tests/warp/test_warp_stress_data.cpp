@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/each_backend.hpp"
-#include "tests/scenes/position_probe.hpp"
-#include "tests/scenes/solid_scenes.hpp"
+#include "tests/support/each_backend.hpp"
+#include "tests/support/position_probe.hpp"
+#include "tests/support/solid_scenes.hpp"
 
 namespace tetwarp::test {
 namespace {

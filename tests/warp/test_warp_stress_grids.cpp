@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "tests/scenes/warp_laws.hpp"
+#include "tests/support/warp_laws.hpp"
 
 namespace tetwarp::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/scenes/each_scene.hpp"
-#include "tests/scenes/warp_run.hpp"
+#include "tests/support/each_scene.hpp"
+#include "tests/support/warp_run.hpp"
 
 namespace tetwarp::test {
 namespace {

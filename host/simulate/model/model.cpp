@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "host/simulate/model/model_parts.hpp"
-#include "host/simulate/motion.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/motion.hpp"
+#include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
 
 namespace tetwarp {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "host/simulate/model/model_parts.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/rotations.hpp"
 #include "kernels/base/symmetric_eigen.hpp"
 
 namespace tetwarp {

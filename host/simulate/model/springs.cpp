@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
-#include "host/scene/scene_checks.hpp"
-#include "host/simulate/body_points.hpp"
+#include "host/scene/checks/scene_checks.hpp"
+#include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/model_parts.hpp"
 
 namespace tetwarp {

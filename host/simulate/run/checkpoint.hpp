@@ -17,8 +17,8 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/contact/scene_surfaces.hpp"
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
+#include "host/simulate/surfaces/scene_surfaces.hpp"
 
 namespace tetwarp {
 

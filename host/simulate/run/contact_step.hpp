@@ -17,15 +17,15 @@
 
 #include "host/collide/detector.hpp"
 
-#include "host/simulate/contact/contact_system.hpp"
-#include "host/simulate/contact/kept_places.hpp"
-#include "host/simulate/contact/pair_contacts.hpp"
-#include "host/simulate/contact/scene_surfaces.hpp"
-#include "host/simulate/resident_surfaces.hpp"
+#include "host/simulate/patches/pair_contacts.hpp"
 #include "host/simulate/run/contact_memory.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/run/step_groups.hpp"
-#include "host/simulate/stepper.hpp"
+#include "host/simulate/solve/contact_system.hpp"
+#include "host/simulate/step/resident_surfaces.hpp"
+#include "host/simulate/step/stepper.hpp"
+#include "host/simulate/surfaces/kept_places.hpp"
+#include "host/simulate/surfaces/scene_surfaces.hpp"
 
 namespace tetwarp {
 

@@ -4,7 +4,7 @@
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 #include "host/base/stopwatch.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/rotations.hpp"
 #include "host/simulate/run/contact_step.hpp"
 
 namespace tetwarp {

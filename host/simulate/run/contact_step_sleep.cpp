@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/contact/step_rows.hpp"
 #include "host/simulate/run/contact_step.hpp"
+#include "host/simulate/solve/problem/step_rows.hpp"
 
 namespace tetwarp {
 namespace {

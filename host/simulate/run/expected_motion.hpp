@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
 
 namespace tetwarp {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/model.hpp"
-#include "host/simulate/stepper.hpp"
+#include "host/simulate/model/model.hpp"
+#include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {
 

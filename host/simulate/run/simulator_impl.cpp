@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "host/base/parallel.hpp"
-#include "host/simulate/body_points.hpp"
-#include "host/simulate/contact/prepare_start.hpp"
-#include "host/simulate/reference_stepper.hpp"
+#include "host/simulate/model/body_points.hpp"
+#include "host/simulate/start/prepare_start.hpp"
+#include "host/simulate/step/reference_stepper.hpp"
 
 namespace tetwarp {
 namespace {

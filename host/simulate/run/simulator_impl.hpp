@@ -11,15 +11,15 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/contact/rest_growth.hpp"
-#include "host/simulate/contact/scene_surfaces.hpp"
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
 #include "host/simulate/run/contact_step.hpp"
 #include "host/simulate/run/island_sleep.hpp"
-#include "host/simulate/scene_drive.hpp"
-#include "host/simulate/scene_loads.hpp"
-#include "host/simulate/step_sums.hpp"
-#include "host/simulate/stepper.hpp"
+#include "host/simulate/start/rest_growth.hpp"
+#include "host/simulate/step/scene_drive.hpp"
+#include "host/simulate/step/scene_loads.hpp"
+#include "host/simulate/step/step_sums.hpp"
+#include "host/simulate/step/stepper.hpp"
+#include "host/simulate/surfaces/scene_surfaces.hpp"
 
 namespace tetwarp {
 

@@ -1,8 +1,8 @@
 #include "host/base/parallel.hpp"
-#include "host/simulate/rotations.hpp"
+#include "host/simulate/model/rotations.hpp"
 #include "host/simulate/run/simulator_impl.hpp"
 #include "host/simulate/run/tet_energies.hpp"
-#include "host/simulate/scene_record.hpp"
+#include "host/simulate/step/scene_record.hpp"
 
 namespace tetwarp {
 

@@ -5,7 +5,7 @@
 
 #include "host/base/point3.hpp"
 #include "host/simulate/run/simulator_impl.hpp"
-#include "host/simulate/scene_record.hpp"
+#include "host/simulate/step/scene_record.hpp"
 
 namespace tetwarp {
 namespace {

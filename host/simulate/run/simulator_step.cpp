@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "host/simulate/run/simulator_impl.hpp"
-#include "host/simulate/scene_record.hpp"
+#include "host/simulate/step/scene_record.hpp"
 
 namespace tetwarp {
 namespace {

@@ -10,7 +10,7 @@
 #include <tetwarp/contact_tracker.hpp>
 
 #include "host/collide/detector.hpp"
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 
 namespace tetwarp {

@@ -1,8 +1,8 @@
 /// @file tet_energies.hpp
 /// Energies of the tetrahedra of a state.
 #pragma once
-#include "host/simulate/cpu/vector_stages.hpp"
-#include "host/simulate/model.hpp"
+#include "host/simulate/model/model.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {
 

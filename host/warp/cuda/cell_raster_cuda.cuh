@@ -8,10 +8,10 @@
 #include "host/warp/warp_pipeline.hpp"
 #include "kernels/exec/device_limits.cuh"
 #include "kernels/exec/exec_cuda.cuh"
-#include "kernels/warp/cell_class.cuh"
-#include "kernels/warp/cell_interior.cuh"
-#include "kernels/warp/cell_raster.cuh"
-#include "kernels/warp/cell_tested.cuh"
+#include "kernels/warp/cuda/cell_class.cuh"
+#include "kernels/warp/cuda/cell_interior.cuh"
+#include "kernels/warp/cuda/cell_raster.cuh"
+#include "kernels/warp/cuda/cell_tested.cuh"
 
 namespace tetwarp {
 

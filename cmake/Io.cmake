@@ -1,0 +1,52 @@
+# tetwarp::io, the files
+include(cmake/MeshImport.cmake)
+include(cmake/ShippedScenes.cmake)
+# Sources that exist twice, with an optional library and without.
+foreach(library gif gmsh mpi vtk)
+  string(TOUPPER ${library} upper)
+  if(TETWARP_HAS_${upper})
+    set(tetwarp_${library} ${library})
+  else()
+    set(tetwarp_${library} no${library})
+  endif()
+endforeach()
+add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
+tetwarp_sources(tetwarp_io io/fclib
+  contact_checkpoint.cpp fclib_contact.cpp fclib_matrix.cpp fclib_numbers.cpp fclib_rows.cpp
+  fclib_write.cpp)
+tetwarp_sources(tetwarp_io io/files
+  finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
+tetwarp_sources(tetwarp_io io/h5
+  h5.cpp h5_attribute.cpp h5_disk.cpp h5_read.cpp h5_rows.cpp h5_write.cpp value_names.cpp)
+tetwarp_sources(tetwarp_io io/import
+  child_process.cpp mesh_${tetwarp_gmsh}.cpp mesh_${tetwarp_vtk}.cpp mesh_child.cpp mesh_import.cpp)
+tetwarp_sources(tetwarp_io io/nifti
+  nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
+  nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
+tetwarp_sources(tetwarp_io io/picture
+  film_${tetwarp_gif}.cpp palette.cpp png_image.cpp)
+tetwarp_sources(tetwarp_io io/scene
+  scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_geometry.cpp
+  scene_json.cpp scene_motion.cpp)
+tetwarp_sources(tetwarp_io io/volume
+  file_kind.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
+tetwarp_sources(tetwarp_io io/vtkhdf
+  simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp vtkhdf_array.cpp
+  vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
+  vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
+if(TETWARP_HAS_VTK)
+  tetwarp_sources(tetwarp_io io/import
+    mesh_vtk_arrays.cpp)
+endif()
+add_library(tetwarp::io ALIAS tetwarp_io)
+set_target_properties(tetwarp_io PROPERTIES EXPORT_NAME io VERSION ${PROJECT_VERSION} SOVERSION 0
+  UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
+target_include_directories(tetwarp_io
+  PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/io> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+  PRIVATE ${PROJECT_SOURCE_DIR})
+tetwarp_export_macro(tetwarp_io io_export.hpp)
+target_link_libraries(tetwarp_io PUBLIC tetwarp
+  PRIVATE tetwarp_hdf5 tetwarp_mesh_import tetwarp_nifti tetwarp_png tetwarp_gif
+    $<BUILD_INTERFACE:tetwarp_options> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+list(APPEND tetwarp_exported tetwarp_io tetwarp_hdf5 tetwarp_mesh_import tetwarp_nifti tetwarp_png
+  tetwarp_gif)

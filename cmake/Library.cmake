@@ -1,0 +1,137 @@
+# tetwarp::tetwarp, the library
+# Sources that exist twice, with CUDA and without.
+if(TETWARP_HAS_CUDA)
+  set(tetwarp_cuda cuda.cu)
+else()
+  set(tetwarp_cuda nocuda.cpp)
+endif()
+add_library(tetwarp)
+tetwarp_sources(tetwarp host/base
+  backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp report.cpp volume.cpp)
+tetwarp_sources(tetwarp host/collide
+  body_partners.cpp collide_items.cpp grid_plan.cpp touch_areas.cpp)
+tetwarp_sources(tetwarp host/collide/cpu
+  detector_cpu.cpp)
+tetwarp_sources(tetwarp host/collide/cuda
+  detector_${tetwarp_cuda})
+tetwarp_sources(tetwarp host/contact
+  adhesion.cpp contact_solver.cpp energy.cpp fill_report.cpp modes.cpp report.cpp solve_arrays.cpp)
+tetwarp_sources(tetwarp host/contact/block_jacobi
+  coupled_system.cpp)
+tetwarp_sources(tetwarp host/contact/cuda
+  contact_${tetwarp_cuda})
+tetwarp_sources(tetwarp host/contact/newton
+  associated.cpp contact_assembly.cpp natural_map.cpp newton.cpp newton_system.cpp pivoting.cpp)
+tetwarp_sources(tetwarp host/contact/problem
+  budget.cpp checks.cpp delassus.cpp imbalance.cpp matrix.cpp measure.cpp problem.cpp residual.cpp
+  row_blocks.cpp row_checks.cpp row_solution.cpp spring_offset.cpp)
+tetwarp_sources(tetwarp host/contact/solve
+  certificate.cpp condense.cpp engine.cpp engine_coupled.cpp feasibility.cpp island_fallback.cpp
+  island_restart.cpp island_solver.cpp method_choice.cpp status.cpp)
+tetwarp_sources(tetwarp host/contact/structure
+  color.cpp extract.cpp islands.cpp structure.cpp structure_global.cpp structure_local.cpp
+  system.cpp)
+tetwarp_sources(tetwarp host/contact/sweeps
+  run.cpp)
+tetwarp_sources(tetwarp host/contact/tracker
+  input_checks.cpp match.cpp record_update.cpp tracker.cpp)
+tetwarp_sources(tetwarp host/make
+  deform_mesh.cpp lattice_mesh.cpp phantom.cpp phantom_fish.cpp phantom_orange.cpp
+  phantom_organs.cpp phantom_torso.cpp picture_view.cpp render_surfaces.cpp render_volume.cpp
+  surface_soup.cpp)
+tetwarp_sources(tetwarp host/reference/contact
+  bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp least_norm.cpp
+  local.cpp)
+tetwarp_sources(tetwarp host/reference/simulate
+  assemble.cpp bodies.cpp bodies_record.cpp cloth_body.cpp elements.cpp energy.cpp fem_body.cpp
+  forces.cpp image_material.cpp make_system.cpp material_point.cpp motion.cpp named.cpp
+  nearest_material.cpp prescribed.cpp rigid_mass.cpp shares.cpp springs.cpp step_system.cpp
+  system.cpp)
+tetwarp_sources(tetwarp host/reference/warp
+  overlap.cpp sample.cpp sample_transform.cpp warp.cpp)
+tetwarp_sources(tetwarp host/scene
+  body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
+  marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp
+  shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp)
+tetwarp_sources(tetwarp host/scene/checks
+  check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
+tetwarp_sources(tetwarp host/simulate/model
+  body_points.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp motion.cpp
+  nearest.cpp rigid.cpp springs.cpp surface_mesh.cpp triangle_cloth.cpp)
+tetwarp_sources(tetwarp host/simulate/patches
+  pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
+tetwarp_sources(tetwarp host/simulate/run
+  contact_step.cpp contact_step_end.cpp contact_step_sleep.cpp expected_motion.cpp fingerprint.cpp
+  island_lists.cpp island_sleep.cpp simulator.cpp simulator_checkpoint.cpp simulator_impl.cpp
+  simulator_record.cpp simulator_sleep.cpp simulator_state.cpp simulator_step.cpp step_groups.cpp
+  tet_energies.cpp)
+tetwarp_sources(tetwarp host/simulate/solve
+  contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
+tetwarp_sources(tetwarp host/simulate/solve/problem
+  contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp contact_sides.cpp
+  step_laws.cpp step_problem.cpp step_rows.cpp)
+tetwarp_sources(tetwarp host/simulate/solve/two_level
+  compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp solved_islands.cpp
+  touching_blocks.cpp touching_groups.cpp touching_sweeps.cpp two_level_on_device.cpp
+  two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp)
+tetwarp_sources(tetwarp host/simulate/start
+  cage_growth.cpp cage_pose.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp start_check.cpp
+  start_shrink.cpp)
+tetwarp_sources(tetwarp host/simulate/step
+  cell_fields.cpp reference_rows.cpp reference_stepper.cpp scene_drive.cpp scene_loads.cpp
+  scene_record.cpp step_sums.cpp system_pattern.cpp)
+tetwarp_sources(tetwarp host/simulate/step/cpu
+  rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp stepper_cpu.cpp
+  vector_stages.cpp ALONE vector_stages_base.cpp)
+tetwarp_sources(tetwarp host/simulate/step/cuda
+  stepper_${tetwarp_cuda})
+tetwarp_sources(tetwarp host/simulate/surfaces
+  contact_thickness.cpp flat_edges.cpp kept_places.cpp near_pair.cpp pair_materials.cpp
+  round_shape.cpp scene_surfaces.cpp surface_motion.cpp triangle_tree.cpp)
+tetwarp_sources(tetwarp host/warp
+  block_mesh.cpp blocks.cpp geometry.cpp hex_split.cpp step_queue.cpp transform_checks.cpp
+  warper.cpp)
+tetwarp_sources(tetwarp host/warp/cpu
+  backend_cpu.cpp ALONE cell_cull_cpu.cpp cell_raster_cpu.cpp row_label_cpu.cpp row_scalar.cpp
+  row_transform_cpu.cpp)
+tetwarp_sources(tetwarp host/warp/cuda
+  backend_${tetwarp_cuda})
+if(TETWARP_HAS_CUDA)
+  tetwarp_sources(tetwarp kernels/exec
+    primitives_cuda.cu)
+  target_link_libraries(tetwarp PRIVATE CUDA::cudart_static)
+endif()
+add_library(tetwarp::tetwarp ALIAS tetwarp)
+set_target_properties(tetwarp PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION 0
+  UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
+# Each compiled for one instruction set, chosen at run time. Square roots do not set errno, so that
+# they can be vectors.
+set(tetwarp_vector_options_base -fno-math-errno)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(tetwarp_vector_options_avx2 -fno-math-errno -mavx2)
+  set(tetwarp_vector_options_avx512
+    -fno-math-errno -mavx2 -mavx512f -mavx512vl -mavx512dq -mprefer-vector-width=512)
+  tetwarp_sources(tetwarp host/simulate/step/cpu
+    ALONE vector_stages_avx2.cpp vector_stages_avx512.cpp)
+endif()
+foreach(set base avx2 avx512)
+  set_source_files_properties(host/simulate/step/cpu/vector_stages_${set}.cpp PROPERTIES
+    COMPILE_OPTIONS "${tetwarp_vector_options_${set}}" SKIP_PRECOMPILE_HEADERS ON)
+endforeach()
+# Highway compiles these files once per vector instruction set. SSE4 is left out: its vectors are as
+# wide as those of the baseline (SSSE3), and only processors without AVX2 would use it.
+set_source_files_properties(host/warp/cpu/cell_cull_cpu.cpp host/warp/cpu/cell_raster_cpu.cpp
+  host/warp/cpu/row_label_cpu.cpp host/warp/cpu/row_transform_cpu.cpp
+  PROPERTIES COMPILE_DEFINITIONS HWY_DISABLED_TARGETS=HWY_SSE4 SKIP_PRECOMPILE_HEADERS ON)
+# A third of the files include Eigen.
+target_precompile_headers(tetwarp PRIVATE <algorithm> <string> <vector> <Eigen/Dense> <Eigen/SparseCore>)
+target_compile_features(tetwarp PUBLIC cxx_std_20)
+target_include_directories(tetwarp
+  PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/host> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/kernels/base>
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+  PRIVATE ${PROJECT_SOURCE_DIR})
+tetwarp_export_macro(tetwarp export.hpp)
+target_link_libraries(tetwarp PRIVATE
+  tetwarp_hwy tetwarp_threads $<BUILD_INTERFACE:tetwarp_options> $<BUILD_INTERFACE:Eigen3::Eigen>
+  $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>)
+set(tetwarp_exported tetwarp tetwarp_hwy tetwarp_threads)

@@ -1,0 +1,18 @@
+# Sources by folder, each list sorted.
+
+# tetwarp_sources(TARGET FOLDER FILE... [ALONE FILE...]): sources of a folder. Parsing their includes
+# takes longer than compiling their code, so up to eight files are compiled as one unit, except those
+# that have options of their own (ALONE).
+function(tetwarp_sources target folder)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "ALONE")
+  string(MAKE_C_IDENTIFIER ${folder} unit)
+  set(number 0)
+  foreach(file IN LISTS arg_UNPARSED_ARGUMENTS)
+    math(EXPR part "${number} / 8")
+    set_source_files_properties(${folder}/${file} PROPERTIES UNITY_GROUP ${unit}_${part})
+    math(EXPR number "${number} + 1")
+  endforeach()
+  list(TRANSFORM arg_UNPARSED_ARGUMENTS PREPEND ${folder}/)
+  list(TRANSFORM arg_ALONE PREPEND ${folder}/)
+  target_sources(${target} PRIVATE ${arg_UNPARSED_ARGUMENTS} ${arg_ALONE})
+endfunction()

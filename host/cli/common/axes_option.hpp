@@ -1,0 +1,35 @@
+/// @file axes_option.hpp
+/// The option --axes: world axes of files that are read or written.
+#pragma once
+#include <optional>
+#include <string>
+
+#include <tetwarp/io.hpp>
+
+#include "host/cli/common/declare.hpp"
+
+namespace tetwarp::cli {
+
+/// Declares --axes ras|lps; without it `target` stays empty, which `description` explains.
+inline void add_axes(CLI::App& app, std::optional<Axes>& target, const std::string& description) {
+  app.add_option_function<std::string>(
+         "--axes",
+         [&target](const std::string& word) {
+           target = meaning_of("--axes", word, choices_of<Axes>());
+         },
+         description)
+      ->type_name("ras|lps");
+}
+
+/// Axes for reading a mesh: those of the option. Throws IoError where it is given for a VTKHDF
+/// mesh, which has no other axes than its own.
+inline Axes axes_of_mesh(const std::string& path, const std::optional<Axes>& option) {
+  if (option == Axes::lps && kind_of(path) == FileKind::mesh) {
+    throw IoError(path, "",
+                  "is a VTKHDF mesh, which is not turned; leave out --axes, which is for .msh, "
+                  ".vtu and .vtk");
+  }
+  return option.value_or(Axes::ras);
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,171 @@
+#include "host/cli/common/file_checks.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+#include <tetwarp/mesh_import.hpp>
+
+#include "io/files/finished_file.hpp"
+
+namespace tetwarp::cli {
+namespace fs = std::filesystem;
+
+void check_output_folder(const std::string& folder, const std::string& output) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+    throw IoError(output, "", "'" + folder + "' is not a folder; name another one");
+  }
+  if (!fs::is_directory(folder, error)) {
+    throw IoError(output, "", "folder '" + folder + "' does not exist; create it first");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw IoError(output, "", "no permission to write in folder '" + folder + "'");
+  }
+}
+
+void check_new_folder(const std::string& folder, const std::string& output) {
+  std::error_code error;
+  fs::path above = fs::absolute(folder, error);
+  while (!fs::exists(above, error) && above.has_relative_path()) above = above.parent_path();
+  check_output_folder(above.string(), output);
+}
+
+void check_output_file(const std::string& output, const std::vector<std::string>& inputs) {
+  std::error_code error;
+  if (output.empty()) throw IoError("output", "", "its name is empty");
+  if (fs::is_directory(output, error)) {
+    throw IoError(output, "", "is a folder; name the file to write");
+  }
+  if (fs::exists(output, error) && !fs::is_regular_file(output, error)) {
+    throw IoError(output, "", "exists and is not a regular file; choose another name");
+  }
+  const std::string canonical = canonical_path(output);
+  for (const std::string& input : inputs) {
+    if (canonical == canonical_path(input) || fs::equivalent(output, input, error)) {
+      throw IoError(output, "", "is also an input; name another output");
+    }
+  }
+  const std::string folder = fs::path(link_target(output)).parent_path().string();
+  check_output_folder(folder.empty() ? "." : folder, output);
+}
+
+namespace {
+bool is_hdf_extension(const std::string& extension) {
+  return extension == ".vtkhdf" || extension == ".hdf" || extension == ".h5";
+}
+}  // namespace
+
+void check_hdf_name(const std::string& output) {
+  if (!is_hdf_extension(fs::path(output).extension().string())) {
+    throw IoError(output, "", "the name of a VTKHDF file ends in .vtkhdf, .hdf or .h5");
+  }
+}
+
+void check_volume_name(const std::string& output) {
+  if (has_nifti_name(output)) return;
+  const std::string extension = fs::path(output).extension().string();
+  if (!is_hdf_extension(extension)) {
+    throw IoError(output, "", "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii or .nii.gz");
+  }
+}
+
+namespace {
+/// A format that is not read, by the end of a file's name.
+struct ForeignFormat {
+  const char* extension;
+  const char* noun;
+  const char* remedy;
+};
+
+constexpr const char* to_nifti = "convert it to NIfTI, for example by SimpleITK or 3D Slicer";
+constexpr const char* to_vtu =
+    "convert it to .vtu, .vtk or .msh, for example by ParaView or meshio";
+constexpr ForeignFormat foreign_formats[] = {
+    {".nrrd", "NRRD image", to_nifti},
+    {".nhdr", "NRRD image", to_nifti},
+    {".mha", "MetaImage", to_nifti},
+    {".mhd", "MetaImage", to_nifti},
+    {".dcm", "DICOM image", to_nifti},
+    {".mgz", "FreeSurfer image", to_nifti},
+    {".mgh", "FreeSurfer image", to_nifti},
+    {".vti", "VTK image", to_nifti},
+    {".tif", "TIFF image", to_nifti},
+    {".tiff", "TIFF image", to_nifti},
+    {".pvtu", "mesh in several files", to_vtu},
+    {".pvd", "list of VTK files", "name one of its .vtu files"},
+    {".inp", "Abaqus mesh", to_vtu},
+    {".med", "MED mesh", to_vtu},
+    {".xdmf", "XDMF mesh", to_vtu},
+    {".mesh", "Medit mesh", to_vtu},
+    {".stl", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".ply", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".obj", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
+    {".vtp", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"}};
+
+/// Throws IoError for a file that is known not to be readable: of another format, or empty.
+void refuse_foreign(const std::string& path, const std::string& expected) {
+  std::error_code error;
+  if (fs::is_regular_file(path, error) && fs::file_size(path, error) == 0) {
+    throw IoError(path, "", "is empty, expected a " + expected + "; copy it again");
+  }
+  for (const ForeignFormat& format : foreign_formats) {
+    if (!path.ends_with(format.extension)) continue;
+    throw IoError(path, "",
+                  std::string("is a ") + format.noun + ", which is not read; " + format.remedy);
+  }
+}
+
+/// What a file is, in words for a message.
+std::string noun_of(const std::string& path, FileKind kind) {
+  if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
+  if (kind == FileKind::unknown && (has_nifti_name(path) || path.ends_with(".hdr"))) {
+    return "file without a NIfTI header (damaged, truncated or of another format)";
+  }
+  return name_of(kind);
+}
+
+[[noreturn]] void refuse_kind(const std::string& path,
+                              FileKind kind,
+                              const std::string& expected,
+                              const std::string& remedy) {
+  if (kind == FileKind::unknown) refuse_foreign(path, expected);
+  const bool is_analyze = kind == FileKind::analyze;
+  throw IoError(
+      path, "",
+      "is a " + noun_of(path, kind) + ", expected a " + expected + "; " +
+          (is_analyze ? "convert it to NIfTI: Analyze images have no orientation" : remedy));
+}
+
+FileKind sound_kind_of(const std::string& path) {
+  const FileKind kind = kind_of(path);
+  check_sound(path, kind);
+  return kind;
+}
+}  // namespace
+
+void check_kind(const std::string& path, FileKind expected, const std::string& remedy) {
+  const FileKind kind = sound_kind_of(path);
+  if (kind != expected) refuse_kind(path, kind, name_of(expected), remedy);
+}
+
+void check_volume(const std::string& path, const std::string& remedy) {
+  const FileKind kind = sound_kind_of(path);
+  if (kind != FileKind::volume && kind != FileKind::nifti) {
+    refuse_kind(path, kind, "volume", remedy);
+  }
+}
+
+void check_mesh(const std::string& path, const std::string& remedy) {
+  const FileKind kind = sound_kind_of(path);
+  const bool is_imported = kind == FileKind::unknown && has_mesh_extension(path);
+  if (kind != FileKind::mesh && !is_imported) refuse_kind(path, kind, "mesh", remedy);
+}
+
+std::string canonical_path(const std::string& path) {
+  std::error_code error;
+  const fs::path canonical = fs::weakly_canonical(fs::absolute(link_target(path)), error);
+  return error ? path : canonical.string();
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,138 @@
+#include "host/cli/simulate/simulate_arguments.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/base/parallel.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/warp/warp_arguments.hpp"
+
+namespace tetwarp::cli {
+namespace {
+void declare_scene(CLI::App& app, SimulateArguments& arguments) {
+  app.add_option("SCENE", arguments.scene_file, "scene file, JSON")->type_name("");
+  app.add_option("--scene", arguments.scene_name,
+                 "a scene that ships with the command instead of a file; `list` shows their names")
+      ->type_name("NAME|list");
+  app.add_flag("--print", arguments.print, "print the scene's JSON and do nothing else");
+  app.add_option("-o,--output", arguments.folder, "folder for the results, made if missing")
+      ->type_name("FOLDER");
+  app.add_option("--steps", arguments.steps, "steps from the start of the scene [its duration]")
+      ->check(at_least(0))
+      ->type_name("N");
+  app.add_flag("--untangle", arguments.simulate.untangle,
+               "shrink bodies that overlap at the start until they are apart, and let them grow "
+               "back within 0.2 s");
+  app.add_option("--contacts", arguments.contacts,
+                 "write the contacts of every output as points with normals and impulses")
+      ->type_name("FILE.vtkhdf");
+  app.add_option("--checkpoint", arguments.checkpoint,
+                 "file for the state at the end, also of an interrupted run, to go on later")
+      ->type_name("FILE");
+  app.add_option("--checkpoint-every", arguments.checkpoint_every,
+                 "write the checkpoint every N steps, too")
+      ->check(at_least(1))
+      ->type_name("N");
+  app.add_option("--restart", arguments.restart,
+                 "go on from a checkpoint; results in the folder up to it are kept")
+      ->type_name("FILE");
+}
+
+void declare_warping(CLI::App& app, SimulateArguments& arguments) {
+  app.add_option_function<std::string>(
+         "--warp",
+         [&arguments](const std::string& name) {
+           arguments.warps = true;
+           arguments.warped_body = name;
+         },
+         "warp the volumes of bodies, or of the body NAME, at every output: "
+         "NAME.warped_0000.vtkhdf ...")
+      ->expected(0, 1)
+      ->type_name("[NAME]");
+  declare_grid_options(app, arguments.grid);
+  declare_sampling_options(app, arguments.warp);
+  declare_outside_options(app, arguments.warp);
+  app.add_option("--compress", arguments.compress,
+                 "deflate level of warped volumes, 0 for none [0]")
+      ->check(between(0, 9))
+      ->type_name("L");
+}
+
+void declare_pictures(CLI::App& app, SimulateArguments& arguments) {
+  app.add_flag("--picture", arguments.draws, "draw every output: scene_0000.png ...");
+  app.add_option("--film", arguments.film, "write these pictures as an animated GIF")
+      ->type_name("FILE.gif");
+  app.add_option_function<std::array<double, 6>>(
+         "--camera",
+         [&arguments](const std::array<double, 6>& camera) { arguments.camera = camera; },
+         "eye and target [whole scene at the start]")
+      ->delimiter(',')
+      ->type_name("X,Y,Z,TX,TY,TZ");
+  app.add_option("--pixels", arguments.pixels, "width and height of the pictures [960,640]")
+      ->delimiter(',')
+      ->check(between(16, 4096))
+      ->type_name("W,H");
+}
+
+void declare_running(CLI::App& app, SimulateArguments& arguments) {
+  SimulateOptions& simulate = arguments.simulate;
+  add_choice(app, "--backend", simulate.backend, choices_of<Backend>(), "where to compute [auto]");
+  app.add_option("--device", simulate.device, "CUDA device number [0]")
+      ->check(at_least(0))
+      ->type_name("N");
+  app.add_option("--threads", simulate.threads,
+                 "threads of the cpu back end, 0 for all cores [0]; any number: same results")
+      ->check(between(0, max_threads))
+      ->type_name("N");
+  app.add_option("--max-iterations", simulate.max_iterations,
+                 "of conjugate gradients per solve [10000]")
+      ->check(at_least(1))
+      ->type_name("N");
+  app.add_option("--report", arguments.report, "report as JSON [FOLDER/report.json]")
+      ->type_name("FILE");
+  add_quiet(app, arguments.quiet);
+}
+}  // namespace
+
+void declare_simulate_options(CLI::App& app, SimulateArguments& arguments) {
+  declare_scene(app, arguments);
+  declare_running(app, arguments);
+  declare_pictures(app, arguments);
+  declare_warping(app, arguments);
+}
+
+void check_complete(const SimulateArguments& arguments) {
+  const auto refuse = [](const std::string& option, const std::string& problem) {
+    throw CLI::ValidationError(option, problem);
+  };
+  if (arguments.scene_name == "list") return;
+  if (arguments.scene_file.empty() == arguments.scene_name.empty()) {
+    refuse("SCENE", "expected a scene file or --scene NAME, one of them");
+  }
+  if (arguments.print) return;
+  if (arguments.folder.empty()) refuse("-o FOLDER", "a folder for the results is needed");
+  if (arguments.checkpoint_every > 0 && arguments.checkpoint.empty()) {
+    refuse("--checkpoint-every", "needs --checkpoint FILE");
+  }
+  if (!arguments.film.empty() && !arguments.film.ends_with(".gif")) {
+    refuse("--film", "the name of a film ends in .gif");
+  }
+  if (!arguments.contacts.empty() && !arguments.contacts.ends_with(".vtkhdf")) {
+    refuse("--contacts", "the name of a file of contacts ends in .vtkhdf");
+  }
+  if (arguments.camera && !arguments.draws && arguments.film.empty()) {
+    refuse("--camera", "needs --picture or --film");
+  }
+  if (arguments.camera) {
+    for (const double number : *arguments.camera) {
+      if (!std::isfinite(number)) refuse("--camera", "a number is not finite");
+    }
+    if (std::equal(arguments.camera->begin(), arguments.camera->begin() + 3,
+                   arguments.camera->begin() + 3)) {
+      refuse("--camera", "the eye and what it looks at are the same point");
+    }
+  }
+  check_sampling(arguments.warp);
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,55 @@
+/// @file simulate_arguments.hpp
+/// The arguments of `tetwarp simulate`.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tetwarp/simulate.hpp>
+#include <tetwarp/warp.hpp>
+
+#include "host/cli/warp/output_grid.hpp"
+
+namespace tetwarp::cli {
+
+/// Their syntax is checked; files are not read.
+struct SimulateArguments {
+  std::string scene_file;
+  std::string scene_name;  ///< of a scene that ships with the command, or "list"
+  bool print = false;      ///< print the scene's text and do nothing else
+  std::string folder;      ///< for the results
+  std::optional<std::int64_t> steps;
+  SimulateOptions simulate;
+  std::string checkpoint;             ///< file; empty: none
+  std::int64_t checkpoint_every = 0;  ///< steps; 0: at the end only
+  std::string restart;                ///< file; empty: from the start
+  std::string contacts;               ///< file; empty: none
+
+  bool warps = false;
+  std::string warped_body;  ///< empty: all that are made of a volume
+  bool has_filter = false;  ///< --filter was given
+  WarpOptions warp;
+  GridChoice grid{"bounds", {}, {}, {}, {}};
+  int compress = 0;
+
+  bool draws = false;                           ///< pictures
+  std::string film;                             ///< file; empty: none
+  std::optional<std::array<double, 6>> camera;  ///< eye, target
+  std::array<int, 2> pixels{960, 640};
+
+  std::string report;  ///< file; empty: report.json in the folder
+  bool quiet = false;
+
+  /// The scene, for messages.
+  const std::string& scene() const { return scene_file.empty() ? scene_name : scene_file; }
+};
+
+/// Declares every option and binds it to `arguments`, which must outlive `app`.
+void declare_simulate_options(CLI::App& app, SimulateArguments& arguments);
+
+/// Throws CLI::ValidationError when options are missing or contradict each other.
+void check_complete(const SimulateArguments& arguments);
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,290 @@
+#include "host/cli/simulate/simulate_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+#include <tetwarp/error.hpp>
+#include <tetwarp/scene_io.hpp>
+
+#include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/interrupt.hpp"
+#include "io/files/finished_file.hpp"
+
+namespace tetwarp::cli {
+namespace fs = std::filesystem;
+namespace {
+constexpr double flush_interval = 0.5;      // seconds between writes of results, at least
+constexpr double most_flush_share = 0.05;   // of the time of a run
+constexpr double last_picture_seconds = 1;  // for which a film shows its last picture
+
+Scene load(const SimulateArguments& arguments) {
+  if (!arguments.scene_name.empty()) {
+    return parse_scene(scene_text(arguments.scene_name), arguments.scene_name);
+  }
+  return read_scene(arguments.scene_file);
+}
+
+/// Checks the names of all files before anything is computed.
+void check_files(const SimulateArguments& arguments) {
+  const std::vector<std::string> inputs =
+      arguments.scene_file.empty() ? std::vector<std::string>() : std::vector{arguments.scene_file};
+  std::error_code error;
+  if (fs::exists(arguments.folder, error)) {
+    check_output_folder(arguments.folder, arguments.folder);
+  } else {
+    check_new_folder(arguments.folder, arguments.folder);
+  }
+  for (const std::string& file :
+       {arguments.checkpoint, arguments.film, arguments.report, arguments.contacts}) {
+    if (file.empty()) continue;
+    const fs::path parent = fs::path(file).parent_path();
+    const bool is_in_new_folder =
+        !parent.empty() && canonical_path(parent.string()) == canonical_path(arguments.folder) &&
+        !fs::exists(arguments.folder, error);
+    if (!is_in_new_folder) check_output_file(file, inputs);
+  }
+}
+
+/// No two results are written to one file.
+void check_results(const SimulateArguments& arguments, const Scene& scene) {
+  std::map<std::string, std::string> taken;  // what each path is
+  const auto add = [&](const fs::path& path, const std::string& what, const char* option) {
+    const auto [place, is_new] = taken.try_emplace(canonical_path(path.string()), what);
+    if (is_new) return;
+    throw IoError(path.string(), "", "is " + place->second + "; choose another name for " + option);
+  };
+  const fs::path folder = arguments.folder;
+  add(folder / "series.h5", "the series of the run", "-o");
+  for (const Body& body : scene.bodies) {
+    for (const char* const end : {".vtkhdf", ".surface.vtkhdf"}) {
+      taken.emplace(canonical_path(folder / (body.name + end)),
+                    "the file of body '" + body.name + "'");
+    }
+  }
+  if (arguments.report.empty()) add(folder / "report.json", "the report of the run", "-o");
+  const auto add_option = [&](const std::string& path, const char* option) {
+    if (!path.empty()) add(path, std::string("the file of ") + option, option);
+  };
+  add_option(arguments.report, "--report");
+  add_option(arguments.checkpoint, "--checkpoint");
+  add_option(arguments.contacts, "--contacts");
+  add_option(arguments.film, "--film");
+}
+
+std::vector<std::byte> bytes_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  if (!file || fs::is_directory(path, error)) {
+    throw IoError(path, "", "cannot be opened; name a file that --checkpoint wrote");
+  }
+  const std::vector<char> chars{std::istreambuf_iterator<char>(file), {}};
+  std::vector<std::byte> bytes(chars.size());
+  std::ranges::transform(chars, bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
+  return bytes;
+}
+}  // namespace
+
+SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(arguments) {
+  check_files(arguments);
+  const Stopwatch reading;
+  Scene scene = load(arguments);
+  result_.read_seconds = reading.seconds();
+  check_results(arguments, scene);
+  last_step_ = arguments.steps.value_or(scene.step_count());
+  frames_.emplace(scene.output, scene.time_step, last_step_);
+  SimulateOptions options = arguments.simulate;
+  options.progress = [](const StepProgress&) { return !is_interrupted(); };
+  const Stopwatch setup;
+  try {
+    simulator_ = std::make_unique<Simulator>(std::move(scene), options);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments.scene(), "", error.what());
+  }
+  result_.setup_seconds = setup.seconds();
+  if (!arguments.restart.empty()) restore();
+  series_.emplace(simulator_->scene());
+  if (arguments.warps) warps_.emplace(*simulator_, arguments);
+  if (arguments.draws || !arguments.film.empty()) pictures_.emplace(*simulator_, arguments);
+}
+
+void SimulateRun::restore() {
+  try {
+    simulator_->restore(bytes_of_file(arguments_.restart));
+  } catch (const std::invalid_argument& error) {
+    throw IoError(arguments_.restart, "", error.what());
+  }
+  result_.first_step = simulator_->step_index();
+  if (result_.first_step > last_step_) {
+    throw IoError(arguments_.restart, "",
+                  fmt::format("is the state after step {}, beyond the last step {}; raise --steps "
+                              "or the scene's duration",
+                              result_.first_step, last_step_));
+  }
+}
+
+void SimulateRun::open_files() {
+  fs::create_directories(arguments_.folder);
+  if (pictures_) pictures_->begin();
+  const std::string series_path = (fs::path(arguments_.folder) / "series.h5").string();
+  const std::int64_t step = simulator_->step_index();
+  next_frame_ = frames_->count_through(step);
+  std::int64_t kept_frames = -1;
+  std::error_code error;
+  if (!arguments_.restart.empty() && fs::exists(series_path, error)) {
+    series_file_.emplace(SeriesWriter::reopen(series_path, series_->columns(), step));
+    kept_frames = next_frame_ - frames_->count_through(series_file_->first_step() - 1);
+  } else {
+    series_file_.emplace(series_path, series_->columns(), step);
+  }
+  bodies_.emplace(*simulator_, arguments_.folder, kept_frames);
+  result_.outputs = bodies_->paths();
+  result_.outputs.push_back(series_path);
+  if (!arguments_.contacts.empty()) {
+    contacts_.emplace(arguments_.contacts, kept_frames);
+    result_.outputs.push_back(arguments_.contacts);
+  }
+  if (kept_frames >= 0) {
+    const SignalHold until_complete;
+    series_file_->drop_later();
+    bodies_->drop_later();
+    if (contacts_) contacts_->drop_later();
+    return;
+  }
+  write_row();
+  if (frames_->step_of(next_frame_ - 1) == step) write_frame(next_frame_ - 1);
+  flush();
+}
+
+void SimulateRun::write_row() {
+  series_file_->append(series_->row_of(simulator_->record()));
+  has_unwritten_ = true;
+}
+
+/// Results are kept for a while: to open and close all files for every frame would take as long as
+/// the steps between.
+void SimulateRun::flush_if_due() {
+  const double interval = std::max(flush_interval, flush_seconds_ / most_flush_share);
+  if (since_flush_.seconds() >= interval) flush();
+}
+
+void SimulateRun::flush() {
+  if (!has_unwritten_) return;
+  const Stopwatch writing;
+  if (!until_complete_) until_complete_.emplace();
+  series_file_->flush();
+  bodies_->flush();
+  has_unwritten_ = false;
+  since_flush_ = {};
+  flush_seconds_ = writing.seconds();
+  result_.write_seconds += flush_seconds_;
+  // Where a signal has come meanwhile, finish() follows, which must not be cut short.
+  if (!is_interrupted()) until_complete_.reset();
+}
+
+double SimulateRun::frame_seconds(std::int64_t frame) const {
+  if (frame + 1 >= frames_->count()) return last_picture_seconds;
+  return static_cast<double>(frames_->step_of(frame + 1) - frames_->step_of(frame)) *
+         simulator_->scene().time_step;
+}
+
+void SimulateRun::write_frame(std::int64_t frame) {
+  const Stopwatch writing;
+  {
+    const SignalHold until_complete;
+    bodies_->append();
+    if (contacts_) contacts_->append(*simulator_);
+  }
+  result_.write_seconds += writing.seconds();
+  flush_if_due();  // what follows may take long
+  if (warps_) warps_->write_frame(frame);
+  if (pictures_) pictures_->draw_frame(frame, frame_seconds(frame));
+  ++result_.frames;
+}
+
+/// Not before all results up to it, with which a later run goes on.
+void SimulateRun::write_checkpoint() {
+  flush();
+  const Stopwatch writing;
+  const std::vector<std::byte> bytes = simulator_->checkpoint();
+  write_finished_file(arguments_.checkpoint,
+                      {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  result_.write_seconds += writing.seconds();
+}
+
+void SimulateRun::take_steps(ProgressBar& bar) {
+  while (simulator_->step_index() < last_step_) {
+    stop_if_interrupted();
+    const Stopwatch stepping;
+    if (!simulator_->step()) throw Cancelled();
+    result_.step_seconds += stepping.seconds();
+    const std::int64_t step = simulator_->step_index();
+    if (!simulator_->record().converged) ++result_.unconverged_steps;
+    write_row();
+    if (next_frame_ < frames_->count() && frames_->step_of(next_frame_) == step) {
+      write_frame(next_frame_++);
+    }
+    flush_if_due();
+    if (arguments_.checkpoint_every > 0 && step % arguments_.checkpoint_every == 0) {
+      write_checkpoint();
+    }
+    bar.finish_step();
+    const double rate = static_cast<double>(step - result_.first_step) / total_.seconds();
+    const std::int64_t contacts = simulator_->record().contacts;
+    bar.show_note(fmt::format("{:.2f} s, {:.3g} steps/s", simulator_->time(), rate) +
+                  (contacts > 0 ? fmt::format(", {} contacts", contacts) : std::string()));
+    bar.update(0, 0);
+  }
+}
+
+const SimulateResult& SimulateRun::run() {
+  try {
+    open_files();
+    ProgressBar bar(!arguments_.quiet, "simulate", static_cast<std::size_t>(last_step_));
+    bar.skip_steps(static_cast<std::size_t>(result_.first_step));
+    take_steps(bar);
+  } catch (const Cancelled&) {
+    result_.is_interrupted = true;
+  }
+  finish();
+  return result_;
+}
+
+void SimulateRun::finish() {
+  flush();
+  if (!until_complete_) until_complete_.emplace();
+  series_file_.reset();
+  if (contacts_) contacts_->close();
+  if (!arguments_.checkpoint.empty()) write_checkpoint();
+  if (pictures_ && result_.frames > 0) {
+    pictures_->finish();
+    result_.outputs.insert(result_.outputs.end(), pictures_->paths().begin(),
+                           pictures_->paths().end());
+    result_.draw_seconds = pictures_->seconds();
+  }
+  if (warps_) {
+    result_.outputs.insert(result_.outputs.end(), warps_->paths().begin(), warps_->paths().end());
+    result_.warp_seconds = warps_->warp_seconds();
+    result_.write_seconds += warps_->write_seconds();
+  }
+  if (result_.unconverged_steps > 0) {
+    result_.warnings.push_back(fmt::format(
+        "{}: {} of {} steps ended above their tolerance (series.h5: converged)", arguments_.scene(),
+        result_.unconverged_steps, simulator_->step_index() - result_.first_step));
+  }
+  result_.steps_done = simulator_->step_index();
+  result_.total_seconds = total_.seconds();
+  const std::string report = arguments_.report.empty()
+                                 ? (fs::path(arguments_.folder) / "report.json").string()
+                                 : arguments_.report;
+  write_finished_file(report, report_json(arguments_, *simulator_, *series_, result_) + "\n");
+  until_complete_.reset();
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,53 @@
+/// @file simulate_warp.hpp
+/// Volumes that follow the bodies of a simulation.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/simulate.hpp>
+#include <tetwarp/warp.hpp>
+
+#include "host/cli/simulate/simulate_arguments.hpp"
+
+namespace tetwarp::cli {
+
+/// Warps the volumes of bodies by the positions of their nodes, which stay where the simulator has
+/// them, and writes NAME.warped_0000.vtkhdf and so on.
+class BodyWarps {
+ public:
+  /// Checks the options by preparing the first warp of each volume.
+  /// @throws std::invalid_argument  naming the body, when none is made of a volume or an option
+  ///                                does not suit its samples
+  BodyWarps(const Simulator& simulator, const SimulateArguments& arguments);
+
+  /// Warps and writes the state of the simulator. @throws Cancelled after an interrupt
+  void write_frame(std::int64_t frame);
+
+  /// Files written so far.
+  const std::vector<std::string>& paths() const { return paths_; }
+  double warp_seconds() const { return warp_seconds_; }
+  double write_seconds() const { return write_seconds_; }
+
+ private:
+  /// A body made of a volume.
+  struct Follower {
+    std::size_t body;
+    const Volume* source;  ///< of the scene
+    Grid grid;             ///< of the last warp
+    std::optional<Warper> warper;
+  };
+
+  /// Makes the Warper of the grid that suits the positions of the body, unless it is there.
+  void prepare(Follower& follower) const;
+  WarpOptions options_of(const Follower& follower) const;
+
+  const Simulator& simulator_;
+  const SimulateArguments& arguments_;
+  std::vector<Follower> followers_;
+  std::vector<std::string> paths_;
+  double warp_seconds_ = 0, write_seconds_ = 0;
+};
+
+}  // namespace tetwarp::cli

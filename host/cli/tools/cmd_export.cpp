@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <vector>
+
+#include "host/cli/common/axes_option.hpp"
+#include "host/cli/common/commands.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/common/file_checks.hpp"
+#include "host/cli/tools/read_array.hpp"
+#include "host/cli/warp/output_writer.hpp"
+#include "host/cli/warp/warnings.hpp"
+
+namespace tetwarp::cli {
+namespace {
+struct ExportArguments {
+  std::string input;
+  std::string output;
+  std::string array;
+  std::int64_t step = 0;
+  bool temporal = false;
+  std::optional<Axes> axes;
+  bool quiet = false;
+};
+
+/// " with 3 components along LPS axes"; nothing for scalars.
+std::string axes_text(const ArrayHeader& array) {
+  if (array.components == 1) return {};
+  return fmt::format(" with {} components along {} axes", array.components,
+                     array.nifti->component_axes == Axes::lps ? "LPS" : "RAS");
+}
+
+int run_export(const ExportArguments& arguments) {
+  check_volume(arguments.input, "usage: tetwarp export VOLUME -o FILE.nii.gz");
+  if (!has_nifti_name(arguments.output)) {
+    throw IoError(arguments.output, "", "the name of a NIfTI image ends in .nii or .nii.gz");
+  }
+  check_output_file(arguments.output, {arguments.input});
+  const std::vector<double> times = read_volume_header(arguments.input).times;
+  const std::int64_t first = arguments.temporal ? 0 : arguments.step;
+  const Volume volume = read_array(arguments.input, arguments.array, first);
+  const ArrayHeader array =
+      nifti_array(VolumeReader(arguments.input, volume.name, first).array(), arguments.axes);
+  const bool is_series = arguments.temporal && times.size() > 1;
+  BlockVolumeWriter writer(arguments.output, volume.grid, {array}, {}, is_series, ChunkShape::rows);
+  const Region whole{{0, 0, 0}, volume.grid.dims};
+  if (is_series) {
+    if (const std::string warning = times_warning(arguments.output, times); !warning.empty()) {
+      print_warnings({warning}, "");
+    }
+    writer.begin_step(times.front());
+  }
+  writer.write(0, whole, volume.data.data());
+  for (std::size_t step = 1; is_series && step < times.size(); ++step) {
+    writer.begin_step(times[step]);
+    const Volume next = read_volume(arguments.input, volume.name, static_cast<std::int64_t>(step));
+    writer.write(0, whole, next.data.data());
+  }
+  writer.finish();
+  if (arguments.quiet) return 0;
+  fmt::print("{} of {}{}{}: {}\n", volume.name, name_of(volume.type), axes_text(array),
+             is_series ? fmt::format(", {} steps", times.size()) : "", arguments.output);
+  return 0;
+}
+}  // namespace
+
+void add_export_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = add_subcommand(app, "export", "Turn one array of a volume into a NIfTI image",
+                                     "VOLUME -o FILE [options]",
+                                     "  tetwarp export warped.vtkhdf -o warped.nii.gz\n"
+                                     "  tetwarp export series.vtkhdf --temporal -o series.nii.gz\n"
+                                     "  tetwarp export warped.vtkhdf --array tetwarp_displacement "
+                                     "-o field.nii.gz\n");
+  command->add_option("VOLUME", arguments->input, "volume, VTKHDF or NIfTI")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", arguments->output, "image to write, .nii or .nii.gz")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--array", arguments->array, "array to write [active scalars]")
+      ->type_name("NAME");
+  command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
+      ->check(at_least(0))
+      ->type_name("N");
+  command->add_flag("--temporal", arguments->temporal, "write all steps as one series (4D)")
+      ->excludes("--step");
+  add_axes(*command, arguments->axes,
+           "axes of vectors and tensors in the image; its header is RAS in any case [lps for "
+           "tetwarp_displacement and tetwarp_forward, which ITK and ANTs read; else as imported; "
+           "else ras]");
+  add_quiet(*command, arguments->quiet);
+  command->callback([arguments, &run] { run = [arguments] { return run_export(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tetwarp/io.hpp>
+#include <tetwarp/mesh_import.hpp>
+
+#include "host/cli/common/axes_option.hpp"
+#include "host/cli/common/commands.hpp"
+#include "host/cli/common/declare.hpp"
+#include "host/cli/common/file_checks.hpp"
+
+namespace tetwarp::cli {
+namespace {
+struct ImportArguments {
+  std::string input;
+  std::string output;
+  VolumeWriteOptions write;
+  MeshImportOptions mesh;
+  std::optional<Axes> axes;
+  bool quiet = false;
+};
+
+/// ", 3 components along RAS axes"; nothing for scalars.
+std::string components_text(const ArrayHeader& array, const ImportArguments& arguments) {
+  if (array.components == 1) return {};
+  const bool is_assumed = !arguments.axes && array.components == 3;
+  return fmt::format(", {} components along {} axes{}", array.components,
+                     arguments.axes == Axes::lps ? "LPS" : "RAS",
+                     is_assumed ? " (--axes lps for vectors that ITK or ANTs wrote)" : "");
+}
+
+void run_volume_import(const ImportArguments& arguments) {
+  check_kind(arguments.input, FileKind::nifti,
+             "usage: tetwarp import FILE -o VOLUME, with a NIfTI image or a mesh named .msh, .vtu "
+             "or .vtk");
+  if (arguments.mesh.displacement) {
+    throw IoError(arguments.input, "", "is not a mesh; leave out --displacement");
+  }
+  const VolumeReadOptions read{arguments.axes.value_or(Axes::ras), arguments.output};
+  const VolumeHeader header = read_volume_header(arguments.input, read);
+  const ArrayHeader& array = header.arrays.front();
+  const Grid& grid = header.grid;
+  const std::size_t steps = std::max<std::size_t>(1, header.times.size());
+  BlockVolumeWriter writer(arguments.output, grid, {array}, arguments.write, steps > 1,
+                           ChunkShape::rows);
+  for (std::size_t step = 0; step < steps; ++step) {
+    const Volume volume =
+        read_volume(arguments.input, array.name, static_cast<std::int64_t>(step), read);
+    if (steps > 1) writer.begin_step(header.times[step]);
+    writer.write(0, {{0, 0, 0}, grid.dims}, volume.data.data());
+  }
+  writer.finish();
+  if (arguments.quiet) return;
+  fmt::print("{} x {} x {} voxels of {}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
+             name_of(array.type), components_text(array, arguments),
+             steps > 1 ? fmt::format(", {} steps", steps) : "", arguments.output);
+}
+
+void run_mesh_import(const ImportArguments& arguments) {
+  MeshImportOptions options = arguments.mesh;
+  options.axes = arguments.axes.value_or(Axes::ras);
+  const ImportedMesh mesh = import_mesh(arguments.input, options);
+  write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times, mesh.arrays);
+  if (!mesh.left_out.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
+               one_line(listed(mesh.left_out)));
+  }
+  if (arguments.quiet) return;
+  std::string skipped;
+  for (const auto& [kind, count] : mesh.skipped) {
+    skipped += fmt::format("{}{} {}", skipped.empty() ? ", left out: " : ", ", count, kind);
+  }
+  fmt::print("{} nodes, {} tetrahedra, {} hexahedra, {} steps of displacement{}: {}\n",
+             mesh.mesh.rest_positions.size(), mesh.mesh.tets.size(), mesh.mesh.hexes.size(),
+             mesh.displacements.size(), skipped, arguments.output);
+}
+
+int run_import(const ImportArguments& arguments) {
+  check_hdf_name(arguments.output);
+  check_output_file(arguments.output, {arguments.input});
+  if (has_mesh_extension(arguments.input)) {
+    run_mesh_import(arguments);
+  } else {
+    run_volume_import(arguments);
+  }
+  return 0;
+}
+}  // namespace
+
+void add_import_command(CLI::App& app, Run& run) {
+  auto arguments = std::make_shared<ImportArguments>();
+  CLI::App* command = add_subcommand(
+      app, "import", "Turn a NIfTI image into a VTKHDF volume, a foreign mesh into a VTKHDF mesh",
+      "FILE -o OUT [options]",
+      "  tetwarp import brain.nii.gz -o brain.vtkhdf\n"
+      "  tetwarp import skull.msh -o skull.vtkhdf --displacement u\n");
+  command
+      ->add_option("FILE", arguments->input,
+                   "NIfTI image, .nii, .nii.gz or .hdr; or mesh of tetrahedra and hexahedra: "
+                   "Gmsh's .msh 2 and 4, "
+                   "VTK's .vtu and .vtk")
+      ->required()
+      ->type_name("");
+  command->add_option("-o,--output", arguments->output, "volume or mesh to write")
+      ->required()
+      ->type_name("OUT");
+  command->add_option("--compress", arguments->write.compress, "deflate level, 0 for none [0]")
+      ->check(between(0, 9))
+      ->type_name("L");
+  command
+      ->add_option("--displacement", arguments->mesh.displacement,
+                   "of a mesh: point array (Gmsh: node data) of three components to keep as "
+                   "displacement [displacement]")
+      ->type_name("NAME");
+  add_axes(*command, arguments->axes,
+           "axes of the file's vectors and tensors, of a mesh also of its nodes; lps is turned to "
+           "ras, in which NIfTI headers place voxels [ras: NIfTI's; meshes have none and stay as "
+           "they are]");
+  add_quiet(*command, arguments->quiet);
+  command->callback([arguments, &run] { run = [arguments] { return run_import(*arguments); }; });
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,23 @@
+#include "host/cli/tools/read_array.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "host/cli/common/declare.hpp"
+
+namespace tetwarp::cli {
+
+Volume read_array(const std::string& path, const std::string& array, std::int64_t step) {
+  const VolumeReader reader(path, array, step);
+  const std::string& name = reader.array().name;
+  const std::vector<std::string> names = reader.array_names();
+  if (array.empty() && names.size() > 1) {
+    fmt::print(stderr, "tetwarp: {}: takes array {} of {}; --array names another\n", path, name,
+               listed(names));
+  }
+  return read_volume(path, name, step);
+}
+
+}  // namespace tetwarp::cli

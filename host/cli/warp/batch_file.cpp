@@ -1,0 +1,188 @@
+/// @file batch_file.cpp
+/// Reads a batch file: each job becomes the words of a command line, parsed like one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "host/cli/common/declare.hpp"
+#include "host/cli/warp/batch.hpp"
+
+namespace tetwarp::cli {
+namespace {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+using Words = std::vector<std::string>;
+
+/// Options of the whole batch; a job may not have them.
+const Words batch_options{"help", "batch", "quiet"};
+
+/// Options whose values are names of arrays, which may hold commas.
+const Words name_options{"array", "vectors", "tensors"};
+
+bool is_one_of(const std::string& word, const Words& words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The words of an option: repeated where a value may hold commas, else with one comma list.
+Words option_words(const std::string& name, const Words& values) {
+  if (!is_one_of(name, name_options)) return {"--" + name + "=" + CLI::detail::join(values, ",")};
+  Words words;
+  for (const std::string& value : values) words.push_back("--" + name + "=" + value);
+  return words;
+}
+
+std::string scalar_text(const std::string& key, const Json& value) {
+  if (value.is_string() && !value.get<std::string>().empty()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  throw std::invalid_argument(
+      fmt::format("'{}' holds {}, expected text or numbers", key, value.dump()));
+}
+
+Words value_texts(const std::string& key, const Json& value) {
+  Words texts;
+  if (!value.is_array()) return {scalar_text(key, value)};
+  for (const Json& item : value) texts.push_back(scalar_text(key, item));
+  if (texts.empty()) throw std::invalid_argument(fmt::format("'{}' is an empty list", key));
+  return texts;
+}
+
+/// Names of files, which are texts.
+Words file_names(const std::string& key, const Json& value) {
+  for (const Json& one : value.is_array() ? value : Json::array({value})) {
+    if (one.is_string()) continue;
+    throw std::invalid_argument(
+        fmt::format("'{}' holds {}, expected the name of a file", key, one.dump()));
+  }
+  return value_texts(key, value);
+}
+
+class JobReader {
+ public:
+  JobReader(fs::path folder, const CLI::App& defaults)
+      : folder_(std::move(folder)), defaults_(defaults) {}
+
+  Words words_of(const Json& job) const {
+    if (!job.is_object()) throw std::invalid_argument("is not a JSON object");
+    Words files;
+    Words options;
+    for (const std::string key : {"volume", "mesh"}) {
+      if (!job.contains(key)) throw std::invalid_argument("has no '" + key + "'");
+      for (const std::string& name : file_names(key, job[key])) files.push_back(located(name));
+    }
+    for (const auto& [key, value] : job.items()) {
+      if (key == "volume" || key == "mesh") continue;
+      const Words some = words_of_key(key, value);
+      options.insert(options.end(), some.begin(), some.end());
+    }
+    for (const CLI::Option* option : defaults_.get_options()) {
+      const Words some = words_of_default(*option, job);
+      options.insert(options.end(), some.begin(), some.end());
+    }
+    files.insert(files.end(), options.begin(), options.end());
+    return files;
+  }
+
+  /// Stores the names of files that are given as text, for the report of a job that may have
+  /// errors.
+  void name_files(const Json& job, BatchJob& named) const {
+    const auto names = [&](const char* key) {
+      Words located_names;
+      const Json value = job.is_object() && job.contains(key) ? job[key] : Json();
+      for (const Json& one : value.is_array() ? value : Json::array({value})) {
+        if (one.is_string()) located_names.push_back(located(one.get<std::string>()));
+      }
+      return located_names;
+    };
+    named.volumes = names("volume");
+    for (const std::string& mesh : names("mesh")) named.mesh = mesh;
+    for (const std::string& output : names("output")) named.output = output;
+  }
+
+ private:
+  std::string located(const std::string& path) const { return (folder_ / path).string(); }
+
+  Words words_of_key(const std::string& key, const Json& value) const {
+    const CLI::Option* option = defaults_.get_option_no_throw("--" + key);
+    if (option == nullptr || is_one_of(key, batch_options)) {
+      throw std::invalid_argument("unknown key '" + key +
+                                  "'; keys are volume, mesh and the options of tetwarp warp");
+    }
+    if (option->get_items_expected_max() == 0) {
+      if (!value.is_boolean()) {
+        throw std::invalid_argument("'" + key + "' holds " + value.dump() +
+                                    ", expected true or false");
+      }
+      return value.get<bool>() ? Words{"--" + key} : Words{};
+    }
+    Words texts = key == "output" ? file_names(key, value) : value_texts(key, value);
+    const bool is_path = key == "output" || key == "report" || key == "rest" ||
+                         (key == "grid" && !is_one_of(texts.front(), {"same", "bounds"}));
+    if (is_path) texts.front() = located(texts.front());
+    return option_words(key, texts);
+  }
+
+  static Words words_of_default(const CLI::Option& option, const Json& job) {
+    if (option.count() == 0 || option.get_lnames().empty()) return {};
+    const std::string& name = option.get_lnames().front();
+    // With --batch, --report names the report of the whole batch.
+    if (job.contains(name) || name == "report" || is_one_of(name, batch_options)) return {};
+    if (option.get_items_expected_max() == 0) return {"--" + name};
+    return option_words(name, option.results());
+  }
+
+  fs::path folder_;
+  const CLI::App& defaults_;
+};
+
+/// "line L, column C" of a byte offset, both from 1.
+std::string position_text(const std::string& text, std::size_t offset) {
+  const std::string before = text.substr(0, offset == 0 ? 0 : offset - 1);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start =
+      before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1;
+  return fmt::format("line {}, column {}", line, before.size() - line_start + 1);
+}
+
+Json read_json(const std::string& path) {
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw IoError(path, "", "cannot be read; check the name of the batch file");
+  try {
+    return Json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw IoError(path, position_text(text, error.byte), "not valid JSON; correct it");
+  }
+}
+}  // namespace
+
+std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults) {
+  const Json batch = read_json(path);
+  if (!batch.is_object() || batch.size() != 1 || !batch.contains("jobs") ||
+      !batch["jobs"].is_array() || batch["jobs"].empty()) {
+    throw IoError(path, "", "expected {\"jobs\": [...]} with one job or more and no other key");
+  }
+  const JobReader reader(fs::path(path).parent_path(), defaults);
+  std::vector<BatchJob> jobs;
+  const std::string name = path + ": ";
+  for (const Json& job : batch["jobs"]) {
+    BatchJob& parsed = jobs.emplace_back();
+    reader.name_files(job, parsed);
+    try {
+      parsed.arguments = parse_warp_arguments(reader.words_of(job));
+      parsed.arguments.makes_folder = true;
+    } catch (const CLI::ParseError& error) {
+      parsed.error = name + one_line(error.what());
+    } catch (const std::invalid_argument& error) {
+      parsed.error = name + one_line(error.what());
+    }
+  }
+  return jobs;
+}
+
+}  // namespace tetwarp::cli

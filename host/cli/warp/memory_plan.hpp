@@ -1,0 +1,50 @@
+/// @file memory_plan.hpp
+/// Whether a volume and its outputs fit in memory.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/blocks.hpp>
+
+#include "host/cli/warp/job_plan.hpp"
+
+namespace tetwarp::cli {
+
+/// Why an output cannot be computed in blocks, with a remedy; empty: it can.
+std::string needs_all_at_once(const WarpArguments& arguments);
+
+/// Bytes of one voxel of all arrays.
+double voxel_bytes(const std::vector<ArrayHeader>& arrays);
+
+/// The warped arrays of a volume, then the extra outputs.
+std::vector<ArrayHeader> arrays_written(const VolumePlan& plan, const WarpArguments& arguments);
+
+/// Memory of a run besides samples and lists of cells [byte]: the process as it is now, what it
+/// loads later, threads, mesh, caches and buffers of the files.
+double fixed_memory(const VolumePlan& plan, const WarpArguments& arguments, const MeshHeader& mesh);
+
+/// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Sources, outputs and
+/// extra outputs must fit in memory, with --memory at least block by block. Throws
+/// std::invalid_argument, IoError.
+/// @returns whether a second set of outputs also fits
+bool plan_memory(VolumePlan& plan,
+                 const WarpArguments& arguments,
+                 const MeshReader& mesh,
+                 const std::vector<std::int64_t>& steps);
+
+/// Space on the disk that temporary files take while the output has its own [byte]: the unpacked
+/// source, steps of a series that can be resumed, and NIfTI outputs that are not written from their
+/// beginning to their end.
+/// @param blocks  of the output; 0: it is computed as a whole
+double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, std::int64_t blocks);
+
+/// The value of --memory that allows so much: "39M".
+std::string limit_text(double bytes);
+
+/// Host memory of the largest block of a step that is cut as finely as possible [byte].
+double least_block_memory(BlockPlanner& planner,
+                          const std::vector<Point3>& positions,
+                          BlockLimits limits);
+
+}  // namespace tetwarp::cli

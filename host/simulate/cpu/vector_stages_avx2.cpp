@@ -1,8 +1,0 @@
-/// @file vector_stages_avx2.cpp
-#include "host/simulate/cpu/vector_stages-inl.hpp"
-
-namespace tetwarp {
-
-const VectorStages vector_stages_avx2 = vector_stages_of<4>("avx2");
-
-}  // namespace tetwarp

@@ -1,0 +1,214 @@
+#include "host/simulate/solve/contact_system.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/problem/contact_islands.hpp"
+#include "host/simulate/solve/problem/step_laws.hpp"
+#include "host/simulate/solve/problem/step_rows.hpp"
+#include "host/simulate/solve/soft_islands.hpp"
+#include "host/simulate/solve/solver_islands.hpp"
+#include "host/simulate/solve/two_level/resident_two_level.hpp"
+#include "host/simulate/step/resident_contacts.hpp"
+
+namespace tetwarp {
+
+struct ContactSystem::State {
+  State(const SceneSurfaces& surfaces, const Model& of, const ContactSystemOptions& given)
+      : scene(surfaces),
+        model(of),
+        options(given),
+        rows(surfaces, of, given.solver.threads),
+        islands(surfaces, of),
+        laws(surfaces, given.recovery_fraction),
+        soft_islands(surfaces, of, given.solver, given.factors),
+        solver_islands(given.solver) {}
+
+  void take_impulses(const ContactShare& share,
+                     std::span<const double> impulse,
+                     std::span<const double> velocity);
+  void solve_soft(BodyStepper& stepper,
+                  const ModelState& state,
+                  const std::vector<Point3>& change,
+                  std::vector<Point3>& velocity,
+                  ContactSolveOutcome& outcome);
+  void solve_other(BodyStepper& stepper,
+                   std::vector<Point3>& velocity,
+                   ContactSolveOutcome& outcome);
+  bool stop_fast_turns(std::vector<Point3>& velocity);
+  bool iterates_two_levels() const;
+
+  const SceneSurfaces& scene;
+  const Model& model;
+  ContactSystemOptions options;
+  StepRows rows;
+  ContactIslands islands;
+  StepLaws laws;
+  ContactShares shares;
+  SoftIslands soft_islands;
+  SolverIslands solver_islands;
+  bool is_resident = false;  ///< all velocities that contacts have changed are on the device
+  ResidentTwoLevel* resident_soft = nullptr;   ///< or null: none there
+  ResidentContacts* resident_other = nullptr;  ///< or null: none there
+  ContactSolution solution;
+  std::vector<Point3> impulses;         ///< [block_count]
+  std::vector<Point3> velocity_before;  ///< without contact, [block_count]
+};
+
+/// Whether the options leave the choice of the method.
+bool ContactSystem::State::iterates_two_levels() const {
+  return options.solver.backend != Backend::reference &&
+         options.solver.method == ContactMethod::automatic &&
+         options.solver.coupling == ContactCoupling::automatic &&
+         options.solver.measure == ContactMeasure::eta;
+}
+
+void ContactSystem::State::take_impulses(const ContactShare& share,
+                                         std::span<const double> impulse,
+                                         std::span<const double> velocity) {
+  for (std::size_t k = 0; k < share.contacts.size(); ++k) {
+    const std::size_t c = index_of(share.contacts[k]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      solution.impulse[3 * c + axis] = impulse[3 * k + axis];
+      solution.velocity[3 * c + axis] = velocity[3 * k + axis];
+    }
+  }
+}
+
+void ContactSystem::State::solve_soft(BodyStepper& stepper,
+                                      const ModelState& state,
+                                      const std::vector<Point3>& change,
+                                      std::vector<Point3>& velocity,
+                                      ContactSolveOutcome& outcome) {
+  resident_soft = nullptr;
+  if (shares.soft.is_empty()) return;
+  const TwoLevelOutcome solved =
+      soft_islands.solve(stepper,
+                         {state, islands, rows.sides(), rows.rows(), shares.soft.islands,
+                          shares.soft.contacts, laws.problem(), change},
+                         rows, velocity);
+  outcome.outer_iterations += solved.outer_iterations;
+  outcome.sweeps += solved.sweeps;
+  if (solved.is_stopped) {
+    outcome.converged = false;
+    return;
+  }
+  if (!solved.is_result) {
+    shares.other.take(shares.soft);  // the host has all rows
+    return shares.soft.clear(islands.count());
+  }
+  outcome.converged = solved.converged;
+  outcome.residual = solved.residual;
+  take_impulses(shares.soft, soft_islands.impulse(), soft_islands.contact_velocity());
+  resident_soft = soft_islands.resident();
+}
+
+void ContactSystem::State::solve_other(BodyStepper& stepper,
+                                       std::vector<Point3>& velocity,
+                                       ContactSolveOutcome& outcome) {
+  resident_other = nullptr;
+  if (shares.other.is_empty()) return;
+  solution.report = solver_islands.solve(stepper, islands, rows.rows(), shares.other.islands,
+                                         shares.other.contacts, laws.problem(), velocity);
+  take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
+  resident_other = solver_islands.resident();
+  const ContactReport& report = solution.report;
+  outcome.converged = outcome.converged && solution.converged();
+  outcome.residual = std::max(outcome.residual, report.residual.eta);
+  outcome.sweeps += report.sweeps;
+  outcome.outer_iterations += report.outer_iterations;
+}
+
+/// Contacts are linear in the velocities of a step. A body with corners that has no room between
+/// others can satisfy them by turning many times within the step, at any speed. One that contacts
+/// turn by more than half a turn stands still instead, without impulses. @returns whether one does
+bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
+  const double most = std::acos(-1.0) / laws.problem().adhesion.time_step;
+  std::vector<std::uint8_t> is_stopped;
+  for (std::int32_t r = 0; r < model.rigid_count; ++r) {
+    const std::size_t block = index_of(model.node_count + 2 * r);
+    const CollisionBody& parts = scene.surfaces.bodies[index_of(model.rigid.body[index_of(r)])];
+    const Point3 &turn = velocity[block + 1], &before = velocity_before[block + 1];
+    if (model.prescribed[block] != 0 || parts.first_triangle == parts.triangle_end) continue;
+    if (!(norm(turn) > most && norm(minus(turn, before)) > most)) continue;
+    velocity[block] = velocity[block + 1] = {0, 0, 0};
+    is_stopped.resize(velocity.size(), 0);
+    is_stopped[block] = 1;
+  }
+  if (is_stopped.empty()) return false;
+  is_resident = false;
+  rows.set_all();
+  for (std::size_t c = 0; c < rows.sides().size(); ++c) {
+    const auto blocks = rows.rows().blocks_of(c);
+    if (std::ranges::any_of(blocks, [&](std::int32_t b) { return is_stopped[index_of(b)] != 0; })) {
+      std::fill_n(solution.impulse.begin() + static_cast<std::ptrdiff_t>(3 * c), 3, 0.0);
+    }
+  }
+  return true;
+}
+
+ContactSystem::ContactSystem(const SceneSurfaces& scene,
+                             const Model& model,
+                             const ContactSystemOptions& options)
+    : state_(std::make_unique<State>(scene, model, options)) {}
+
+ContactSystem::~ContactSystem() = default;
+
+ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
+                                         const ModelState& state,
+                                         const ContactTracker& tracker,
+                                         const std::vector<TrackedContact>& contacts,
+                                         std::vector<Point3>& velocity,
+                                         std::vector<Point3>* change) {
+  State& s = *state_;
+  static const std::vector<Point3> none;
+  s.velocity_before = velocity;
+  s.rows.begin(state, contacts);
+  s.islands.join(s.rows.sides());
+  s.shares.divide(s.islands, s.iterates_two_levels(), s.options.skips_islands);
+  if (s.soft_islands.begin(stepper, s.shares.soft)) {
+    s.rows.set_for_host(s.shares.soft.contacts);
+  } else {
+    s.rows.set_all();
+  }
+  s.laws.set(tracker, contacts, s.rows, velocity);
+  s.solution.report = {};
+  s.solution.impulse.assign(3 * contacts.size(), 0);
+  s.solution.velocity = s.laws.problem().velocity_offset;  // of contacts that act on no unknown
+  ContactSolveOutcome outcome;
+  outcome.islands = s.islands.contact_island_count();
+  const std::vector<Point3>& last_change =
+      change != nullptr && change->size() == velocity.size() ? *change : none;
+  s.solve_soft(stepper, state, last_change, velocity, outcome);
+  s.solve_other(stepper, velocity, outcome);
+  s.is_resident = (s.shares.soft.is_empty() || s.resident_soft != nullptr) &&
+                  (s.shares.other.is_empty() || s.resident_other != nullptr);
+  if (s.stop_fast_turns(velocity)) outcome.converged = false;
+  if (change != nullptr) *change = differences(velocity, s.velocity_before);
+  s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
+  // The tracker reads gaps from the velocities: without what slows recovery.
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    s.solution.velocity[3 * c] -= s.laws.recovered()[c];
+  }
+  return outcome;
+}
+
+void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
+                                   BodyStepper& stepper) const {
+  const State& s = *state_;
+  if (!s.is_resident) return stepper.set_velocities(velocity);
+  if (s.resident_soft != nullptr) s.resident_soft->set_velocities();
+  if (s.resident_other != nullptr) s.resident_other->set_velocities();
+}
+
+const ContactSolution& ContactSystem::solution() const {
+  return state_->solution;
+}
+const std::vector<Point3>& ContactSystem::block_impulses() const {
+  return state_->impulses;
+}
+
+}  // namespace tetwarp

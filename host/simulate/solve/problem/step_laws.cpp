@@ -1,0 +1,48 @@
+#include "host/simulate/solve/problem/step_laws.hpp"
+#include "host/base/index_of.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tetwarp {
+
+double StepLaws::recovery_speed(const ContactKey& key) const {
+  return recovery_fraction_ *
+         std::min(scene_.body_size[index_of(key.body_a)], scene_.body_size[index_of(key.body_b)]);
+}
+
+/// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
+/// apart sideways, these pass each other without pushing. One whose normal has turned away, so that
+/// its ends seem to overlap, does nothing along it: pushing would oppose what does touch there.
+void StepLaws::set_bond(const TrackedContact& contact, std::size_t c) {
+  double way = std::hypot(contact.gap[1], contact.gap[2]);
+  if (contact.gap[0] < 0) way += scene_.surfaces.thickness - 2 * contact.gap[0];
+  if (contact.gap[0] <= 0) laws_.adhesion.stiffness[c] = 0;
+  recovered_[c] = std::max(recovered_[c], way / laws_.adhesion.time_step);
+}
+
+void StepLaws::set(const ContactTracker& tracker,
+                   const std::vector<TrackedContact>& contacts,
+                   const StepRows& rows,
+                   const std::vector<Point3>& velocity) {
+  tracker.fill(laws_);
+  const double time_step = laws_.adhesion.time_step;
+  recovered_.assign(contacts.size(), 0);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const TrackedContact& contact = contacts[c];
+    const double closing = contact.gap[0] / time_step, limit = -recovery_speed(contact.key);
+    const bool rebounds = contact.rebound_speed > 0 && -contact.rebound_speed <= closing;
+    if (closing < limit && !rebounds) {
+      const double slowest =
+          contact.rebound_speed > 0 ? std::min(limit, -contact.rebound_speed) : limit;
+      recovered_[c] = std::max(slowest - closing, 0.0);
+    }
+    if (!contact.is_reported) set_bond(contact, c);
+    laws_.velocity_offset[3 * c] += recovered_[c];
+    const Point3 prescribed = rows.prescribed_velocity(c, velocity);
+    for (std::size_t k = 0; k < 3; ++k) laws_.velocity_offset[3 * c + k] += prescribed[k];
+    laws_.adhesion.gap[3 * c] += time_step * prescribed[0];
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,45 @@
+/// @file step_laws.hpp
+/// StepLaws: friction, offsets, adhesion and guess of the contacts of a step.
+#pragma once
+#include <vector>
+
+#include <tetwarp/contact_problem.hpp>
+#include <tetwarp/contact_tracker.hpp>
+
+#include "host/simulate/solve/problem/step_rows.hpp"
+
+namespace tetwarp {
+
+class StepLaws {
+ public:
+  /// @param scene              kept by the caller
+  /// @param recovery_fraction  see ContactSystemOptions
+  StepLaws(const SceneSurfaces& scene, double recovery_fraction)
+      : scene_(scene), recovery_fraction_(recovery_fraction) {}
+
+  /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and raises
+  /// the normal ones so that existing penetration is undone no faster than recovery_fraction says.
+  /// @param rows      with those of all contacts with prescribed blocks
+  /// @param velocity  [block_count]
+  void set(const ContactTracker& tracker,
+           const std::vector<TrackedContact>& contacts,
+           const StepRows& rows,
+           const std::vector<Point3>& velocity);
+
+  /// Without matrices.
+  const ContactProblem& problem() const { return laws_; }
+  /// [contacts] normal offset that was added to slow recovery, or because only a bond is left
+  /// [m/s].
+  const std::vector<double>& recovered() const { return recovered_; }
+
+ private:
+  void set_bond(const TrackedContact& contact, std::size_t c);
+  double recovery_speed(const ContactKey& key) const;
+
+  const SceneSurfaces& scene_;
+  double recovery_fraction_;
+  ContactProblem laws_;
+  std::vector<double> recovered_;
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,53 @@
+/// @file soft_islands.hpp
+/// SoftIslands: contact islands of bodies that A couples, with their contacts.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/simulate/solve/contact_shares.hpp"
+#include "host/simulate/solve/problem/step_rows.hpp"
+#include "host/simulate/solve/two_level/two_level_on_device.hpp"
+#include "host/simulate/solve/two_level/two_level_solver.hpp"
+
+namespace tetwarp {
+
+/// The two-level iteration: with back end cuda on the device that steps the bodies, if one does.
+/// What does not converge there is solved on the host, from the system of the step.
+class SoftIslands {
+ public:
+  /// @param scene, model  kept by the caller
+  /// @param factors       of the elastic bodies, or null: own ones
+  SoftIslands(const SceneSurfaces& scene,
+              const Model& model,
+              const ContactOptions& options,
+              std::shared_ptr<RestFactors> factors);
+
+  /// Begins a solve. @returns whether a device tries first, which needs no rows of contacts
+  /// @param stepper  after its solve(), whose velocities are those without contact
+  bool begin(BodyStepper& stepper, const ContactShare& share);
+  /// @param all       its laws are those of all contacts
+  /// @param rows      those of `all`; are set for all contacts where the host solves
+  /// @param velocity  in: without contact, [block_count]; out, if there is a result: with contact
+  TwoLevelOutcome solve(BodyStepper& stepper,
+                        const SoftProblem& all,
+                        StepRows& rows,
+                        std::vector<Point3>& velocity);
+
+  /// r and u of the contacts of the last solve(), [3 contacts].
+  std::span<const double> impulse() const { return impulse_; }
+  std::span<const double> contact_velocity() const { return contact_velocity_; }
+  /// The device that solves; after solve() the one whose memory has the velocities. Else null.
+  ResidentTwoLevel* resident() const { return resident_; }
+
+ private:
+  ContactProblem laws_;  ///< of the contacts that are taken
+  TwoLevelSolver on_host_;
+  TwoLevelOnDevice on_device_;
+  bool uses_device_;
+  std::span<const double> impulse_, contact_velocity_;
+  ResidentTwoLevel* resident_ = nullptr;
+};
+
+}  // namespace tetwarp

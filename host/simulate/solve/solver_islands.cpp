@@ -1,0 +1,90 @@
+#include "host/simulate/solve/solver_islands.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "host/simulate/solve/problem/contact_laws.hpp"
+
+namespace tetwarp {
+
+SolverIslands::SolverIslands(const ContactOptions& options) : options_(options), of_few_(options) {}
+
+/// Newton's method follows where sweeps have not converged. Its factors of many contacts take as
+/// long as hundreds of sweeps, of few contacts as long as some ten.
+ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
+  constexpr std::size_t many_contacts = 200;
+  constexpr std::int64_t many_sweeps = 5000;
+  if (contact_count < many_contacts || options_.max_sweeps >= many_sweeps) return of_few_;
+  if (of_many_ == nullptr) {
+    ContactOptions options = options_;
+    options.max_sweeps = many_sweeps;
+    of_many_ = std::make_unique<ContactSolver>(options);
+  }
+  return *of_many_;
+}
+
+bool SolverIslands::can_be_resident(const ContactIslands& islands,
+                                    const std::vector<std::uint8_t>& takes,
+                                    std::size_t contact_count) const {
+  if (options_.backend != Backend::cuda || contact_count == 0) return false;
+  for (std::int32_t i = 0; i < islands.count(); ++i) {
+    if (takes[static_cast<std::size_t>(i)] != 0 && islands.is_coupled(i)) return false;
+  }
+  return true;
+}
+
+ContactReport SolverIslands::solve(BodyStepper& stepper,
+                                   const ContactIslands& islands,
+                                   const ContactRows& rows,
+                                   const std::vector<std::uint8_t>& takes,
+                                   const std::vector<std::int32_t>& contacts,
+                                   const ContactProblem& laws,
+                                   std::vector<Point3>& velocity) {
+  resident_ =
+      can_be_resident(islands, takes, contacts.size()) ? stepper.resident_contacts() : nullptr;
+  const SystemRows system_rows = resident_ != nullptr ? resident_->rows() : stepper.system().rows;
+  solver_ = &solver_for(contacts.size());  // another one only where the pattern is another
+  const bool is_other = part_.set_pattern(system_rows, islands, rows, takes, contacts);
+  gather_laws(contacts, laws, part_.problem());
+  return resident_ != nullptr ? solve_on_device(is_other, velocity)
+                              : solve_on_host(stepper, velocity);
+}
+
+ContactReport SolverIslands::solve_on_host(BodyStepper& stepper, std::vector<Point3>& velocity) {
+  with_pattern_ = nullptr;
+  part_.set_numbers(stepper.system());
+  solution_ = solver_->solve(part_.problem());
+  part_.scatter(solution_.body_velocity, velocity);
+  impulse_ = solution_.impulse;
+  contact_velocity_ = solution_.velocity;
+  return solution_.report;
+}
+
+ContactReport SolverIslands::solve_on_device(bool is_other_pattern, std::vector<Point3>& velocity) {
+  AdhesionState& adhesion = part_.problem().adhesion;
+  const bool adheres = std::any_of(adhesion.intensity.begin(), adhesion.intensity.end(),
+                                   [](double intensity) { return intensity > 0; });
+  if (!adheres) {
+    for (std::vector<double>* const array :
+         {&adhesion.area, &adhesion.stiffness, &adhesion.tangential_stiffness, &adhesion.intensity,
+          &adhesion.gap}) {
+      array->clear();
+    }
+  }
+  if (is_other_pattern || with_pattern_ != resident_) {
+    with_pattern_ = nullptr;
+    part_.set_sample();
+    solver_->set_structure(part_.problem());
+    resident_->set_places(part_.places());
+    with_pattern_ = resident_;
+  }
+  const ResidentStepProblem problem = resident_->set_contacts(part_.arms(), part_.problem());
+  const ContactReport report = solver_->solve(problem.arrays, problem.target);
+  const ResidentResults results = resident_->results();
+  part_.scatter(results.body_velocity, velocity);
+  impulse_ = results.impulse;
+  contact_velocity_ = results.velocity;
+  return report;
+}
+
+}  // namespace tetwarp

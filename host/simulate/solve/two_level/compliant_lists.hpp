@@ -1,0 +1,24 @@
+/// @file compliant_lists.hpp
+/// The bodies of a solve of contacts on a device, and their rows.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "kernels/contact/compliant_body.hpp"
+
+namespace tetwarp {
+
+struct CompliantLists {
+  std::int64_t version = 0;                 ///< other lists have another one, in the whole process
+  std::vector<CompliantBody> bodies;        ///< without inverses, nodes and contacts
+  std::vector<std::int32_t> model_body;     ///< [frames] elastic bodies, numbers of the model
+  std::vector<std::int32_t> body_of_row;    ///< [rows]
+  std::vector<std::int32_t> system_row;     ///< [rows]
+  std::vector<std::int32_t> model_block;    ///< [rows]
+  std::vector<std::int32_t> diagonal_rows;  ///< first system rows of the bodies by D^-1
+  std::vector<std::int32_t> row_of_block;   ///< [block_count], or -1
+
+  std::int64_t row_count() const { return static_cast<std::int64_t>(body_of_row.size()); }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,268 @@
+/// @file vector_stages-inl.hpp
+/// Definitions of VectorStages, for files that are compiled for one instruction set each.
+///
+/// All functions here are inlined or templates on the width of vectors, which differs between the
+/// files: no code for one instruction set can be linked into another's.
+#pragma once
+#include <cstdint>
+
+#include "host/simulate/step/cpu/lanes.hpp"
+#include "host/simulate/step/cpu/vector_stages.hpp"
+
+namespace tetwarp {
+
+/// R of count <= width lanes.
+template <int width>
+inline void lane_rotations(const Lanes<width>* f, int count, Lanes<width>* r) {
+  const LaneMask<width> is_valid = rotation_by_quartic(f, r);
+  for (int k = 0; k < count; ++k) {
+    if (is_valid[k]) continue;
+    double lane_f[9], lane_r[9];
+    for (int i = 0; i < 9; ++i) lane_f[i] = f[i].v[k];
+    nearest_rotation(lane_f, lane_r);
+    for (int i = 0; i < 9; ++i) r[i].v[k] = lane_r[i];
+  }
+}
+
+/// Tetrahedra index[0] to index[count - 1], count <= width; lanes from count on repeat the last.
+template <int width>
+inline void tet_force_lanes(const TetForceBody& body, const std::int32_t* index, int count) {
+  using Real = Lanes<width>;
+  const TetConstants& tets = body.tets;
+  Real x[12], g[9], f[9], r[9], gradient[12], force[12], lambda, mu;
+  std::int64_t own[width];
+  for (int k = 0; k < width; ++k) own[k] = index[k < count ? k : count - 1];
+  for (int a = 0; a < 4; ++a) {
+    const std::int32_t* const corner = tets.corner.data + a * tets.count;
+    for (int k = 0; k < width; ++k) {
+      const double* const p = body.position.data + 3 * std::int64_t{corner[own[k]]};
+      for (int i = 0; i < 3; ++i) x[3 * a + i].v[k] = p[i];
+    }
+  }
+  for (int c = 0; c < 9; ++c) {
+    const double* const from = tets.gradient.data + c * tets.count;
+    for (int k = 0; k < width; ++k) g[c].v[k] = from[own[k]];
+  }
+  for (int k = 0; k < width; ++k) {
+    lambda.v[k] = tets.volume_lambda[own[k]];
+    mu.v[k] = tets.volume_mu[own[k]];
+  }
+  deformation_gradient(x, g, f);
+  lane_rotations(f, count, r);
+  corotated_forces(f, r, g, lambda, mu, gradient, force);
+  alignas(64) double gradients[12][width], forces[12][width];
+  for (int i = 0; i < 12; ++i) {
+    __builtin_memcpy(gradients[i], &gradient[i].v, sizeof(gradients[i]));
+    __builtin_memcpy(forces[i], &force[i].v, sizeof(forces[i]));
+  }
+  for (int k = 0; k < count; ++k) {
+    body.store(own[k], gradients[0] + k, forces[0] + k, width);
+  }
+}
+
+template <int width>
+void tet_forces_of(const TetForceBody& body, std::int64_t begin, std::int64_t end) {
+  std::int32_t index[width];
+  int count = 0;
+  for (std::int64_t t = begin; t < end; ++t) {
+    if (body.is_at_rest(t)) {
+      body.skip(t);
+      continue;
+    }
+    index[count++] = static_cast<std::int32_t>(t);
+    if (count < width) continue;
+    tet_force_lanes<width>(body, index, count);
+    count = 0;
+  }
+  if (count > 0) tet_force_lanes<width>(body, index, count);
+}
+
+/// The tetrahedra from `first` on, count <= width of them; adds their sums in order.
+template <int width>
+inline void tet_energy_lanes(const TetShapes& tets, std::int64_t first, int count, TetSums& sums) {
+  using Real = Lanes<width>;
+  Real x[12], g[9], f[9], r[9], cofactors[3], volume, lambda, mu;
+  std::int64_t own[width];  // lanes from count on repeat the last
+  for (int k = 0; k < width; ++k) own[k] = first + (k < count ? k : count - 1);
+  for (int a = 0; a < 4; ++a) {
+    for (int k = 0; k < width; ++k) {
+      const double* const p = tets.position.data + 3 * std::int64_t{tets.nodes[4 * own[k] + a]};
+      for (int i = 0; i < 3; ++i) x[3 * a + i].v[k] = p[i];
+    }
+  }
+  for (int c = 0; c < 9; ++c) {
+    for (int k = 0; k < width; ++k) g[c].v[k] = tets.gradient[9 * own[k] + c];
+  }
+  for (int k = 0; k < width; ++k) {
+    volume.v[k] = tets.volume[own[k]];
+    lambda.v[k] = tets.lambda[own[k]];
+    mu.v[k] = tets.mu[own[k]];
+  }
+  deformation_gradient(x, g, f);
+  lane_rotations(f, count, r);
+  cross3(f + 3, f + 6, cofactors);
+  const Real energy = corotated_energy(f, r, volume, lambda, mu);
+  const Real determinant = dot3(f, cofactors);
+  for (int k = 0; k < count; ++k) {
+    sums.energy += energy.v[k];
+    sums.inverted += determinant.v[k] < 0;
+  }
+}
+
+template <int width>
+TetSums tet_energies_of(const TetShapes& tets, std::int64_t begin, std::int64_t end) {
+  TetSums sums;
+  std::int64_t t = begin;
+  for (; t + width <= end; t += width) tet_energy_lanes<width>(tets, t, width, sums);
+  if (t < end) tet_energy_lanes<width>(tets, t, static_cast<int>(end - t), sums);
+  return sums;
+}
+
+template <int width>
+void assemble_of(const BlockAssembleBody& body, std::int64_t begin, std::int64_t end) {
+  const BlockAssembleBodyOf<LaneColumn> own{body.rows,   body.from,      body.scalars,
+                                            body.rigid,  body.time_step, body.skips,
+                                            body.values, body.is_skipped};
+  for (std::int64_t k = begin; k < end; ++k) own(k);
+}
+
+/// IslandProductBody of rows [begin, end) with a block's column in a vector. Reads one number
+/// beyond the last block.
+template <int width, class T>
+PlainSums<1> product_of(const GradientArrays<T>& a, std::int64_t begin, std::int64_t end) {
+  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
+  constexpr std::int64_t blocks_ahead = 32;  // of what is read: prefetched
+  PlainSums<1> sum{};
+  const T* const p = a.p.data;
+  for (std::int64_t row = begin; row < end; ++row) {
+    Four q = {};
+    for (std::int64_t k = a.rows.start[row]; k < a.rows.free_end[row]; ++k) {
+      const T* const x = p + 3 * std::int64_t{a.rows.column[k]};
+      __builtin_prefetch(a.copy.data + 9 * (k + blocks_ahead));
+      Four column[3];
+      for (int j = 0; j < 3; ++j) {
+        __builtin_memcpy(&column[j], a.copy.data + 9 * k + 3 * j, sizeof(Four));
+      }
+      q += column[0] * x[0] + column[1] * x[1] + column[2] * x[2];
+    }
+    for (int i = 0; i < 3; ++i) {
+      a.q[3 * row + i] = q[i];
+      sum.value[0] += static_cast<double>(p[3 * row + i]) * static_cast<double>(q[i]);
+    }
+  }
+  return sum;
+}
+
+template <int width>
+void add_rows_of(
+    const float* rows, std::int64_t stride, const double* change, std::int64_t size, double* sum) {
+  typedef float Floats __attribute__((vector_size(4 * width)));
+  typedef typename LaneVector<width>::Numbers Numbers;
+  for (std::int64_t k = 0; k < size; k += width) {
+    Numbers own;
+    __builtin_memcpy(&own, sum + k, sizeof(own));
+    for (int a = 0; a < 3; ++a) {
+      Floats row;
+      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
+      own += __builtin_convertvector(row, Numbers) * change[a];
+    }
+    __builtin_memcpy(sum + k, &own, sizeof(own));
+  }
+}
+
+template <int width>
+void add_rows_float_of(
+    const float* rows, std::int64_t stride, const float* change, std::int64_t size, float* sum) {
+  typedef float Eight __attribute__((vector_size(32)));
+  for (std::int64_t k = 0; k < size; k += 8) {
+    Eight own;
+    __builtin_memcpy(&own, sum + k, sizeof(own));
+    for (int a = 0; a < 3; ++a) {
+      Eight row;
+      __builtin_memcpy(&row, rows + a * stride + k, sizeof(row));
+      own += row * change[a];
+    }
+    __builtin_memcpy(sum + k, &own, sizeof(own));
+  }
+}
+
+template <int width>
+void add_blocks_of(const float* rows,
+                   const std::int32_t* place,
+                   std::int64_t parts,
+                   const float* columns,
+                   float* block) {
+  typedef float Eight __attribute__((vector_size(32)));
+  Eight sum[3];
+  __builtin_memcpy(sum, block, sizeof(sum));
+  for (std::int64_t p = 0; p < parts; ++p, rows += 9) {
+    for (int i = 0; i < 3; ++i) {
+      Eight column;
+      __builtin_memcpy(&column, columns + 8 * (std::int64_t{place[p]} + i), sizeof(column));
+      for (int a = 0; a < 3; ++a) sum[a] += column * rows[3 * a + i];
+    }
+  }
+  __builtin_memcpy(block, sum, sizeof(sum));
+}
+
+template <int width>
+void substitute_of(const BlockFactor& l, double* w) {
+  typedef double Four __attribute__((vector_size(32)));
+  typedef float FourFloats __attribute__((vector_size(16)));
+  const auto load = [&](std::int64_t entry, Four* columns) {
+    for (int i = 0; i < 3; ++i) {
+      FourFloats column;
+      __builtin_memcpy(&column, l.block.data + 9 * entry + 3 * i, sizeof(column));
+      columns[i] = __builtin_convertvector(column, Four);
+    }
+  };
+  const std::int64_t count = l.start.size - 1;
+  for (std::int64_t j = 0; j < count; ++j) {
+    double* const own = w + 4 * j;
+    if (own[0] == 0 && own[1] == 0 && own[2] == 0) continue;
+    const float* const d = l.diagonal.data + 6 * j;
+    const double a = double{d[0]} * own[0], b = double{d[1]} * own[0] + double{d[2]} * own[1];
+    const double c = double{d[3]} * own[0] + double{d[4]} * own[1] + double{d[5]} * own[2];
+    own[0] = a, own[1] = b, own[2] = c;
+    for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
+      double* const out = w + 4 * std::int64_t{l.row[k]};
+      Four sum, columns[3];
+      __builtin_memcpy(&sum, out, sizeof(sum));
+      load(k, columns);
+      sum -= columns[0] * a + columns[1] * b + columns[2] * c;
+      __builtin_memcpy(out, &sum, sizeof(sum));
+    }
+  }
+  for (std::int64_t j = count; j-- > 0;) {
+    Four sum[3] = {};
+    for (std::int64_t k = l.start[j]; k < l.start[j + 1]; ++k) {
+      Four in, columns[3];
+      load(k, columns);
+      __builtin_memcpy(&in, w + 4 * std::int64_t{l.row[k]}, sizeof(in));
+      for (int i = 0; i < 3; ++i) sum[i] += columns[i] * in;
+    }
+    double* const own = w + 4 * j;
+    double rest[3];
+    for (int i = 0; i < 3; ++i) rest[i] = own[i] - (sum[i][0] + sum[i][1] + sum[i][2]);
+    const float* const d = l.diagonal.data + 6 * j;
+    own[0] = double{d[0]} * rest[0] + double{d[1]} * rest[1] + double{d[3]} * rest[2];
+    own[1] = double{d[2]} * rest[1] + double{d[4]} * rest[2];
+    own[2] = double{d[5]} * rest[2];
+  }
+}
+
+template <int width>
+constexpr VectorStages vector_stages_of(const char* name) {
+  return {name,
+          tet_forces_of<width>,
+          tet_energies_of<width>,
+          assemble_of<width>,
+          product_of<width, double>,
+          product_of<width, float>,
+          add_rows_of<width>,
+          add_rows_float_of<width>,
+          add_blocks_of<width>,
+          substitute_of<width>};
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,265 @@
+/// @file two_level_iteration.cuh
+/// TwoLevelIteration: the two-level iteration over compliant bodies and their contacts on a device.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "host/base/stopwatch.hpp"
+#include "host/simulate/step/cuda/two_level_numbers.cuh"
+#include "kernels/contact/anderson.hpp"
+#include "kernels/contact/proximal_step.hpp"
+#include "kernels/exec/iteration_graph.cuh"
+
+namespace tetwarp {
+
+/// See TwoLevelSolver for what is iterated. Here all bodies are compliant ones, and instead of
+/// sweeps, which visit contacts one after the other, accelerated proximal steps move all contacts
+/// at once. The host reads the sums of an error once per outer iteration and per eight steps.
+class TwoLevelIteration {
+ public:
+  /// @param exec                     kept by the caller
+  /// @param node_count, rigid_count  of the model
+  TwoLevelIteration(CudaStepExec& exec, std::int64_t node_count, std::int64_t rigid_count)
+      : exec_(exec),
+        grid_(exec.device_exec()),
+        run_grid_(exec.device_exec()),
+        numbers_(node_count, rigid_count) {}
+
+  /// @param rows    of the system, in memory of the device
+  /// @param arrays  of the step
+  /// @param points  of the surfaces, there
+  TwoLevelOutcome solve(const SystemRows& rows,
+                        const StepArrays<CudaStepExec>& arrays,
+                        View<const SurfacePoint> points,
+                        const CompliantLists& lists,
+                        const TwoLevelStart& start,
+                        RestFactors& factors,
+                        const ContactOptions& options) {
+    clock_ = {};
+    lists_ = &lists;
+    options_ = &options;
+    switches_ = {options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive};
+    numbers_.set(exec_, grid_, rows, arrays, points, lists, start, factors);
+    resize();
+    TwoLevelOutcome outcome;
+    End end = End::diverges;
+    for (double damping = 1; end == End::diverges; damping /= 2) {
+      prepare(damping);
+      const bool can_be_damped = has_elastic() && damping > TwoLevelControl::least_damping;
+      end = iterate(can_be_damped, outcome);
+    }
+    outcome.is_stopped = end == End::is_stopped;
+    outcome.converged = outcome.is_result = end == End::converges;
+    return outcome;
+  }
+
+  /// Impulses and velocities of contacts, [3 contacts] each, then velocities of rows, [rows][3].
+  View<const double> results() const { return results_.view(); }
+  View<const double> row_velocities() const { return View<const double>(velocity()); }
+  View<const std::int32_t> model_block() const { return numbers_.model_block(); }
+
+ private:
+  enum class End : std::uint8_t { converges, diverges, fails, is_stopped };
+  using Mixer = AndersonMixer<GridContactExec, double>;
+  using Vector = DeviceVector<double>;
+  /// Sums that the host reads together.
+  struct Sums {
+    PlainSums<1> defect;
+    PlainSums<2> error;
+  };
+  static constexpr std::int64_t most_steps = 1000;  ///< proximal ones of an outer iteration
+  static constexpr std::int64_t most_of_solve = 20000;
+  static constexpr int most_growths = 10;  ///< of the majorants, of an outer iteration
+  static constexpr const char* label = "body/contact";
+
+  View<double> part(std::int64_t first, std::int64_t size) const {
+    return {results_data_ + first, size};
+  }
+  View<double> impulse() const { return part(0, contact_numbers_); }
+  View<double> contact_velocity() const { return part(contact_numbers_, contact_numbers_); }
+  View<double> velocity() const { return part(2 * contact_numbers_, row_numbers_); }
+  bool has_elastic() const { return !lists_->model_body.empty(); }
+  const CompliantBodies& bodies() const { return numbers_.touching().bodies; }
+  const TouchingRows& rows() const { return numbers_.touching().rows; }
+
+  template <class Body>
+  void for_each(std::int64_t count, const Body& body) {
+    grid_.for_each(label, count, body);
+  }
+
+  void resize() {
+    contact_numbers_ = 3 * (rows().block_start.size - 1);
+    row_numbers_ = 3 * lists_->row_count();
+    const std::int64_t nodes = 3 * bodies().row_of_node.size;
+    results_.resize(2 * contact_numbers_ + row_numbers_);
+    results_data_ = results_.view().data;
+    for (Vector* v : {&free_velocity_, &none_, &stepped_, &ahead_}) {
+      v->resize(contact_numbers_);
+    }
+    for (Vector* v : {&image_, &defect_, &moved_}) v->resize(row_numbers_);
+    for (Vector* v : {&node_start_, &node_velocity_, &push_}) v->resize(nodes);
+    past_.resize(2 * contact_numbers_);
+    mixed_.resize(Mixer::columns * row_numbers_);
+    terms_.resize(contact_numbers_ / 3);
+    sums_.resize(1);
+    state_.resize(1);
+  }
+
+  /// Starts from the velocities without contact.
+  void prepare(double damping) {
+    run_.restart();
+    numbers_.set_damping(exec_, grid_, damping);
+    grid_.copy(label, numbers_.start_velocity(), velocity());
+    for_each(contact_numbers_ / 3,
+             TouchVelocityBody{rows(), numbers_.start_velocity(), free_velocity_.view()});
+    step(numbers_.preload());
+    least_error_ = TwoLevelError::least(grid_.load(&sums_.view().data->defect).value[0]);
+    if (numbers_.change().size > 0) {
+      for_each(row_numbers_, AddNumbersBody{numbers_.change(), velocity()});
+    }
+    grid_.copy(label, numbers_.start_impulse(), impulse());
+  }
+
+  /// image = velocity + M^-1 d, d = b + J^T (r - preload) - A velocity; sums d . M^-1 d.
+  void step(View<const double> r) {
+    for_each(row_numbers_ / 3, numbers_.defect(velocity(), r, defect_.view()));
+    move(velocity());
+    grid_.sum_to(label, 0, row_numbers_, DefectSquareBody{const_view(defect_), const_view(moved_)},
+                 &sums_.view().data->defect);
+  }
+  /// image = from + M^-1 of what is in `defect_`.
+  void move(View<const double> from) {
+    for_each(row_numbers_, ComplianceBody{bodies(), const_view(defect_), moved_.view()});
+    for_each(row_numbers_ / 3, RowMoveBody{bodies(), const_view(moved_), from, image_.view()});
+  }
+  void sum_error(View<const double> r, View<const double> u) {
+    grid_.sum_to(label, 0, contact_numbers_ / 3,
+                 TouchErrorBody{numbers_.constants(), switches_, r, u, const_view(free_velocity_)},
+                 &sums_.view().data->error);
+  }
+  /// The error of impulses and velocities.
+  TwoLevelError find_error() {
+    step(impulse());
+    for_each(node_start_.view().size / 3,
+             NodeVelocityBody{bodies(), const_view(image_), node_start_.view()});
+    for_each(contact_numbers_ / 3, TouchVelocityBody{rows(), velocity(), contact_velocity()});
+    sum_error(impulse(), contact_velocity());
+    const Sums sums = grid_.load(sums_.view().data);
+    TwoLevelError error =
+        TwoLevelError::of(sums.defect.value[0], sums.error.value[0], sums.error.value[1]);
+    // Rounding may make inverses of very stiff bodies indefinite; then the host has to solve.
+    if (sums.defect.value[0] < 0) error.total = std::numeric_limits<double>::quiet_NaN();
+    return error;
+  }
+
+  /// @param ends_early  where it diverges
+  End iterate(bool ends_early, TwoLevelOutcome& outcome) {
+    using Next = TwoLevelControl::Next;
+    Mixer mixer(grid_, numbers_.weight(), mixed_.view());
+    grid_.resize(none_, contact_numbers_);  // zeros
+    sum_error(const_view(none_), const_view(free_velocity_));
+    TwoLevelControl control({.has_elastic = has_elastic(),
+                             .ends_early = ends_early,
+                             .tolerance = options_->tolerance,
+                             .natural_alone = grid_.load(sums_.view().data).error.value[0],
+                             .few_sweeps = ProximalState::steps_at_once,
+                             .least_error = least_error_});
+    while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
+      const Next next = control.next(find_error(), outcome.sweeps);
+      outcome.residual = control.residual();
+      if (next == Next::fails) return End::fails;
+      if (next == Next::converges) return End::converges;
+      if (next == Next::diverges) return End::diverges;
+      if (outcome.sweeps > most_of_solve) return End::fails;
+      grid_.copy(label, View<const double>(impulse()), stepped_.view());
+      outcome.sweeps += step_contacts(control.enough());
+      ++outcome.outer_iterations;
+      if (options_->progress && !options_->progress({clock_.seconds(), outcome.sweeps, 0})) {
+        return End::is_stopped;
+      }
+      for_each(row_numbers_ / 3,
+               RowPushBody{bodies(), rows(), impulse(), const_view(stepped_), defect_.view()});
+      move(const_view(image_));
+      if (control.mixes()) {
+        mixer.observe(velocity(), const_view(image_));
+        mixer.advance(velocity(), image_.view());
+      }
+      grid_.copy(label, const_view(image_), velocity());
+    }
+    return End::fails;
+  }
+
+  /// Steps until the laws were off by at most `enough` before the last one. @returns the steps
+  std::int64_t step_contacts(double enough) {
+    constexpr int count = ProximalState::steps_at_once;
+    ProximalState* const state = state_.view().data;
+    start_steps(state);
+    int growths = 0;
+    for (std::int64_t steps = count;; steps += count) {
+      make_run(state);
+      const ProximalState::Sums sums = grid_.load(&state->sums);
+      const double laws = TwoLevelError::of(0, sums.value[0], 0).laws;
+      if (laws <= enough || steps >= most_steps) return steps;
+      if (growths < most_growths && ProximalState::has_missed(sums)) {
+        ++growths;
+        numbers_.grow_majorants(grid_);
+        start_steps(state);
+      } else {
+        grid_.once(label, ProximalDecideBody{state});
+      }
+    }
+  }
+  /// Eight steps and their sums.
+  void make_run(ProximalState* state) {
+    run_.launch(exec_.device_exec().stream(), [&] {
+      for (int step = 0; step < ProximalState::steps_at_once; ++step) {
+        step_contacts_once(state, step);
+      }
+      run_grid_.sum_to(label, 0, terms_.view().size, ReadySums<ProximalState::Sums>{terms_.view()},
+                       &state->sums);
+    });
+  }
+  void start_steps(ProximalState* state) {
+    grid_.once(label, ProximalStartBody{state});
+    grid_.copy(label, const_view(stepped_), impulse());
+    grid_.copy(label, const_view(stepped_), ahead_.view());
+    grid_.copy(label, const_view(node_start_), node_velocity_.view());
+  }
+  void step_contacts_once(const ProximalState* state, int step) {
+    const TouchingNodes& touching = numbers_.touching();
+    for_each(contact_numbers_ / 3,
+             ProximalStepBody{touching, numbers_.constants(), numbers_.majorant(), switches_,
+                              const_view(node_velocity_), state, step, ahead_.view(), impulse(),
+                              past_.view(), terms_.view()});
+    for_each(push_.view().size / 3,
+             NodePushBody{touching, const_view(ahead_), const_view(stepped_), push_.view()});
+    for_each(push_.view().size, NodeMoveBody{bodies(), const_view(push_), const_view(node_start_),
+                                             node_velocity_.view()});
+  }
+
+  CudaStepExec& exec_;
+  GridContactExec grid_;
+  GridContactExec run_grid_;  ///< of recorded runs: its sums stay where they are
+  TwoLevelNumbers numbers_;
+  const CompliantLists* lists_ = nullptr;    ///< of the present solve
+  const ContactOptions* options_ = nullptr;  ///< of the present solve
+  ContactSwitches switches_;
+  Stopwatch clock_;
+  std::int64_t contact_numbers_ = 0, row_numbers_ = 0;  ///< 3 per contact, per row
+  double least_error_ = 0;                              ///< of the velocities without contact
+  Vector results_;
+  double* results_data_ = nullptr;
+  Vector free_velocity_, none_, stepped_, ahead_;  ///< [3 contacts]
+  Vector image_, defect_, moved_;                  ///< [rows][3]; the last two in frames
+  Vector node_start_, node_velocity_, push_;  ///< [nodes][3] in frames; node_start_: with stepped_
+  Vector past_;                               ///< [contacts][6], of ProximalStepBody
+  DeviceVector<ProximalState::Sums> terms_;   ///< [contacts]
+  DeviceVector<ProximalState> state_;
+  IterationGraph run_;  ///< of the present numbers
+  Vector mixed_;        ///< of the mixer
+  DeviceVector<Sums> sums_;
+};
+
+}  // namespace tetwarp

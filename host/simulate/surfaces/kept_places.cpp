@@ -1,0 +1,22 @@
+#include "host/simulate/surfaces/kept_places.hpp"
+
+#include <utility>
+
+namespace tetwarp {
+
+const SurfacePlaces& KeptPlaces::of(const ModelState& state) {
+  if (position_.empty() || position_ != state.position || rotation_ != state.rotation) {
+    surface_places(scene_, model_, state, threads_, places_);
+    position_ = state.position;
+    rotation_ = state.rotation;
+  }
+  return places_;
+}
+
+void KeptPlaces::take(const ModelState& state, SurfacePlaces& places) {
+  of(state);
+  std::swap(places_, places);
+  position_.clear();
+}
+
+}  // namespace tetwarp

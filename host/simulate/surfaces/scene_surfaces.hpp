@@ -1,0 +1,87 @@
+/// @file scene_surfaces.hpp
+/// The surfaces of a scene's bodies and obstacles for contact, what they are bound to and which
+/// contact material a pair of bodies has.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tetwarp/contact_tracker.hpp>
+
+#include "host/collide/collision_surfaces.hpp"
+#include "host/scene/scene_geometry.hpp"
+#include "host/simulate/model/model.hpp"
+#include "host/simulate/step/resident_surfaces.hpp"
+
+namespace tetwarp {
+
+/// The contact material of a pair of bodies that have their own.
+struct PairMaterial {
+  std::array<std::int32_t, 2> bodies{0, 0};  ///< first <= second
+  std::int32_t material = 0;                 ///< in SceneSurfaces::materials
+};
+
+struct SceneSurfaces {
+  CollisionSurfaces surfaces;
+  std::vector<ModelPoint> vertex_point;     ///< [vertices] what each vertex is bound to
+  std::vector<std::int32_t> surface_point;  ///< [vertices] its number among the points of the
+                                            ///< body's surface, ascending; -1: of a round body
+  std::vector<std::int32_t> plane_rigid;    ///< [planes] frame that moves it
+  std::vector<PlanePlace> plane_local;      ///< [planes] in that frame
+  std::vector<double> body_size;            ///< [bodies, then obstacles] diagonal of the box at the
+                                            ///< start [m]; infinite of planes, 0 without parts
+  std::vector<std::int32_t> body_rigid;     ///< [bodies, then obstacles] the frame of a rigid one,
+                                            ///< as ModelPoint::rigid, or -1: deformable
+  std::vector<ContactMaterial> materials;   ///< different ones
+  std::vector<std::int32_t> contact_class;  ///< [bodies, then obstacles] bodies of equal material
+  std::int32_t class_count = 0;
+  std::vector<std::int32_t> class_material;  ///< [classes][classes] of two classes
+  std::vector<PairMaterial> pair_materials;  ///< sorted by bodies
+
+  std::int32_t body_count() const { return static_cast<std::int32_t>(surfaces.bodies.size()); }
+  /// Of two bodies or obstacles, in either order.
+  std::int32_t material_of(std::int32_t a, std::int32_t b) const;
+};
+
+/// @pre check_scene() has passed
+/// @throws std::invalid_argument  in one line naming the body: too many triangles, a thickness that
+///         positions of this size cannot resolve
+SceneSurfaces make_scene_surfaces(const Scene& scene,
+                                  const SceneGeometry& geometry,
+                                  const Model& model);
+
+/// What ResidentSurfaces needs of them.
+/// @param scene  kept by the caller
+SurfaceBinding binding_of(const SceneSurfaces& scene);
+/// A motion of ResidentSurfaces, for a Detector on the same device.
+MotionView view_of(const ResidentMotion& motion);
+
+/// World places of all vertices and planes.
+/// @param places  out; memory is kept
+void surface_places(const SceneSurfaces& scene,
+                    const Model& model,
+                    const ModelState& state,
+                    int threads,
+                    SurfacePlaces& places);
+
+/// How all surfaces move in a step: nodes straight, rigid bodies by exp(dt omega), as
+/// BodyStepper::move(). Owns nothing.
+struct SurfaceStep {
+  const SceneSurfaces& scene;
+  const Model& model;
+  const ModelState& state;                ///< at the start
+  const std::vector<Point3>& velocity;    ///< [block_count] [m/s, rad/s]
+  double time_step = 0;                   ///< [s]
+  std::span<const double> fraction = {};  ///< [bodies, then obstacles] of the step that each moves,
+                                          ///< 0 to 1; empty: 1
+};
+/// @param threads  any number: same motion
+/// @param motion   in: its start from surface_places(); out: all else but `resident`
+void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
+/// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
+void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
+/// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
+void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
+
+}  // namespace tetwarp

@@ -1,0 +1,150 @@
+/// @file mesh_import.cpp
+/// Choice of reader, cells and array for meshes of other programs.
+#include "io/import/mesh_import.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <tetwarp/error.hpp>
+#include <tetwarp/volume.hpp>
+
+#include "io/files/memory.hpp"
+#include "io/import/mesh_child.hpp"
+
+namespace tetwarp {
+namespace {
+/// Between RAS and LPS.
+void turn(std::vector<Point3>& vectors) {
+  for (Point3& vector : vectors) vector = {0 - vector[0], 0 - vector[1], vector[2]};
+}
+
+/// Far above the time and memory that any sound file needs, also on a busy machine.
+ChildLimits limits_for(const std::string& path, const MeshImportOptions& options) {
+  std::error_code error;
+  const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+  const double seconds = 120 + (error ? 0 : 5e-6 * bytes);
+  const double memory = 0x1p32 + (error ? 0 : 1000 * bytes);
+  return {options.time_limit > 0 ? options.time_limit : seconds,
+          std::min(memory, available_memory())};
+}
+
+/// Checks what a reader has returned. Throws IoError.
+void check_imported(const std::string& path, const ImportedMesh& imported, bool needs_solids) {
+  const std::size_t node_count = imported.mesh.rest_positions.size();
+  if (needs_solids && imported.mesh.cell_count() == 0) {
+    throw IoError(path, "", "holds no tetrahedron or hexahedron: damaged, or a surface mesh");
+  }
+  if (!needs_solids && imported.triangles.empty()) {
+    throw IoError(path, "", "holds no triangle; extract the surface of its mesh");
+  }
+  if (node_count > std::numeric_limits<std::int32_t>::max()) {
+    throw IoError(path, "", "2^31 or more nodes; use a coarser mesh");
+  }
+  for (const auto& triangle : imported.triangles) {
+    for (const std::int32_t node : triangle) {
+      if (node < 0 || static_cast<std::size_t>(node) >= node_count) {
+        throw IoError(path, "", "a triangle refers to a node that is not there: damaged");
+      }
+    }
+  }
+  try {
+    if (imported.mesh.cell_count() > 0) check_mesh(imported.mesh);
+  } catch (const std::invalid_argument& error) {
+    throw IoError(path, "", std::string(error.what()) + ": damaged, write it again");
+  }
+  for (std::size_t node = 0; node < node_count; ++node) {  // those of triangles alone, too
+    const Point3& x = imported.mesh.rest_positions[node];
+    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2])) {
+      throw IoError(path, "",
+                    "node " + std::to_string(node) + " is not finite, correct or remove it");
+    }
+  }
+  for (const MeshArray& array : imported.arrays) {
+    const std::size_t rows = array.is_of_cells ? imported.mesh.cell_count() : node_count;
+    const bool has_type = array.type >= PixelType::uint8 && array.type <= PixelType::float64;
+    if (array.components < 1 || !has_type ||
+        array.data.size() !=
+            rows * static_cast<std::size_t>(array.components) * size_of(array.type)) {
+      throw IoError(path, array.name,
+                    "does not have a number for every row: damaged, write it again");
+    }
+  }
+  if (imported.displacements.size() != imported.times.size()) {
+    throw IoError(path, "", "has other numbers of times and of steps: damaged, write it again");
+  }
+  for (std::size_t step = 0; step < imported.times.size(); ++step) {
+    const std::vector<Point3>& rows = imported.displacements[step];
+    const auto is_finite = [](const Point3& row) {
+      return std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2]);
+    };
+    const auto bad = std::ranges::find_if_not(rows, is_finite);
+    if (rows.size() == node_count && bad == rows.end() && std::isfinite(imported.times[step])) {
+      continue;
+    }
+    const std::string what = rows.size() != node_count ? "is not the displacement of every node"
+                             : bad == rows.end()
+                                 ? "has a time that is no finite number"
+                                 : "has a displacement that is no finite number, of node " +
+                                       std::to_string(bad - rows.begin());
+    throw IoError(path, "", "step " + std::to_string(step) + " " + what + "; write it again");
+  }
+}
+}  // namespace
+
+bool has_mesh_extension(const std::string& path) {
+  return path.ends_with(".msh") || path.ends_with(".vtu") || path.ends_with(".vtk");
+}
+
+ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& options) {
+  if (!has_mesh_extension(path)) {
+    throw IoError(path, "", "the name of a mesh to import must end in .msh, .vtu or .vtk");
+  }
+  if (!std::ifstream(path)) {
+    throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  ImportedMesh mesh = read_mesh_in_child(path, limits_for(path, options),
+                                         [&] { return read_mesh_here(path, options); });
+  check_imported(path, mesh, options.needs_solids);
+  if (options.axes == Axes::lps) {
+    turn(mesh.mesh.rest_positions);
+    for (std::vector<Point3>& displacement : mesh.displacements) turn(displacement);
+    for (MeshArray& array : mesh.arrays) turn_array(array);
+  }
+  return mesh;
+}
+
+ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options) {
+  return path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
+}
+
+void leave_out_cell(const std::string& path,
+                    const CellKind& kind,
+                    std::int64_t number,
+                    ImportedMesh& into) {
+  if (kind.dimension == 3) {
+    throw IoError(path, "",
+                  "cell " + std::to_string(number) + " is a " + kind.name +
+                      ", expected tetrahedra of four nodes and hexahedra of eight; split the "
+                      "cells");
+  }
+  ++into.skipped[kind.name];
+}
+
+std::optional<std::string> choose_displacement(const std::string& path,
+                                               const std::vector<std::string>& names,
+                                               const MeshImportOptions& options) {
+  const std::string name = options.displacement.value_or("displacement");
+  if (std::ranges::find(names, name) != names.end()) return name;
+  if (!options.displacement) return std::nullopt;
+  std::string listed;
+  for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
+  throw IoError(path, name,
+                "no such point array; the file has " + (listed.empty() ? "none" : listed));
+}
+
+}  // namespace tetwarp

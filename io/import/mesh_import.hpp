@@ -1,0 +1,70 @@
+/// @file mesh_import.hpp
+/// Shared by the readers of meshes of other programs.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/mesh_import.hpp>
+
+#include "io/volume/mesh_arrays.hpp"
+
+namespace tetwarp {
+
+/// One reader per library; in a build without the library it throws an IoError that names the
+/// library.
+ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
+ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
+
+/// Reads a mesh in this process and leaves most checks to import_mesh(), which calls it in a child.
+ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options);
+
+/// A kind of cell.
+struct CellKind {
+  std::string name;  ///< in the format's words
+  int dimension;
+  int kept_nodes;  ///< 3 of a triangle, 4 of a tetrahedron, 8 of a hexahedron, 0 of others
+};
+
+/// Counts a cell that is not kept. @throws IoError when it has three dimensions
+void leave_out_cell(const std::string& path,
+                    const CellKind& kind,
+                    std::int64_t number,
+                    ImportedMesh& into);
+
+/// Adds a cell that is kept and its number, counts one of fewer dimensions. Triangles are both.
+/// @param number   of the cell in its file
+/// @param node_at  function from 0, 1 ... in VTK's order of nodes to an index in the mesh
+/// @throws IoError on other cells of three dimensions
+template <class NodeAt>
+void add_cell(const std::string& path,
+              const CellKind& kind,
+              std::int64_t number,
+              const NodeAt& node_at,
+              ImportedMesh& into,
+              CellNumbers& numbers) {
+  const auto nodes = [&]<std::size_t count>(std::array<std::int32_t, count> cell) {
+    for (std::size_t n = 0; n < count; ++n) cell[n] = static_cast<std::int32_t>(node_at(n));
+    return cell;
+  };
+  if (kind.kept_nodes == 4) {
+    into.mesh.tets.push_back(nodes(std::array<std::int32_t, 4>{}));
+    numbers.tets.push_back(number);
+  } else if (kind.kept_nodes == 8) {
+    into.mesh.hexes.push_back(nodes(std::array<std::int32_t, 8>{}));
+    numbers.hexes.push_back(number);
+  } else {
+    if (kind.kept_nodes == 3) into.triangles.push_back(nodes(std::array<std::int32_t, 3>{}));
+    leave_out_cell(path, kind, number, into);
+  }
+}
+
+/// The name of the array of displacements in a file; nothing: the file has none.
+/// @throws IoError when the file lacks the requested one
+std::optional<std::string> choose_displacement(const std::string& path,
+                                               const std::vector<std::string>& names,
+                                               const MeshImportOptions& options);
+
+}  // namespace tetwarp

@@ -1,0 +1,15 @@
+/// @file mesh_novtk.cpp
+/// In place of mesh_vtk.cpp where VTK was missing when this was built.
+#include <tetwarp/error.hpp>
+
+#include "io/import/mesh_import.hpp"
+
+namespace tetwarp {
+
+ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
+  throw IoError(path, "",
+                "this build cannot read VTK's meshes; install libvtk9-dev and build again, or "
+                "convert to .vtkhdf or .msh");
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,92 @@
+#include "io/import/mesh_vtk_arrays.hpp"
+
+#include <vtkAbstractArray.h>
+#include <vtkCellData.h>
+#include <vtkDataArray.h>
+#include <vtkPointData.h>
+#include <vtkUnstructuredGrid.h>
+
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+namespace tetwarp {
+namespace {
+/// Nothing for arrays of bits.
+std::optional<PixelType> type_of(vtkDataArray& array) {
+  const int type = array.GetDataType();
+  if (type == VTK_FLOAT) return PixelType::float32;
+  if (type == VTK_DOUBLE) return PixelType::float64;
+  const bool is_signed = array.GetDataTypeMin() < 0;
+  switch (array.GetDataTypeSize()) {
+    case 1:
+      return is_signed ? PixelType::int8 : PixelType::uint8;
+    case 2:
+      return is_signed ? PixelType::int16 : PixelType::uint16;
+    case 4:
+      return is_signed ? PixelType::int32 : PixelType::uint32;
+    case 8:
+      return is_signed ? PixelType::int64 : PixelType::uint64;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The given rows of an array; nothing when a VTKHDF file cannot hold it.
+std::optional<MeshArray> rows_of(vtkDataArray* array,
+                                 const std::string& name,
+                                 bool is_of_cells,
+                                 vtkIdType tuples,
+                                 const std::vector<std::int64_t>& rows) {
+  if (array == nullptr || array->GetNumberOfTuples() != tuples || !is_free_name(name)) return {};
+  const std::optional<PixelType> type = type_of(*array);
+  const int components = array->GetNumberOfComponents();
+  if (!type || components < 1 || components > 9) return {};
+  MeshArray kept{name, is_of_cells, *type, components, {}};
+  const std::size_t bytes = size_of(*type) * static_cast<std::size_t>(components);
+  kept.data.resize(rows.size() * bytes);
+  const auto* const in = static_cast<const std::byte*>(array->GetVoidPointer(0));
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    std::memcpy(kept.data.data() + row * bytes, in + static_cast<std::size_t>(rows[row]) * bytes,
+                bytes);
+  }
+  return kept;
+}
+
+void add_group(vtkFieldData& data,
+               bool is_of_cells,
+               vtkIdType tuples,
+               const std::vector<std::int64_t>& rows,
+               const std::optional<std::string>& displacement,
+               ImportedMesh& into) {
+  for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
+    const char* const given = data.GetArrayName(a);
+    const std::string name = given == nullptr ? "" : given;
+    if (!is_of_cells && name == displacement) continue;
+    if (auto kept = rows_of(data.GetArray(a), name, is_of_cells, tuples, rows)) {
+      into.arrays.push_back(std::move(*kept));
+    } else {
+      into.left_out.push_back((is_of_cells ? "cell array '" : "point array '") + name + "'");
+    }
+  }
+}
+}  // namespace
+
+void add_arrays(vtkUnstructuredGrid& grid,
+                const std::optional<std::string>& displacement,
+                const CellNumbers& cells,
+                ImportedMesh& into) {
+  std::vector<std::int64_t> nodes(static_cast<std::size_t>(grid.GetNumberOfPoints()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  add_group(*grid.GetPointData(), false, grid.GetNumberOfPoints(), nodes, displacement, into);
+  add_group(*grid.GetCellData(), true, grid.GetNumberOfCells(), cells.all(), {}, into);
+  add_numbers("original_cell", true, cells.all(), into);
+  vtkFieldData& fields = *grid.GetFieldData();
+  for (int a = 0; a < fields.GetNumberOfArrays(); ++a) {
+    const char* const name = fields.GetArrayName(a);
+    if (name != nullptr && std::string(name) == "TimeValue") continue;
+    into.left_out.push_back("field array '" + std::string(name == nullptr ? "" : name) + "'");
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,21 @@
+/// @file mesh_vtk_arrays.hpp
+/// Arrays of VTK's unstructured grids.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "io/volume/mesh_arrays.hpp"
+
+class vtkUnstructuredGrid;
+
+namespace tetwarp {
+
+/// Adds the arrays of points and kept cells, and the numbers of the cells; names arrays that cannot
+/// be kept.
+/// @param displacement  name of the point array that is kept as displacement
+void add_arrays(vtkUnstructuredGrid& grid,
+                const std::optional<std::string>& displacement,
+                const CellNumbers& cells,
+                ImportedMesh& into);
+
+}  // namespace tetwarp

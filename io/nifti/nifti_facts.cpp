@@ -1,0 +1,76 @@
+#include "io/nifti/nifti_facts.hpp"
+
+#include <nifti1.h>
+
+#include <string>
+
+namespace tetwarp {
+namespace {
+const std::string prefix = "tetwarp_nifti_";
+
+int read_code(const h5::Object& dataset, const std::string& name, std::int64_t largest) {
+  const std::int64_t value = h5::read_integer_attribute(dataset, prefix + name, 1)[0];
+  if (value >= 0 && value <= largest) return static_cast<int>(value);
+  dataset.fail("attribute " + prefix + name + " is " + std::to_string(value) + ", expected 0 to " +
+               std::to_string(largest));
+}
+
+std::string read_text(const h5::Object& dataset, const std::string& name, std::size_t largest) {
+  if (!h5::has_attribute(dataset, prefix + name)) return {};
+  std::string text = h5::read_text_attribute(dataset, prefix + name);
+  if (text.size() <= largest) return text;
+  dataset.fail("attribute " + prefix + name + " has " + std::to_string(text.size()) +
+               " bytes, expected at most " + std::to_string(largest));
+}
+
+void write_text(const h5::Object& dataset, const std::string& name, const std::string& text) {
+  if (!text.empty()) h5::write_text_attribute(dataset, prefix + name, text);
+}
+}  // namespace
+
+NiftiFacts default_nifti_facts(int components) {
+  NiftiFacts facts;
+  if (components == 6) {
+    facts.intent_code = NIFTI_INTENT_SYMMATRIX;
+    facts.intent_p[0] = 3;  // rows
+  } else if (components > 1) {
+    facts.intent_code = NIFTI_INTENT_VECTOR;
+  }
+  return facts;
+}
+
+void write_fact_attributes(const h5::Object& dataset, const NiftiFacts& facts) {
+  const auto write_code = [&](const char* name, int value) {
+    h5::write_scalar_attribute(dataset, prefix + name, static_cast<std::int64_t>(value));
+  };
+  write_code("sform_code", facts.sform_code);
+  write_code("qform_code", facts.qform_code);
+  write_code("xyzt_units", facts.xyzt_units);
+  write_code("intent_code", facts.intent_code);
+  h5::write_attribute(dataset, prefix + "intent_p", std::span<const double>(facts.intent_p));
+  write_text(dataset, "intent_name", facts.intent_name);
+  write_text(dataset, "descrip", facts.description);
+  write_text(dataset, "component_axes", name_of(facts.component_axes));
+}
+
+std::optional<NiftiFacts> read_fact_attributes(const h5::Object& dataset) {
+  if (!h5::has_attribute(dataset, prefix + "sform_code")) return std::nullopt;
+  NiftiFacts facts;
+  facts.sform_code = read_code(dataset, "sform_code", 32767);
+  facts.qform_code = read_code(dataset, "qform_code", 32767);
+  facts.xyzt_units = read_code(dataset, "xyzt_units", 255);
+  facts.intent_code = read_code(dataset, "intent_code", 32767);
+  const std::vector<double> p = h5::read_real_attribute(dataset, prefix + "intent_p", 3);
+  facts.intent_p = {p[0], p[1], p[2]};
+  facts.intent_name = read_text(dataset, "intent_name", 16);
+  facts.description = read_text(dataset, "descrip", 80);
+  const std::string axes = read_text(dataset, "component_axes", 3);
+  try {
+    facts.component_axes = parse<Axes>(axes);
+  } catch (const std::invalid_argument& error) {
+    dataset.fail("attribute " + prefix + "component_axes: " + error.what());
+  }
+  return facts;
+}
+
+}  // namespace tetwarp

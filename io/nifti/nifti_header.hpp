@@ -1,0 +1,90 @@
+/// @file nifti_header.hpp
+/// The header of a NIfTI file: checked before anything is allocated, and turned into a grid.
+#pragma once
+#include <znzlib.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tetwarp/nifti.hpp>
+
+#include "io/nifti/nifti_fields.hpp"
+
+namespace tetwarp {
+
+/// An open NIfTI file, plain or gzip; closes itself.
+class NiftiStream {
+ public:
+  /// Opens for reading ("rb") or writing ("wb"); null when that fails.
+  NiftiStream(const std::string& path, const char* mode, bool is_compressed)
+      : file_(znzopen(path.c_str(), mode, is_compressed ? 1 : 0)) {}
+  NiftiStream(const NiftiStream&) = delete;
+  NiftiStream& operator=(const NiftiStream&) = delete;
+  ~NiftiStream() { close(); }
+
+  explicit operator bool() const { return file_ != nullptr; }
+
+  /// False when fewer bytes could be read, written or skipped.
+  bool read(void* out, std::size_t bytes) { return znzread(out, 1, bytes, file_) == bytes; }
+  bool write(const void* in, std::size_t bytes) { return znzwrite(in, 1, bytes, file_) == bytes; }
+  bool seek(std::int64_t offset) { return znzseek(file_, offset, SEEK_SET) >= 0; }
+
+  /// As many of `bytes` as there are, at most.
+  std::size_t read_some(void* out, std::size_t bytes) {
+    const std::size_t count = znzread(out, 1, bytes, file_);
+    return count <= bytes ? count : 0;  // an error is a number below zero
+  }
+
+  /// False when what follows is damaged: at the end of a gzip file its checksum is compared.
+  bool is_sound_behind() {
+    char next = 0;
+    return znzread(&next, 1, 1, file_) <= 1;
+  }
+
+  /// @returns false when the rest of the buffers could not be written
+  bool close() { return file_ == nullptr || znzclose(file_) == 0; }
+
+ private:
+  znzFile file_;
+};
+
+/// The header of a NIfTI file.
+struct NiftiHeader {
+  Grid grid;
+  PixelType type = PixelType::float32;  ///< as stored
+  int components = 1;
+  std::int64_t steps = 1;     ///< along the axis of time
+  std::vector<double> times;  ///< one per step [s, or the unit of the axis]; empty: one step
+  bool is_swapped = false;    ///< samples are in the byte order that is not this machine's
+  double slope = 1;           ///< value = slope * sample + intercept
+  double intercept = 0;
+  std::string samples;             ///< the file that holds them
+  bool is_gzip = false;            ///< that file
+  std::int64_t data_offset = 352;  ///< first sample [byte], uncompressed
+  std::string fingerprint;         ///< of the warp that wrote the file; empty: none
+  NiftiFacts facts{};
+
+  bool is_scaled() const { return slope != 1 || intercept != 0; }
+  /// Type of the values: scaled samples are float32, or float64 if they are stored so.
+  PixelType value_type() const {
+    return is_scaled() && type != PixelType::float64 ? PixelType::float32 : type;
+  }
+};
+
+/// What the first bytes of a file are, plain or gzip. Throws IoError when it cannot be opened.
+NiftiStart read_nifti_start(const std::string& path);
+
+/// The file that holds the header: of a pair NAME.hdr for NAME.img, else the file itself.
+std::string nifti_header_path(const std::string& path);
+
+/// Reads and checks the header; of a pair either file may be named. Throws IoError.
+NiftiHeader read_nifti_header(const std::string& path);
+
+/// Code of a pixel type in NIfTI.
+int nifti_datatype_of(PixelType type);
+
+/// Seconds of one unit of the time axis; 1 where `xyzt_units` names none.
+double nifti_time_unit(std::int64_t xyzt_units);
+
+}  // namespace tetwarp

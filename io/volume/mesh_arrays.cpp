@@ -1,0 +1,43 @@
+#include "io/volume/mesh_arrays.hpp"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "io/nifti/nifti_components.hpp"
+
+namespace tetwarp {
+
+std::vector<std::int64_t> CellNumbers::all() const {
+  std::vector<std::int64_t> numbers = tets;
+  numbers.insert(numbers.end(), hexes.begin(), hexes.end());
+  return numbers;
+}
+
+void add_numbers(const std::string& name,
+                 bool is_of_cells,
+                 const std::vector<std::int64_t>& numbers,
+                 ImportedMesh& into) {
+  const auto bytes = std::as_bytes(std::span(numbers));
+  MeshArray array{name, is_of_cells, PixelType::int64, 1, {bytes.begin(), bytes.end()}};
+  into.arrays.push_back(std::move(array));
+}
+
+bool is_free_name(const std::string& name) {
+  return !name.empty() && name.find_first_of("/.") == std::string::npos && name != "displacement" &&
+         name != "original_cell" && name != "original_node";
+}
+
+void turn_array(MeshArray& array) {
+  if (is_integer(array.type)) return;
+  const std::array<bool, 9> turned = turned_components(array.components);
+  const std::size_t size = size_of(array.type);
+  const auto components = static_cast<std::size_t>(array.components);
+  for (std::size_t s = 0; s < array.data.size() / size; ++s) {
+    if (turned[s % components]) {
+      negate_samples(array.type, std::span(array.data).subspan(s * size, size));
+    }
+  }
+}
+
+}  // namespace tetwarp

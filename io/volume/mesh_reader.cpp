@@ -1,0 +1,159 @@
+/// @file mesh_reader.cpp
+/// Rest and deformed positions of a mesh file of any format.
+#include <optional>
+#include <tetwarp/io.hpp>
+#include <utility>
+
+#include "io/vtkhdf/vtkhdf_mesh_file.hpp"
+
+namespace tetwarp {
+namespace {
+/// Steps of a file of Gmsh or VTK, which is read as a whole.
+struct ImportedSteps {
+  std::vector<Point3> points;
+  std::vector<std::vector<Point3>> displacements;  ///< per step; empty: none
+};
+}  // namespace
+
+struct MeshReader::State {
+  std::string path;
+  std::optional<MeshFile> file;  ///< VTKHDF; else `imported`
+  ImportedSteps imported;
+  MeshHeader header;
+  Mesh mesh;
+  std::vector<MeshPart> parts;  ///< that `mesh` was read from
+
+  void open_vtkhdf(const MeshReadOptions& options);
+  void import(const MeshReadOptions& options);
+  std::vector<Point3> vectors_of(std::int64_t step) const;
+};
+
+namespace {
+void check_node_count(const std::string& path, std::size_t found, std::size_t expected) {
+  if (found == expected) return;
+  throw IoError(
+      path, "",
+      "has " + std::to_string(found) + " nodes, the mesh has " + std::to_string(expected));
+}
+
+/// Two steps have the same topology when their cells and connectivity are the same rows.
+bool is_same_topology(const std::vector<MeshPart>& a, std::vector<MeshPart> b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t part = 0; part < a.size(); ++part) b[part].first_node = a[part].first_node;
+  return a == b;
+}
+
+/// Files of Gmsh and VTK are recognized by their names, unless they hold something else.
+bool is_imported(const std::string& path) {
+  return has_mesh_extension(path) && kind_of(path) == FileKind::unknown;
+}
+
+std::vector<Point3> read_rest_points(const std::string& path, const MeshReadOptions& options) {
+  if (!is_imported(path)) return MeshFile(path).read_points(0);
+  return import_mesh(path, {.axes = options.import.axes}).mesh.rest_positions;
+}
+}  // namespace
+
+void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
+  file.emplace(path);
+  const VtkhdfInput& input = file->file();
+  if (options.import.displacement) {
+    throw IoError(path, "",
+                  "is a VTKHDF mesh, whose displacement is the array 'displacement'; leave out "
+                  "--displacement");
+  }
+  input.check_step(options.rest_step);
+  parts = file->parts_of(options.rest_step);
+  MeshCells cells = file->read_cells(options.rest_step);
+  mesh.tets = std::move(cells.tets);
+  mesh.hexes = std::move(cells.hexes);
+  mesh.rest_positions = file->read_points(options.rest_step);
+  header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
+  header.has_displacement = file->has_displacement();
+  header.group_names = file->group_names();
+  for (std::size_t step = 0; step < input.times.size(); ++step) {
+    header.has_moving_points |= file->parts_of(static_cast<std::int64_t>(step)) != parts;
+  }
+}
+
+void MeshReader::State::import(const MeshReadOptions& options) {
+  if (options.rest_step != 0) {
+    throw IoError(path, "",
+                  "has no step " + std::to_string(options.rest_step) +
+                      " of points: points of its format do not move, --rest-step is 0");
+  }
+  ImportedMesh whole = import_mesh(path, options.import);
+  mesh = std::move(whole.mesh);
+  imported.displacements = std::move(whole.displacements);
+  header.has_displacement = !imported.displacements.empty();
+  for (MeshArray& array : whole.arrays) {
+    if (array.is_of_cells && array.name == "group") {
+      header.group_names = std::move(array.value_names);
+    }
+  }
+  header.times = header.has_displacement ? std::move(whole.times) : std::vector<double>{0.0};
+  if (!header.has_displacement) imported.points = mesh.rest_positions;
+}
+
+/// The displacement of a step or, without one, its points.
+std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
+  if (!file) {
+    if (step < 0 || step >= std::ssize(header.times)) {
+      throw IoError(path, "", "has no step " + std::to_string(step));
+    }
+    return header.has_displacement ? imported.displacements[static_cast<std::size_t>(step)]
+                                   : imported.points;
+  }
+  file->file().check_step(step);
+  if (!is_same_topology(parts, file->parts_of(step))) {
+    const MeshCells cells = file->read_cells(step);
+    if (cells.tets != mesh.tets || cells.hexes != mesh.hexes) {
+      throw IoError(path, "",
+                    "step " + std::to_string(step) + " has other cells than the rest step");
+    }
+  }
+  return header.has_displacement ? file->read_displacement(step) : file->read_points(step);
+}
+
+MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) {
+  const h5::Silence silence;
+  state_ = std::make_unique<State>();
+  State& state = *state_;
+  state.path = path;
+  is_imported(path) ? state.import(options) : state.open_vtkhdf(options);
+  Mesh& mesh = state.mesh;
+  if (options.rest_file) {
+    std::vector<Point3> positions = read_rest_points(*options.rest_file, options);
+    check_node_count(*options.rest_file, positions.size(), mesh.rest_positions.size());
+    mesh.rest_positions = std::move(positions);
+  }
+  state.header.node_count = static_cast<std::int64_t>(mesh.rest_positions.size());
+  state.header.tet_count = static_cast<std::int64_t>(mesh.tets.size());
+  state.header.hex_count = static_cast<std::int64_t>(mesh.hexes.size());
+}
+
+MeshReader::MeshReader(MeshReader&&) noexcept = default;
+MeshReader::~MeshReader() = default;
+
+const MeshHeader& MeshReader::header() const {
+  return state_->header;
+}
+const Mesh& MeshReader::mesh() const {
+  return state_->mesh;
+}
+
+std::vector<Point3> MeshReader::read_step(std::int64_t step) const {
+  const h5::Silence silence;
+  const State& state = *state_;
+  std::vector<Point3> positions = state.vectors_of(step);
+  check_node_count(state.path, positions.size(), state.mesh.rest_positions.size());
+  if (!state.header.has_displacement) return positions;
+  for (std::size_t node = 0; node < positions.size(); ++node) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      positions[node][axis] += state.mesh.rest_positions[node][axis];
+    }
+  }
+  return positions;
+}
+
+}  // namespace tetwarp

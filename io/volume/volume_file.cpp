@@ -1,0 +1,91 @@
+/// @file volume_file.cpp
+/// Readers of volume files. The content of a file, not its name, decides its format.
+#include <tetwarp/io.hpp>
+
+#include "io/files/volume_source.hpp"
+#include "io/h5/h5.hpp"
+#include "io/nifti/nifti_header.hpp"
+
+namespace tetwarp {
+namespace {
+bool is_nifti(const std::string& path) {
+  return read_nifti_start(nifti_header_path(path)).fields.has_value();
+}
+}  // namespace
+
+VolumeHeader read_volume_header(const std::string& path, const VolumeReadOptions& options) {
+  const h5::Silence silence;
+  return is_nifti(path) ? read_nifti_volume_header(path, options) : read_vtkhdf_header(path);
+}
+
+struct VolumeReader::State {
+  std::unique_ptr<VolumeSource> source;
+};
+
+VolumeReader::VolumeReader(const std::string& path,
+                           const std::string& array,
+                           std::int64_t step,
+                           const VolumeReadOptions& options) {
+  const h5::Silence silence;
+  state_.reset(new State{is_nifti(path) ? open_nifti_source(path, array, step, options)
+                                        : open_vtkhdf_source(path, array, step)});
+}
+
+VolumeReader::VolumeReader(VolumeReader&&) noexcept = default;
+VolumeReader::~VolumeReader() = default;
+
+const Grid& VolumeReader::grid() const {
+  return state_->source->grid();
+}
+
+const ArrayHeader& VolumeReader::array() const {
+  return state_->source->array();
+}
+
+std::vector<std::string> VolumeReader::array_names() const {
+  const h5::Silence silence;
+  return state_->source->array_names();
+}
+
+double VolumeReader::chunk_bytes() const {
+  return state_->source->chunk_bytes();
+}
+
+double VolumeReader::unpacked_bytes() const {
+  return state_->source->unpacked_bytes();
+}
+
+void VolumeReader::read(const Region& region, void* samples) const {
+  const h5::Silence silence;
+  state_->source->read(region, samples);
+}
+
+Volume read_volume(const std::string& path,
+                   const std::string& array,
+                   std::int64_t step,
+                   const VolumeReadOptions& options) {
+  const VolumeReader reader(path, array, step, options);
+  const ArrayHeader& header = reader.array();
+  h5::check_memory(path, header.name,
+                   static_cast<double>(reader.grid().voxel_count()) * header.components *
+                       static_cast<double>(size_of(header.type)));
+  Volume volume = make_volume(reader.grid(), header.type, header.components, header.name);
+  reader.read({{0, 0, 0}, reader.grid().dims}, volume.data.data());
+  return volume;
+}
+
+std::optional<std::string> read_fingerprint(const std::string& path) {
+  const h5::Silence silence;
+  try {
+    if (is_nifti(path)) {
+      const std::string fingerprint = read_nifti_header(path).fingerprint;
+      return fingerprint.empty() ? std::nullopt : std::optional(fingerprint);
+    }
+    const h5::Object file = h5::open_file(path);
+    return h5::read_text_attribute(h5::open_group(file, "VTKHDF"), "tetwarp_fingerprint");
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,42 @@
+/// @file surface_file.cpp
+/// Surfaces as files of triangles.
+#include <tetwarp/io.hpp>
+#include <tetwarp/scene_io.hpp>
+#include <utility>
+
+#include "io/vtkhdf/vtkhdf_mesh_file.hpp"
+
+namespace tetwarp {
+namespace {
+/// The triangles with those points that they have, in the order of the points.
+Surface compacted(std::vector<Point3> points, std::vector<std::array<std::int32_t, 3>> triangles) {
+  std::vector<std::int32_t> number(points.size(), -1);
+  for (const auto& triangle : triangles) {
+    for (const std::int32_t corner : triangle) number[static_cast<std::size_t>(corner)] = 0;
+  }
+  Surface surface;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (number[p] < 0) continue;
+    number[p] = static_cast<std::int32_t>(surface.points.size());
+    surface.points.push_back(points[p]);
+  }
+  for (auto& triangle : triangles) {
+    for (std::int32_t& corner : triangle) corner = number[static_cast<std::size_t>(corner)];
+  }
+  surface.triangles = std::move(triangles);
+  return surface;
+}
+}  // namespace
+
+Surface read_surface(const std::string& path) {
+  const h5::Silence silence;
+  if (has_mesh_extension(path) && kind_of(path) == FileKind::unknown) {
+    ImportedMesh imported = import_mesh(path, {.needs_solids = false});
+    return compacted(std::move(imported.mesh.rest_positions), std::move(imported.triangles));
+  }
+  const MeshFile file(path);
+  MeshCells cells = file.read_cells(0, CellChoice::triangles);
+  return compacted(file.read_points(0), std::move(cells.triangles));
+}
+
+}  // namespace tetwarp

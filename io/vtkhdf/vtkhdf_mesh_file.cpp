@@ -1,0 +1,293 @@
+#include "io/vtkhdf/vtkhdf_mesh_file.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "io/h5/value_names.hpp"
+
+namespace tetwarp {
+namespace {
+/// VTK's own names of its cell types.
+std::string cell_type_name(std::int64_t type) {
+  static constexpr std::pair<int, const char*> names[] = {{0, "VTK_EMPTY_CELL"},
+                                                          {1, "VTK_VERTEX"},
+                                                          {2, "VTK_POLY_VERTEX"},
+                                                          {3, "VTK_LINE"},
+                                                          {4, "VTK_POLY_LINE"},
+                                                          {5, "VTK_TRIANGLE"},
+                                                          {6, "VTK_TRIANGLE_STRIP"},
+                                                          {7, "VTK_POLYGON"},
+                                                          {8, "VTK_PIXEL"},
+                                                          {9, "VTK_QUAD"},
+                                                          {11, "VTK_VOXEL"},
+                                                          {13, "VTK_WEDGE"},
+                                                          {14, "VTK_PYRAMID"},
+                                                          {15, "VTK_PENTAGONAL_PRISM"},
+                                                          {16, "VTK_HEXAGONAL_PRISM"},
+                                                          {21, "VTK_QUADRATIC_EDGE"},
+                                                          {22, "VTK_QUADRATIC_TRIANGLE"},
+                                                          {23, "VTK_QUADRATIC_QUAD"},
+                                                          {24, "VTK_QUADRATIC_TETRA"},
+                                                          {25, "VTK_QUADRATIC_HEXAHEDRON"},
+                                                          {26, "VTK_QUADRATIC_WEDGE"},
+                                                          {27, "VTK_QUADRATIC_PYRAMID"},
+                                                          {42, "VTK_POLYHEDRON"},
+                                                          {71, "VTK_LAGRANGE_TETRAHEDRON"},
+                                                          {78, "VTK_BEZIER_TETRAHEDRON"}};
+  for (const auto& [number, name] : names) {
+    if (number == type) return std::to_string(type) + " (" + name + ")";
+  }
+  return std::to_string(type);
+}
+
+/// Throws unless rows [first, first + count) exist.
+void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t count) {
+  if (first >= 0 && count >= 0 && first <= dataset.rows() && count <= dataset.rows() - first)
+    return;
+  dataset.fail("rows " + std::to_string(first) + " to " + std::to_string(first) + " + " +
+               std::to_string(count) + " are needed, there are " + std::to_string(dataset.rows()) +
+               "; correct the counts and the offsets under Steps, or the file is truncated");
+}
+
+h5::Dataset open_vectors(const h5::Object& parent, const std::string& name) {
+  h5::Dataset dataset = h5::open_dataset(parent, name);
+  if (!h5::is_numeric(dataset) || dataset.type_class != H5T_FLOAT) {
+    dataset.fail("expected float32 or float64");
+  }
+  if (dataset.dims.size() != 2 || dataset.dims[1] != 3) {
+    dataset.fail("expected shape [n][3]");
+  }
+  return dataset;
+}
+
+h5::Dataset open_column(const h5::Object& parent, const std::string& name) {
+  h5::Dataset dataset = h5::open_dataset(parent, name);
+  if (!h5::is_numeric(dataset) || dataset.type_class != H5T_INTEGER || dataset.dims.size() != 1) {
+    dataset.fail("expected integers of shape [n]");
+  }
+  return dataset;
+}
+
+std::vector<std::int64_t> read_column(const h5::Dataset& dataset,
+                                      std::int64_t first,
+                                      std::int64_t count) {
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count));
+  h5::read_block(dataset, H5T_NATIVE_INT64, {{first}}, {{count}}, values.data());
+  return values;
+}
+}  // namespace
+
+MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "UnstructuredGrid")) {
+  const h5::Object& root = file_.root;
+  node_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfPoints"));
+  cell_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfCells"));
+  id_counts_ = h5::read_integers(h5::open_dataset(root, "NumberOfConnectivityIds"));
+  points_ = open_vectors(root, "Points");
+  types_ = open_column(root, "Types");
+  offsets_ = open_column(root, "Offsets");
+  connectivity_ = open_column(root, "Connectivity");
+  if (file_.is_temporal()) {
+    part_counts_ = read_step_offsets(file_, file_.steps, "NumberOfParts");
+    part_offsets_ = read_step_offsets(file_, file_.steps, "PartOffsets");
+    point_offsets_ = read_step_offsets(file_, file_.steps, "PointOffsets");
+    cell_offsets_ = read_step_offsets(file_, file_.steps, "CellOffsets");
+    id_offsets_ = read_step_offsets(file_, file_.steps, "ConnectivityIdOffsets");
+    displacement_offsets_ = read_point_data_offsets(file_, "displacement");
+  }
+  if (!h5::is_group(root, "PointData")) return;
+  const h5::Object point_data = h5::open_group(root, "PointData");
+  if (h5::has_child(point_data, "displacement")) {
+    displacement_ = open_vectors(point_data, "displacement");
+  }
+}
+
+std::map<std::int64_t, std::string> MeshFile::group_names() const {
+  if (!h5::is_group(file_.root, "CellData")) return {};
+  const h5::Object cell_data = h5::open_group(file_.root, "CellData");
+  if (!h5::has_child(cell_data, "group")) return {};
+  return read_value_names(h5::open_dataset(cell_data, "group"));
+}
+
+std::int64_t MeshFile::offset_of(const std::vector<std::int64_t>& offsets,
+                                 std::int64_t step) const {
+  return offsets.empty() ? 0 : offsets[static_cast<std::size_t>(step)];
+}
+
+std::vector<MeshPart> MeshFile::parts_of(std::int64_t step) const {
+  const auto entries = static_cast<std::int64_t>(node_counts_.size());
+  const std::int64_t first_part = offset_of(part_offsets_, step);
+  const std::int64_t part_count = part_counts_.empty() ? entries : offset_of(part_counts_, step);
+  if (cell_counts_.size() != node_counts_.size() || id_counts_.size() != node_counts_.size()) {
+    file_.root.fail("NumberOfPoints, NumberOfCells and NumberOfConnectivityIds differ in length");
+  }
+  if (first_part > entries || part_count > entries - first_part) {
+    file_.root.fail("step " + std::to_string(step) + " refers to parts " +
+                    std::to_string(first_part) + " to " + std::to_string(first_part) + " + " +
+                    std::to_string(part_count) + ", but NumberOfPoints has " +
+                    std::to_string(entries) + " entries");
+  }
+  MeshPart next;
+  next.first_node = offset_of(point_offsets_, step);
+  next.first_cell = offset_of(cell_offsets_, step);
+  next.first_offset = next.first_cell + first_part;
+  next.first_id = offset_of(id_offsets_, step);
+  std::vector<MeshPart> parts;
+  for (std::int64_t part = first_part; part < first_part + part_count; ++part) {
+    next.node_count = node_counts_[static_cast<std::size_t>(part)];
+    next.cell_count = cell_counts_[static_cast<std::size_t>(part)];
+    next.id_count = id_counts_[static_cast<std::size_t>(part)];
+    check_rows(points_, next.first_node, next.node_count);
+    check_rows(types_, next.first_cell, next.cell_count);
+    check_rows(offsets_, next.first_offset, next.cell_count + 1);
+    check_rows(connectivity_, next.first_id, next.id_count);
+    parts.push_back(next);
+    next.first_node += next.node_count;
+    next.first_cell += next.cell_count;
+    next.first_offset += next.cell_count + 1;
+    next.first_id += next.id_count;
+  }
+  return parts;
+}
+
+std::vector<Point3> MeshFile::read_rows(const h5::Dataset& dataset,
+                                        const std::vector<MeshPart>& parts,
+                                        std::int64_t shift) const {
+  std::int64_t total = 0;
+  for (const MeshPart& part : parts) {
+    check_rows(dataset, part.first_node + shift, part.node_count);
+    total += part.node_count;
+  }
+  if (total >= std::int64_t{1} << 31) dataset.fail("2^31 or more nodes in one step");
+  h5::check_memory(dataset.file, dataset.name, static_cast<double>(total) * sizeof(Point3));
+  std::vector<Point3> rows(static_cast<std::size_t>(total));
+  std::size_t row = 0;
+  for (const MeshPart& part : parts) {
+    if (part.node_count == 0) continue;
+    h5::read_block(dataset, H5T_NATIVE_DOUBLE, {{part.first_node + shift, 0}},
+                   {{part.node_count, 3}}, rows[row].data());
+    row += static_cast<std::size_t>(part.node_count);
+  }
+  for (std::size_t node = 0; node < rows.size(); ++node) {
+    for (const double coordinate : rows[node]) {
+      if (!std::isfinite(coordinate)) {
+        dataset.fail("node " + std::to_string(node) + " is not finite, correct or remove it");
+      }
+    }
+  }
+  return rows;
+}
+
+std::vector<Point3> MeshFile::read_points(std::int64_t step) const {
+  return read_rows(points_, parts_of(step), 0);
+}
+
+std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
+  // An array without offsets has those of the points.
+  const std::int64_t shift =
+      displacement_offsets_.empty()
+          ? 0
+          : offset_of(displacement_offsets_, step) - offset_of(point_offsets_, step);
+  return read_rows(displacement_, parts_of(step), shift);
+}
+
+MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
+  const std::vector<MeshPart> parts = parts_of(step);
+  std::int64_t node_count = 0;
+  std::int64_t cell_count = 0;
+  std::int64_t id_count = 0;
+  for (const MeshPart& part : parts) {
+    node_count += part.node_count;
+    cell_count += part.cell_count;
+    id_count += part.id_count;
+  }
+  if (cell_count == 0) {
+    types_.fail(std::string("holds no ") +
+                (choice == CellChoice::solids ? "tetrahedron or hexahedron" : "triangle") +
+                " at step " + std::to_string(step));
+  }
+  constexpr std::int64_t limit = std::int64_t{1} << 31;
+  if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or cells");
+  constexpr double bytes_per_cell = 2 * sizeof(std::int64_t);
+  constexpr double bytes_per_id = sizeof(std::int64_t) + sizeof(std::int32_t);
+  h5::check_memory(file_.file.file, connectivity_.name,
+                   bytes_per_cell * static_cast<double>(cell_count) +
+                       bytes_per_id * static_cast<double>(id_count));
+  MeshCells cells;
+  std::int64_t first_node = 0;
+  for (const MeshPart& part : parts) {
+    read_part_cells(part, first_node, choice, cells);
+    first_node += part.node_count;
+  }
+  return cells;
+}
+
+std::vector<std::int64_t> MeshFile::read_cell_sizes(const MeshPart& part,
+                                                    std::size_t first_cell,
+                                                    CellChoice choice) const {
+  const bool is_solid = choice == CellChoice::solids;
+  std::vector<std::int64_t> sizes = read_column(types_, part.first_cell, part.cell_count);
+  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
+    const std::int64_t type = sizes[cell];
+    if (is_solid ? type != vtk_tetra && type != vtk_hexahedron : type != vtk_triangle) {
+      types_.fail("cell " + std::to_string(first_cell + cell) + " has type " +
+                  cell_type_name(type) +
+                  (is_solid ? ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, "
+                              "VTK_HEXAHEDRON) only; split the cells into tetrahedra"
+                            : ", expected triangles (5, VTK_TRIANGLE) only; extract the surface"));
+    }
+    sizes[cell] = type == vtk_triangle ? 3 : type == vtk_tetra ? 4 : 8;
+  }
+  return sizes;
+}
+
+void MeshFile::read_part_cells(const MeshPart& part,
+                               std::int64_t first_node,
+                               CellChoice choice,
+                               MeshCells& cells) const {
+  const std::size_t first_cell = cells.count();
+  const std::vector<std::int64_t> sizes = read_cell_sizes(part, first_cell, choice);
+  const std::string sizes_text = choice == CellChoice::solids
+                                     ? "4 for each tetrahedron, 8 for each hexahedron"
+                                     : "3 for each triangle";
+  const std::vector<std::int64_t> offsets =
+      read_column(offsets_, part.first_offset, part.cell_count + 1);
+  std::int64_t expected = 0;
+  for (std::size_t cell = 0; cell < offsets.size(); ++cell) {
+    if (offsets[cell] != expected) {
+      offsets_.fail("entry " + std::to_string(cell) + " of a part is " +
+                    std::to_string(offsets[cell]) + ", expected " + std::to_string(expected) +
+                    " (from 0 in steps of " + sizes_text + ")");
+    }
+    if (cell < sizes.size()) expected += sizes[cell];
+  }
+  if (part.id_count != expected) {
+    connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
+                       std::to_string(part.cell_count) + " cells, expected " +
+                       std::to_string(expected) + ", " + sizes_text);
+  }
+  const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
+  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
+    const auto first = static_cast<std::size_t>(offsets[cell]);
+    const auto take = [&](auto& list) {
+      auto& nodes = list.emplace_back();
+      for (std::size_t corner = 0; corner < nodes.size(); ++corner) {
+        const std::int64_t node = ids[first + corner];
+        if (node < 0 || node >= part.node_count) {
+          connectivity_.fail("cell " + std::to_string(first_cell + cell) + " refers to node " +
+                             std::to_string(node) + ", expected 0 to " +
+                             std::to_string(part.node_count - 1));
+        }
+        nodes[corner] = static_cast<std::int32_t>(first_node + node);
+      }
+    };
+    if (sizes[cell] == 3) {
+      take(cells.triangles);
+    } else if (sizes[cell] == 4) {
+      take(cells.tets);
+    } else {
+      take(cells.hexes);
+    }
+  }
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,249 @@
+/// @file touch_maker.hpp
+/// TouchMaker: the touches of a pair of features.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "kernels/collide/pair_distance.hpp"
+#include "kernels/collide/pair_touch.hpp"
+#include "kernels/collide/touch.hpp"
+
+namespace tetwarp {
+
+/// A pair of two sides of vertices at the time of its hit. The points are those of the material at
+/// the start, moved along the normal so that they are `gap` apart.
+class TouchMaker {
+ public:
+  /// @param view  kept by the caller
+  TETWARP_ANY_EXEC TouchMaker(const FeatureTouch& pair, std::int32_t pass, const TouchView& view)
+      : view_(view), time_(pair.time <= 1 ? pair.time : 0) {
+    touch_.kind = pair.pair.kind;
+    touch_.a = pair.pair.a;
+    touch_.b = pair.pair.b;
+    touch_.pass = pass;
+    touch_.distance = pair.start_distance;
+    touch_.time = pair.start_distance < 2 * view.thickness ? 0 : time_;
+    if (time_ > 0) origin_ = view.start(touch_.is_of_edges() ? view.edge(touch_.a)[0] : touch_.a);
+  }
+
+  TETWARP_ANY_EXEC PairTouch make() {
+    switch (touch_.kind) {
+      case PairKind::vertex_face:
+        vertex_face();
+        break;
+      case PairKind::edge_edge:
+        edge_edge();
+        break;
+      case PairKind::vertex_edge:
+        vertex_edge();
+        break;
+      case PairKind::vertex_vertex:
+        vertex_vertex();
+        break;
+      case PairKind::vertex_plane:
+        vertex_plane();
+        return touch_;
+    }
+    finish();
+    return touch_;
+  }
+
+  /// Whether two capsules are side by side, to 10 degrees.
+  /// @param part  out, of any two capsules: [2] fractions of axis a between which the axes overlap
+  TETWARP_ANY_EXEC bool overlaps(double* part) const {
+    constexpr double parallel_sine = 0.17364817766693033;  // of 10 degrees
+    if (!touch_.is_of_edges() || view_.scene.edge_radius[touch_.a] == 0 ||
+        view_.scene.edge_radius[touch_.b] == 0) {
+      return false;
+    }
+    const std::int32_t *const p = view_.edge(touch_.a), *const q = view_.edge(touch_.b);
+    const Vec3 from = place(p[0]), along = minus(place(p[1]), from);
+    const Vec3 begin = place(q[0]), end = place(q[1]), other = minus(end, begin);
+    const double square = dot(along, along);
+    const double s0 = dot(along, minus(begin, from)) / square;
+    const double s1 = dot(along, minus(end, from)) / square;
+    part[0] = max_of(0.0, min_of(s0, s1));
+    part[1] = min_of(1.0, max_of(s0, s1));
+    return part[1] - part[0] > 1e-6 &&
+           !(norm(cross(along, other)) > parallel_sine * std::sqrt(square) * norm(other));
+  }
+  /// At a fraction s of axis a of two capsules.
+  TETWARP_ANY_EXEC PairTouch make_at(double s, std::int32_t end) {
+    touch_.end = end;
+    const std::int32_t *const p = view_.edge(touch_.a), *const q = view_.edge(touch_.b);
+    const Vec3 x = lerp(place(p[0]), place(p[1]), s), q0 = place(q[0]), q1 = place(q[1]);
+    double t = 0;
+    vertex_edge_square(x.x, q0.x, q1.x, &t);
+    set_edge(a_, touch_.a, s, touch_.body_a, hit_a_);
+    set_edge(b_, touch_.b, t, touch_.body_b, hit_b_);
+    apart_ = minus(hit_a_, hit_b_);
+    otherwise_ = any_across(minus(q1, q0));
+    const View<const double> start = view_.motion.start;
+    touch_.distance = norm(minus(a_.mean(start), b_.mean(start))) - a_.radius - b_.radius;
+    finish();
+    return touch_;
+  }
+
+ private:
+  /// At the hit. On the way relative to where the first vertex of the pair starts: far from zero no
+  /// digits of distances are lost.
+  TETWARP_HD Vec3 place(std::int32_t vertex) const {
+    const Vec3 start = view_.start(vertex), end = vec3_at(view_.motion.end, vertex);
+    const TurningFrame* const frame = view_.motion.frame_of(view_.scene.vertex_body[vertex]);
+    return plus(minus(start, origin_), way_at(frame, start, end, time_));
+  }
+
+  TETWARP_ANY_EXEC void set_vertex(SidePoint& side,
+                                   std::int32_t vertex,
+                                   std::int32_t& body,
+                                   Vec3& hit) const {
+    side.vertex[0] = vertex;
+    side.weight[0] = 1;
+    side.radius = view_.scene.vertex_radius[vertex];
+    body = view_.scene.vertex_body[vertex];
+    hit = place(vertex);
+  }
+  TETWARP_ANY_EXEC void set_edge(
+      SidePoint& side, std::int32_t edge, double s, std::int32_t& body, Vec3& hit) const {
+    const std::int32_t* const ends = view_.edge(edge);
+    for (int k = 0; k < 2; ++k) side.vertex[k] = ends[k];
+    side.weight[0] = 1 - s;
+    side.weight[1] = s;
+    side.radius = view_.scene.edge_radius[edge];
+    body = view_.scene.vertex_body[ends[0]];
+    hit = lerp(place(ends[0]), place(ends[1]), s);
+  }
+
+  TETWARP_ANY_EXEC void vertex_face() {
+    set_vertex(a_, touch_.a, touch_.body_a, hit_a_);
+    const std::int32_t* const corner = view_.areas.corners.data + 3 * std::int64_t{touch_.b};
+    for (int k = 0; k < 3; ++k) b_.vertex[k] = corner[k];
+    touch_.body_b = view_.scene.vertex_body[corner[0]];
+    const Vec3 x0 = place(corner[0]), x1 = place(corner[1]), x2 = place(corner[2]);
+    double* const weight = b_.weight;
+    vertex_face_distance(hit_a_.x, x0.x, x1.x, x2.x, weight);
+    touch_.is_inside = weight[0] > 0 && weight[1] > 0 && weight[2] > 0;
+    hit_b_ = plus(x0, plus(times(weight[1], minus(x1, x0)), times(weight[2], minus(x2, x0))));
+    // A vertex exactly on a face is on its outer side.
+    apart_ = minus(hit_a_, hit_b_);
+    if (!(norm(apart_) > 0)) apart_ = unit(cross(minus(x1, x0), minus(x2, x0)));
+  }
+  TETWARP_ANY_EXEC void edge_edge() {
+    const std::int32_t *const p = view_.edge(touch_.a), *const q = view_.edge(touch_.b);
+    const Vec3 p0 = place(p[0]), p1 = place(p[1]), q0 = place(q[0]), q1 = place(q[1]);
+    double s = 0, t = 0;
+    edge_edge_distance(p0.x, p1.x, q0.x, q1.x, &s, &t);
+    set_edge(a_, touch_.a, s, touch_.body_a, hit_a_);
+    set_edge(b_, touch_.b, t, touch_.body_b, hit_b_);
+    apart_ = minus(hit_a_, hit_b_);
+    otherwise_ = cross(minus(p1, p0), minus(q1, q0));
+    if (!(norm(otherwise_) > 0)) otherwise_ = any_across(minus(p1, p0));
+    // An end that touches is a vertex that touches a face, of which there is another pair. There is
+    // none of two capsules, nor of a corner against the side of a capsule.
+    const bool ends_a = s <= 0 || s >= 1, ends_b = t <= 0 || t >= 1;
+    const bool is_round_a = a_.radius > 0, is_round_b = b_.radius > 0;
+    touch_.is_inside = (is_round_a && is_round_b) || (!(ends_a && (is_round_a || !is_round_b)) &&
+                                                      !(ends_b && (is_round_b || !is_round_a)));
+  }
+  TETWARP_ANY_EXEC void vertex_edge() {
+    set_vertex(a_, touch_.a, touch_.body_a, hit_a_);
+    const std::int32_t* const q = view_.edge(touch_.b);
+    const Vec3 q0 = place(q[0]), q1 = place(q[1]);
+    double s = 0;
+    vertex_edge_square(hit_a_.x, q0.x, q1.x, &s);
+    set_edge(b_, touch_.b, s, touch_.body_b, hit_b_);
+    apart_ = minus(hit_a_, hit_b_);
+    otherwise_ = any_across(minus(q1, q0));
+    touch_.is_inside = s > 0 && s < 1;
+  }
+  TETWARP_ANY_EXEC void vertex_vertex() {
+    set_vertex(a_, touch_.a, touch_.body_a, hit_a_);
+    set_vertex(b_, touch_.b, touch_.body_b, hit_b_);
+    apart_ = minus(hit_a_, hit_b_);
+  }
+
+  TETWARP_ANY_EXEC void finish() {
+    const Vec3 start_a = a_.mean(view_.motion.start), start_b = b_.mean(view_.motion.start);
+    touch_.normal = normal_at(minus(start_a, start_b));
+    touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
+    touch_.point_b = plus(start_b, times(b_.radius, touch_.normal));
+    touch_.way =
+        minus(minus(a_.mean(view_.first_end), start_a), minus(b_.mean(view_.first_end), start_b));
+    set_gap();
+  }
+  /// The unit vector along `apart_`; where it vanishes, along or against `otherwise_`.
+  /// @param start  apart at the start of the motion; the result points to the same side
+  TETWARP_HD Vec3 normal_at(const Vec3& start) const {
+    if (norm(apart_) > 0) return unit(apart_);
+    const Vec3 normal = norm(otherwise_) > 0 ? unit(otherwise_) : Vec3{{0, 0, 1}};
+    return dot(normal, start) < 0 ? times(-1, normal) : normal;
+  }
+
+  TETWARP_ANY_EXEC void vertex_plane() {
+    set_vertex(a_, touch_.a, touch_.body_a, hit_a_);
+    const std::int64_t plane = 6 * std::int64_t{touch_.b};
+    const double *const before = view_.motion.plane_start.data + plane,
+                        *const after = view_.motion.plane_end.data + plane;
+    const Vec3 point = vec3_of(before), normal = vec3_of(before + 3);
+    touch_.body_b = view_.scene.plane_body[touch_.b];
+    const TurningFrame* const frame = view_.motion.frame_of(touch_.body_b);
+    touch_.normal = frame != nullptr ? turned(*frame, time_, normal)
+                                     : unit(lerp(normal, vec3_of(after + 3), time_));
+    const Vec3 start_a = view_.start(touch_.a);
+    touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
+    // The vertex's foot at the hit, in the material of the plane: turned back as the plane turned.
+    const Vec3 place = plus(minus(point, origin_), way_at(frame, point, vec3_of(after), time_));
+    const Vec3 arm = minus(hit_a_, place);
+    const Vec3 foot = minus(arm, times(dot(arm, touch_.normal), touch_.normal));
+    touch_.point_b =
+        plus(point, frame != nullptr ? turned(*frame, -time_, foot) : turned_back(foot, normal));
+    const Vec3 first_end = vec3_of(view_.first_plane_end.data + plane);
+    touch_.way = minus(minus(a_.mean(view_.first_end), a_.mean(view_.motion.start)),
+                       minus(first_end, point));
+    set_gap();
+  }
+  /// Of a plane without a frame: by the least rotation that takes the normal back.
+  TETWARP_ANY_EXEC Vec3 turned_back(const Vec3& foot, const Vec3& before) const {
+    const Vec3 axis = cross(touch_.normal, before);
+    const double cosine = dot(touch_.normal, before);
+    if (!(cosine > -0.5)) return foot;
+    return plus(times(cosine, foot),
+                plus(cross(axis, foot), times(dot(axis, foot) / (1 + cosine), axis)));
+  }
+
+  /// Sets the gap and moves the points along the normal to be as far apart.
+  TETWARP_ANY_EXEC void set_gap() {
+    for (int k = 0; k < 3; ++k) {
+      touch_.vertex_a[k] = a_.vertex[k];
+      touch_.weight_a[k] = a_.weight[k];
+      touch_.vertex_b[k] = b_.vertex[k];
+      touch_.weight_b[k] = b_.weight[k];
+    }
+    const double apart = dot(touch_.normal, minus(touch_.point_a, touch_.point_b));
+    touch_.gap = apart - view_.thickness;
+    // Surfaces that are apart do not overlap, however far the normal turns until the hit.
+    if (touch_.distance >= view_.thickness) touch_.gap = max_of(touch_.gap, 0.0);
+    const double extra = apart - touch_.gap, share_a = share_of_a();
+    touch_.point_a = minus(touch_.point_a, times(share_a * extra, touch_.normal));
+    touch_.point_b = plus(touch_.point_b, times((1 - share_a) * extra, touch_.normal));
+  }
+  /// Impulses at points that are apart would turn bodies: a rigid side gets the point at which the
+  /// other side is hit; one that does not move can have any.
+  TETWARP_HD double share_of_a() const {
+    const bool moves_a = view_.moves(touch_.body_a), moves_b = view_.moves(touch_.body_b);
+    if (moves_a != moves_b) return moves_a ? 0 : 1;
+    const bool is_rigid_a = view_.is_rigid(touch_.body_a);
+    if (is_rigid_a != view_.is_rigid(touch_.body_b)) return is_rigid_a ? 1 : 0;
+    return 0.5;
+  }
+
+  const TouchView& view_;
+  double time_;  ///< of the hit; 0 where it is near only
+  PairTouch touch_;
+  SidePoint a_, b_;
+  Vec3 origin_{};
+  Vec3 hit_a_{}, hit_b_{};  ///< from the origin, without radii
+  Vec3 apart_{}, otherwise_{{0, 0, 1}};
+};
+
+}  // namespace tetwarp

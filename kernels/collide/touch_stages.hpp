@@ -1,0 +1,238 @@
+/// @file touch_stages.hpp
+/// Stages from the pairs that a step found to the touches that become contacts.
+#pragma once
+#include <cstdint>
+
+#include "kernels/base/cell_pair.hpp"
+#include "kernels/base/heap_sort.hpp"
+#include "kernels/collide/touch_maker.hpp"
+
+namespace tetwarp {
+
+/// One index = one pair. Writes its touch at the nearest points; any order.
+struct TouchBody {
+  static constexpr int resident_blocks = 1;  ///< else registers are spilled
+
+  View<const FeatureTouch> pairs;
+  TouchView view;
+  std::int32_t pass;
+  View<PairTouch> touches;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    TouchMaker maker(pairs[i], pass, view);
+    TouchMaker ends = maker, other = maker;
+    PairTouch touch = maker.make();
+    double part[2];
+    if (touch.is_of_edges()) {
+      touch.counts = touch.is_inside && (pairs[i].time <= 1 || is_nearest(touch));
+      touch.has_ends = ends.overlaps(part);
+    }
+    if (touch.has_ends) {
+      // Between ends that are as near a third contact would change nothing.
+      const double gap = min_of(ends.make_at(part[0], 1).gap, other.make_at(part[1], 2).gap);
+      touch.counts = touch.counts && gap > touch.gap + same_gap * view.thickness;
+    }
+    touches[i] = touch;
+  }
+
+ private:
+  static constexpr double same_gap = 0.1;  ///< thicknesses
+
+  TETWARP_HD bool is_nearest(const PairTouch& touch) const {
+    const View<const double> start = view.motion.start;
+    return edge_is_nearest(view.areas, view.edge(touch.b), touch.normal, start) &&
+           edge_is_nearest(view.areas, view.edge(touch.a), times(-1, touch.normal), start);
+  }
+};
+
+/// One index = one pair and its touch. Appends those at the ends of an overlap.
+struct EndTouchBody {
+  View<const FeatureTouch> pairs;
+  View<const PairTouch> touches;
+  TouchView view;
+  std::int32_t pass;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    if (!touches[i].has_ends) return;
+    TouchMaker begin(pairs[i], pass, view);
+    TouchMaker end = begin;
+    double part[2];
+    begin.overlaps(part);
+    emit(begin.make_at(part[0], 1));
+    emit(end.make_at(part[1], 2));
+  }
+};
+
+/// One index = one pair. Appends it if it is hit.
+struct HitBody {
+  View<const FeatureTouch> pairs;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    if (pairs[i].time <= 1) emit(pairs[i]);
+  }
+};
+
+/// The touches of a step: those of the first detection, those at its ends of overlaps, and those of
+/// later detections.
+struct TouchList {
+  View<const PairTouch> first, ends, later;
+
+  TETWARP_HD std::int64_t size() const { return first.size + ends.size + later.size; }
+  TETWARP_HD const PairTouch& operator[](std::int64_t i) const {
+    if (i < first.size) return first[i];
+    const std::int64_t k = i - first.size;
+    return k < ends.size ? ends[k] : later[k - ends.size];
+  }
+};
+
+/// One index = one touch. Writes its own copy; any order.
+struct TouchCopyBody {
+  TouchList from;
+  View<PairTouch> to;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
+};
+
+/// One index = one touch: its first feature, edges after vertices, and its number.
+struct TouchKeyBody {
+  TouchList touches;
+  std::int64_t vertex_count;
+
+  TETWARP_HD CellPair operator()(std::int64_t i) const {
+    const PairTouch& touch = touches[i];
+    const std::int64_t first = touch.is_of_edges() ? vertex_count : 0;
+    return make_pair(first + touch.a, i, false);
+  }
+};
+
+/// One index = one touch, sorted by its first feature; that which is the first of a feature orders
+/// and marks all of it. Of edges all count; a vertex touches another body once, at what is nearest:
+/// what is near at the start by distance, then what is hit on the way by time. Other parts of the
+/// body count, too, where they face elsewhere, see StepTouches. A pair that was only near and is
+/// hit in a later detection has the touch of the later one.
+struct TouchChoiceBody {
+  static constexpr int resident_blocks = 1;  ///< else registers are spilled
+  enum Mark : std::int8_t { dropped, kept, kept_with_area };
+
+  TouchList touches;
+  CollideView scene;
+  double thickness;
+  View<const CellPair> given;  ///< sorted by first feature
+  View<CellPair> order;        ///< out: the same, of vertices by body and distance
+  View<std::int8_t> mark;      ///< out [order] Mark
+
+  TETWARP_HD void operator()(std::int64_t i) const {
+    if (i > 0 && cell_of(given[i - 1]) == cell_of(given[i])) return;
+    std::int64_t end = i;
+    for (; end < given.size && cell_of(given[end]) == cell_of(given[i]); ++end) {
+      order[end] = given[end];
+    }
+    if (touch_at(i).is_of_edges()) {
+      for (std::int64_t k = i; k < end; ++k) mark[k] = is_left_out(k, i, end) ? dropped : kept;
+      return;
+    }
+    heap_sort(order.data + i, end - i, [this](CellPair p, CellPair q) {
+      return comes_before(touches[tet_of(p)], touches[tet_of(q)]);
+    });
+    for (std::int64_t first = i; first < end;) first = choose(first, i, end);
+  }
+
+ private:
+  static constexpr double level_gap = 0.25;  ///< thicknesses
+  static constexpr double cosine_5 = 0.9961946980917455;
+
+  TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[tet_of(order[k])]; }
+
+  TETWARP_HD static bool comes_before(const PairTouch& p, const PairTouch& q) {
+    if (p.body_b != q.body_b) return p.body_b < q.body_b;
+    if (p.time != q.time) return p.time < q.time;
+    if (p.distance != q.distance) return p.distance < q.distance;
+    if (p.kind != q.kind) return p.kind < q.kind;
+    if (p.b != q.b) return p.b < q.b;
+    return p.end != q.end ? p.end < q.end : p.pass < q.pass;
+  }
+  /// Whether a touch does not count, or its pair has a later one.
+  /// @param begin, end  of the same first feature
+  TETWARP_HD bool is_left_out(std::int64_t k, std::int64_t begin, std::int64_t end) const {
+    const PairTouch& own = touch_at(k);
+    if (!own.counts) return true;
+    if (touches.later.size == 0) return false;
+    for (std::int64_t j = begin; j < end; ++j) {
+      const PairTouch& other = touch_at(j);
+      if (other.pass > own.pass && other.kind == own.kind && other.b == own.b) return true;
+    }
+    return false;
+  }
+  /// Whether the nearest point of a part is on an edge or corner that a nearer part has, too.
+  TETWARP_HD static bool is_edge_of(const PairTouch& touch, const PairTouch& nearer) {
+    bool is_inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t vertex = touch.vertex_b[k];
+      if (vertex < 0) continue;
+      if (!(touch.weight_b[k] > 0)) {
+        is_inside = false;
+        continue;
+      }
+      if (vertex != nearer.vertex_b[0] && vertex != nearer.vertex_b[1] &&
+          vertex != nearer.vertex_b[2]) {
+        return false;
+      }
+    }
+    return !is_inside && touch.vertex_b[0] >= 0;
+  }
+
+  /// Marks the touches of one body from `first` on.
+  /// @returns past them
+  TETWARP_HD std::int64_t choose(std::int64_t first, std::int64_t begin, std::int64_t end) const {
+    const std::int32_t body = touch_at(first).body_b;
+    const bool is_round = scene.vertex_radius[touch_at(first).a] > 0;
+    const double level = level_gap * thickness;
+    std::int64_t i = first;
+    for (; i < end && touch_at(i).body_b == body; ++i) {
+      const PairTouch& touch = touch_at(i);
+      Mark own = is_left_out(i, begin, end) ? dropped : kept_with_area;
+      for (std::int64_t k = first; k < i && own != dropped; ++k) {
+        if (mark[k] == dropped) continue;
+        const PairTouch& nearer = touch_at(k);
+        const bool is_as_near = is_round && touch.time == 0 && touch.gap <= nearer.gap + level;
+        const double limit = touch.is_inside || is_as_near ? cosine_5 : cosine_45;
+        const double cosine = dot(touch.normal, nearer.normal);
+        if (!(cosine < limit) || is_edge_of(touch, nearer)) {
+          own = dropped;
+        } else if (cosine >= cosine_45) {
+          own = kept;  // a part that faces almost as a nearer one takes none of its area
+        }
+      }
+      mark[i] = own;
+    }
+    return i;
+  }
+};
+
+/// One index = one touch in the order of TouchChoiceBody. Appends those that are kept, with areas.
+struct ChosenTouchBody {
+  TouchList touches;
+  TouchAreaView areas;
+  View<const double> start;  ///< [vertices][3]
+  View<const CellPair> order;
+  View<const std::int8_t> mark;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    if (mark[i] == TouchChoiceBody::dropped) return;
+    const PairTouch& touch = touches[tet_of(order[i])];
+    emit(ChosenTouch{touch, mark[i] == TouchChoiceBody::kept_with_area ? area_of(touch) : 0});
+  }
+
+ private:
+  TETWARP_HD double area_of(const PairTouch& touch) const {
+    const bool is_face = touch.kind == PairKind::vertex_face;
+    if (!is_face && touch.kind != PairKind::vertex_plane) return 0;
+    const double seen = seen_area(areas, touch.a, touch.normal, start);
+    return is_face ? area_share(areas, touch.body_a, touch.body_b) * seen : seen;
+  }
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,253 @@
+/// @file majorant.hpp
+/// A diagonal matrix that is larger than J M^-1 J^T: for the steps of an iteration that moves all
+/// contacts at once.
+///
+/// Let W_b be the part of J M^-1 J^T that body b makes, D_b its diagonal, and lambda_b the largest
+/// eigenvalue of D_b^-1 W_b. Then the sum over the bodies of lambda_b D_b is larger than all of
+/// J M^-1 J^T. A body with a few contacts so does not slow down because another one has hundreds.
+///
+/// lambda_b is estimated from below by a power iteration, times a margin. Where that has missed it,
+/// a step changes velocities by more than 1.3 times what the majorant allows, and its caller
+/// doubles the majorant.
+#pragma once
+#include <cstdint>
+
+#include "kernels/contact/touching_rows.hpp"
+
+namespace tetwarp {
+
+/// Contacts in the frames of their bodies.
+struct TouchingNodes {
+  CompliantBodies bodies;
+  TouchingRows rows;
+  View<const double> turned;            ///< J in frames, [blocks][9]
+  View<const std::int32_t> part_start;  ///< [contacts + 1] parts of each contact
+  View<const std::int32_t> part_block;  ///< [parts + 1] first block of each part
+  View<const std::int32_t> part_body;   ///< [parts]
+
+  /// u += J z of blocks [begin, end) of a contact.
+  TETWARP_HD void add_velocity(std::int64_t begin,
+                               std::int64_t end,
+                               const double* z,
+                               double* u) const {
+    for (std::int64_t b = begin; b < end; ++b) {
+      const double* const j = turned.data + 9 * b;
+      const double* const v = z + 3 * std::int64_t{rows.node[b]};
+      for (int a = 0; a < 3; ++a) {
+        u[a] += j[3 * a] * v[0] + j[3 * a + 1] * v[1] + j[3 * a + 2] * v[2];
+      }
+    }
+  }
+  /// J^T r of the contacts on a node.
+  /// @param r     (block, axis): impulse of the contact of a block
+  /// @param push  out, [3] in the frame of its body
+  template <class Impulse>
+  TETWARP_HD void push_of(std::int64_t node, const Impulse& r, double* push) const {
+    const std::int64_t row = bodies.row_of_node[node];
+    double sum[3] = {0, 0, 0};
+    for (std::int64_t t = rows.touch_start[row]; t < rows.touch_start[row + 1]; ++t) {
+      const std::int64_t b = rows.touch[t];
+      const double* const j = turned.data + 9 * b;
+      for (int a = 0; a < 3; ++a) {
+        const double own = r(b, a);
+        for (int i = 0; i < 3; ++i) sum[i] += j[3 * a + i] * own;
+      }
+    }
+    for (int i = 0; i < 3; ++i) push[i] = sum[i];
+  }
+  /// What a part adds to the block of its contact and itself in J M^-1 J^T.
+  TETWARP_HD void own_block(std::int64_t part, double* block) const {
+    for (int e = 0; e < 9; ++e) block[e] = 0;
+    const std::int64_t begin = part_block[part], end = part_block[part + 1];
+    for (std::int64_t b = begin; b < end; ++b) {
+      for (std::int64_t c = begin; c < end; ++c) add_product(b, c, block);
+    }
+  }
+
+ private:
+  /// block += J_b C J_c^T
+  TETWARP_HD void add_product(std::int64_t b, std::int64_t c, double* block) const {
+    const CompliantBody& own = bodies.of_row(rows.row[b]);
+    const std::int64_t size = 3 * std::int64_t{own.node_count};
+    const float* const between = bodies.compliance.data + own.compliance +
+                                 3 * (rows.node[c] - std::int64_t{own.first_node}) * size +
+                                 3 * (rows.node[b] - std::int64_t{own.first_node});
+    const double *const first = turned.data + 9 * b, *const second = turned.data + 9 * c;
+    for (int k = 0; k < 3; ++k) {
+      double moved[3];  // column k of C J_c^T
+      for (int i = 0; i < 3; ++i) {
+        moved[i] = 0;
+        for (int j = 0; j < 3; ++j) moved[i] += double{between[j * size + i]} * second[3 * k + j];
+      }
+      for (int a = 0; a < 3; ++a) {
+        for (int i = 0; i < 3; ++i) block[3 * a + k] += first[3 * a + i] * moved[i];
+      }
+    }
+  }
+};
+
+/// One index = one block of J: turns it.
+struct TurnJacobianBody {
+  CompliantBodies of;
+  TouchingRows rows;
+  View<double> turned;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t block) const {
+    const CompliantBody& own = of.of_row(rows.row[block]);
+    for (std::int64_t a = 9 * block; a < 9 * block + 9; a += 3) {
+      of.to_frame(own, rows.jacobian.data + a, turned.data + a);
+    }
+  }
+};
+
+/// Numbers of size 0.5 to 1.5 without any order: contacts all around a body do not cancel.
+TETWARP_HD double scattered(std::int64_t i) {
+  auto bits = static_cast<std::uint32_t>(i) * 2654435769u;
+  bits = (bits ^ (bits >> 15)) * 2246822519u;
+  bits ^= bits >> 13;
+  const double size = 0.5 + static_cast<double>(bits >> 8) / (1 << 24);
+  return (bits & 1u) != 0 ? size : -size;
+}
+
+/// One index = one contact: its own block, the diagonals of its parts, and a vector to start the
+/// power iteration from.
+struct OwnBlockBody {
+  TouchingNodes of;
+  View<ContactConstants<double>> constants;  ///< in and out
+  View<double> diagonal, vector;             ///< out, [parts][3]
+
+  TETWARP_HD void operator()(std::int64_t contact) const {
+    ContactConstants<double>& own = constants[contact];
+    for (int e = 0; e < 9; ++e) own.block[e] = 0;
+    for (std::int64_t p = of.part_start[contact]; p < of.part_start[contact + 1]; ++p) {
+      double block[9];
+      of.own_block(p, block);
+      for (int e = 0; e < 9; ++e) own.block[e] += block[e];
+      for (int a = 0; a < 3; ++a) {
+        diagonal[3 * p + a] = block[4 * a];
+        vector[3 * p + a] = block[4 * a] > 0 ? scattered(3 * p + a) / sqrt(block[4 * a]) : 0;
+      }
+    }
+    own.tangent_metric =
+        larger_eigenvalue(own.block[4], (own.block[5] + own.block[7]) / 2, own.block[8]);
+  }
+};
+
+/// One index = one node: J^T v of the contacts on it, each with the vector of its part.
+struct PartPushBody {
+  TouchingNodes of;
+  View<const double> vector;  ///< [parts][3]
+  View<double> push;          ///< out, [nodes][3]
+
+  TETWARP_HD void operator()(std::int64_t node) const {
+    const auto of_part = [this](std::int64_t block, int axis) {
+      return vector[3 * std::int64_t{of.rows.part[block]} + axis];
+    };
+    of.push_of(node, of_part, push.data + 3 * node);
+  }
+};
+
+/// One index = one part: D_b^-1 J z, the next vector.
+struct PartVectorBody {
+  TouchingNodes of;
+  View<const double> node_velocity, diagonal;
+  View<double> vector;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t part) const {
+    double u[3] = {0, 0, 0};
+    of.add_velocity(of.part_block[part], of.part_block[part + 1], node_velocity.data, u);
+    for (int a = 0; a < 3; ++a) {
+      const double own = diagonal[3 * part + a];
+      vector[3 * part + a] = own > 0 ? u[a] / own : 0;
+    }
+  }
+};
+
+/// One index = one body: lambda_b from two steps of the power iteration. With pushes q = J^T v and
+/// v = D_b^-1 J z, z the velocities before, it is about q . C q / q . z; it is at most the number
+/// of rows, three for each contact.
+struct BodyScaleBody {
+  static constexpr double margin = 1.2;  ///< the estimate grows towards lambda_b
+
+  CompliantBodies of;
+  View<const double> push, before, after;  ///< q, z, C q, [nodes][3]
+  View<double> scale;                      ///< out, [bodies]
+
+  TETWARP_HD void operator()(std::int64_t body) const {
+    const CompliantBody& own = of.bodies[body];
+    double above = 0, below = 0;
+    const std::int64_t begin = 3 * std::int64_t{own.first_node};
+    for (std::int64_t i = begin; i < begin + 3 * std::int64_t{own.node_count}; ++i) {
+      above += push[i] * after[i];
+      below += push[i] * before[i];
+    }
+    const double most = 3.0 * own.contact_count;
+    scale[body] = above < most * below ? max_of(min_of(margin * above / below, most), 1.0) : most;
+  }
+};
+
+/// One index = one contact: its constants with the majorant for its own block.
+struct MajorantBody {
+  TouchingNodes of;
+  View<const ContactConstants<double>> constants;
+  View<const double> diagonal, scale;       ///< [parts][3]; [bodies]
+  View<ContactConstants<double>> majorant;  ///< out
+
+  TETWARP_HD void operator()(std::int64_t contact) const {
+    ContactConstants<double> own = constants[contact];
+    for (int e = 0; e < 9; ++e) own.block[e] = 0;
+    for (std::int64_t p = of.part_start[contact]; p < of.part_start[contact + 1]; ++p) {
+      for (int a = 0; a < 3; ++a) {
+        own.block[4 * a] += scale[of.part_body[p]] * diagonal[3 * p + a];
+      }
+    }
+    own.tangent_metric = max_of(own.block[4], own.block[8]);
+    majorant[contact] = own;
+  }
+};
+
+/// One index = one contact: twice its majorant.
+struct MajorantGrowBody {
+  View<ContactConstants<double>> majorant;  ///< in and out
+
+  TETWARP_HD void operator()(std::int64_t contact) const {
+    for (int e = 0; e < 9; ++e) majorant[contact].block[e] *= 2;
+    majorant[contact].tangent_metric *= 2;
+  }
+};
+
+struct MajorantArrays {
+  View<ContactConstants<double>> constants;  ///< in and out: own blocks
+  View<ContactConstants<double>> majorant;   ///< out
+  View<double> scale;                        ///< out, [bodies]
+  View<double> diagonal, vector;             ///< work, [parts][3]
+  View<double> push, before, after;          ///< work, [nodes][3]
+};
+
+/// Sets the own blocks of all contacts, and their constants with majorants for these.
+/// @param exec  where to run
+///
+/// Determinism: same bits on every back end with contraction off. Cost: of eight steps of the
+/// iteration that uses them.
+template <class Exec>
+void set_majorants(Exec& exec, const TouchingNodes& touching, const MajorantArrays& to) {
+  constexpr const char* label = "body/contact";
+  constexpr int power_steps = 6;
+  const CompliantBodies& bodies = touching.bodies;
+  const std::int64_t contacts = to.constants.size, nodes = bodies.row_of_node.size;
+  exec.for_each(label, contacts, OwnBlockBody{touching, to.constants, to.diagonal, to.vector});
+  for (int n = 0;; ++n) {
+    exec.for_each(label, nodes, PartPushBody{touching, to.vector, to.push});
+    exec.for_each(label, 3 * nodes,
+                  NodeMoveBody{bodies, to.push, {}, n < power_steps ? to.before : to.after});
+    if (n == power_steps) break;
+    exec.for_each(label, touching.part_body.size,
+                  PartVectorBody{touching, to.before, to.diagonal, to.vector});
+  }
+  exec.for_each(label, bodies.bodies.size,
+                BodyScaleBody{bodies, to.push, to.before, to.after, to.scale});
+  exec.for_each(label, contacts,
+                MajorantBody{touching, to.constants, to.diagonal, to.scale, to.majorant});
+}
+
+}  // namespace tetwarp

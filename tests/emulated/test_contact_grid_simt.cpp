@@ -1,0 +1,127 @@
+/// @file test_contact_grid_simt.cpp
+/// The executor of the contact pipeline on the whole emulated device, and arrays that it stages.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "host/contact/sweeps/run.hpp"
+#include "tests/emulated/device_calls.hpp"
+#include "tests/support/contact_scenes.hpp"
+#include "tests/support/contact_stages.hpp"
+#include "tests/support/contact_sweeps.hpp"
+
+#include "kernels/contact/contact_grid.cuh"
+#include "kernels/exec/staged_arrays.cuh"
+
+namespace tetwarp::test {
+namespace {
+/// The sums of a whole device: its own fixed tree, for any order of threads.
+TEST(ContactGridSimt, LargeIslandsAreSummedInAFixedTree) {
+  const SweepScene scene(scenes::random_local({.seed = 12, .contacts = 2500}), false);
+  std::vector<double> impulse(scene.system.free_velocity.size(), 0.001);
+  const ContactIsland& island = scene.structure.islands[0];
+  const HostSweeps<double> host =
+      sweep_on_host(scene.structure, scene.system, island, {}, impulse, 0);
+  std::vector<double> velocity(impulse.size());
+  CpuContactExec cpu(1);
+  cpu.for_each("", island.contact_count(),
+               ContactVelocityBody<DelassusView<double>, double>{
+                   scene.system.numbers(scene.structure.indices()).delassus, impulse.data(),
+                   view_of(velocity)});
+  const ContactResidualBody<double> body = {view_of(scene.system.constants),
+                                            {},
+                                            view_of(std::as_const(impulse)),
+                                            view_of(std::as_const(velocity)),
+                                            view_of(scene.system.free_velocity)};
+  std::vector<double> first;
+  simt::for_each_schedule([&](const simt::Schedule&) {
+    CudaExec exec(0);
+    GridContactExec grid(exec);
+    const auto sums = grid.sum<ContactSums>("", 0, island.contact_count(), body);
+    if (first.empty()) first = {sums.eta};
+    EXPECT_EQ(sums.eta, first[0]);
+    EXPECT_NEAR(sums.eta, host.sums.eta, 1e-12 * host.sums.eta);
+    EXPECT_NEAR(sums.fclib, host.sums.fclib, 1e-12 * host.sums.fclib);
+    EXPECT_EQ(sums.deepest, host.sums.deepest);
+    EXPECT_EQ(sums.largest_contact, host.sums.largest_contact);
+  });
+}
+
+struct Staged {
+  std::uint8_t kind = 0;
+  double value = 0;
+  bool operator==(const Staged&) const = default;
+};
+
+template <class T>
+std::vector<T> numbers(std::int64_t count, int first) {
+  std::vector<T> values(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if constexpr (std::is_same_v<T, Staged>) {
+      values[i] = {static_cast<std::uint8_t>(first), 0.5 * static_cast<double>(i)};
+    } else {
+      values[i] = static_cast<T>(first + static_cast<int>(i));
+    }
+  }
+  return values;
+}
+
+/// Expects a view of memory of the device, aligned to 16 bytes, with what numbers() gave.
+template <class T>
+void expect_numbers(const GridContactExec& grid,
+                    const View<const T>& found,
+                    std::int64_t count,
+                    int first) {
+  ASSERT_EQ(found.size, count);
+  std::vector<T> values(static_cast<std::size_t>(count));
+  grid.get(found, values.data());
+  EXPECT_EQ(values, numbers<T>(count, first));
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(found.data) % 16, 0u);
+}
+
+/// Sizes that grow and shrink, with empty arrays; sizes in bytes are mostly no multiples of 16.
+TEST(StagedArraysSimt, WhatIsPutArrivesByOneCopy) {
+  CudaExec exec(0);
+  GridContactExec grid(exec);
+  StagedArrays staged, other;
+  const std::vector<std::int64_t> few = {1, 0, 3, 2};
+  const std::vector<std::vector<std::int64_t>> sizes = {
+      {0, 0, 0, 0}, {1, 2, 3, 5}, {0, 31, 0, 1}, {1025, 33, 32, 0}, {0, 0, 0, 0}, {7, 0, 1, 1025}};
+  std::int64_t most = 0;
+  for (const std::vector<std::int64_t>& size : sizes) {
+    SCOPED_TRACE(testing::PrintToString(size));
+    const auto put = [&](StagedArrays& to, const std::vector<std::int64_t>& of, int first) {
+      auto bytes = numbers<std::uint8_t>(of[0], first);
+      auto integers = numbers<std::int32_t>(of[1], first + 1);
+      auto reals = numbers<double>(of[2], first + 2);
+      auto structs = numbers<Staged>(of[3], first + 3);
+      const auto views = to.put(grid, bytes, integers, reals, structs);
+      bytes.assign(bytes.size(), 99);  // they are not read after the call
+      integers.assign(integers.size(), 99);
+      reals.assign(reals.size(), 99);
+      return views;
+    };
+    take_calls();
+    const auto views = put(staged, size, 1);
+    const DeviceCalls calls = take_calls();
+    const auto others = put(other, few, 50);
+    expect_numbers(grid, std::get<0>(views), size[0], 1);
+    expect_numbers(grid, std::get<1>(views), size[1], 2);
+    expect_numbers(grid, std::get<2>(views), size[2], 3);
+    expect_numbers(grid, std::get<3>(views), size[3], 4);
+    expect_numbers(grid, std::get<2>(others), few[2], 52);
+    const std::int64_t sum = size[0] + size[1] + size[2] + size[3];
+    EXPECT_EQ(calls.count(DeviceCall::copy_to_device), sum > 0 ? 1 : 0);
+    std::int64_t room = 0;
+    const std::int64_t bytes[] = {size[0], 4 * size[1], 8 * size[2], 16 * size[3]};
+    for (const std::int64_t own : bytes) room += (own + 15) / 16 * 16;
+    EXPECT_EQ(calls.count(DeviceCall::allocate), room > most ? 1 : 0);
+    most = std::max(most, room);
+  }
+}
+}  // namespace
+}  // namespace tetwarp::test

@@ -1,0 +1,216 @@
+/// The two-level iteration of contacts of deformable bodies.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "host/base/point3.hpp"
+#include "host/simulate/solve/problem/step_problem.hpp"
+#include "host/simulate/solve/problem/step_rows.hpp"
+#include "tests/simulate/body_models.hpp"
+#include "tests/simulate/stack_scenes.hpp"
+
+namespace tetwarp::test {
+namespace {
+
+struct StackStep {
+  ContactSolveOutcome outcome;
+  ContactResidual residual;  ///< by a factorization of A
+  std::vector<Point3> velocity;
+};
+
+/// Steps of a stack that is pushed sideways.
+std::vector<StackStep> run_stack(const HandScene& scene,
+                                 const ContactSystemOptions& options,
+                                 double adhesion,
+                                 std::vector<Point3>* change) {
+  ContactTrackerOptions tracking;
+  tracking.materials[0].friction = 0.4;
+  tracking.materials[0].stiffness = adhesion;
+  tracking.materials[0].initial_intensity = adhesion > 0 ? 0.5 : 0;
+  tracking.touch_distance = 1e-9;
+  const auto stepper = make_cpu_stepper(scene.model, {.linear_tolerance = 1e-10});
+  ContactSystem system(scene.surfaces, scene.model, options);
+  ContactTracker tracker(tracking);
+  ModelState state = scene.model.start;
+  std::vector<StackStep> steps(4);
+  for (StackStep& step : steps) {
+    stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+    const std::vector<TrackedContact> contacts = scene.begin(tracker, state, stack_step);
+    stepper->get_velocities(step.velocity);
+    const StepSystem rows = stepper->system();
+    step.outcome = system.solve(*stepper, state, tracker, contacts, step.velocity, change);
+
+    ContactIslands islands(scene.surfaces, scene.model);
+    StepRows jacobian(scene.surfaces, scene.model, 1);
+    jacobian.begin(state, contacts);
+    jacobian.set_all();
+    std::vector<std::int32_t> all;
+    for (std::size_t c = 0; c < contacts.size(); ++c) all.push_back(static_cast<std::int32_t>(c));
+    StepProblem part;
+    part.set_pattern(
+        rows.rows, islands, jacobian.rows(),
+        std::vector<std::uint8_t>(static_cast<std::size_t>(scene.model.island_count), 1), all);
+    part.set_numbers(rows);
+    tracker.fill(part.problem());
+    std::vector<double> dofs;
+    for (std::int32_t row = 0; row < rows.rows.unknown_count; ++row) {
+      const Point3& v = step.velocity[static_cast<std::size_t>(rows.rows.block_of[row])];
+      dofs.insert(dofs.end(), v.begin(), v.end());
+    }
+    step.residual = residual_of(part.problem(), system.solution().impulse, dofs);
+
+    stepper->set_velocities(step.velocity);
+    stepper->move(stack_step, {});
+    stepper->get_state(state);
+    tracker.end_step(system.solution(), scene.places(state));
+  }
+  return steps;
+}
+
+/// eta of a factorization of A, which the iteration does not have, is what the tolerance bounds.
+TEST(TwoLevelContact, ResidualIsWithinTheTolerance) {
+  for (const double youngs : {1e4, 1e6, 1e8}) {
+    for (const double adhesion : {0.0, 4e7}) {
+      const HandScene scene = stack_scene(youngs);
+      for (const double tolerance : {1e-3, 1e-5, 1e-8}) {
+        SCOPED_TRACE(testing::Message() << youngs << " " << adhesion << " " << tolerance);
+        ContactSystemOptions options;
+        options.recovery_fraction = 1e9;
+        options.solver.tolerance = tolerance;
+
+        for (const StackStep& step : run_stack(scene, options, adhesion, nullptr)) {
+          EXPECT_TRUE(step.outcome.converged);
+          EXPECT_LE(step.outcome.residual, tolerance);
+          EXPECT_LE(step.residual.eta, 1.5 * tolerance);
+        }
+      }
+    }
+  }
+}
+
+/// Sweeps over groups keep the velocities of all touched nodes consistent with the impulses.
+TEST(TwoLevelContact, GroupsOfSeveralBodiesMeetTheTolerance) {
+  const HandScene scene = tower_scene();
+  for (const double adhesion : {0.0, 4e7}) {
+    for (const double tolerance : {1e-4, 1e-7}) {
+      SCOPED_TRACE(testing::Message() << adhesion << " " << tolerance);
+      ContactSystemOptions options;
+      options.recovery_fraction = 1e9;
+      options.solver.tolerance = tolerance;
+
+      for (const StackStep& step : run_stack(scene, options, adhesion, nullptr)) {
+        EXPECT_TRUE(step.outcome.converged);
+        EXPECT_LE(step.residual.eta, 1.5 * tolerance);
+        EXPECT_LT(step.outcome.sweeps, 2000) << step.outcome.outer_iterations;
+      }
+    }
+  }
+}
+
+TEST(TwoLevelContact, GroupsGiveTheSameBitsOnAnyNumberOfThreads) {
+  const HandScene scene = tower_scene();
+  ContactSystemOptions one, three;
+  one.solver.threads = 1;
+  three.solver.threads = 3;
+
+  const auto a = run_stack(scene, one, 4e7, nullptr), b = run_stack(scene, three, 4e7, nullptr);
+
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    EXPECT_EQ(a[n].velocity, b[n].velocity);
+    EXPECT_EQ(a[n].outcome.sweeps, b[n].outcome.sweeps);
+  }
+}
+
+/// The factors at rest of bodies that are pressed flat are far from those of their systems.
+TEST(TwoLevelContact, BodiesPressedFlatMeetTheTolerance) {
+  for (const double height : {0.3, 0.1}) {
+    for (const StackStep& step : run_stack(tower_scene(height), {}, 0, nullptr)) {
+      EXPECT_TRUE(step.outcome.converged);
+      EXPECT_LE(step.residual.eta, 1.5e-6);
+      EXPECT_LT(step.outcome.outer_iterations, 150);
+    }
+  }
+}
+
+TEST(TwoLevelContact, AgreesWithTheContactSolver) {
+  const HandScene scene = stack_scene(1e5);
+  ContactSystemOptions options;
+  options.solver.tolerance = 1e-9;
+
+  const auto own = run_stack(scene, options, 0, nullptr);
+  options.solver.coupling = ContactCoupling::condensed;
+  const auto solver = run_stack(scene, options, 0, nullptr);
+
+  for (std::size_t n = 0; n < own.size(); ++n) {
+    for (std::size_t i = 0; i < own[n].velocity.size(); ++i) {
+      EXPECT_LT(distance(own[n].velocity[i], solver[n].velocity[i]), 1e-6);
+    }
+  }
+}
+
+/// Where contacts stay open the impulses are zero, and the linear solve is as exact as it was.
+TEST(TwoLevelContact, KeepsVelocitiesWhereContactsStayOpen) {
+  HandScene scene = stack_scene(1e5);
+  for (Touch& touch : scene.touches) {
+    touch.point_b.local[2] += touch.body_b == scene.model.rigid.body[1] ? -1 : 1;
+  }
+  const auto stepper = make_cpu_stepper(scene.model, {.linear_tolerance = 1e-4});
+  ContactSystem system(scene.surfaces, scene.model, {});
+  ContactTracker tracker;
+  stepper->solve(input_for(scene.model, stack_step, {3, 1, -9.81}));
+  const auto contacts = scene.begin(tracker, scene.model.start, stack_step);
+  std::vector<Point3> velocity;
+  stepper->get_velocities(velocity);
+  const std::vector<Point3> free = velocity;
+
+  const ContactSolveOutcome outcome =
+      system.solve(*stepper, scene.model.start, tracker, contacts, velocity);
+
+  EXPECT_TRUE(outcome.converged);
+  EXPECT_EQ(outcome.outer_iterations, 0);
+  EXPECT_EQ(velocity, free);
+}
+
+/// A start from the change of the step before saves iterations and changes results within the
+/// tolerance.
+TEST(TwoLevelContact, StartsFromTheChangeOfTheStepBefore) {
+  const HandScene scene = stack_scene(1e6);
+  ContactSystemOptions options;
+  options.solver.tolerance = 1e-6;
+  std::vector<Point3> change;
+
+  const auto fresh = run_stack(scene, options, 0, nullptr);
+  const auto started = run_stack(scene, options, 0, &change);
+
+  EXPECT_EQ(change.size(), static_cast<std::size_t>(scene.model.block_count()));
+  std::int64_t fresh_count = 0, started_count = 0;
+  for (std::size_t n = 0; n < fresh.size(); ++n) {
+    fresh_count += fresh[n].outcome.outer_iterations;
+    started_count += started[n].outcome.outer_iterations;
+    for (std::size_t i = 0; i < fresh[n].velocity.size(); ++i) {
+      EXPECT_LT(distance(fresh[n].velocity[i], started[n].velocity[i]), 1e-4);
+    }
+  }
+  EXPECT_LT(started_count, fresh_count);
+}
+
+TEST(TwoLevelContact, TakesFewerOuterIterationsThanBlockJacobi) {
+  const HandScene scene = stack_scene(1e6);
+  ContactSystemOptions options;
+  options.solver.tolerance = 1e-4;
+
+  const auto own = run_stack(scene, options, 0, nullptr);
+  options.solver.coupling = ContactCoupling::iterated;
+  const auto jacobi = run_stack(scene, options, 0, nullptr);
+
+  std::int64_t own_count = 0, jacobi_count = 0;
+  for (std::size_t n = 0; n < own.size(); ++n) {
+    own_count += own[n].outcome.outer_iterations;
+    jacobi_count += jacobi[n].outcome.outer_iterations;
+  }
+  EXPECT_LT(2 * own_count, jacobi_count);
+}
+
+}  // namespace
+}  // namespace tetwarp::test
