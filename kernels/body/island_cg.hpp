@@ -229,8 +229,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
                                        GradientScalars* scalars,
                                        const Proceed& proceed) {
   constexpr int max_runs = 60;
-  constexpr double run_target =
-      sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the residual at the start of the run
+  constexpr double run_target = sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the first residual
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {

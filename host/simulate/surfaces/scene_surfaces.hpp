@@ -1,6 +1,6 @@
 /// @file scene_surfaces.hpp
-/// The surfaces of a scene's bodies and obstacles for contact, what they are bound to and which
-/// contact material a pair of bodies has.
+/// The surfaces of a scene's bodies and obstacles for contact: what their vertices move with, and
+/// the contact material of each pair of bodies.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace tetwarp {
 
-/// The contact material of a pair of bodies that have their own.
+/// The contact material of a pair of bodies for which the scene gives its own.
 struct PairMaterial {
   std::array<std::int32_t, 2> bodies{0, 0};  ///< first <= second
   std::int32_t material = 0;                 ///< in SceneSurfaces::materials
@@ -24,23 +24,23 @@ struct PairMaterial {
 
 struct SceneSurfaces {
   CollisionSurfaces surfaces;
-  std::vector<ModelPoint> vertex_point;     ///< [vertices] what each vertex is bound to
+  std::vector<ModelPoint> vertex_point;     ///< [vertices] what each vertex moves with
   std::vector<std::int32_t> surface_point;  ///< [vertices] its number among the points of the
                                             ///< body's surface, ascending; -1: of a round body
-  std::vector<std::int32_t> plane_rigid;    ///< [planes] frame that moves it
+  std::vector<std::int32_t> plane_rigid;    ///< [planes] the frame that moves it
   std::vector<PlanePlace> plane_local;      ///< [planes] in that frame
   std::vector<double> body_size;            ///< [bodies, then obstacles] diagonal of the box at the
                                             ///< start [m]; infinite of planes, 0 without parts
   std::vector<std::int32_t> body_rigid;     ///< [bodies, then obstacles] the frame of a rigid one,
                                             ///< as ModelPoint::rigid, or -1: deformable
-  std::vector<ContactMaterial> materials;   ///< different ones
-  std::vector<std::int32_t> contact_class;  ///< [bodies, then obstacles] bodies of equal material
+  std::vector<ContactMaterial> materials;   ///< without repetitions
+  std::vector<std::int32_t> contact_class;  ///< [bodies, then obstacles] equal for equal material
   std::int32_t class_count = 0;
-  std::vector<std::int32_t> class_material;  ///< [classes][classes] of two classes
+  std::vector<std::int32_t> class_material;  ///< [classes][classes] material of a pair of classes
   std::vector<PairMaterial> pair_materials;  ///< sorted by bodies
 
   std::int32_t body_count() const { return static_cast<std::int32_t>(surfaces.bodies.size()); }
-  /// Of two bodies or obstacles, in either order.
+  /// Material of two bodies or obstacles, in either order.
   std::int32_t material_of(std::int32_t a, std::int32_t b) const;
 };
 
@@ -51,13 +51,13 @@ SceneSurfaces make_scene_surfaces(const Scene& scene,
                                   const SceneGeometry& geometry,
                                   const Model& model);
 
-/// What ResidentSurfaces needs of them.
+/// The surfaces as ResidentSurfaces needs them.
 /// @param scene  kept by the caller
 SurfaceBinding binding_of(const SceneSurfaces& scene);
-/// A motion of ResidentSurfaces, for a Detector on the same device.
+/// The motion of ResidentSurfaces as a Detector on the same device needs it.
 MotionView view_of(const ResidentMotion& motion);
 
-/// World places of all vertices and planes.
+/// World positions of all vertices and planes.
 /// @param places  out; memory is kept
 void surface_places(const SceneSurfaces& scene,
                     const Model& model,
@@ -65,7 +65,7 @@ void surface_places(const SceneSurfaces& scene,
                     int threads,
                     SurfacePlaces& places);
 
-/// How all surfaces move in a step: nodes straight, rigid bodies by exp(dt omega), as
+/// The input of surface_motion(): nodes move straight, rigid bodies by exp(dt omega), as in
 /// BodyStepper::move(). Owns nothing.
 struct SurfaceStep {
   const SceneSurfaces& scene;
@@ -77,11 +77,12 @@ struct SurfaceStep {
                                           ///< 0 to 1; empty: 1
 };
 /// @param threads  any number: same motion
-/// @param motion   in: its start from surface_places(); out: all else but `resident`
+/// @param motion   in: its start from surface_places(); out: everything else except `resident`
 void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
-/// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
+/// The part of surface_motion() that sets frames and planes; also sets the sizes of the lists of
+/// vertices.
 void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
-/// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
+/// The part of surface_motion() that sets ends and sagittas of vertices; after frame_motion().
 void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 
 }  // namespace tetwarp
