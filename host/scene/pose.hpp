@@ -56,12 +56,6 @@ inline Quaternion normalized(const Quaternion& q) {
   return {factor * q[0], factor * q[1], factor * q[2], factor * q[3]};
 }
 
-/// x -> a(b(x))
-inline Pose composed(const Pose& a, const Pose& b) {
-  return {plus(a.position, times(rotation_of(a.rotation), b.position)),
-          product(a.rotation, b.rotation)};
-}
-
 /// The pose that undoes a pose of a unit quaternion.
 inline Pose inverse(const Pose& pose) {
   const Quaternion back = conjugate(pose.rotation);

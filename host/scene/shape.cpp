@@ -160,10 +160,6 @@ std::function<double(const Point3&)> make_level(const Shape& shape) {
       shape);
 }
 
-double level_of(const Shape& shape, const Point3& x) {
-  return make_level(shape)(x);
-}
-
 double level_slope(const Shape& shape) {
   if (const auto* ellipsoid = std::get_if<EllipsoidShape>(&shape)) {
     return 1 / *std::min_element(ellipsoid->radii.begin(), ellipsoid->radii.end());

@@ -20,8 +20,6 @@ double volume_of(const Shape& shape);
 
 /// A function of points that is negative inside the shape, 0 on its surface and positive outside,
 /// and that changes by at most level_slope() times the distance of two points of the bounds.
-double level_of(const Shape& shape, const Point3& x);
-/// The same for many points.
 std::function<double(const Point3&)> make_level(const Shape& shape);
 double level_slope(const Shape& shape);
 

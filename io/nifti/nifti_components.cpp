@@ -2,7 +2,6 @@
 
 #include <nifti1.h>
 
-#include <algorithm>
 #include <cstring>
 #include <tetwarp/error.hpp>
 
@@ -21,10 +20,6 @@ void negate(std::span<std::byte> samples) {
   }
 }
 }  // namespace
-
-bool ComponentMap::negates() const {
-  return std::ranges::find(is_negated, true) != is_negated.end();
-}
 
 std::array<bool, 9> turned_components(int components) {
   if (components == 3) return {true, true};

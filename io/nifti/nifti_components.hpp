@@ -15,8 +15,6 @@ namespace tetwarp {
 struct ComponentMap {
   std::array<std::size_t, 9> place;  ///< in the volume, of each component of the file
   std::array<bool, 9> is_negated;    ///< by component of the file
-
-  bool negates() const;
 };
 
 /// The components of an array whose x and y change their sign between RAS and LPS: of vectors

@@ -47,11 +47,6 @@ template <class Real>
 TETWARP_HD void multiply3(const Real* a, const Real* x, Real* y) {
   for (int i = 0; i < 3; ++i) y[i] = a[3 * i] * x[0] + a[3 * i + 1] * x[1] + a[3 * i + 2] * x[2];
 }
-/// y = A^T x; y is not x.
-template <class Real>
-TETWARP_HD void multiply3_transposed(const Real* a, const Real* x, Real* y) {
-  for (int i = 0; i < 3; ++i) y[i] = a[i] * x[0] + a[3 + i] * x[1] + a[6 + i] * x[2];
-}
 /// C = A B; C is neither of them.
 template <class Real>
 TETWARP_HD void product3(const Real* a, const Real* b, Real* c) {

@@ -29,7 +29,6 @@ struct SpringConstants {
   double stiffness;         ///< [N/m]
   double damping;           ///< [N s/m]
   std::int32_t has_anchor;  ///< b is an anchor whose place is an input of the step
-  std::int32_t has_rigid;   ///< an end is in a rigid body
 };
 
 /// Places of rigid bodies.

@@ -98,32 +98,4 @@ struct ContactMetricBody {
   }
 };
 
-/// Inverts the diagonal blocks of A in place.
-/// @param exec         where to run
-/// @param dof_start    first dof of each block, [blocks + 1]
-/// @param value_start  first number of each block, [blocks + 1]
-/// @param values       in: dense blocks row by row; out: their inverses
-/// @pre  blocks are positive definite
-///
-/// Determinism: same bits on every back end with contraction off. Cost: size^3 per block.
-template <class Exec, class T>
-void block_invert(Exec& exec,
-                  View<const std::int64_t> dof_start,
-                  View<const std::int64_t> value_start,
-                  View<T> values) {
-  exec.for_each("contact/setup", dof_start.size - 1,
-                BlockInvertBody<T>{dof_start, value_start, values});
-}
-
-/// Sets the responses and Delassus blocks of all contacts; other constants do not change.
-/// @param exec  where to run
-/// @param body  input and output
-///
-/// Determinism: same bits on every back end with contraction off. Cost: size^2 per pair.
-template <class Exec, class T>
-void contact_response(Exec& exec, const ContactResponseBody<T>& body) {
-  exec.for_each("contact/setup", body.constants.size, body);
-  exec.for_each("contact/setup", body.constants.size, ContactMetricBody<T>{body.constants});
-}
-
 }  // namespace tetwarp

@@ -15,14 +15,6 @@
 
 namespace tetwarp {
 
-/// Position in the source of a point relative to the centre of a map's voxel, less map.whole.
-TETWARP_HD void set_source_position(const SourceMap<double>& map, const double* x, double* at) {
-  for (int row = 0; row < 3; ++row) {
-    at[row] =
-        map.base[row] + map.axis[0][row] * x[0] + map.axis[1][row] * x[1] + map.axis[2][row] * x[2];
-  }
-}
-
 TETWARP_HD void set_cross(const double* a, const double* b, double* cross) {
   cross[0] = a[1] * b[2] - a[2] * b[1];
   cross[1] = a[2] * b[0] - a[0] * b[2];

@@ -56,9 +56,8 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   surfaces->begin(binding_of(touch.surfaces));
 
   for (const auto& fractions : {std::vector<double>{}, fraction}) {
-    SurfaceMotion expected;
-    surface_places(touch.surfaces, model, model.start, 1, expected.start);
-    surface_motion({touch.surfaces, model, model.start, velocity, 0.01, fractions}, 1, expected);
+    const SurfaceMotion expected =
+        motion_of({touch.surfaces, model, model.start, velocity, 0.01, fractions});
     const ResidentMotion motion = surfaces->move(velocity, 0.01, fractions);
     EXPECT_TRUE(has_bits(motion.start, expected.start.vertices));
     EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
@@ -70,9 +69,8 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
 
   stepper->set_velocities(velocity);
   const ResidentMotion motion = surfaces->move({}, 0.01, fraction);
-  SurfaceMotion expected;
-  surface_places(touch.surfaces, model, model.start, 1, expected.start);
-  surface_motion({touch.surfaces, model, model.start, velocity, 0.01, fraction}, 1, expected);
+  const SurfaceMotion expected =
+      motion_of({touch.surfaces, model, model.start, velocity, 0.01, fraction});
   EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
 }
 

@@ -36,9 +36,10 @@ TEST(Shape, HasTheVolumeOfThePointsInside) {
     const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
     const Point3 length = minus(bounds.high, bounds.low);
+    const auto level = make_level(shape);
     double inside = 0;
 
-    for_samples(bounds, n, [&](const Point3& x) { inside += level_of(shape, x) <= 0; });
+    for_samples(bounds, n, [&](const Point3& x) { inside += level(x) <= 0; });
 
     const double volume = inside * length[0] * length[1] * length[2] / (double{n} * n * n);
     EXPECT_NEAR(volume / volume_of(shape), 1, 0.01) << name;
@@ -50,6 +51,7 @@ TEST(Shape, IsOutsideBeyondItsBounds) {
     const std::string& name = named.first;
     const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
+    const auto level = make_level(shape);
     Bounds wide = bounds;
     for (std::size_t d = 0; d < 3; ++d) {
       wide.low[d] -= 0.5 * (bounds.high[d] - bounds.low[d]);
@@ -61,7 +63,7 @@ TEST(Shape, IsOutsideBeyondItsBounds) {
         is_within = is_within && x[d] >= bounds.low[d] && x[d] <= bounds.high[d];
       }
       if (!is_within) {
-        ASSERT_GT(level_of(shape, x), 0) << name;
+        ASSERT_GT(level(x), 0) << name;
       }
     });
   }
@@ -74,9 +76,10 @@ TEST(Shape, HasALevelOfBoundedSlope) {
     const Shape& shape = named.second;
     const Bounds bounds = bounds_of(shape);
     const double slope = level_slope(shape) * (1 + 1e-12);
+    const auto level = make_level(shape);
     Point3 last = bounds.low;
     for_samples(bounds, 31, [&](const Point3& x) {
-      const double difference = std::abs(level_of(shape, x) - level_of(shape, last));
+      const double difference = std::abs(level(x) - level(last));
       ASSERT_LE(difference, slope * norm(minus(x, last))) << name;
       last = x;
     });

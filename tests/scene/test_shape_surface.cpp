@@ -43,8 +43,9 @@ TEST(ShapeSurface, HasAboutAsManyTrianglesAsAsked) {
 
 TEST(ShapeSurface, HasItsPointsOnTheShape) {
   for (const auto& [name, shape] : named_shapes()) {
+    const auto level = make_level(shape);
     for (const Point3& x : make_shape_surface(shape, 500).points) {
-      ASSERT_NEAR(level_of(shape, x), 0, 1e-12) << name;
+      ASSERT_NEAR(level(x), 0, 1e-12) << name;
     }
   }
 }

@@ -27,6 +27,15 @@ inline Body rigid_capsule(const std::string& name,
   return body;
 }
 
+/// How all surfaces move in a step.
+inline SurfaceMotion motion_of(const SurfaceStep& step, int threads = 1) {
+  SurfaceMotion motion;
+  surface_places(step.scene, step.model, step.state, threads, motion.start);
+  frame_motion(step, motion);
+  vertex_motion(step, threads, motion);
+  return motion;
+}
+
 /// A scene with all that is made of it; refers to itself.
 struct TouchScene {
   explicit TouchScene(Scene of)

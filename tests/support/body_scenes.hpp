@@ -80,6 +80,16 @@ struct SceneBodies {
   reference::ReferenceBodies bodies() const { return {scene, geometry}; }
 };
 
+/// Places the nodes of a scene without rigid bodies.
+inline void set_nodes(reference::ReferenceBodies& bodies,
+                      const std::vector<Point3>& positions,
+                      const std::vector<Point3>& velocities) {
+  reference::BodiesState state = bodies.state();
+  state.node_positions = positions;
+  state.node_velocities = velocities;
+  bodies.set_state(state);
+}
+
 /// Nodes of the geometry for which `is_chosen(position)` holds.
 template <class Predicate>
 std::vector<std::int32_t> nodes_where(const BodyGeometry& geometry, const Predicate& is_chosen) {

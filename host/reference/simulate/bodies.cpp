@@ -59,17 +59,6 @@ std::vector<Point3> ReferenceBodies::node_velocities(std::size_t body) const {
   return points_of(parts_->state.velocity, place.first_node, place.node_count);
 }
 
-void ReferenceBodies::set_nodes(std::size_t body,
-                                const std::vector<Point3>& positions,
-                                const std::vector<Point3>& velocities) {
-  const BodyPlace& place = parts_->system.places.at(body);
-  for (int n = 0; n < place.node_count; ++n) {
-    const auto node = static_cast<std::size_t>(place.first_node + n);
-    parts_->state.node[node] = vector_of(positions.at(static_cast<std::size_t>(n)));
-    parts_->state.velocity[node] = vector_of(velocities.at(static_cast<std::size_t>(n)));
-  }
-}
-
 std::vector<Point3> ReferenceBodies::surface_positions(std::size_t body) const {
   const System& system = parts_->system;
   std::vector<Point3> result;
@@ -112,16 +101,6 @@ void ReferenceBodies::set_state(const BodiesState& from) {
                                     .llt()
                                     .solve(state.angular_momentum[r]);
   }
-}
-
-std::vector<Point3> ReferenceBodies::elastic_forces(std::size_t body) const {
-  const BodyPlace& place = parts_->system.places.at(body);
-  const VectorXd force = elastic_force(parts_->system, parts_->state);
-  std::vector<Point3> result;
-  for (int n = place.first_node; n < place.first_node + place.node_count; ++n) {
-    result.push_back(point_of(force.segment<3>(3 * n)));
-  }
-  return result;
 }
 
 std::vector<double> ReferenceBodies::masses(std::size_t body) const {

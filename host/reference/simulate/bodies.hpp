@@ -38,9 +38,6 @@ class ReferenceBodies {
   /// World positions and velocities of the nodes of an elastic body, cloth or a scripted lattice.
   std::vector<Point3> node_positions(std::size_t body) const;
   std::vector<Point3> node_velocities(std::size_t body) const;
-  void set_nodes(std::size_t body,
-                 const std::vector<Point3>& positions,
-                 const std::vector<Point3>& velocities);
   /// World positions of the points of the body's surface.
   std::vector<Point3> surface_positions(std::size_t body) const;
 
@@ -49,8 +46,6 @@ class ReferenceBodies {
 
   /// Energies, momenta and forces of the last step; of the start before the first.
   StepRecord record() const;
-  /// Forces of elements, cloth springs and bending on the nodes of a body [N].
-  std::vector<Point3> elastic_forces(std::size_t body) const;
   /// sum_b m_ab of the nodes [kg]; of a rigid body one entry.
   std::vector<double> masses(std::size_t body) const;
   /// Inertia about the centre of mass, world axes, rows [kg m^2], of the mass where it is now.

@@ -35,7 +35,8 @@ class ResidentSurfaces {
   /// Begins a part of a step: computes places at its start from the state of the stepper.
   /// @param surfaces  the same in all calls; copied to the device in the first
   virtual void begin(const SurfaceBinding& surfaces) = 0;
-  /// As surface_motion(), from the state at begin(). Returns when all has been computed.
+  /// As frame_motion() and vertex_motion(), from the state at begin(). Returns when all has been
+  /// computed.
   /// @param velocity  [block_count]; empty: those of the stepper
   /// @returns  views that are valid until the next call
   virtual ResidentMotion move(std::span<const Point3> velocity,

@@ -76,13 +76,11 @@ struct SurfaceStep {
   std::span<const double> fraction = {};  ///< [bodies, then obstacles] of the step that each moves,
                                           ///< 0 to 1; empty: 1
 };
-/// @param threads  any number: same motion
-/// @param motion   in: its start from surface_places(); out: everything else except `resident`
-void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
-/// The part of surface_motion() that sets frames and planes; also sets the sizes of the lists of
-/// vertices.
+/// How frames and planes move; sets the sizes of the lists of vertices.
+/// @param motion  in: its start from surface_places()
 void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
-/// The part of surface_motion() that sets ends and sagittas of vertices; after frame_motion().
+/// Ends and sagittas of vertices, after frame_motion().
+/// @param threads  any number: same motion
 void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 
 }  // namespace tetwarp

@@ -123,9 +123,4 @@ void frame_motion(const SurfaceStep& step, SurfaceMotion& motion) {
   }
 }
 
-void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion) {
-  frame_motion(step, motion);
-  vertex_motion(step, threads, motion);
-}
-
 }  // namespace tetwarp

@@ -80,7 +80,7 @@ double catenary_error(std::int64_t segments) {
     exact.push_back({along, x[1], a * std::cosh(along / a)});
   }
   auto bodies = hanging.bodies();
-  bodies.set_nodes(0, exact, std::vector<Point3>(exact.size()));
+  set_nodes(bodies, exact, std::vector<Point3>(exact.size()));
 
   for (int step = 0; step < 150; ++step) bodies.step();
 

@@ -31,7 +31,7 @@ EnergyRun vibrate(double youngs_modulus, double time_step) {
     x[0] *= 1.1;
     velocities.push_back({-2 * x[1], 2 * x[0], 0});
   }
-  bodies.set_nodes(0, positions, velocities);
+  set_nodes(bodies, positions, velocities);
 
   EnergyRun run;
   double before = run.start = bodies.record().energy.total();

@@ -26,7 +26,7 @@ Recovery recover(Body body, const Tangle& tangle) {
   auto bodies = block.bodies();
   std::vector<Point3> positions = block.geometry.bodies[0].nodes;
   tangle(positions);
-  bodies.set_nodes(0, positions, std::vector<Point3>(positions.size()));
+  set_nodes(bodies, positions, std::vector<Point3>(positions.size()));
   Recovery recovery;
   recovery.inverted_at_start = bodies.record().inverted;
 

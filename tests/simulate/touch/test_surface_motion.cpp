@@ -63,11 +63,8 @@ SurfaceMotion motion_of(const TouchScene& touch,
                         double time_step,
                         const std::vector<double>& fraction,
                         int threads = 1) {
-  SurfaceMotion motion;
-  surface_places(touch.surfaces, touch.model, touch.model.start, threads, motion.start);
-  surface_motion({touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction},
-                 threads, motion);
-  return motion;
+  return motion_of({touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction},
+                   threads);
 }
 
 TEST(SurfaceMotion, EndsWhereTheMovedBodiesAre) {
