@@ -14,6 +14,8 @@ namespace tetwarp::bench {
 
 /// Steps of all workloads, filters, pixel types and thread counts (step_cases()). On cpu in turn
 /// with the sampling floor; with a switch off, in turn with the same step with all switches on.
+/// without:two_corners is the paper's method: cells are rejected and accepted by masks of their
+/// eight corners.
 ///
 ///   construct, first_step    making a Warper (upload); the first step (first touch, buffers)
 ///   mean, upload, setup, mask, cull, raster, download      mean of all steps, and of their stages

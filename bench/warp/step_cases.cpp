@@ -64,6 +64,15 @@ void add_workloads(Rows& rows, StepCase row, bool full) {
   }
 }
 
+/// The paper's culling by masks of grid points, in place of two corners per face.
+void add_masks(Rows& rows, StepCase row) {
+  for (const Workload& workload : {torso_700(), fish_35(), rotated(256), waved(256, 5000),
+                                   waved(256, 50000), waved(256, 500000)}) {
+    row.workload = workload;
+    rows.add_without(row, {"two_corners", {.grid_point_masks = true}});
+  }
+}
+
 /// Filters, pixel types, components.
 void add_types(Rows& rows, StepCase row, bool full) {
   for (const Workload& workload : {torso_700(), rotated(256), waved(256, 5000)}) {
@@ -148,6 +157,7 @@ std::vector<StepCase> step_cases(const Selection& selection) {
   for (const Backend backend : selection.backends()) {
     const StepCase row{.workload = torso_700(), .backend = backend, .threads = selection.threads};
     add_workloads(rows, row, full);
+    add_masks(rows, row);
     add_types(rows, row, full);
     add_skips(rows, row, full);
   }

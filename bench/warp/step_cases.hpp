@@ -22,7 +22,8 @@ struct StepCase {
   int threads = 1;
   int components = 1;
   Image image = Image::textured;
-  std::string without = {};  ///< what is switched off: a name of skip_variants(), or empty
+  std::string without = {};  ///< what is switched off: a name of skip_variants(), `two_corners`
+                             ///< (for SkipOptions::grid_point_masks), or empty
   SkipOptions skip = {};
 };
 

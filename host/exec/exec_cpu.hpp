@@ -154,9 +154,6 @@ class CpuExec {
     for (int k = 0; k < sum_group; ++k) body.finish(total, k);
   }
 
-  /// Fills a list with rejected_pair; not needed here, where stages read up to the count only.
-  void reject_all(const char*, View<CellPair>) {}
-
   /// Copies the first candidate_count[0] pairs that are not rejected, in order, and counts them.
   void select_valid(const char* label,
                     View<const CellPair> candidates,

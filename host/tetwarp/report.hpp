@@ -17,7 +17,8 @@ struct TETWARP_EXPORT Timings {
   double read = 0;      ///< of files; 0 for a Warper
   double upload = 0;    ///< host to device: sources once, node positions in each step
   double setup = 0;     ///< planes and maps of the tetrahedra
-  double mask = 0;      ///< corners of cells against the planes of tetrahedra; cuda only
+  double mask = 0;      ///< corners of cells against the planes of tetrahedra; 0 without
+                        ///< SkipOptions::grid_point_masks
   double cull = 0;      ///< pairs of tetrahedron and cell: rejected, accepted or partial; sorted
   double raster = 0;    ///< owners and samples of all voxels
   double fields = 0;    ///< arrays of FieldTarget

@@ -66,6 +66,10 @@ struct SkipOptions {
              ///< tests for its border, cells within one tetrahedron without any
   bool background_chunks = true;  ///< the command does not store chunks of files that hold only
                                   ///< background
+  /// Expert: rejects and accepts cells as Gascon et al. do, by bit masks of the eight grid points
+  /// around each cell, instead of two of them per face, which decide the same. For comparing the
+  /// methods; back ends cpu and cuda.
+  bool grid_point_masks = false;
 };
 
 /// The part of the sources' grid that is in memory, for sources that do not fit as a whole. The

@@ -15,6 +15,7 @@
 #include "host/warp/sources.hpp"
 #include "host/warp/tet_footprint.hpp"
 #include "kernels/warp/cell_class.hpp"
+#include "kernels/warp/corner_mask.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
@@ -226,19 +227,21 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   const double around = tet_bytes * static_cast<double>(tets) +
                         (output_share + limits.scratch_voxel) * output_voxels +
                         source_share * source_voxels;
+  const double mask_bytes =
+      options.skip.grid_point_masks ? most_corners(1) * sizeof(std::uint16_t) : 0.0;
   double pairs = 0;
   for (const std::int32_t t : cells) {
     pairs += static_cast<double>(pairs_of(footprints[static_cast<std::size_t>(t)], box));
   }
   const double samples = limits.source_voxel * source_voxels + limits.output_voxel * output_voxels;
-  block.host_bytes = 2 * samples + around + pair_bytes * pairs;
+  block.host_bytes = 2 * samples + around + (pair_bytes + mask_bytes) * pairs;
 
   // A device keeps two lists of pairs and three arrays for sorting, with room for a quarter more
   // pairs; and lists of cells by class.
   constexpr double device_pair_bytes = 36, list_room = 1.25, least_room = 1024;
   const double cell_count = output_voxels / (cell_edge * cell_edge * cell_edge);
   const double room = list_room * pairs + least_room;
-  block.device_bytes = samples + around + device_pair_bytes * room +
+  block.device_bytes = samples + around + (device_pair_bytes + mask_bytes) * room +
                        (options.skip.interior_cells ? class_list_bytes(cell_count, room) : 0.0);
   return block;
 }

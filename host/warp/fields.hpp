@@ -79,8 +79,8 @@ class WarpFields {
     const std::int64_t tets = pairs.tet_count();
     if (!has_rest_) find_rest();
     exchanged_.reserve(tets);
-    unused_.reserve(2 * (tets + 1) + tet_class_count);
-    const View<std::int64_t> unused = unused_.view(2 * (tets + 1) + tet_class_count);
+    unused_.reserve(tets + 1 + tet_class_count);
+    const View<std::int64_t> unused = unused_.view(tets + 1 + tet_class_count);
     exec_.zero("warp/fields", unused);
     tet_setup(exec_, {.tets = pairs.tets(),
                       .deformed = rest_.const_view(pairs.rest().size),
@@ -88,9 +88,8 @@ class WarpFields {
                       .rest_orientation = pairs.rest_orientation(),
                       .frame = frame,
                       .setups = exchanged_.view(tets),
-                      .corner_counts = {unused.data, tets + 1},
-                      .pair_counts = {unused.data + tets + 1, tets + 1},
-                      .class_counts = {unused.data + 2 * (tets + 1), tet_class_count},
+                      .pair_counts = {unused.data, tets + 1},
+                      .class_counts = {unused.data + tets + 1, tet_class_count},
                       .hexes = pairs.hexes()});
     DisplacementMap map = make_displacement_map(plan_, frame);
     for (std::int64_t& shift : map.frame) shift = 0;

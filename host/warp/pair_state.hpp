@@ -94,10 +94,11 @@ class PairState {
     check_pair_count(pair_total_);
   }
 
-  TetSetupBody setup_body(View<std::int64_t> corner_counts, View<std::int64_t> pair_counts) const {
-    return {mesh_.tets,        nodes(),         mesh_.rest,
-            mesh_.orientation, geometry_.frame, setups_.view(tet_count()),
-            corner_counts,     pair_counts,     {counters()->mesh.classes, tet_class_count},
+  TetSetupBody setup_body(View<std::int64_t> pair_counts) const {
+    return {mesh_.tets,      nodes(),
+            mesh_.rest,      mesh_.orientation,
+            geometry_.frame, setups_.view(tet_count()),
+            pair_counts,     {counters()->mesh.classes, tet_class_count},
             mesh_.hexes};
   }
   PairList view_of(const List& list) const {
@@ -106,6 +107,10 @@ class PairState {
   std::int64_t cell_count() const { return geometry_.frame.cell_count(); }
   /// With conservative intensity a cell needs every tetrahedron that touches a box of its voxels.
   bool keeps_totals() const { return options_.intensity == Intensity::conservative; }
+  /// Whether pairs are culled by masks of grid points.
+  bool uses_masks(const CullSwitches& switches) const {
+    return options_.skip.grid_point_masks && (switches.reject || switches.accept);
+  }
   /// Whether a step in which so many tetrahedra move is computed faster from scratch.
   bool is_most(std::int64_t moved) const { return moved > tet_count() - tet_count() / 8; }
 

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "host/warp/grid_point_masks.hpp"
 #include "host/warp/pair_state.hpp"
 #include "kernels/warp/cell_list.hpp"
 #include "kernels/warp/step_begin.hpp"
@@ -22,7 +23,6 @@ class DevicePairs : public PairState<Exec> {
       : PairState<Exec>(exec, plan, geometry) {
     const std::int64_t tets = this->tet_count(), cells = this->cell_count();
     reserve(candidate_sums_, tets);
-    corner_counts_.reserve(tets);
     reserve(cell_sums_, cells);
     cell_counts_.reserve(cells);
     for (List& list : lists_) list.ranges.reserve(cells + 1);
@@ -112,7 +112,7 @@ class DevicePairs : public PairState<Exec> {
     const auto run = [&]<bool widens>(std::bool_constant<widens>) {
       exec_.grouped_scan(
           "warp/setup", tets,
-          TetCountBody<widens>{Base::setup_body(corner_counts_.view(tets), sums.within),
+          TetCountBody<widens>{Base::setup_body(sums.within),
                                node_moved_.const_view(has_before ? mesh_.node_count() : 0),
                                moved_.view(tets),
                                is_update_,
@@ -139,20 +139,27 @@ class DevicePairs : public PairState<Exec> {
     };
     const StayingPairs staying = {is_update_ ? this->list_before() : PairList{}, this->moved(),
                                   staying_.view(is_update_ ? cells : 0)};
-    cell_list(exec_, view(candidate_sums_, tets),
-              {this->setups(), switches, geometry_.frame, {}, {}, {}},
-              {candidates_.view(now.size), places_.view(now.size), cell_counts_.view(cells),
-               view(cell_sums_, cells), placed_.view(now.size)},
-              {{},
-               {},
-               staying,
-               now.pairs.view(now.size),
-               now.ranges.view(cells + 1),
-               touched_[now_].view(is_update_ ? cells : 0),
-               spread_over(spread.pairs),
-               spread_over(spread.accepted),
-               spread_over(spread.touched_cells)},
-              {&this->counters()->work.merged_pairs, 1});
+    const auto list_by = [&]<class Verdict>(const Verdict& verdict) {
+      cell_list(exec_, view(candidate_sums_, tets),
+                CellCullBody<Verdict>{this->setups(), verdict, switches, geometry_.frame, {}},
+                {candidates_.view(now.size), places_.view(now.size), cell_counts_.view(cells),
+                 view(cell_sums_, cells), placed_.view(now.size)},
+                {{},
+                 {},
+                 staying,
+                 now.pairs.view(now.size),
+                 now.ranges.view(cells + 1),
+                 touched_[now_].view(is_update_ ? cells : 0),
+                 spread_over(spread.pairs),
+                 spread_over(spread.accepted),
+                 spread_over(spread.touched_cells)},
+                {&this->counters()->work.merged_pairs, 1});
+    };
+    if (this->uses_masks(switches)) {
+      list_by(masks_.run(this->setups(), view(candidate_sums_, tets)));
+    } else {
+      list_by(PlaneVerdict{});
+    }
   }
 
   /// Enlarges the lists to a quarter more than needed, so that small motions do not exceed them.
@@ -163,15 +170,16 @@ class DevicePairs : public PairState<Exec> {
     candidates_.reserve(size);
     places_.reserve(size);
     placed_.reserve(size);
+    if (options_.skip.grid_point_masks) masks_.reserve(this->tet_count(), size);
     for (List& list : lists_) list.pairs.reserve(size);
     pair_capacity_ = size;
   }
 
   Sums candidate_sums_, cell_sums_;
-  Buffer<std::int64_t> corner_counts_;
   Buffer<std::uint32_t> cell_counts_, staying_;
   Buffer<CellPair> candidates_, placed_;
   Buffer<std::uint32_t> places_;
+  GridPointMasks<Exec> masks_{exec_};
   std::int64_t pair_capacity_ = 0;
 };
 

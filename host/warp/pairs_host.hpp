@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "host/warp/grid_point_masks.hpp"
 #include "host/warp/pair_state.hpp"
 #include "kernels/warp/tet_moved.hpp"
 #include "kernels/warp/voxel_overlap.hpp"
@@ -19,11 +20,10 @@ class HostPairs : public PairState<Exec> {
   /// The arguments must outlive the object.
   HostPairs(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : PairState<Exec>(exec, plan, geometry) {
-    corner_offsets_.reserve(this->tet_count() + 1);
     pair_offsets_.reserve(this->tet_count() + 1);
   }
 
-  /// Runs setup, mask and cull.
+  /// Runs setup and cull, with mask between them where it is switched on.
   /// @throws std::invalid_argument on positions that are not finite or too far away
   void run(View<const double> positions) {
     now_ = 1 - now_;
@@ -81,7 +81,6 @@ class HostPairs : public PairState<Exec> {
     exec_.exclusive_scan("warp/setup", moved_offsets_.view(tets + 1));
     const std::int64_t moved = *last_of(moved_offsets_).data;
     if (this->is_most(moved)) return false;
-    exec_.zero("warp/setup", setup.corner_counts);
     exec_.zero("warp/setup", setup.pair_counts);
     moved_tet_setup(exec_, moved_offsets_.const_view(tets + 1), moved, setup);
     if (this->keeps_totals()) tet_widen(exec_, setup, moved_.const_view(tets));
@@ -102,24 +101,28 @@ class HostPairs : public PairState<Exec> {
 
   /// Turns the counts of a setup into offsets, and takes their totals.
   void sum_up(const TetSetupBody& setup, View<const std::int64_t> moved_offsets) {
-    exec_.exclusive_scan("warp/setup", setup.corner_counts);
     exec_.exclusive_scan("warp/setup", setup.pair_counts);
-    exec_.for_each(
-        "warp/setup", 1,
-        TotalsBody{moved_offsets, setup.corner_counts, setup.pair_counts, this->counters()});
+    exec_.for_each("warp/setup", 1, TotalsBody{moved_offsets, setup.pair_counts, this->counters()});
     this->take_totals(this->read_counters());
   }
 
-  /// Pairs of the tetrahedra for which the last setup counted corners and candidates.
+  /// Pairs of the tetrahedra for which the last setup counted candidates.
   void cull(List& list) {
-    const std::int64_t tets = this->tet_count(), corners = *last_of(corner_offsets_).data;
+    const std::int64_t tets = this->tet_count();
     const View<const std::int64_t> pair_offsets = pair_offsets_.const_view(tets + 1);
     const CullSwitches switches{options_.skip.rejected_cells && !this->keeps_totals(),
                                 options_.skip.accepted_cells};
-    masks_.reserve(corners);
     candidates_.reserve(pair_total_);
-    cell_verdicts(exec_, this->setups(), corner_offsets_.const_view(tets + 1), masks_.view(corners),
-                  pair_offsets, switches, geometry_.frame, candidates_.view(pair_total_));
+    const auto cull_by = [&](const auto& verdict) {
+      cell_cull(exec_, this->setups(), verdict, pair_offsets, switches, geometry_.frame,
+                candidates_.view(pair_total_));
+    };
+    if (this->uses_masks(switches)) {
+      masks_.reserve(tets, pair_total_);
+      cull_by(masks_.run(this->setups(), pair_offsets));
+    } else {
+      cull_by(PlaneVerdict{});
+    }
     list.size = pair_total_;
     list.pairs.reserve(list.size);
     list.ranges.reserve(this->cell_count() + 1);
@@ -138,15 +141,14 @@ class HostPairs : public PairState<Exec> {
   }
 
   TetSetupBody setup_body() const {
-    const std::int64_t size = this->tet_count() + 1;
-    return Base::setup_body(corner_offsets_.view(size), pair_offsets_.view(size));
+    return Base::setup_body(pair_offsets_.view(this->tet_count() + 1));
   }
   View<const std::int64_t> last_of(const Buffer<std::int64_t>& offsets) const {
     return {offsets.const_view(this->tet_count() + 1).data + this->tet_count(), 1};
   }
 
-  Buffer<std::int64_t> corner_offsets_, pair_offsets_;
-  Buffer<std::uint16_t> masks_;
+  Buffer<std::int64_t> pair_offsets_;
+  GridPointMasks<Exec> masks_{exec_};
   Buffer<CellPair> candidates_;
   Buffer<std::int64_t> moved_offsets_;
   List fresh_;  ///< of the moved tetrahedra

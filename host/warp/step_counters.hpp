@@ -24,8 +24,7 @@ struct MeshCounters {
 /// Counters of the work of one step, set to zero at its start. From `moved` on they are sums of
 /// SpreadCounts.
 struct WorkCounters {
-  std::int64_t corners;         ///< coarse corners of the tetrahedra to cull; 0 on a device
-  std::int64_t candidates;      ///< candidate pairs of these tetrahedra
+  std::int64_t candidates;      ///< candidate pairs of the tetrahedra to cull
   std::int64_t merged_pairs;    ///< all pairs of the step
   std::int64_t moved;           ///< tetrahedra that have moved
   std::int64_t pairs;           ///< of the candidates, not rejected
@@ -108,10 +107,9 @@ struct CoveredTotalBody {
       static_cast<std::int64_t>(offsetof(StepCounters, work) + offsetof(WorkCounters, covered)) / 8;
 };
 
-/// Copies the totals of three scans to the counters, so that the host reads memory once. One index.
+/// Copies the totals of two scans to the counters, so that the host reads memory once. One index.
 struct TotalsBody {
   View<const std::int64_t> moved_offsets;  ///< size 0: not an update
-  View<const std::int64_t> corner_offsets;
   View<const std::int64_t> pair_offsets;
   CounterMemory* counters;
 
@@ -119,7 +117,6 @@ struct TotalsBody {
     if (moved_offsets.size > 0) {
       counters->spread.moved[0] = moved_offsets[moved_offsets.size - 1];
     }
-    counters->work.corners = corner_offsets[corner_offsets.size - 1];
     counters->work.candidates = pair_offsets[pair_offsets.size - 1];
   }
 };

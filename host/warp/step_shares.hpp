@@ -16,7 +16,7 @@ inline ProgressPart part_of(const ProgressPart& part, double from, double to) {
 /// Estimated times of the stages, in units of a plain raster of one source. Measured on the torso
 /// phantom on a CPU, rounded: they place the stages on a progress bar and change no result.
 struct StepShares {
-  double setup = 0.1;           ///< tetrahedra, corners and cells
+  double setup = 0.1;           ///< tetrahedra and cells
   double fold = 0;              ///< counts of folded voxels
   std::vector<double> sources;  ///< per source
   double fields = 0;

@@ -148,7 +148,7 @@ class WarpPipeline : public WarpBackend {
     exec_.end_compute(flight.target.memory == Memory::host);
   }
 
-  /// All stages of a step, in order: tetrahedra, corners, cells, voxels.
+  /// All stages of a step, in order: tetrahedra, cells, voxels.
   /// @param age  of the result that the target holds [step]; 0: unknown
   void run(View<const double> positions,
            const WarpTarget& target,

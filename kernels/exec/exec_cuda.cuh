@@ -21,11 +21,6 @@ namespace tetwarp {
 void cuda_exclusive_scan(cudaStream_t stream,
                          DeviceBuffer<std::byte>& scratch,
                          View<std::int64_t> values);
-void cuda_select_valid(cudaStream_t stream,
-                       DeviceBuffer<std::byte>& scratch,
-                       View<const CellPair> candidates,
-                       View<CellPair> pairs,
-                       std::int64_t* pair_count);
 void cuda_sort_pairs(cudaStream_t stream,
                      DeviceBuffer<std::byte>& scratch,
                      View<CellPair> pairs,
@@ -164,25 +159,6 @@ class CudaExec : public DeviceQueue {
     timed(label, [&] { cuda_exclusive_scan(stream(), scratch_, values); });
   }
 
-  /// Sets all pairs to rejected_pair, as later stages run over the capacity and not the count.
-  void reject_all(const char* label, View<CellPair> pairs) {
-    timed(label, [&] {
-      check_cuda(cudaMemsetAsync(pairs.data, 0xff, bytes_of<CellPair>(pairs.size), stream()),
-                 "cudaMemsetAsync");
-    });
-  }
-  /// Copies the candidates that are not rejected_pair to the front of `pairs`, in order, and their
-  /// number to pair_count[0]; the rest of `pairs` becomes rejected_pair.
-  void select_valid(const char* label,
-                    View<const CellPair> candidates,
-                    View<const std::int64_t>,
-                    View<CellPair> pairs,
-                    View<std::int64_t> pair_count) {
-    reject_all(label, pairs);
-    if (candidates.size == 0) return;
-    timed(label,
-          [&] { cuda_select_valid(stream(), scratch_, candidates, pairs, pair_count.data); });
-  }
   /// Sorts by cell, of which the lowest `cell_bits` bits count; stable.
   void sort_pairs(const char* label,
                   View<CellPair> pairs,

@@ -1,9 +1,8 @@
 /// @file primitives_cuda.cu
-/// Scan, selection and sort by CUB. The only file that includes CUB, which takes 12 s to compile
+/// Scan and sort by CUB. The only file that includes CUB, which takes 12 s to compile
 /// per architecture.
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
-#include <cub/device/device_select.cuh>
 #include <limits>
 #include <string>
 
@@ -32,10 +31,6 @@ std::int64_t item_count(std::int64_t count) {
 #endif
   return count;
 }
-
-struct IsValid {
-  __device__ bool operator()(CellPair pair) const { return pair != rejected_pair; }
-};
 }  // namespace
 
 void cuda_exclusive_scan(cudaStream_t stream,
@@ -44,17 +39,6 @@ void cuda_exclusive_scan(cudaStream_t stream,
   with_scratch(scratch, "cub::DeviceScan::ExclusiveSum", [&](void* memory, std::size_t& bytes) {
     return cub::DeviceScan::ExclusiveSum(memory, bytes, values.data, values.data,
                                          item_count(values.size), stream);
-  });
-}
-
-void cuda_select_valid(cudaStream_t stream,
-                       DeviceBuffer<std::byte>& scratch,
-                       View<const CellPair> candidates,
-                       View<CellPair> pairs,
-                       std::int64_t* pair_count) {
-  with_scratch(scratch, "cub::DeviceSelect::If", [&](void* memory, std::size_t& bytes) {
-    return cub::DeviceSelect::If(memory, bytes, candidates.data, pairs.data, pair_count,
-                                 item_count(candidates.size), IsValid{}, stream);
   });
 }
 

@@ -1,15 +1,15 @@
 /// @file cell_cull.hpp
-/// Stage "cull" of the warp: rejects, accepts or keeps each (tetrahedron, cell) pair by the masks
-/// of the cell's eight corners.
+/// Stage "cull" of the warp: rejects, accepts or keeps each (tetrahedron, cell) pair.
 #pragma once
 #include <cstdint>
 
 #include "kernels/base/cell_pair.hpp"
 #include "kernels/base/view.hpp"
-#include "kernels/warp/corner_mask.hpp"
 #include "kernels/warp/tet_setup.hpp"
 
 namespace tetwarp {
+
+enum class CellVerdict { rejected, accepted, partial };
 
 /// Which verdicts are used. Without its verdict a pair is kept, and its voxels are tested.
 struct CullSwitches {
@@ -17,85 +17,98 @@ struct CullSwitches {
   bool accept = true;
 };
 
-/// One item = one candidate pair; any order. Cells of a tetrahedron are numbered i fastest.
-struct CellCullBody {
-  View<const TetSetup> setups;
-  View<const std::int64_t> corner_offsets;
-  View<const std::uint16_t> masks;
-  CullSwitches switches;
-  OutputFrame frame;
-  View<CellPair> pairs;
+/// Tetrahedra whose box touches fewer cells keep all their pairs: most of their cells would be kept
+/// anyway, and testing the voxels of the others costs less than verdicts on all.
+constexpr std::int64_t fewest_culled_cells = 27;
 
-  TETWARP_HD void operator()(std::int64_t t, std::int64_t local, std::int64_t item) const {
-    const TetSetup& tet = setups[t];
-    const int nx = last_cell(tet, 0) - first_cell(tet, 0) + 1;
-    const int ny = last_cell(tet, 1) - first_cell(tet, 1) + 1;
-    const std::int64_t row = local / nx;
-    const std::int64_t line = nx + 1;
-    const std::int64_t slice = line * (ny + 1);
-    const std::int64_t first =
-        corner_offsets[t] + local % nx + (row % ny) * line + (row / ny) * slice;
-    // Without masks a pair is kept: small tetrahedra have none, and if their buffer was too small
-    // the step is repeated.
-    unsigned all = 0;
-    const bool has_masks = corner_offsets[t] < corner_offsets[t + 1];
-    if (has_masks && first + slice + line + 1 < masks.size) {
-      all = ~0u;
-      for (int corner = 0; corner < 8; ++corner) {
-        all &= masks[first + (corner & 1) + (corner >> 1 & 1) * line + (corner >> 2) * slice];
-      }
+/// Compares a cell with the planes of a tetrahedron. Along the normal of a face, one corner of the
+/// cell has the least and one the largest plane value: these two decide as all eight corners do.
+struct PlaneVerdict {
+  /// @param cell  of the tetrahedron's box [cell]
+  TETWARP_HD CellVerdict operator()(const TetSetup& tet,
+                                    std::int64_t,
+                                    const std::int64_t* cell) const {
+    double d[3], size = cell_edge * 3 + 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      d[axis] = static_cast<double>(cell[axis] * cell_edge - tet.anchor[axis]);
+      size += fabs(d[axis]);
     }
-    const std::int64_t cell = frame.cell_index(static_cast<int>(first_cell(tet, 0) + local % nx),
-                                               static_cast<int>(first_cell(tet, 1) + row % ny),
-                                               static_cast<int>(first_cell(tet, 2) + row / ny));
-    const bool accepted = switches.accept && (all & inside_bits) == inside_bits;
-    const bool rejected = switches.reject && (all & outside_bits) != 0;
-    pairs[item] = rejected ? rejected_pair : make_pair(cell, t, accepted);
+    bool is_inside = true;
+    for (int face = 0; face < 4; ++face) {
+      const double offset = tet.plane[3][face];
+      const double value = tet.plane[0][face] * d[0] + tet.plane[1][face] * d[1] +
+                           tet.plane[2][face] * d[2] + offset;
+      double low = value, high = value;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double change = tet.plane[axis][face] * cell_edge;
+        low += min_of(change, 0.0);
+        high += max_of(change, 0.0);
+      }
+      // 1000 times the rounding error of the lines above, fused or not.
+      const double margin = (size + fabs(offset)) * 0x1p-40;
+      if (high < -margin || low > tet.height[face] + margin) return CellVerdict::rejected;
+      is_inside = is_inside && low > margin;
+    }
+    return is_inside ? CellVerdict::accepted : CellVerdict::partial;
   }
 };
 
-/// Rejects, accepts or keeps every candidate pair.
+/// One item = one candidate pair; any order. Cells of a tetrahedron are numbered i fastest.
+/// @tparam Verdict  PlaneVerdict, or MaskVerdict of corner_mask.hpp
+template <class Verdict>
+struct CellCullBody {
+  View<const TetSetup> setups;
+  Verdict verdict;
+  CullSwitches switches;
+  OutputFrame frame;
+  View<CellPair> pairs;  ///< out, `rejected_pair` where no voxel is inside
+
+  /// @returns the pair, which is also stored
+  TETWARP_HD CellPair operator()(std::int64_t t, std::int64_t local, std::int64_t item) const {
+    const TetSetup& tet = setups[t];
+    std::int64_t cell[3], box = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t first = first_cell(tet, axis), count = last_cell(tet, axis) - first + 1;
+      cell[axis] = first + local / box % count;
+      box *= count;
+    }
+    const CellVerdict found =
+        box < fewest_culled_cells ? CellVerdict::partial : verdict(tet, t, cell);
+    if (switches.reject && found == CellVerdict::rejected) return pairs[item] = rejected_pair;
+    const std::int64_t number = frame.cell_index(
+        static_cast<int>(cell[0]), static_cast<int>(cell[1]), static_cast<int>(cell[2]));
+    return pairs[item] = make_pair(number, t, switches.accept && found == CellVerdict::accepted);
+  }
+};
+
+/// Rejects, accepts or keeps every candidate pair. With PlaneVerdict the CPU's executor has a
+/// faster overload that rejects more pairs (host/warp/cpu/cell_cull_cpu.hpp); a device counts the
+/// pairs of each cell in the same launch (cell_list.hpp).
 ///
-/// @param exec            where to run
-/// @param setups          from tet_setup, shape [tet_count]
-/// @param corner_offsets  first corner of each tetrahedron, shape [tet_count + 1]
-/// @param masks           from corner_mask
-/// @param pair_offsets    first candidate pair of each tetrahedron, shape [tet_count + 1]
-/// @param switches        which verdicts are used
-/// @param frame           the output
-/// @param pairs           out, one per candidate pair, `rejected_pair` where no voxel is inside
-/// @pre pairs.size is at least the number of candidate pairs, or the step is repeated with more
+/// Conservative: rounding neither rejects nor accepts wrongly, so culling never changes the output.
+/// @param exec          where to run
+/// @param setups        from tet_setup, shape [tet_count]
+/// @param verdict       see CellCullBody
+/// @param pair_offsets  first candidate pair of each tetrahedron, shape [tet_count + 1]
+/// @param switches      which verdicts are used
+/// @param frame         the output
+/// @param pairs         out, one per candidate pair, `rejected_pair` where no voxel is inside
+/// @pre pairs.size is at least the number of candidate pairs
 ///
-/// Determinism: as corner_mask(). Cost: 16 bytes read, 8 written per pair.
-/// Source: Gascon et al. 2013, section 4 (rejection); acceptance is ours.
-template <class Exec>
+/// Determinism: verdicts may differ between back ends within the margin of a plane; the output
+/// cannot. Cost: 12 products (planes) or 16 bytes read (masks), 8 bytes written per pair.
+/// Source: Gascon et al. 2013, section 4 (rejection by masks); two corners in place of eight and
+/// acceptance are ours.
+template <class Exec, class Verdict>
 void cell_cull(Exec& exec,
                View<const TetSetup> setups,
-               View<const std::int64_t> corner_offsets,
-               View<const std::uint16_t> masks,
+               const Verdict& verdict,
                View<const std::int64_t> pair_offsets,
                CullSwitches switches,
                const OutputFrame& frame,
                View<CellPair> pairs) {
-  exec.reject_all("warp/cull", pairs);
   exec.for_each_item("warp/cull", pair_offsets, pairs.size,
-                     CellCullBody{setups, corner_offsets, masks, switches, frame, pairs});
-}
-
-/// Stages "mask" and "cull" together; parameters as cell_cull(). The CPU's executor has a faster
-/// overload (host/warp/cpu/cell_cull_cpu.hpp).
-/// @param masks  scratch, as many as there are corners
-template <class Exec>
-void cell_verdicts(Exec& exec,
-                   View<const TetSetup> setups,
-                   View<const std::int64_t> corner_offsets,
-                   View<std::uint16_t> masks,
-                   View<const std::int64_t> pair_offsets,
-                   CullSwitches switches,
-                   const OutputFrame& frame,
-                   View<CellPair> pairs) {
-  corner_mask(exec, setups, corner_offsets, masks);
-  cell_cull(exec, setups, corner_offsets, masks, pair_offsets, switches, frame, pairs);
+                     CellCullBody<Verdict>{setups, verdict, switches, frame, pairs});
 }
 
 }  // namespace tetwarp

@@ -21,67 +21,17 @@ TETWARP_HD void add_to(const SpreadCounter& counter, std::int64_t index, std::in
   if (counter.size > 0) atomic_add(&counter[index % counter.size], value);
 }
 
-enum class CellVerdict { rejected, accepted, partial };
-
-/// Compares a cell with a tetrahedron. Along the normal of a face, one corner of the cell has the
-/// least and one the largest plane value: these two decide as all eight corners of corner_mask().
-/// @param corner  first voxel of the cell [frame]
-TETWARP_HD CellVerdict verdict_of(const TetSetup& tet, const std::int64_t* corner) {
-  double d[3], size = cell_edge * 3 + 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    d[axis] = static_cast<double>(corner[axis] - tet.anchor[axis]);
-    size += fabs(d[axis]);
-  }
-  bool is_inside = true;
-  for (int face = 0; face < 4; ++face) {
-    const double offset = tet.plane[3][face];
-    const double value =
-        tet.plane[0][face] * d[0] + tet.plane[1][face] * d[1] + tet.plane[2][face] * d[2] + offset;
-    double low = value, high = value;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double change = tet.plane[axis][face] * cell_edge;
-      low += min_of(change, 0.0);
-      high += max_of(change, 0.0);
-    }
-    // 1000 times the rounding error of the lines above, fused or not.
-    const double margin = (size + fabs(offset)) * 0x1p-40;
-    if (high < -margin || low > tet.height[face] + margin) return CellVerdict::rejected;
-    is_inside = is_inside && low > margin;
-  }
-  return is_inside ? CellVerdict::accepted : CellVerdict::partial;
-}
-
-/// One item = one candidate pair; any order. As CellCullBody, but from the planes instead of masks;
-/// counts the pairs of each cell.
+/// One item = one candidate pair; any order. Culls, and counts the pairs of each cell.
+template <class Verdict>
 struct CellCountBody {
   static constexpr int resident_blocks = 4;  ///< leaves 64 registers per thread: no spills
-  View<const TetSetup> setups;
-  CullSwitches switches;
-  OutputFrame frame;
-  View<CellPair> pairs;             ///< out, `rejected_pair` where no voxel is inside
-  View<std::uint32_t> places;       ///< out, of the other pairs: their number in their cell
+  CellCullBody<Verdict> cull;
+  View<std::uint32_t> places;       ///< out, of pairs that are not rejected: number in their cell
   View<std::uint32_t> cell_counts;  ///< in and out
 
   TETWARP_HD void operator()(std::int64_t t, std::int64_t local, std::int64_t item) const {
-    const TetSetup& tet = setups[t];
-    std::int64_t cells[3], box = 1, corner[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int64_t first = first_cell(tet, axis), count = last_cell(tet, axis) - first + 1;
-      cells[axis] = first + local / box % count;
-      corner[axis] = cells[axis] * cell_edge;
-      box *= count;
-    }
-    // Small tetrahedra keep all their pairs, see fewest_masked_cells.
-    const CellVerdict verdict =
-        box < fewest_masked_cells ? CellVerdict::partial : verdict_of(tet, corner);
-    if (switches.reject && verdict == CellVerdict::rejected) {
-      pairs[item] = rejected_pair;
-      return;
-    }
-    const std::int64_t cell = frame.cell_index(
-        static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2]));
-    pairs[item] = make_pair(cell, t, switches.accept && verdict == CellVerdict::accepted);
-    places[item] = atomic_next(&cell_counts[cell]);
+    const CellPair pair = cull(t, local, item);
+    if (pair != rejected_pair) places[item] = atomic_next(&cell_counts[cell_of(pair)]);
   }
 };
 
@@ -229,7 +179,7 @@ struct CellListMemory {
 ///
 /// @param exec       where to run: a device
 /// @param candidate_sums  sums of the numbers of candidate pairs of each tetrahedron
-/// @param cull       all but `pairs`, `places` and `cell_counts`
+/// @param cull       all but `pairs`
 /// @param memory     scratch
 /// @param order      all but `cells` and `placed`
 /// @param list_size  out, number of pairs including those that found no room, shape [1]
@@ -237,10 +187,10 @@ struct CellListMemory {
 /// Determinism: same bits for the same setups; places depend on the order of threads, the sorted
 /// list does not. Cost: five launches, four without an update; 40 bytes per pair.
 /// Source: counting sort; ours.
-template <class Exec>
+template <class Exec, class Verdict>
 void cell_list(Exec& exec,
                const GroupedSums& candidate_sums,
-               CellCountBody cull,
+               CellCullBody<Verdict> cull,
                const CellListMemory& memory,
                CellOrderBody order,
                View<std::int64_t> list_size) {
@@ -249,9 +199,8 @@ void cell_list(Exec& exec,
     exec.for_each("warp/cull", cells, CellStayBody{order.staying, memory.cell_counts});
   }
   cull.pairs = memory.candidates;
-  cull.places = memory.places;
-  cull.cell_counts = memory.cell_counts;
-  exec.for_each_item("warp/cull", candidate_sums, memory.candidates.size, cull);
+  exec.for_each_item("warp/cull", candidate_sums, memory.candidates.size,
+                     CellCountBody<Verdict>{cull, memory.places, memory.cell_counts});
   exec.grouped_scan("warp/cull", cells, CellSumBody{memory.cell_counts, list_size}, memory.cells);
   const std::int64_t stay_cells = order.staying.is_update() ? cells : 0;
   exec.for_each("warp/cull", max_of(memory.candidates.size, stay_cells),

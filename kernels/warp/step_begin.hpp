@@ -50,8 +50,8 @@ struct TetCountBody {
     if (is_update && !has_moved) return 0;
     setup(t);
     if constexpr (widens) {
-      TetWidenBody{setup.tets,  setup.deformed, setup.rest,          {},
-                   setup.frame, setup.setups,   setup.corner_counts, setup.pair_counts}(t);
+      TetWidenBody{setup.tets,  setup.deformed, setup.rest,       {},
+                   setup.frame, setup.setups,   setup.pair_counts}(t);
     }
     return setup.pair_counts[t];
   }

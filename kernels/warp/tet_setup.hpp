@@ -35,10 +35,6 @@ struct TetSetup {
   TetClass tet_class;
 };
 
-/// Tetrahedra whose box touches fewer cells get no corner masks: most of their cells would be kept
-/// anyway, and testing the voxels of the others costs less than masks for all.
-constexpr std::int64_t fewest_masked_cells = 27;
-
 /// Largest extent of a tetrahedron whose face normals fit in 64 bits [quantum].
 constexpr std::int64_t short_extent = std::int64_t{1} << 30;
 
@@ -53,6 +49,15 @@ TETWARP_HD int last_cell(const TetSetup& tet, int axis) {
 }
 TETWARP_HD bool is_empty(const TetSetup& tet) {
   return tet.begin[0] >= tet.end[0] || tet.begin[1] >= tet.end[1] || tet.begin[2] >= tet.end[2];
+}
+
+/// Cells that the tetrahedron's box touches.
+TETWARP_HD std::int64_t box_cells(const TetSetup& tet) {
+  std::int64_t cells = is_empty(tet) ? 0 : 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    cells *= last_cell(tet, axis) - first_cell(tet, axis) + 1;
+  }
+  return cells;
 }
 
 /// Box in whole voxels, clipped to the frame, and the anchor.
@@ -178,10 +183,8 @@ struct TetSetupBody {
   View<const std::int8_t> rest_orientation;  ///< sign of the rest volume, shape [tet_count]
   OutputFrame frame;
   View<TetSetup> setups;  ///< out, shape [tet_count]
-  /// Out, coarse corners of the box, none where it touches fewer than fewest_masked_cells cells,
-  /// shape [tet_count + 1], the last entry for the sum.
-  View<std::int64_t> corner_counts;
-  View<std::int64_t> pair_counts;   ///< out, cells of the box, shape [tet_count + 1], as above
+  /// Out, cells of the box, shape [tet_count + 1], the last entry for the sum.
+  View<std::int64_t> pair_counts;
   View<std::int64_t> class_counts;  ///< irregular ones are added to it, shape [tet_class_count]
   HexView hexes = {};               ///< hexahedra that the last tetrahedra are parts of
 
@@ -226,18 +229,7 @@ struct TetSetupBody {
     const TetClass tet_class = set_up(t, setup);
     if (tet_class != TetClass::regular && tet_class != TetClass::inverted) setup = {};
     setup.tet_class = tet_class;
-    std::int64_t corners = 0, pairs = 0;
-    if (!is_empty(setup)) {
-      corners = pairs = 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        const int cells = last_cell(setup, axis) - first_cell(setup, axis) + 1;
-        corners *= cells + 1;
-        pairs *= cells;
-      }
-    }
-    if (pairs < fewest_masked_cells) corners = 0;
-    corner_counts[t] = corners;
-    pair_counts[t] = pairs;
+    pair_counts[t] = box_cells(setup);
     if (setup.tet_class != TetClass::regular) {
       atomic_add(&class_counts[static_cast<int>(setup.tet_class)], 1);
     }

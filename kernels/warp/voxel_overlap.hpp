@@ -22,7 +22,6 @@ struct TetWidenBody {
   View<const std::uint8_t> moved;  ///< others do not change; size 0: all have moved
   OutputFrame frame;
   View<TetSetup> setups;
-  View<std::int64_t> corner_counts;
   View<std::int64_t> pair_counts;
 
   TETWARP_HD void operator()(std::int64_t t) const {
@@ -39,11 +38,7 @@ struct TetWidenBody {
       set_planes<Int128>(output, setup, gradient, at_anchor);
       set_map(source, gradient, at_anchor, setup);
     }
-    corner_counts[t] = 0;
-    pair_counts[t] = is_empty(setup) ? 0 : 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      pair_counts[t] *= last_cell(setup, axis) - first_cell(setup, axis) + 1;
-    }
+    pair_counts[t] = box_cells(setup);
   }
 
   TETWARP_HD static bool is_exact_shift(const TetNodes& output, const TetNodes& source) {
@@ -69,7 +64,7 @@ template <class Exec>
 void tet_widen(Exec& exec, const TetSetupBody& setup, View<const std::uint8_t> moved) {
   exec.for_each("warp/setup", setup.setups.size,
                 TetWidenBody{setup.tets, setup.deformed, setup.rest, moved, setup.frame,
-                             setup.setups, setup.corner_counts, setup.pair_counts});
+                             setup.setups, setup.pair_counts});
 }
 
 /// One index = one voxel of the output, counted from `first`; any order.

@@ -98,6 +98,21 @@ TEST(CliSkip, EachSwitchGivesTheSameFilesAndStopsItsCount) {
   }
 }
 
+TEST(CliSkip, GridPointMasksGiveTheSameFilesAndHaveATime) {
+  const PartlyMoving scene;
+  const Json fast = scene.warp("fast.vtkhdf", {});
+
+  const Json slow = scene.warp("slow.vtkhdf", {"--no-skip", "grid-point-masks"});
+
+  EXPECT_EQ(fast["timings"]["mask"], 0);
+  EXPECT_GT(slow["timings"]["mask"], 0);
+  EXPECT_EQ(fast["counts"]["candidate_pairs"], slow["counts"]["candidate_pairs"]);
+  for (int step = 0; step < 6; ++step) {
+    const std::string suffix = "_000" + std::to_string(step) + ".vtkhdf";
+    scene.expect_same("fast" + suffix, "slow" + suffix);
+  }
+}
+
 TEST(CliSkip, ReportsPerStepWhatStayed) {
   const PartlyMoving scene;
 

@@ -1,5 +1,5 @@
 /// @file emulated_primitives.cpp
-/// Scan, selection and sort of the emulated device: the standard library in place of CUB.
+/// Scan and sort of the emulated device: the standard library in place of CUB.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -32,19 +32,6 @@ void cuda_exclusive_scan(cudaStream_t stream,
   take_scratch(scratch, values.size);
   enqueue(stream, [values] {
     std::exclusive_scan(values.data, values.data + values.size, values.data, std::int64_t{0});
-  });
-}
-
-void cuda_select_valid(cudaStream_t stream,
-                       DeviceBuffer<std::byte>& scratch,
-                       View<const CellPair> candidates,
-                       View<CellPair> pairs,
-                       std::int64_t* pair_count) {
-  take_scratch(scratch, candidates.size);
-  enqueue(stream, [=] {
-    CellPair* const end = std::copy_if(candidates.data, candidates.data + candidates.size,
-                                       pairs.data, [](CellPair p) { return p != rejected_pair; });
-    *pair_count = end - pairs.data;
   });
 }
 

@@ -1,6 +1,6 @@
 /// @file test_cell_list_emulated.cpp
-/// The sorted pairs that a device makes by counting are those of the stages by masks, selection and
-/// sort.
+/// The sorted pairs that a device makes by counting, culled by planes or by masks, are those of the
+/// stages by masks, selection and sort.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,9 @@ struct Made {
 
 /// The list on the emulated device.
 /// @param capacity  of the list
+template <class Verdict>
 Made make_list(const Stages<CpuExec>& stages,
+               const Verdict& verdict,
                const OutputFrame& frame,
                std::int64_t capacity,
                View<const std::uint8_t> moved = {},
@@ -69,7 +71,8 @@ Made make_list(const Stages<CpuExec>& stages,
   std::vector<std::uint8_t> touched(count);
   std::vector<std::int64_t> fresh(4), accepted(4), touched_count(4), size(1);
   Made made{std::vector<CellPair>(places), std::vector<CellRange>(count + 1)};
-  cell_list(exec, candidate_sums.view(), {stages.setups, {}, frame, {}, {}, {}},
+  cell_list(exec, candidate_sums.view(),
+            CellCullBody<Verdict>{stages.setups, verdict, {}, frame, {}},
             {whole_view(candidates), whole_view(numbers), whole_view(counts), cell_sums.view(),
              whole_view(placed)},
             {{},
@@ -102,11 +105,8 @@ struct Expected {
   Expected(CpuExec& exec, const Stages<CpuExec>& stages, const OutputFrame& frame)
       : pairs(static_cast<std::size_t>(stages.candidates.size)),
         ranges(static_cast<std::size_t>(frame.cell_count() + 1)) {
-    std::vector<CellPair> candidates(pairs.size());
-    cell_cull(exec, stages.setups, stages.corner_offsets, stages.masks, stages.pair_offsets, {},
-              frame, whole_view(candidates));
     const std::int64_t last = stages.pair_offsets.size - 1;
-    cell_pairs(exec, View<const CellPair>(whole_view(candidates)),
+    cell_pairs(exec, View<const CellPair>(stages.masked_candidates),
                {stages.pair_offsets.data + last, 1}, frame, whole_view(pairs), {&size, 1},
                whole_view(ranges), {&accepted, 1});
   }
@@ -134,12 +134,15 @@ TEST(CellListEmulated, IsThatOfMasksSelectionAndSort) {
       const Stages<CpuExec> stages(arrays, input);
       const Expected expected(cpu, stages, input.frame);
 
-      const Made made = make_list(stages, input.frame, stages.candidates.size + 100);
-
-      SCOPED_TRACE(scene.name);
-      expect_same(made, expected);
-      EXPECT_EQ(made.fresh, expected.size);
-      EXPECT_EQ(made.accepted, expected.accepted);
+      const std::int64_t room = stages.candidates.size + 100;
+      for (const Made& made :
+           {make_list(stages, PlaneVerdict{}, input.frame, room),
+            make_list(stages, stages.mask_verdict(stages.masks), input.frame, room)}) {
+        SCOPED_TRACE(scene.name);
+        expect_same(made, expected);
+        EXPECT_EQ(made.fresh, expected.size);
+        EXPECT_EQ(made.accepted, expected.accepted);
+      }
     }
   }
 }
@@ -163,7 +166,7 @@ TEST(CellListEmulated, UpdatesKeepThePairsThatStay) {
     touched += fresh > before;
   }
 
-  const Made made = make_list(stages, input.frame, stages.candidates.size + 100,
+  const Made made = make_list(stages, PlaneVerdict{}, input.frame, stages.candidates.size + 100,
                               View<const std::uint8_t>(whole_view(moved)), expected.list());
 
   expect_same(made, expected);
@@ -178,7 +181,7 @@ TEST(CellListEmulated, ReportsItsSizeWhereThereIsNoRoom) {
   const StageInput input = input_of(scenes::adversarial_scene("waved", 24));
   const Stages<CpuExec> stages(arrays, input);
 
-  const Made made = make_list(stages, input.frame, 40);
+  const Made made = make_list(stages, PlaneVerdict{}, input.frame, 40);
 
   EXPECT_GT(made.size, 0);
   for (const CellRange& range : made.ranges) {

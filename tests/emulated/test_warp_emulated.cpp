@@ -14,10 +14,11 @@
 
 namespace tetwarp::test {
 namespace {
-WarpOptions on_device(bool updates = true) {
+WarpOptions on_device(bool updates = true, bool masks = false) {
   WarpOptions options;
   options.backend = Backend::cuda;
   options.skip.unchanged_tets = updates;
+  options.skip.grid_point_masks = masks;
   return options;
 }
 
@@ -50,17 +51,16 @@ void expect_one_sequence(const DeviceCalls& calls) {
 TEST(WarpEmulated, StepsAfterTheFirstNeitherAllocateNorWaitInBetween) {
   const scenes::Scene scene = scenes::adversarial_scene("waved", 24);
   const std::vector<Volume> sources = sources_of(scene);
-  for (const bool updates : {true, false}) {
-    for (const bool holds_previous : {true, false}) {
-      Series series(sources, scene, on_device(updates));
-      take_calls();
-      series.step(scene.deformed, holds_previous);
-      EXPECT_GT(take_calls().count(DeviceCall::allocate), 0);
-      for (int step = 1; step < 6; ++step) {
-        series.step(shaken(scene, step), holds_previous);
+  for (const int way : {0, 1, 2, 3, 4, 5, 6, 7}) {
+    const bool updates = (way & 1) != 0, holds_previous = (way & 2) != 0, masks = (way & 4) != 0;
+    Series series(sources, scene, on_device(updates, masks));
+    take_calls();
+    series.step(scene.deformed, holds_previous);
+    EXPECT_GT(take_calls().count(DeviceCall::allocate), 0);
+    for (int step = 1; step < 6; ++step) {
+      series.step(shaken(scene, step), holds_previous);
 
-        expect_one_sequence(take_calls());
-      }
+      expect_one_sequence(take_calls());
     }
   }
 }
@@ -108,20 +108,22 @@ TEST(WarpEmulated, OutputsOnTheDeviceCostNoCopy) {
 TEST(WarpEmulated, AStepWithoutRoomRunsAgainWithMore) {
   const scenes::Scene scene = scenes::adversarial_scene("tiny", 24);
   const std::vector<Volume> sources = sources_of(scene);
-  Series series(sources, scene, on_device()), anew(sources, scene, on_device(false));
   std::vector<Point3> small = scene.deformed;
   for (Point3& p : small) {
     for (double& x : p) x *= 0.1;
   }
-  series.step(small);
-  take_calls();
+  for (const bool masks : {false, true}) {
+    Series series(sources, scene, on_device(true, masks)), anew(sources, scene, on_device(false));
+    series.step(small);
+    take_calls();
 
-  series.step(scene.deformed);
-  const DeviceCalls calls = take_calls();
-  anew.step(scene.deformed);
+    series.step(scene.deformed);
+    const DeviceCalls calls = take_calls();
+    anew.step(scene.deformed);
 
-  EXPECT_GT(calls.count(DeviceCall::allocate), 0) << calls;
-  EXPECT_TRUE(series.has_bits_of(anew));
+    EXPECT_GT(calls.count(DeviceCall::allocate), 0) << calls;
+    EXPECT_TRUE(series.has_bits_of(anew));
+  }
 }
 
 /// The step whose allocation fails needs larger lists.

@@ -24,6 +24,9 @@ using Execs = ::testing::Types<CpuExec, CudaExec>;
 using Execs = ::testing::Types<CpuExec>;
 #endif
 
+/// For stages that run on the host only.
+using HostExecs = ::testing::Types<CpuExec>;
+
 /// Suite suffixes of TYPED_TEST_SUITE.
 struct ExecNames {
   template <class Exec>

@@ -92,7 +92,8 @@ class Stages {
   View<std::int64_t> pair_offsets;
   View<std::int64_t> classes;
   View<std::uint16_t> masks;
-  View<CellPair> candidates;
+  View<CellPair> candidates;         ///< culled by planes
+  View<CellPair> masked_candidates;  ///< culled by masks
   View<CellPair> pairs;
   View<std::int64_t> pair_count;
   View<CellRange> ranges;
@@ -107,20 +108,19 @@ class Stages {
     pair_offsets = arrays.template zeros<std::int64_t>(count + 1);
     classes = arrays.template zeros<std::int64_t>(tet_class_count);
     tet_setup(exec, {tets, nodes, arrays.upload(input.rest), arrays.upload(input.rest_orientation),
-                     input.frame, setups, corner_offsets, pair_offsets, classes});
-    exec.exclusive_scan("test/setup", corner_offsets);
+                     input.frame, setups, pair_offsets, classes});
     exec.exclusive_scan("test/setup", pair_offsets);
-    masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());
-    corner_mask(exec, setups, corner_offsets, masks);  // some executors cull without masks
+    make_masks(arrays);
     candidates = arrays.template zeros<CellPair>(arrays.download(pair_offsets).back());
-    cell_verdicts(exec, setups, corner_offsets, masks, pair_offsets, switches, input.frame,
-                  candidates);
-    pairs = arrays.template zeros<CellPair>(candidates.size);
-    pair_count = arrays.template zeros<std::int64_t>(1);
-    ranges = arrays.template zeros<CellRange>(input.frame.cell_count());
-    accepted = arrays.template zeros<std::int64_t>(1);
-    cell_pairs(exec, candidates, View<const std::int64_t>{pair_offsets.data + count, 1},
-               input.frame, pairs, pair_count, ranges, accepted);
+    cell_cull(exec, setups, PlaneVerdict{}, pair_offsets, switches, input.frame, candidates);
+    masked_candidates = arrays.template zeros<CellPair>(candidates.size);
+    cell_cull(exec, setups, mask_verdict(masks), pair_offsets, switches, input.frame,
+              masked_candidates);
+    sort(arrays, input.frame);
+  }
+
+  MaskVerdict<View<const std::int64_t>> mask_verdict(View<const std::uint16_t> of) const {
+    return {corner_offsets, of};
   }
 
   /// A raster of whole sources in the tests' memory; outputs are to be set.
@@ -137,6 +137,32 @@ class Stages {
         source_view<T>(Region{{0, 0, 0}, source.grid.dims}, source.components, source.data.data());
     job.background = T{77};
     return job;
+  }
+
+ private:
+  void make_masks(ExecArrays<Exec>& arrays) {
+    Exec& exec = arrays.exec();
+    const View<const std::int64_t> offsets = corner_offsets;
+    exec.for_each("test/mask", setups.size,
+                  CornerCountBody<View<const std::int64_t>>{setups, pair_offsets, corner_offsets});
+    exec.exclusive_scan("test/mask", corner_offsets);
+    masks = arrays.template zeros<std::uint16_t>(arrays.download(corner_offsets).back());
+    corner_mask(exec, setups, offsets, masks);
+  }
+
+  /// Makes the list of pairs on the host: a device makes it by other stages.
+  void sort(ExecArrays<Exec>& arrays, const OutputFrame& frame) {
+    CpuExec host(1);
+    std::vector<CellPair> from = arrays.download(candidates), to(from.size());
+    std::vector<CellRange> cells(static_cast<std::size_t>(frame.cell_count()));
+    const auto size = static_cast<std::int64_t>(from.size());
+    std::int64_t kept = 0, accepted_pairs = 0;
+    cell_pairs(host, View<const CellPair>{from.data(), size}, {&size, 1}, frame, {to.data(), size},
+               {&kept, 1}, {cells.data(), frame.cell_count()}, {&accepted_pairs, 1});
+    pairs = arrays.upload(to);
+    ranges = arrays.upload(cells);
+    pair_count = arrays.upload(std::vector{kept});
+    accepted = arrays.upload(std::vector{accepted_pairs});
   }
 };
 

@@ -143,6 +143,36 @@ TEST_P(Blocks, OfHexahedraAndOfMeansHaveTheBitsOfTheWhole) {
   }
 }
 
+TEST_P(Blocks, CulledByMasksHaveTheBitsOfTheWhole) {
+  for (const char* name : {"rotated", "soup"}) {
+    const scenes::Scene scene = scenes::adversarial_scene(name, 40);
+    const Volume source = scenes::wavy_volume(scene.source_grid, PixelType::int16);
+    WarpOptions options;
+    options.backend = GetParam();
+    const Warped whole = run_warp(source, scene, GetParam(), options);
+    const BlockLimits large{.max_voxels = 32 * 32 * 32};
+    options.skip.grid_point_masks = true;
+
+    const InBlocks blocks = run_blocks(source, scene, options, large);
+
+    EXPECT_TRUE(is_same(blocks.warped, whole)) << name;
+  }
+}
+
+TEST(BlockPlanner, CountsTheMasks) {
+  const scenes::Scene scene = scenes::adversarial_scene("rotated", 40);
+  WarpOptions options;
+  const auto bytes = [&] {
+    BlockPlanner planner(scene.source_grid, scene.mesh, options);
+    return planner.plan(scene.deformed, {}).blocks.front().host_bytes;
+  };
+  const double without = bytes();
+
+  options.skip.grid_point_masks = true;
+
+  EXPECT_GT(bytes(), without);
+}
+
 TEST_P(Blocks, OfEveryFilterAndPixelTypeHaveTheBitsOfTheWhole) {
   const std::pair<PixelType, int> types[] = {
       {PixelType::uint8, 1}, {PixelType::int16, 3}, {PixelType::float64, 1}, {PixelType::int64, 1}};

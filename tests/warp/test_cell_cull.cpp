@@ -18,6 +18,12 @@ class CellCull : public EachExec<Exec> {
 };
 TYPED_TEST_SUITE(CellCull, Execs, ExecNames);
 
+/// The candidates culled by planes, and those culled by masks.
+template <class Exec>
+std::vector<std::vector<CellPair>> both_ways(const Stages<Exec>& stages, ExecArrays<Exec>& arrays) {
+  return {arrays.download(stages.candidates), arrays.download(stages.masked_candidates)};
+}
+
 /// Holds cell 0 of a frame of 3 x 3 x 3 cells and cuts, touches or misses the others.
 StageInput wedge_tet() {
   const std::vector<Node> nodes = {node_at(-1, -1, -1), node_at(27.5, -1, -1),
@@ -82,15 +88,16 @@ TYPED_TEST(CellCull, AcceptsRejectsOrKeeps) {
   const StageInput wide = wedge_tet();
   const StageInput narrow = one_tet(nodes, nodes, frame_of(24, 24, 24));
 
-  const auto near = this->download(this->run(wide).candidates);
-  const auto far = this->download(this->run(narrow).candidates);
-
-  EXPECT_EQ(near.front(), make_pair(0, 0, true));
-  EXPECT_EQ(near[1], make_pair(1, 0, false));
-  EXPECT_EQ(near[13], make_pair(13, 0, false));
-  EXPECT_EQ(near.back(), rejected_pair);
-  EXPECT_EQ(far.front(), make_pair(0, 0, false));  // x + y + z <= 20 cuts its far corner
-  EXPECT_EQ(far[13], rejected_pair);
+  for (const auto& near : both_ways(this->run(wide), this->arrays())) {
+    EXPECT_EQ(near.front(), make_pair(0, 0, true));
+    EXPECT_EQ(near[1], make_pair(1, 0, false));
+    EXPECT_EQ(near[13], make_pair(13, 0, false));
+    EXPECT_EQ(near.back(), rejected_pair);
+  }
+  for (const auto& far : both_ways(this->run(narrow), this->arrays())) {
+    EXPECT_EQ(far.front(), make_pair(0, 0, false));  // x + y + z <= 20 cuts its far corner
+    EXPECT_EQ(far[13], rejected_pair);
+  }
 }
 
 TYPED_TEST(CellCull, NeverChangesOwnersInAWholeOrACutGrid) {
@@ -105,24 +112,26 @@ TYPED_TEST(CellCull, NeverChangesOwnersInAWholeOrACutGrid) {
     const Stages<TypeParam> stages = this->run(input);
     const auto setups = this->download(stages.setups);
     const auto offsets = this->download(stages.pair_offsets);
-    const auto pairs = this->download(stages.candidates);
     const auto tets = tets_of(scene.output_grid, scene.mesh, scene.deformed);
+    const auto ways = both_ways(stages, this->arrays());
     for (std::size_t t = 0; t < setups.size(); ++t) {
       const auto cells = cells_of(setups[t], input.frame);
       ASSERT_EQ(static_cast<std::int64_t>(cells.size()), offsets[t + 1] - offsets[t]);
       for (std::size_t c = 0; c < cells.size(); ++c) {
-        const CellPair pair = pairs[static_cast<std::size_t>(offsets[t]) + c];
         const Box box = box_of(input.frame, cells[c]);
-        if (pair == rejected_pair) {
-          ++rejected;
-          ASSERT_EQ(inside_count(tets[t], box), 0) << scene.name << ", tetrahedron " << t;
-          continue;
+        for (const auto& pairs : ways) {
+          const CellPair pair = pairs[static_cast<std::size_t>(offsets[t]) + c];
+          if (pair == rejected_pair) {
+            ++rejected;
+            ASSERT_EQ(inside_count(tets[t], box), 0) << scene.name << ", tetrahedron " << t;
+            continue;
+          }
+          ASSERT_EQ(cell_of(pair), cells[c]);
+          ASSERT_EQ(tet_of(pair), static_cast<int>(t));
+          if (!is_accepted(pair)) continue;
+          ++accepted;
+          ASSERT_EQ(inside_count(tets[t], box), voxel_count(box)) << scene.name;
         }
-        ASSERT_EQ(cell_of(pair), cells[c]);
-        ASSERT_EQ(tet_of(pair), static_cast<int>(t));
-        if (!is_accepted(pair)) continue;
-        ++accepted;
-        ASSERT_EQ(inside_count(tets[t], box), voxel_count(box)) << scene.name;
       }
     }
   }
@@ -135,15 +144,18 @@ TYPED_TEST(CellCull, GivesOnlyVerdictsThatAreSwitchedOn) {
   const auto is_rejected = [](CellPair p) { return p == rejected_pair; };
   const auto is_sure = [](CellPair p) { return p != rejected_pair && is_accepted(p); };
 
-  const auto all = this->download(this->run(input).candidates);
-  const auto no_reject = this->download(this->run(input, {.reject = false}).candidates);
-  const auto no_accept = this->download(this->run(input, {.accept = false}).candidates);
+  const auto with = both_ways(this->run(input), this->arrays());
+  const auto without_reject = both_ways(this->run(input, {.reject = false}), this->arrays());
+  const auto without_accept = both_ways(this->run(input, {.accept = false}), this->arrays());
 
-  EXPECT_EQ(std::ranges::count_if(no_reject, is_rejected), 0);
-  EXPECT_EQ(std::ranges::count_if(no_accept, is_sure), 0);
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    EXPECT_EQ(is_sure(no_reject[p]), is_sure(all[p]));
-    EXPECT_EQ(is_rejected(no_accept[p]), is_rejected(all[p]));
+  for (std::size_t way = 0; way < with.size(); ++way) {
+    const auto &all = with[way], &no_reject = without_reject[way], &no_accept = without_accept[way];
+    EXPECT_EQ(std::ranges::count_if(no_reject, is_rejected), 0);
+    EXPECT_EQ(std::ranges::count_if(no_accept, is_sure), 0);
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      EXPECT_EQ(is_sure(no_reject[p]), is_sure(all[p]));
+      EXPECT_EQ(is_rejected(no_accept[p]), is_rejected(all[p]));
+    }
   }
 }
 
@@ -161,7 +173,7 @@ TYPED_TEST(CellCull, HasAPairPerCellForAnyNumberOfTetrahedra) {
       ++t;
     }
 
-    EXPECT_EQ(this->download(stages.candidates), expected);
+    for (const auto& pairs : both_ways(stages, this->arrays())) EXPECT_EQ(pairs, expected);
   }
 }
 
@@ -174,17 +186,10 @@ StageInput small_tet() {
 
 /// With eight cells no masks are made, and every pair is kept.
 TYPED_TEST(CellCull, KeepsAllPairsOfSmallTetrahedraWithoutMasks) {
-  const StageInput input = small_tet();
-  const Stages<TypeParam> stages = this->run(input);
-  const auto pairs = this->template zeros<CellPair>(8);
-
-  cell_cull(this->exec(), View<const TetSetup>(stages.setups),
-            View<const std::int64_t>(stages.corner_offsets),
-            View<const std::uint16_t>(stages.masks), View<const std::int64_t>(stages.pair_offsets),
-            CullSwitches{}, input.frame, pairs);
+  const Stages<TypeParam> stages = this->run(small_tet());
 
   EXPECT_EQ(stages.masks.size, 0);
-  const auto found = this->download(pairs);
+  const auto found = this->download(stages.masked_candidates);
   for (std::size_t c = 0; c < 8; ++c) {
     EXPECT_EQ(found[c], make_pair(static_cast<std::int64_t>(c), 0, false));
   }
@@ -212,8 +217,7 @@ TYPED_TEST(CellCull, KeepsPairsWhoseMasksHadNoRoom) {
   const auto pairs = this->template zeros<CellPair>(27);
 
   cell_cull(this->exec(), View<const TetSetup>(stages.setups),
-            View<const std::int64_t>(stages.corner_offsets),
-            View<const std::uint16_t>{stages.masks.data, 10},
+            stages.mask_verdict({stages.masks.data, 10}),
             View<const std::int64_t>(stages.pair_offsets), CullSwitches{}, input.frame, pairs);
 
   const auto found = this->download(pairs);

@@ -61,7 +61,7 @@ class CellMerge : public EachExec<Exec> {
     return result;
   }
 };
-TYPED_TEST_SUITE(CellMerge, Execs, ExecNames);
+TYPED_TEST_SUITE(CellMerge, HostExecs, ExecNames);
 
 /// Random pairs of the tetrahedra for which `belongs` holds, by tetrahedron, then cell.
 template <class Belongs>

@@ -59,7 +59,7 @@ class CellPairs : public EachExec<Exec> {
     return result;
   }
 };
-TYPED_TEST_SUITE(CellPairs, Execs, ExecNames);
+TYPED_TEST_SUITE(CellPairs, HostExecs, ExecNames);
 
 /// Candidates as cell_cull gives them: by tetrahedron, then cell.
 std::vector<CellPair> candidates_of(std::int64_t count, std::int64_t cells, double accepted) {

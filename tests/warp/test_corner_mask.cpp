@@ -73,6 +73,31 @@ TYPED_TEST(CornerMask, IsNeverWrongAndSeldomUndecided) {
   }
 }
 
+/// Small tetrahedra have none.
+TYPED_TEST(CornerMask, HasCornersWhereTheBoxIsLarge) {
+  const auto corners = [&](double size) {
+    const std::vector<Node> nodes = {node_at(0, 0, 0), node_at(size, 0, 0), node_at(0, size, 0),
+                                     node_at(0, 0, size)};
+    return this->run(one_tet(nodes, nodes, frame_of(32, 32, 32))).masks.size;
+  };
+
+  EXPECT_EQ(corners(15.5), 0);        // 2x2x2 cells
+  EXPECT_EQ(corners(16), 4 * 4 * 4);  // 3x3x3 cells
+  EXPECT_EQ(corners(31.5), 5 * 5 * 5);
+}
+
+/// Boxes of all sizes up to 30 cells per axis.
+TEST(CornerMaskRoom, IsEnoughForEveryBox) {
+  for (std::int64_t x = 1; x <= 30; ++x) {
+    for (std::int64_t y = 1; y <= 30; ++y) {
+      for (std::int64_t z = 1; z <= 30; ++z) {
+        if (x * y * z < fewest_culled_cells) continue;
+        ASSERT_LE((x + 1) * (y + 1) * (z + 1), most_corners(x * y * z));
+      }
+    }
+  }
+}
+
 TYPED_TEST(CornerMask, IsTheSameAloneAndInAList) {
   for (const std::int64_t size : tricky_sizes) {
     const scenes::Scene scene = scene_of_tets(size);
@@ -80,11 +105,7 @@ TYPED_TEST(CornerMask, IsTheSameAloneAndInAList) {
     const auto setups = this->download(stages.setups);
     std::vector<std::uint16_t> expected;
     for (const TetSetup& tet : setups) {
-      std::int64_t cells = is_empty(tet) ? 0 : 1;
-      for (int axis = 0; axis < 3; ++axis) {
-        cells *= last_cell(tet, axis) - first_cell(tet, axis) + 1;
-      }
-      if (cells < fewest_masked_cells) continue;
+      if (box_cells(tet) < fewest_culled_cells) continue;
       for (int k = first_cell(tet, 2); k <= last_cell(tet, 2) + 1; ++k) {
         for (int j = first_cell(tet, 1); j <= last_cell(tet, 1) + 1; ++j) {
           for (int i = first_cell(tet, 0); i <= last_cell(tet, 0) + 1; ++i) {

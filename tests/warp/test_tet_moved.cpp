@@ -95,13 +95,12 @@ TYPED_TEST(TetMoved, SetsUpMovedTetrahedraAndNoOthers) {
   std::vector<std::int64_t> sums = {0};
   for (const std::uint8_t moved : found.moved) sums.push_back(sums.back() + moved);
   const auto tets = static_cast<std::int64_t>(found.moved.size());
-  const auto corners = this->template zeros<std::int64_t>(tets + 1);
   const auto pairs = this->template zeros<std::int64_t>(tets + 1);
 
-  moved_tet_setup(this->exec(), View<const std::int64_t>(this->upload(sums)), sums.back(),
-                  {before.tets, this->upload(now.deformed), this->upload(input.rest),
-                   this->upload(input.rest_orientation), input.frame, before.setups, corners, pairs,
-                   before.classes});
+  moved_tet_setup(
+      this->exec(), View<const std::int64_t>(this->upload(sums)), sums.back(),
+      {before.tets, this->upload(now.deformed), this->upload(input.rest),
+       this->upload(input.rest_orientation), input.frame, before.setups, pairs, before.classes});
 
   const auto setups = this->download(before.setups), expected = this->download(after.setups);
   const auto pair_offsets = this->download(after.pair_offsets), counts = this->download(pairs);

@@ -70,19 +70,6 @@ TYPED_TEST(TetSetupStage, BoxesTheVoxelsWithinAndTheirCells) {
   EXPECT_EQ(std::vector(tet.begin, tet.begin + 3), (std::vector{2, 2, 8}));
   EXPECT_EQ(std::vector(tet.end, tet.end + 3), (std::vector{11, 11, 16}));
   EXPECT_EQ(this->download(stages.pair_offsets), (std::vector<std::int64_t>{0, 2 * 2 * 1}));
-  EXPECT_EQ(this->download(stages.corner_offsets), (std::vector<std::int64_t>{0, 0}));
-}
-
-TYPED_TEST(TetSetupStage, HasCoarseCornersWhereItsBoxIsLarge) {
-  const auto corners = [&](double size) {
-    const Stages<TypeParam> stages =
-        this->run(one_tet(corner_nodes(size), corner_nodes(8), frame_of(32, 32, 32)));
-    return this->download(stages.corner_offsets).back();
-  };
-
-  EXPECT_EQ(corners(15.5), 0);        // 2x2x2 cells
-  EXPECT_EQ(corners(16), 4 * 4 * 4);  // 3x3x3 cells
-  EXPECT_EQ(corners(31.5), 5 * 5 * 5);
 }
 
 TYPED_TEST(TetSetupStage, ClipsTheBoxToTheFrame) {

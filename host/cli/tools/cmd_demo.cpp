@@ -67,7 +67,6 @@ void print_timings(const Report& report) {
   line("read", sum.read);
   line("upload", sum.upload);
   line("setup", sum.setup);
-  line("mask", sum.mask);
   line("cull", sum.cull);
   line("raster", sum.raster);
   line("download", sum.download);

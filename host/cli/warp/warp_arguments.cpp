@@ -215,6 +215,7 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
       {"constant-cells", {&SkipOptions::constant_cells}},
       {"interior-cells", {&SkipOptions::interior_cells}},
       {"background-chunks", {&SkipOptions::background_chunks}},
+      {"grid-point-masks", {&SkipOptions::grid_point_masks}},
       {"all",
        {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells, &SkipOptions::copied_voxels,
         &SkipOptions::unchanged_steps, &SkipOptions::unchanged_tets, &SkipOptions::constant_cells,
@@ -223,9 +224,10 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
   add_word_list(
       app, "--no-skip", skips,
       [&skip](const Switch& members) {
-        for (bool SkipOptions::*member : members) skip.*member = false;
+        for (bool SkipOptions::*member : members) skip.*member = !(SkipOptions{}.*member);
       },
-      "disable optimizations, none of which changes the result");
+      "disable optimizations, none of which changes the result; grid-point-masks, not part of all, "
+      "rejects and accepts cells by bit masks as Gascon et al. do");
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
   app.add_flag("--dry-run", arguments.dry_run,

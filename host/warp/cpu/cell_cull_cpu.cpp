@@ -137,14 +137,13 @@ namespace tetwarp {
 
 HWY_EXPORT(classify_cells);
 
-void cell_verdicts(CpuExec& exec,
-                   View<const TetSetup> setups,
-                   View<const std::int64_t>,
-                   View<std::uint16_t>,
-                   View<const std::int64_t> pair_offsets,
-                   CullSwitches switches,
-                   const OutputFrame& frame,
-                   View<CellPair> pairs) {
+void cell_cull(CpuExec& exec,
+               View<const TetSetup> setups,
+               const PlaneVerdict&,
+               View<const std::int64_t> pair_offsets,
+               CullSwitches switches,
+               const OutputFrame& frame,
+               View<CellPair> pairs) {
   exec.for_each_span("warp/cull", pair_offsets, pairs.size,
                      [&](std::int64_t t, std::int64_t first, std::int64_t past, std::int64_t item) {
                        HWY_DYNAMIC_DISPATCH(classify_cells)

@@ -10,12 +10,10 @@
 
 namespace tetwarp {
 
-/// Classifies every candidate pair as rejected, accepted or partial. Unlike the body of
-/// cell_cull.hpp it needs no corner masks.
+/// Classifies every candidate pair as rejected, accepted or partial.
 ///
-/// Along the normal of a face, one corner of a box of voxels has the least and one the largest
-/// plane value; these two suffice. The box is the intersection of the cell, the tetrahedron's
-/// bounding box and the output, so that small tetrahedra are rejected from most of their cells.
+/// As PlaneVerdict, but compares the intersection of the cell, the tetrahedron's bounding box and
+/// the output in place of the cell, so that small tetrahedra are rejected from most of their cells.
 /// Conservative: culling never changes the output.
 /// @param exec          threads and clock
 /// @param setups        from tet_setup, shape [tet_count]
@@ -27,14 +25,13 @@ namespace tetwarp {
 /// Determinism: same bits for any vector width and number of threads. Cost: 8 products, 8 bytes
 /// written per pair.
 /// Source: own; Gascon et al. 2013, section 4, use corner masks.
-void cell_verdicts(CpuExec& exec,
-                   View<const TetSetup> setups,
-                   View<const std::int64_t>,
-                   View<std::uint16_t>,
-                   View<const std::int64_t> pair_offsets,
-                   CullSwitches switches,
-                   const OutputFrame& frame,
-                   View<CellPair> pairs);
+void cell_cull(CpuExec& exec,
+               View<const TetSetup> setups,
+               const PlaneVerdict&,
+               View<const std::int64_t> pair_offsets,
+               CullSwitches switches,
+               const OutputFrame& frame,
+               View<CellPair> pairs);
 
 /// Computes the range of pairs of every cell: one binary search per stretch of cells.
 void cell_ranges(CpuExec& exec, const CellRangeBody& body);
