@@ -9,6 +9,7 @@
 #include "host/scene/isosurface.hpp"
 #include "host/scene/shape.hpp"
 #include "host/scene/shape_lattice.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/scene/sheet.hpp"
 #include "host/scene/surface.hpp"
 

@@ -1,6 +1,5 @@
 /// @file shape.hpp
-/// Shapes of valid sizes (see check_scene()): which points are inside, bounding box, volume,
-/// surface.
+/// Shapes of valid sizes (see check_scene()): which points are inside, bounding box, volume.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -21,6 +20,7 @@ double volume_of(const Shape& shape);
 /// A function of points that is negative inside the shape, 0 on its surface and positive outside,
 /// and that changes by at most level_slope() times the distance of two points of the bounds.
 double level_of(const Shape& shape, const Point3& x);
+
 /// The same for many points.
 std::function<double(const Point3&)> make_level(const Shape& shape);
 double level_slope(const Shape& shape);
@@ -34,9 +34,5 @@ double rise_of(const BentStripShape& strip, double x);
 
 /// The box whose points rise_of() raises to the strip.
 Bounds straight_bounds(const BentStripShape& strip);
-
-/// Closed triangle surface of about `triangles` triangles, outwards; points are on the surface of
-/// the shape. The count is the nearest that the pattern of the shape allows.
-Surface make_shape_surface(const Shape& shape, std::int64_t triangles);
 
 }  // namespace tetwarp

@@ -5,6 +5,8 @@
 #include <tetwarp/error.hpp>
 
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::h5 {
 

@@ -1,5 +1,8 @@
 #include "io/h5/value_names.hpp"
 
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_write.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <sstream>

@@ -1,5 +1,8 @@
 #include "io/nifti/nifti_facts.hpp"
 
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_write.hpp"
+
 #include <nifti1.h>
 
 #include <string>

@@ -2,6 +2,8 @@
 #include <tetwarp/io.hpp>
 
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/nifti/nifti_header.hpp"
 
 namespace tetwarp {

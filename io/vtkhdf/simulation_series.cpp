@@ -4,8 +4,11 @@
 #include <map>
 #include <tetwarp/error.hpp>
 
+#include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/h5/h5_rows.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

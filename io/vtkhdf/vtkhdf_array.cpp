@@ -5,6 +5,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/h5/h5_write.hpp"
 #include "io/nifti/nifti_facts.hpp"
 
 namespace tetwarp {

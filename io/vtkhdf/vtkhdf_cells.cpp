@@ -1,5 +1,7 @@
 #include "io/vtkhdf/vtkhdf_cells.hpp"
 
+#include "io/h5/h5_write.hpp"
+
 namespace tetwarp {
 
 void write_integers(const h5::Object& parent,

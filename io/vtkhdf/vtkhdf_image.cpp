@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "io/h5/h5_write.hpp"
 #include "io/vtkhdf/vtkhdf_input.hpp"
 
 namespace tetwarp {

@@ -1,5 +1,8 @@
 #include "io/vtkhdf/vtkhdf_input.hpp"
 
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <tetwarp/io.hpp>

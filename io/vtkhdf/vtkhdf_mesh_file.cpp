@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "io/h5/h5_read.hpp"
 #include "io/h5/value_names.hpp"
 
 namespace tetwarp {

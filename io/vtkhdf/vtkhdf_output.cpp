@@ -1,5 +1,7 @@
 #include "io/vtkhdf/vtkhdf_output.hpp"
 
+#include "io/h5/h5_write.hpp"
+
 #include <array>
 
 namespace tetwarp {

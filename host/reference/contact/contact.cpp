@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/enumerate.hpp"
+#include "host/reference/contact/feasible.hpp"
 #include "host/reference/contact/gauss_seidel.hpp"
 
 namespace tetwarp {

@@ -1,5 +1,7 @@
 #include "host/reference/contact/dense.hpp"
 
+#include "host/reference/contact/bilateral.hpp"
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>

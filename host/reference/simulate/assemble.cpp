@@ -1,4 +1,6 @@
-#include "host/reference/simulate/step_system.hpp"
+#include "host/reference/simulate/assemble.hpp"
+
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 namespace {

@@ -1,4 +1,7 @@
-#include "host/reference/simulate/bodies_parts.hpp"
+#include "host/reference/simulate/energy.hpp"
+
+#include "host/reference/simulate/body_motion.hpp"
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 namespace {

@@ -1,4 +1,5 @@
-#include "host/reference/simulate/step_system.hpp"
+
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 

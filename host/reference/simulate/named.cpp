@@ -1,3 +1,5 @@
+#include "host/reference/simulate/named.hpp"
+
 #include <stdexcept>
 
 #include "host/reference/simulate/make_system.hpp"

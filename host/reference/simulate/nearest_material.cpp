@@ -1,3 +1,5 @@
+#include "host/reference/simulate/nearest_material.hpp"
+
 #include <limits>
 #include <stdexcept>
 

@@ -1,4 +1,7 @@
+#include "host/reference/simulate/shares.hpp"
+
 #include "host/reference/simulate/make_system.hpp"
+#include "host/reference/simulate/nearest_material.hpp"
 
 namespace tetwarp::reference {
 namespace {

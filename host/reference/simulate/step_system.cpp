@@ -1,5 +1,8 @@
 #include "host/reference/simulate/step_system.hpp"
 
+#include "host/reference/simulate/assemble.hpp"
+#include "host/reference/simulate/forces.hpp"
+
 namespace tetwarp::reference {
 namespace {
 

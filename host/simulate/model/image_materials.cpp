@@ -1,3 +1,5 @@
+#include "host/simulate/model/image_materials.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,7 +9,8 @@
 #include "host/base/point3.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
+#include "host/simulate/model/tet_materials.hpp"
 
 namespace tetwarp {
 namespace {

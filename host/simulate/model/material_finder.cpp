@@ -1,3 +1,5 @@
+#include "host/simulate/model/material_finder.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -5,7 +7,6 @@
 #include <variant>
 
 #include "host/base/index_of.hpp"
-#include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/nearest.hpp"
 #include "host/simulate/model/rotations.hpp"
 

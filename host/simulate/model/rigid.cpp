@@ -1,8 +1,10 @@
+#include "host/simulate/model/rigid.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "kernels/base/symmetric_eigen.hpp"
 

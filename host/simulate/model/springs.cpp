@@ -1,10 +1,12 @@
+#include "host/simulate/model/springs.hpp"
+
 #include <numeric>
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/simulate/model/body_points.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/material_finder.hpp"
 
 namespace tetwarp {
 namespace {

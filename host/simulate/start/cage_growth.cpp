@@ -6,6 +6,7 @@
 #include "host/base/point3.hpp"
 #include "host/simulate/start/cage_pose.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

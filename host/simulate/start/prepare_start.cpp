@@ -7,6 +7,7 @@
 #include "host/simulate/start/cage_growth.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

@@ -8,6 +8,7 @@
 #include "host/simulate/start/medial_node.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

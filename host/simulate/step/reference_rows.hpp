@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/reference/simulate/step_system.hpp"
+#include "host/reference/simulate/assemble.hpp"
 #include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {

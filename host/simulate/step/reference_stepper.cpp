@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/reference/simulate/assemble.hpp"
 #include "host/reference/simulate/make_system.hpp"
 #include "host/reference/simulate/step_system.hpp"
 #include "host/simulate/model/rotations.hpp"

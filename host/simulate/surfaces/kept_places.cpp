@@ -1,5 +1,7 @@
 #include "host/simulate/surfaces/kept_places.hpp"
 
+#include "host/simulate/surfaces/surface_motion.hpp"
+
 #include <utility>
 
 namespace tetwarp {

@@ -4,7 +4,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>
@@ -12,7 +11,6 @@
 #include "host/collide/collision_surfaces.hpp"
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model/model.hpp"
-#include "host/simulate/step/resident_surfaces.hpp"
 
 namespace tetwarp {
 
@@ -50,38 +48,5 @@ struct SceneSurfaces {
 SceneSurfaces make_scene_surfaces(const Scene& scene,
                                   const SceneGeometry& geometry,
                                   const Model& model);
-
-/// What ResidentSurfaces needs of them.
-/// @param scene  kept by the caller
-SurfaceBinding binding_of(const SceneSurfaces& scene);
-/// A motion of ResidentSurfaces, for a Detector on the same device.
-MotionView view_of(const ResidentMotion& motion);
-
-/// World places of all vertices and planes.
-/// @param places  out; memory is kept
-void surface_places(const SceneSurfaces& scene,
-                    const Model& model,
-                    const ModelState& state,
-                    int threads,
-                    SurfacePlaces& places);
-
-/// How all surfaces move in a step: nodes straight, rigid bodies by exp(dt omega), as
-/// BodyStepper::move(). Owns nothing.
-struct SurfaceStep {
-  const SceneSurfaces& scene;
-  const Model& model;
-  const ModelState& state;                ///< at the start
-  const std::vector<Point3>& velocity;    ///< [block_count] [m/s, rad/s]
-  double time_step = 0;                   ///< [s]
-  std::span<const double> fraction = {};  ///< [bodies, then obstacles] of the step that each moves,
-                                          ///< 0 to 1; empty: 1
-};
-/// @param threads  any number: same motion
-/// @param motion   in: its start from surface_places(); out: all else but `resident`
-void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
-/// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
-void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
-/// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
-void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 
 }  // namespace tetwarp

@@ -1,3 +1,5 @@
+#include "host/simulate/surfaces/surface_motion.hpp"
+
 #include <algorithm>
 
 #include "host/base/parallel.hpp"

@@ -1,5 +1,6 @@
 #include "host/simulate/solve/two_level/two_level_on_device.hpp"
 #include "host/base/index_of.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 #include <utility>
 
