@@ -1,5 +1,6 @@
 /// @file block_assemble.hpp
-/// Stage "assembly" of a step: each 3x3 block of A gathers what elements add to it, in index order.
+/// Stage "assembly" of a step: each 3x3 block of A sums what elements contribute to it, in index
+/// order.
 ///
 /// A = M (1 + dt alpha) + (dt^2 + dt gamma) K + (dt^2 k + dt c) J^T J.
 #pragma once
@@ -13,7 +14,7 @@
 
 namespace tetwarp {
 
-/// Constant multiples of 1, as ModelScalarBlocks.
+/// Entries that are multiples of the unit matrix and do not change, as ModelScalarBlocks.
 struct ScalarEntries {
   View<const std::int32_t> column;  ///< node
   View<const double> mass, mass_alpha, bend, bend_gamma;
@@ -24,7 +25,7 @@ struct RigidConstants {
   View<const double> inertia;      ///< [rigid][9] of RigidMidpointBody
 };
 
-/// What elements add, computed by the stages before.
+/// Contributions of elements, computed by the stages before.
 struct ElementResults {
   View<const TetTurned> tets;
   View<const TetForce> tet_forces;
@@ -54,7 +55,7 @@ struct Triple {
 template <class Column>
 struct TetBlockSum {
   Column column[3];
-  double shear = 0;  ///< multiple of 1
+  double shear = 0;  ///< multiple of the unit matrix
 
   /// Adds (dt^2 + dt gamma) K_ab of a tetrahedron.
   TETWARP_HD void add(const TetTurned& tet, int a, int b, double dt) {
@@ -105,8 +106,8 @@ struct BlockAssembleBodyOf {
   ScalarEntries scalars;
   RigidConstants rigid;
   double time_step;
-  bool skips;           ///< leave out blocks whose elements are as when they were assembled
-  View<double> values;  ///< in, out: column-major blocks, [places][9]
+  bool skips;  ///< leaves out blocks whose elements have not changed since they were assembled
+  View<double> values;            ///< in, out: column-major blocks, [places][9]
   View<std::uint8_t> is_skipped;  ///< out, [upper blocks]
 
   TETWARP_HD bool is_at_rest(const UpperBlock& own, std::int64_t k) const {

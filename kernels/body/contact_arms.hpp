@@ -1,5 +1,5 @@
 /// @file contact_arms.hpp
-/// Which nodes and frames a contact moves with.
+/// The nodes and frames that the two points of a contact move with, and its arms.
 #pragma once
 #include <cstdint>
 
@@ -8,8 +8,8 @@
 
 namespace tetwarp {
 
-/// One side of a contact: a point of a frame, or a weighted mean of up to three vertices of
-/// surfaces. Without either it does not move.
+/// The point of a contact on one body: a point of a frame, or a weighted mean of up to three
+/// vertices of surfaces. With neither it does not move.
 struct ContactSide {
   std::int32_t frame = -1;
   std::int32_t vertex[3] = {-1, -1, -1};  ///< of all surfaces; -1: not used
@@ -27,14 +27,14 @@ struct BlockArm {
   ContactArm arm;
 };
 
-/// The arms of a contact, by block, each block once.
+/// The arms of a contact, sorted by block; each block once.
 class ArmList {
  public:
   TETWARP_HD void clear() { size_ = 0; }
   TETWARP_HD int size() const { return size_; }
   TETWARP_HD const BlockArm& operator[](int i) const { return arms_[i]; }
 
-  /// Adds to the arm of a block.
+  /// The arm of a block; adds one if there is none.
   TETWARP_HD ContactArm& of(std::int32_t block) {
     int i = size_;
     while (i > 0 && arms_[i - 1].block > block) --i;

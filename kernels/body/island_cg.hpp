@@ -1,11 +1,11 @@
 /// @file island_cg.hpp
 /// Preconditioned conjugate gradients on the rows of one coupling island, with a block Jacobi
-/// preconditioner D. Written once for threads of the host, one block of a device and a whole
-/// device.
+/// preconditioner D. The same code runs on threads of the host, on one block of a device and on a
+/// whole device.
 ///
-/// Runs of conjugate gradients with T numbers are corrected in float64 until the residual, computed
-/// anew, is within the tolerance: |r|_{D^-1} <= tolerance |b|_{D^-1}, or is as small as the
-/// rounding of A x allows. Source: Hestenes and Stiefel 1952.
+/// Conjugate gradients run with numbers of type T. Between runs the residual is computed anew in
+/// float64, and the next run solves for the correction, until |r|_{D^-1} <= tolerance |b|_{D^-1},
+/// or |r| is as small as the rounding of A x allows. Source: Hestenes and Stiefel 1952.
 #pragma once
 #include <cstdint>
 
@@ -22,7 +22,7 @@ struct GradientArrays {
   View<const double> values;   ///< A
   View<const T> copy;          ///< A as T; for T = double the same
   DiagonalInverse<T> inverse;  ///< D^-1
-  View<const double> load;     ///< b, without prescribed columns
+  View<const double> load;     ///< b, with the columns of prescribed rows moved into it
   View<double> x;              ///< in: start; out: solution
   View<T> r, z, p, q;
 };
@@ -37,7 +37,7 @@ struct GradientEnd {
   std::int64_t iterations = 0;
   double residual = 0;  ///< relative, of the last solution
   bool is_converged = false;
-  bool is_stopped = false;  ///< the host asked to end
+  bool is_stopped = false;  ///< the host ended it
 };
 
 /// Sums and factors of an iteration, in memory of the executor.
@@ -187,7 +187,7 @@ struct GradientLengthBody {
     s->step = curvature > 0 && square > 0 ? square / curvature : 0;
   }
 };
-/// A single index: how much of the direction before is kept.
+/// A single index: the factor of the last direction in the next one.
 struct GradientMixBody {
   GradientScalars* s;
   TETWARP_HD void operator()(std::int64_t) const {
@@ -214,13 +214,12 @@ struct GradientIteration {
   }
 };
 
-/// @param exec     calls bodies for rows [begin, end); see CpuGradientExec for its functions
+/// @param exec  calls bodies for rows [begin, end); see CpuGradientExec for its functions
 /// @param scalars  in memory of the executor
-/// @param proceed  (std::int64_t iterations): whether to go on; called where the executor reads
-/// sums
-/// @pre  rows of rigid bodies are not separated by begin and end
+/// @param proceed  (std::int64_t iterations): whether to continue; called after reads of sums
+/// @pre begin and end do not separate the two rows of a rigid body
 ///
-/// Determinism: same bits for any number of threads; sums are trees that depend on the rows alone.
+/// Determinism: same bits for any number of threads; sums are trees that depend only on the rows.
 template <class T, class Exec, class Proceed>
 TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
                                        const GradientArrays<T>& a,
@@ -230,7 +229,7 @@ TETWARP_ANY_EXEC GradientEnd island_cg(Exec& exec,
                                        GradientScalars* scalars,
                                        const Proceed& proceed) {
   constexpr int max_runs = 60;
-  constexpr double run_target = sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the run's start
+  constexpr double run_target = sizeof(T) == sizeof(float) ? 1e-4 : 0;  // of the first residual
   GradientEnd result;
   double before = 0;
   for (int run = 0; run < max_runs; ++run) {

@@ -1,6 +1,6 @@
 /// @file lane_math.hpp
 /// Functions that stages use on numbers and, with the overloads of
-/// host/simulate/step/cpu/lanes.hpp, on vectors of numbers; small matrices of either. A matrix is
+/// host/simulate/step/cpu/lanes.hpp, on vectors of numbers; small matrices of either. Matrices are
 /// row-major, [9].
 #pragma once
 #include "kernels/base/hd.hpp"

@@ -28,11 +28,11 @@ struct SpringConstants {
   SpringEnd a, b;
   double stiffness;         ///< [N/m]
   double damping;           ///< [N s/m]
-  std::int32_t has_anchor;  ///< b is an anchor whose place the step gives
+  std::int32_t has_anchor;  ///< b is an anchor whose place is an input of the step
   std::int32_t has_rigid;   ///< an end is in a rigid body
 };
 
-/// Where rigid bodies are.
+/// Places of rigid bodies.
 struct RigidPlaces {
   View<const double> centre;    ///< [rigid][3] centre of mass [m]
   View<const double> rotation;  ///< [rigid][4] quaternion, principal axes to world
@@ -87,7 +87,8 @@ struct PointSpringBody {
   }
 };
 
-/// J of a slot: weight 1 or, for the angular velocity, -weight [lever]x; b counts negative.
+/// J of a slot: weight 1 or, for the angular velocity, -weight [lever]x; slots of b have a negative
+/// weight.
 struct SlotJacobian {
   double weight;
   const double* lever;  ///< null: not angular

@@ -1,6 +1,6 @@
 /// @file problem_rows.hpp
-/// The numbers of the contact problem of a step in the order of its own arrays: J from how contacts
-/// move with blocks of the model, A and b from the system of the step.
+/// The numbers of the contact problem of a step: J from the arms of contacts, A and b from the
+/// system of the step.
 #pragma once
 #include <cstdint>
 
@@ -14,7 +14,7 @@ struct ContactArm {
   double lever[3] = {0, 0, 0};  ///< [m]; of nodes 0
 };
 
-/// Where the numbers of J of an arm go.
+/// Places of the numbers of J of an arm.
 struct ArmPlace {
   std::int32_t contact = 0;
   std::int32_t first = 0;    ///< of its 3 numbers in the first row of the contact
@@ -59,7 +59,7 @@ struct ContactRowsBody {
   }
 };
 
-/// Where a 3x3 block of the system of a step goes in A.
+/// The place in A of a 3x3 block of the system of a step.
 struct SystemBlockPlace {
   std::int32_t place = 0;   ///< in the system
   std::int32_t stride = 0;  ///< from a row of A to the next

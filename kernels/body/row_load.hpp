@@ -1,6 +1,6 @@
 /// @file row_load.hpp
-/// Stage "assembly" of a step: the right-hand side b = M v0 + dt F of each row. Damping linear in
-/// the velocity does not appear: the terms of v0 cancel.
+/// Stage "assembly" of a step: the right-hand side b = M v0 + dt F of each row. It has no term of
+/// damping that is linear in the velocity: the terms with v0 cancel.
 #pragma once
 #include <cstdint>
 
@@ -17,7 +17,7 @@ struct LoadInput {
   View<const double> angular_momentum;  ///< [rigid][3]
   View<const double> node_mass;         ///< [nodes]
   std::int64_t node_count;
-  View<const std::uint8_t> is_asleep;  ///< [blocks] 1: stands still, its b is 0; or empty
+  View<const std::uint8_t> is_asleep;  ///< 1: the block is asleep, its b is 0; or empty
 };
 
 /// One index = one row, prescribed ones included. Writes its own numbers; any order.

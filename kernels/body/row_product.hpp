@@ -10,8 +10,9 @@
 
 namespace tetwarp {
 
-/// y = sum of the blocks at places [begin, end) times their columns of x. Per block the three
-/// products of a row are added before they join the sum, so that vectors of any width agree.
+/// y = sum of the blocks at places [begin, end) times their columns of x. The three products of a
+/// row of a block are added to each other before they are added to the sum, so that vectors of any
+/// width give the same bits.
 template <class T, class X>
 TETWARP_HD void multiply_blocks(const T* values,
                                 const std::int32_t* column,
@@ -47,13 +48,13 @@ struct DiagonalInverse {
   std::int64_t row_count, node_count;  ///< rows with unknowns; blocks before those of rigid bodies
   View<T> values;                      ///< [row_count][9], then [rigid][36]
 
-  /// Its numbers of a row, of a pair at its first row.
+  /// The numbers of a row; of a pair those at its first row.
   TETWARP_HD T* at(std::int64_t row) const {
     if (pair[row] == 0) return values.data + 9 * row;
     return values.data + 9 * row_count + 18 * (block_of[row] - node_count);
   }
 
-  /// z = D^-1 r in the row, or in both rows of a pair at its first; nothing at its second.
+  /// z = D^-1 r in the row; of a pair in both rows at the first one and nothing at the second.
   /// @returns how many numbers were written
   TETWARP_HD int multiply(std::int64_t row, const T* r, T* z) const {
     const T* const a = at(row);
@@ -142,7 +143,7 @@ struct RowSupportBody {
   }
 };
 
-/// One index = one row: velocity of its block, which prescribed blocks are given.
+/// One index = one row: copies the velocity of its block; prescribed blocks have given ones.
 struct RowVelocityBody {
   SystemRows rows;
   View<const double> block_velocity, prescribed;  ///< [blocks][3]

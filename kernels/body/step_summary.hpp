@@ -1,6 +1,6 @@
 /// @file step_summary.hpp
-/// What the host wants to know of every step while the state stays in memory of a device: whether
-/// all numbers are finite, how fast rigid bodies turn, impulses and work.
+/// What the host reads after every step while the state stays in memory of a device: whether all
+/// numbers are finite, the largest spin of rigid bodies, impulses and work.
 #pragma once
 #include <cstdint>
 
@@ -97,7 +97,7 @@ struct StepImpulseBody {
       for (int i = 0; i < 3; ++i) v[i] += sign * end.weight[k] * of[i];
     }
   }
-  /// On a: the impulse at the velocities of the start, less factor J v.
+  /// The impulse of a spring on its point a: that of the velocities at the start, less factor J v.
   TETWARP_HD ImpulseSums of_spring(std::int64_t s) const {
     const SpringConstants& own = springs[s];
     double v[3] = {0, 0, 0};
@@ -125,7 +125,8 @@ struct StepImpulseBody {
   }
 };
 
-/// One index = one listed node, then one listed rigid body: copies its place.
+/// One index = one listed node, then one listed rigid body: copies its position, or its centre and
+/// rotation.
 struct PlaceCopyBody {
   View<const std::int32_t> nodes, bodies;
   View<const double> position;  ///< [nodes][3]

@@ -1,9 +1,9 @@
 /// @file surface_move.hpp
-/// Where points of surfaces, frames and planes are at the start of a step, and where velocities
-/// take them: nodes straight, frames by exp(dt omega).
+/// Places of surface points, frames and planes at the start of a step, and where velocities move
+/// them: nodes straight, frames by exp(dt omega).
 ///
 /// Products are rounded before they are added: places at the start have the same bits on host and
-/// device, and what does not move has the same bits at start and end.
+/// device, and a point that does not move has the same bits at start and end.
 #pragma once
 #include <cstdint>
 
@@ -13,8 +13,8 @@
 
 namespace tetwarp {
 
-/// A vertex of a surface, bound as ModelPoint: to up to four nodes, a frame, or a place in the
-/// world. The functions below take this or a ModelPoint.
+/// A vertex of a surface with what it moves with, as ModelPoint: up to four nodes, a frame, or
+/// nothing if it is fixed in the world. The functions below take this type or a ModelPoint.
 struct SurfacePoint {
   std::int32_t node[4];
   std::int32_t rigid;
@@ -30,12 +30,12 @@ struct SurfaceState {
   View<const double> rotation;  ///< [rigid][4] quaternion, frame to world
 };
 
-/// How they move.
+/// Velocities and durations of the motion.
 struct SurfaceVelocity {
   View<const double> velocity;  ///< [blocks][3] [m/s, rad/s]
   std::int64_t first_block;     ///< of frames
   double time_step;             ///< [s]
-  View<const double> fraction;  ///< [bodies] of the step that each moves, or empty: 1
+  View<const double> fraction;  ///< [bodies] of the step that each body moves, or empty: 1
 
   TETWARP_HD double seconds_of(std::int64_t body) const {
     return fraction.size == 0 ? time_step : time_step * fraction[body];
@@ -46,18 +46,18 @@ struct SurfaceVelocity {
 struct MovedFrame {
   double start[3], end[3];  ///< centre [m]
   double rotation[4];       ///< at the end
-  double axis[3];           ///< unit, of the turn; 0 without
+  double axis[3];           ///< unit, of the turn; 0 if there is none
   double angle;             ///< of the turn [rad]
 };
 
-/// The scaling keeps squares from leaving the range of numbers.
+/// Length of a vector; scaled, so that squares do not overflow or underflow.
 TETWARP_HD double length3(const double* x) {
   const double a = fabs(x[0]), b = fabs(x[1]), c = fabs(x[2]), most = max_of(max_of(a, b), c);
   if (most == 0) return 0;
   const double u = a / most, v = b / most, w = c / most;
   return most * sqrt(mul_rn(u, u) + mul_rn(v, v) + mul_rn(w, w));
 }
-/// Of length 1; of a zero vector zero. May be in place.
+/// The unit vector along x; zero for a zero vector. x and unit may be the same memory.
 TETWARP_HD void unit3(const double* x, double* unit) {
   const double size = length3(x), factor = size > 0 ? 1 / size : 1;
   for (int i = 0; i < 3; ++i) unit[i] = factor * x[i];
@@ -74,7 +74,7 @@ TETWARP_HD void rotate3(const double* q, const double* x, double* turned) {
   for (int i = 0; i < 3; ++i) turned[i] = x[i] + (mul_rn(q[0], t[i]) + cross_of(axis, t, i));
 }
 
-/// A point of a frame.
+/// World position of a point that is fixed in a frame.
 TETWARP_HD void frame_point(const double* centre,
                             const double* rotation,
                             const double* local,
@@ -83,7 +83,8 @@ TETWARP_HD void frame_point(const double* centre,
   rotate3(rotation, local, arm);
   for (int i = 0; i < 3; ++i) x[i] = centre[i] + arm[i];
 }
-/// A point that no frame moves. place(node, i): coordinate i of a node.
+/// World position of a point that moves with nodes.
+/// @param place  (node, i): coordinate i of a node
 template <class Point, class Place>
 TETWARP_HD void node_point(const Point& point, const Place& place, double* x) {
   for (int i = 0; i < 3; ++i) x[i] = point.node[0] < 0 ? point.local[i] : 0;
@@ -91,7 +92,7 @@ TETWARP_HD void node_point(const Point& point, const Place& place, double* x) {
     for (int i = 0; i < 3; ++i) x[i] += mul_rn(point.weight[k], place(point.node[k], i));
   }
 }
-/// A plane of a frame: a point of it and its normal, [6] each.
+/// World point and normal of a plane that is fixed in a frame, [6] each.
 TETWARP_HD void frame_plane(const double* centre,
                             const double* rotation,
                             const double* local,
@@ -130,7 +131,8 @@ TETWARP_HD MovedFrame moved_frame(const SurfaceState& at,
   return frame;
 }
 
-/// As TurningFrame: centre, motion and rotation vector, [9]; all 0 without a turn.
+/// Writes a TurningFrame: centre, motion and rotation vector, [9]; all 0 where the frame does not
+/// turn.
 TETWARP_HD void turn_of(const MovedFrame& frame, double* turning) {
   const bool turns = frame.angle > 0;
   for (int i = 0; i < 3; ++i) {
@@ -140,11 +142,11 @@ TETWARP_HD void turn_of(const MovedFrame& frame, double* turning) {
   }
 }
 
-/// @param frame  that moves the point, read if one does
+/// @param frame  that the point is fixed in; not read for other points
 /// @param start  of the point
 /// @param end    out
-/// @returns the farthest that the point is from the straight way [m]: linear interpolation errs by
-///          at most 1/8 of the second derivative, r angle^2 on a circle of radius r
+/// @returns the largest distance of the point from its straight path [m]: linear interpolation errs
+///          by at most 1/8 of the second derivative, r angle^2 on a circle of radius r
 template <class Point>
 TETWARP_HD double move_point(const Point& point,
                              const SurfaceState& at,

@@ -1,8 +1,9 @@
 /// @file system_lists.hpp
-/// The sparse system of a step: rows, places of its 3x3 blocks, and lists of what adds to each.
+/// The sparse system of a step: its rows, the places of its 3x3 blocks, and lists of what is added
+/// to each block.
 ///
-/// Rows are blocks of unknowns in another order: first the blocks with unknowns, islands one after
-/// the other, then the prescribed ones. Columns of a row ascend, so prescribed ones are last.
+/// Rows are the blocks of the model in another order: first blocks with unknowns, island after
+/// island, then prescribed ones. Columns of a row ascend, so columns of prescribed blocks are last.
 #pragma once
 #include <cstdint>
 

@@ -12,14 +12,14 @@
 
 namespace tetwarp {
 
-/// What the system matrix needs of a tetrahedron: its stiffness block of corners a and b is
+/// What the system matrix takes from a tetrahedron: its stiffness block of corners a and b is
 /// volume_lambda ga gb^T + volume_mu (gb ga^T + (ga . gb) 1) with the turned gradients ga = R g_a.
 struct TetTurned {
   double gradient[12];   ///< R g_a of corners 0 to 3 [1/m]
   double volume_lambda;  ///< [N m]
   double volume_mu;      ///< [N m]
   double gamma;          ///< damping [s]
-  double unused;         ///< to a size of 128 bytes
+  double unused;         ///< fills the struct to 128 bytes
 };
 /// Forces on the four corners, three numbers each [N].
 struct TetForce {
@@ -94,7 +94,7 @@ struct TetForceBody {
   TetConstants tets;
   View<const double> position;         ///< [nodes][3]
   View<const std::uint8_t> has_moved;  ///< [nodes] since the stage ran before
-  bool skips;                          ///< leave out tetrahedra whose nodes did not move
+  bool skips;                          ///< leaves out tetrahedra whose nodes have not moved
   View<TetTurned> turned;              ///< in: of the stage before; out
   View<TetForce> force;                ///< out
   View<std::uint8_t> has_turned;       ///< out: whether an entry of `turned` has other bits

@@ -12,10 +12,10 @@
 
 namespace tetwarp {
 
-/// Least zeta / (|F|^2 l) of the closed form: below, float64 has lost the rotation.
+/// Least zeta / (|F|^2 l) of the closed form: with less, float64 does not resolve the rotation.
 template <class Real>
 constexpr double least_separation = std::is_same_v<Real, float> ? 2e-3 : 1e-5;
-/// The same where F inverts.
+/// The same where det F < 0.
 constexpr double least_inverted_separation = 2e-2;
 
 /// Quaternion of a matrix that is a rotation up to rounding.
@@ -55,7 +55,7 @@ TETWARP_HD auto newton_turn(const Real* s, Real* omega) {
   return dot3(omega, omega) < Real(0.1);  // false for NaN
 }
 
-/// q (1, omega / 2), normalized, is written where `use`.
+/// Writes q (1, omega / 2), normalized, where `use` is true.
 template <class Real, class Condition>
 TETWARP_HD void turn_quaternion(Condition use, const Real* omega, Real* q) {
   const Real step[4] = {Real(1.0), Real(0.5) * omega[0], Real(0.5) * omega[1],
@@ -117,7 +117,7 @@ TETWARP_HD auto rotation_by_quartic(const Real* unscaled, Real* r) {
   return is_valid && r[0] <= Real(2.0);  // false for NaN
 }
 
-/// Unit vector at right angles to the unit vector a.
+/// A unit vector perpendicular to the unit vector a.
 TETWARP_HD void perpendicular_to(const double* a, double* b) {
   int least = 0;
   for (int i = 1; i < 3; ++i) {

@@ -1,5 +1,6 @@
 /// @file collide_item.hpp
-/// Items of the broad phase, what they own, which bodies may touch, and boxes.
+/// Items of the broad phase with the features that they own, the pairs of bodies that may touch,
+/// and boxes.
 ///
 /// An item is a triangle, a capsule, or a vertex that belongs to neither (a sphere). Each vertex
 /// and each edge is owned by the first item that has it, so that each pair of features belongs to
@@ -27,11 +28,11 @@ struct CollideBody {
   std::int32_t forbidden_begin, forbidden_end;  ///< in the list of bodies that it never touches
 };
 
-/// What does not change during a simulation.
+/// Surfaces as the stages read them; constant during a simulation.
 struct CollideView {
   View<const CollideItem> items;
   View<const CollideBody> bodies;
-  View<const std::int32_t> forbidden;  ///< larger bodies of each body's pairs, ascending
+  View<const std::int32_t> forbidden;  ///< larger bodies that each body never touches, ascending
   View<const std::int32_t> vertex_body;
   View<const double> vertex_radius;
   View<const std::int32_t> edges;  ///< [edges][2]
@@ -51,7 +52,8 @@ struct CollideView {
   }
 };
 
-/// Where all is; every array as in SurfaceMotion.
+/// Places of vertices, planes and frames at the start and the end of a motion; arrays as in
+/// SurfaceMotion.
 struct MotionView {
   View<const double> start, end;              ///< [vertices][3]
   View<const double> sagitta;                 ///< [vertices]

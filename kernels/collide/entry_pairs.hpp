@@ -15,8 +15,8 @@ struct ItemPair {
 
 /// One index = one entry. Appends its pairs with the entries after it in the same cell.
 ///
-/// Two items share several cells; the pair is kept in the one that holds the lowest corner of the
-/// intersection of their boxes, in the grid of the larger item: each pair once.
+/// Two items share several cells. Their pair is kept in the cell that holds the lowest corner of
+/// the intersection of their boxes, in the grid of the larger item: each pair once.
 struct EntryPairsBody {
   CollideView scene;
   const GridPlan* plan;
@@ -36,7 +36,7 @@ struct EntryPairsBody {
       j = end_of_body(i, cell, scene.bodies[body].item_end);
     if (j >= entries.size || cell_of(entries[j]) != cell) return;
     const Box box = boxes[a];
-    std::int32_t body_end = 0;  // items from there on belong to another body than the last one
+    std::int32_t body_end = 0;  // first item after those of the body that was tested last
     bool is_allowed = false;
     std::int64_t tests = 0;
     for (; j < entries.size && cell_of(entries[j]) == cell; ++j) {
@@ -47,7 +47,7 @@ struct EntryPairsBody {
         body_end = scene.bodies[other_body].item_end;
         is_allowed = scene.may_touch(body, other_body);
       }
-      // Two items that are smaller than those of a grid meet in a finer one.
+      // A pair of two items that are smaller than those of this grid is found in a finer grid.
       if (!is_allowed || a == b || (is_accepted(entry) && is_accepted(other))) continue;
       ++tests;
       const Box& second = boxes[b];
@@ -60,11 +60,11 @@ struct EntryPairsBody {
   }
 
  private:
-  /// Whether an item's entry before this one has the same number of the cell.
+  /// Whether the entry before this one is of the same item and has the same cell number.
   TETWARP_HD bool is_repeated(std::int64_t i) const {
     return i > 0 && ((entries[i] ^ entries[i - 1]) & ~CellPair{accepted_bit}) == 0;
   }
-  /// First entry after i that is of another cell, or of an item from item_end on.
+  /// First entry after i with another cell number, or of an item from item_end on.
   TETWARP_HD std::int64_t end_of_body(std::int64_t i,
                                       std::int64_t cell,
                                       std::int32_t item_end) const {

@@ -1,5 +1,6 @@
 /// @file item_box.hpp
-/// Stage "item_box" of collision detection: boxes of items, and which can have a partner at all.
+/// Stage "item_box" of collision detection: boxes of items and their classes of size; items far
+/// from all partners of their body are skipped.
 #pragma once
 #include <cstdint>
 
@@ -7,18 +8,18 @@
 
 namespace tetwarp {
 
-constexpr int item_sizes = 48;  ///< classes of sizes; each half as large as the one before
+constexpr int item_sizes = 48;  ///< classes of size, each half as large as the one before
 constexpr std::int8_t skipped_item = -1;
 
-/// One index = one item. An item is skipped if its box touches the box of no body that its own body
-/// may touch.
+/// One index = one item. An item is skipped if its box overlaps the box of no body that its own
+/// body may touch.
 struct ItemBoxBody {
   CollideView scene;
   View<const Box> vertex_boxes;
   View<const Box> body_boxes;
   View<const std::int32_t> partner_start;  ///< [bodies + 1]
-  View<const std::int32_t> partners;       ///< bodies
-  std::int32_t largest;                    ///< power of two of the largest box
+  View<const std::int32_t> partners;       ///< bodies that each body may touch
+  std::int32_t largest;                    ///< binary exponent of the extent of the largest box
   View<Box> boxes;                         ///< out
   View<std::int8_t> sizes;                 ///< out: 0 the largest to item_sizes - 1; skipped_item
 

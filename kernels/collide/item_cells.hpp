@@ -1,9 +1,9 @@
 /// @file item_cells.hpp
 /// Stage "item_cells" of collision detection: which cells of the grids an item's box covers.
 ///
-/// Items of similar size share a uniform grid. An item is entered in the grid of its size, and, to
-/// meet larger items, in all coarser grids. Cells have numbers of few bits: exact ones where the
-/// grids have few cells, else scattered ones, which different cells may share.
+/// Items of similar size share a uniform grid. An item is entered in the grid of its size and, to
+/// meet larger items, in all coarser grids. The number of a cell has few bits: it is exact where
+/// the grids have few cells, else a hash that several cells may share.
 #pragma once
 #include <cstdint>
 
@@ -21,7 +21,7 @@ struct GridLevel {
 struct GridPlan {
   double origin[3];  ///< lowest corner of all boxes
   std::int32_t level_count;
-  std::int32_t key_bits, key_shift;        ///< bits of a cell's number; of 32, how many it drops
+  std::int32_t key_bits, key_shift;  ///< bits of a cell's number; how many of 32 bits are dropped
   std::uint8_t level_of_size[item_sizes];  ///< ascending from the finest, 0
   GridLevel levels[item_sizes];
 
@@ -41,8 +41,8 @@ struct GridPlan {
   }
 };
 
-/// An entry: cell << 32, then whether the item is smaller than those of the grid << 31, then the
-/// item. Layout of CellPair, whose sort it uses.
+/// An entry is cell << 32 | (1 if the item is smaller than those of the grid, else 0) << 31 | item.
+/// It has the layout of CellPair, whose sort is used.
 constexpr std::uint32_t smaller_bit = accepted_bit;
 
 /// One index = one item. Appends its entries, those of its own grid first.

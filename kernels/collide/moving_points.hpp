@@ -17,13 +17,14 @@ struct TurningFrame {
   double turn[3];  ///< rotation vector [rad]
 };
 
-/// Up to four points that go from start to end.
+/// Up to four points that move from start to end.
 ///
-/// Without frames the ways are straight but for a `sagitta`: at any time t the true point is within
-/// 4 t (1 - t) sagitta of start + t (end - start). Whatever moves with an acceleration of at most
-/// 8 sagitta per square of the motion's duration does so: its difference from the straight way is 0
-/// at both ends, and 4 t (1 - t) sagitta has the largest second derivative allowed everywhere. A
-/// point at distance r from the axis of a frame that turns by an angle has sagitta r angle^2 / 8.
+/// Without frames the points move on nearly straight paths: at time t, from 0 to 1, a point is
+/// within 4 t (1 - t) sagitta of start + t (end - start). This holds for every motion whose
+/// acceleration is at most 8 sagitta per squared duration of the motion: its difference from the
+/// straight path is 0 at both ends, and 4 t (1 - t) sagitta has the largest second derivative
+/// allowed at every t. A point at distance r from the axis of a frame that turns by an angle has
+/// sagitta r angle^2 / 8.
 ///
 /// With frames the points of that side follow the frame exactly, and its sagitta is not used.
 struct MovingPoints {
@@ -35,7 +36,7 @@ struct MovingPoints {
   const TurningFrame* frame_b = nullptr;
 };
 
-/// Deviation of turning points from their straight ways: of one side, at one time.
+/// Difference of turning points of one side from their straight paths, at one time:
 /// bow = sine (axis x arm) + cosine (axis x (axis x arm)), 0 at times 0 and 1.
 struct Bow {
   double angle = 0;
@@ -53,17 +54,17 @@ struct Bow {
   }
 };
 
-/// Points in coordinates of the pair: the first is at the origin, the mean motion is taken away.
-/// Coordinates far from zero so cost no digits but those of the input.
+/// Points in coordinates of the pair: the first point is the origin, and the mean motion is
+/// subtracted. So pairs far from the origin of the world lose no digits beyond those of the input.
 template <int count>
 struct LocalPoints {
   double start[count][3], motion[count][3];
   double bow_sine[count][3], bow_cosine[count][3];
   Bow bow[2];           ///< of each side
   int a_count;          ///< points of side a
-  double speed;         ///< no distance of both sides changes faster, without sagittas
-  double acceleration;  ///< largest of side a plus largest of side b, of frames
-  double sagitta;       ///< of both sides, where not given by frames
+  double speed;         ///< bound on the rate of all distances between the sides, without sagittas
+  double acceleration;  ///< of points that follow frames: largest of side a plus largest of side b
+  double sagitta;       ///< sum over the sides that follow no frame
 
   TETWARP_HD LocalPoints(const MovingPoints& points, int a_count) : a_count(a_count) {
     for (int i = 0; i < 3; ++i) {

@@ -1,10 +1,10 @@
 /// @file pair_apart.hpp
-/// Directions along which two items, or two features, stay apart during a whole motion: a bound
-/// that costs less than the time of contact.
+/// Directions along which two items, or two features, stay apart during a whole motion: a
+/// sufficient test that costs less than the time of contact.
 ///
 /// Points move straight, so the separation of two points along a fixed direction changes linearly:
-/// if it is larger than a distance at the start and at the end, it is so all the time. Convex hulls
-/// are as far apart as their nearest corners.
+/// if it exceeds a distance at the start and at the end, it does so all the time. Along a
+/// direction, convex hulls are as far apart as their nearest corners.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +13,7 @@
 
 namespace tetwarp {
 
-/// Along the axes of coordinates, at start and end.
+/// Bounds of points along the axes of coordinates, at start and end.
 struct MovingBounds {
   double low[2][3], high[2][3];
 
@@ -69,7 +69,7 @@ struct ItemPoints {
     for (int t = 0; t < 2; ++t) own.set(t, place[t][k]);
     return own;
   }
-  /// Of the edge from corner k to the next.
+  /// Bounds of the edge from corner k to the next.
   TETWARP_HD MovingBounds edge_bounds(int k) const {
     MovingBounds own;
     for (int t = 0; t < 2; ++t) {
@@ -78,7 +78,7 @@ struct ItemPoints {
     }
     return own;
   }
-  /// Largest coordinate.
+  /// The largest coordinate in magnitude.
   TETWARP_HD double size() const {
     double size = 0;
     for (int t = 0; t < 2; ++t) {
@@ -90,14 +90,16 @@ struct ItemPoints {
   }
 };
 
-/// By how much two items have to be apart.
-/// @param distance  that is looked for [m]
+/// Separation of the corners of two items beyond which the items are certainly farther apart than
+/// `distance`: radii, sagittas and rounding are added.
+/// @param distance  search distance [m]
 TETWARP_HD double distance_apart(const ItemPoints& a, const ItemPoints& b, double distance) {
   const double roundings = 0x1p-46 * max_of(a.size(), b.size());
   return (distance + a.extra + b.extra) * (1 + 0x1p-40) + roundings;
 }
 
-/// Whether a separation along an axis, times the axis's length, is larger than `distance`.
+/// Whether a separation along an axis exceeds `distance`.
+/// @param separation  times the length of the axis
 TETWARP_HD bool is_apart(double separation, double axis_squared, double distance) {
   return separation > 0 && separation * separation > distance * distance * axis_squared;
 }
@@ -105,7 +107,7 @@ TETWARP_HD bool is_apart(double separation, double axis_squared, double distance
 /// The side of a face at which each corner of another item stays, farther than `distance` from the
 /// face's plane at the start.
 struct FaceSides {
-  std::int32_t side[3];  ///< 1, -1, or 0: neither is sure
+  std::int32_t side[3];  ///< 1 or -1; 0: neither is certain
 
   TETWARP_HD FaceSides(const ItemPoints& face, const ItemPoints& other, double distance) {
     double ab[3], ac[3], normal[3];
@@ -133,7 +135,7 @@ struct FaceSides {
                                                      : 0;
     }
   }
-  /// Whether all corners are at one side.
+  /// Whether all corners stay on one side.
   TETWARP_HD bool all() const { return side[0] != 0 && side[1] == side[0] && side[2] == side[0]; }
 };
 

@@ -12,29 +12,32 @@
 
 namespace tetwarp {
 
-/// How near counts as touching. Up to and including the time of touch a pair is never within
-/// `distance`, and a pair that would come within `distance` always touches. One that only comes
-/// within `distance` + `slack` may touch.
+/// How near counts as touching. Up to and including its time of touch a pair is never within
+/// `distance`. A pair that would come within `distance` always touches; one that only comes within
+/// `distance` + `slack` may touch.
 ///
-/// A pair that starts nearer than that keeps half of its room. With d the distance at the start:
+/// A pair that starts nearer than that keeps at least half of its distance. With d the distance at
+/// the start:
 ///
 ///     least = distance where d > distance, else max(d / 2, distance / 100)
 ///     touch at the first time found with a distance below least + min(slack, (d - least) / 2),
 ///     at time 0 if d <= distance / 100
 ///
-/// So a pair that rests or separates does not touch, wherever it starts, and where no pair moves
-/// beyond its time of touch: pairs apart by more than `distance` stay so, and pairs nearer, which
-/// only rounding or the start of a scene can bring about, stay apart by more than `distance` / 100.
+/// So a pair that rests or separates does not touch, wherever it starts. Where no pair moves beyond
+/// its time of touch, pairs farther apart than `distance` stay so. Nearer pairs, which only
+/// rounding or the start of a scene produces, stay farther apart than `distance` / 100.
 struct CcdLimits {
   double distance = 0;                  ///< [m], > 0
   double slack = 0;                     ///< absolute [m], > 0
   std::int32_t max_evaluations = 4096;  ///< then the pair touches at the time reached
 };
-/// Which pairs are contacts of a step. @param thickness  rest distance of surfaces [m]
+/// Limits of the detection that finds the contacts of a step.
+/// @param thickness  rest distance of surfaces [m]
 TETWARP_HD CcdLimits detection_limits(double thickness) {
   return {thickness / 2, thickness / 10};
 }
-/// Which pairs end a step early. Pairs at rest have 18 times the slack above this distance.
+/// Limits of the check that ends a step early. Pairs at rest are at the thickness, 18 times the
+/// slack above this distance.
 TETWARP_HD CcdLimits end_check_limits(double thickness) {
   return {thickness / 10, thickness / 20};
 }
@@ -45,12 +48,12 @@ struct CcdResult {
   std::int32_t evaluations = 0;
 };
 
-/// How points of both sides approach along one direction: the distance is at least the smallest of
-/// the gaps, now and later.
+/// Gaps between points of both sides along one fixed direction, and their rates. The distance of
+/// the sides is at least the smallest gap, at every later time.
 struct Approach {
   double gap[4];   ///< between a point of a and one of b along the direction, radii subtracted [m]
-  double rate[4];  ///< of change
-  int count = 0;   ///< 0: not known
+  double rate[4];  ///< of change of each gap per unit of time
+  int count = 0;   ///< 0: no bound is known
 
   /// @param apart  from the closest point of b to that of a
   template <int points>
@@ -80,7 +83,8 @@ struct Approach {
       const double room = gap[k] - least, slope = rate[k] - loss;
       if (!(room > 0)) return 0;
       const double root = std::sqrt(slope * slope + 2 * acceleration * room);
-      // room + slope t - acceleration t^2 / 2 = 0; where both terms below are 0, never
+      // Solves room + slope t - acceleration t^2 / 2 = 0; 4 stands for no root (slope >= 0,
+      // acceleration = 0).
       const double own = slope < 0          ? 2 * room / (root - slope)
                          : acceleration > 0 ? (slope + root) / acceleration
                                             : 4;
@@ -92,16 +96,16 @@ struct Approach {
 
 /// Additive advancement.
 ///
-/// The room at time t is distance - least - 4 t (1 - t) sagitta. It stays above a tenth of what it
-/// is at t for the longer of two times:
-///   0.9 room / b(t): from t on room falls by no more than b(t) = speed + 4 sagitta max(0, 1 - 2 t)
-///   per unit of time, and b never grows;
-///   Approach::time_above(): convex features are at least as far apart as along any direction, here
-///   that of the closest points at t. Points that go straight approach along it at constant rates,
-///   others at rates that change by at most `acceleration`.
+/// The room at time t is distance - least - 4 t (1 - t) sagitta. It stays above a tenth of its
+/// value at t for the longer of two times:
+/// - 0.9 room / b(t): from t on the room falls by at most b(t) = speed + 4 sagitta max(0, 1 - 2 t)
+///   per unit of time, and b never grows.
+/// - Approach::time_above(): along any direction convex features are at most as far apart as they
+///   are; the direction is that of the closest points at t. Points that move straight approach
+///   along it at constant rates, others at rates that change by at most `acceleration`.
 /// So the room is positive up to the time reached, and to the end where that time is above 1.
-/// Rounding: distances err by less than 1e-14 of the pair's extent, which `distance` exceeds a
-/// thousandfold, and of needles by less than a thousandth of themselves.
+/// Rounding: the error of a distance is below 1e-14 of the pair's extent, a thousandth of
+/// `distance`; for needles it is below a thousandth of the distance itself.
 /// @param measure  (time, Approach&) gives the distance, which changes by at most `speed` per unit
 ///                 of time
 template <class Measure>
@@ -110,7 +114,7 @@ TETWARP_HD CcdResult advance(
   CcdResult result;
   Approach approach;
   double time = 0, least = 0, slack = 0;
-  while (true) {  // one place that measures: the compiler inlines it
+  while (true) {  // the only call of measure(), so that the compiler inlines it
     const double distance = measure(time, approach);
     if (result.evaluations++ == 0) {
       result.start_distance = distance;

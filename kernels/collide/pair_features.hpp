@@ -1,5 +1,5 @@
 /// @file pair_features.hpp
-/// Stage "pair_features" of collision detection: pairs of features that pairs of items hold, and
+/// Stage "pair_features" of collision detection: the pairs of features of pairs of items, and
 /// vertices near planes.
 #pragma once
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace tetwarp {
 
-/// A plane that may be touched, and by which bodies.
+/// The planes that vertices of each body may touch.
 struct PlaneView {
   View<const std::int32_t> start;   ///< [bodies + 1], into `planes`; empty: none is near
   View<const std::int32_t> planes;  ///< those near each body
 };
 
-/// One index = one pair of items; those after them, one vertex each against the planes near its
-/// body. Appends the pairs of features that are not sure to stay apart, each pair of a scene once.
+/// One index = one pair of items; the indices after those = one vertex each with the planes near
+/// its body. Appends the pairs of features that are not certain to stay apart, each pair of a scene
+/// once.
 struct PairFeaturesBody {
   CollideView scene;
   View<const ItemPair> pairs;
   MotionView motion;
-  double distance;  ///< that is looked for [m]
+  double distance;  ///< search distance [m]
   PlaneView near;
 
   template <class Emit>
@@ -130,9 +131,9 @@ struct PairFeaturesBody {
       }
     }
   }
-  /// A bound on the height of a vertex above a plane during the motion. The plane's normal is a
-  /// combination of those at start and end whose weights add up to 1 at least, so it is the least
-  /// of the four heights, if that is positive.
+  /// A lower bound of the height of a vertex above a plane during the motion. The plane's normal is
+  /// a combination of those at start and end whose weights add up to at least 1, so the bound is
+  /// the smallest of the four heights, if that is positive.
   TETWARP_HD double least_height(std::int32_t v, std::int32_t plane) const {
     const double* const x[2] = {motion.start.data + 3 * std::int64_t{v},
                                 motion.end.data + 3 * std::int64_t{v}};
@@ -153,8 +154,9 @@ struct PairFeaturesBody {
     }
     return least;
   }
-  /// By how much a plane that follows a frame may be above one whose point goes straight and whose
-  /// normal is interpolated linearly: both deviate by an eighth of their second derivatives.
+  /// Upper bound of the height of a plane that follows a frame above one whose point moves straight
+  /// and whose normal is interpolated linearly: point and normal differ by at most an eighth of
+  /// their second derivatives.
   TETWARP_HD double turned_height(std::int32_t v, std::int32_t plane) const {
     const TurningFrame* const frame = motion.frame_of(scene.plane_body[plane]);
     if (frame == nullptr) return 0;

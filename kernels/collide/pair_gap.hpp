@@ -1,5 +1,5 @@
 /// @file pair_gap.hpp
-/// Stage "pair_gap" of collision detection: the pair of features that is nearest.
+/// Stage "pair_gap" of collision detection: the nearest pair of features.
 #pragma once
 #include <cstdint>
 
@@ -12,7 +12,7 @@ struct PairGap {
   double distance;
 };
 
-/// Whether a is nearer, or first of equals.
+/// Whether a comes before b: by distance, then by the numbers of the features.
 TETWARP_HD bool is_nearer(const PairGap& a, const PairGap& b) {
   if (a.distance != b.distance) return a.distance < b.distance;
   if (a.pair.kind != b.pair.kind) return a.pair.kind < b.pair.kind;
@@ -24,7 +24,7 @@ constexpr std::int64_t gap_run = 64;  ///< pairs of one index of PairGapBody
 /// One index = gap_run pairs of features. Writes the nearest of them.
 struct PairGapBody {
   CollideView scene;
-  MotionView motion;  ///< its start
+  MotionView motion;  ///< only its start is read
   View<const FeaturePair> pairs;
   View<PairGap> gaps;  ///< out
 
@@ -42,7 +42,7 @@ struct PairGapBody {
   TETWARP_HD PairGap gap_of(const FeaturePair& pair) const {
     return {pair, axis_distance(pair) - radius_of(scene, pair)};
   }
-  /// Without radii.
+  /// Distance of the features without their radii.
   TETWARP_HD double axis_distance(const FeaturePair& pair) const {
     const PairVertices own = vertices_of(scene, pair);
     const double* x[4] = {};

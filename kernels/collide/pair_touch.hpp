@@ -1,5 +1,6 @@
 /// @file pair_touch.hpp
-/// Stage "pair_touch" of collision detection: when two features touch, and how far apart they are.
+/// Stage "pair_touch" of collision detection: when two features touch, and their distance at the
+/// start.
 #pragma once
 #include <cstdint>
 
@@ -117,14 +118,14 @@ struct FeatureTouch {
   double time, start_distance;
 };
 
-/// One index = one pair of features. Appends those that touch, or begin within a distance, but for
-/// pairs of two bodies that stand still.
+/// One index = one pair of features. Appends those that touch or start within a distance, except
+/// pairs of two still bodies.
 struct TouchFilterBody {
   CollideView scene;
   View<const std::uint8_t> is_still;  ///< [bodies], or empty: none
   View<const FeaturePair> pairs;
   View<const CcdResult> results;
-  double near_at_start;  ///< [m]
+  double near_at_start;  ///< distance at the start up to which a pair is near [m]
 
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
@@ -140,7 +141,7 @@ struct TouchFilterBody {
   }
 };
 
-/// One index = one pair. Appends the one of its bodies that has unknowns and stands still.
+/// One index = one pair. Appends those of its bodies that have unknowns and are still.
 struct ReachedBody {
   CollideView scene;
   View<const std::uint8_t> is_still;  ///< [bodies]

@@ -9,15 +9,16 @@
 
 namespace tetwarp {
 
-/// A plane at the start and at the end. Between, point and normal follow the frame; without one the
-/// point goes straight and the normal turns at constant speed by the least angle, below half a
-/// turn.
+/// A plane at the start and at the end. Between them, point and normal follow the frame. Without a
+/// frame the point moves straight, and the normal turns at constant speed by the smallest angle,
+/// which is below half a turn.
 struct MovingPlane {
   const double *point_start, *normal_start, *point_end, *normal_end;
   const TurningFrame* frame = nullptr;
 };
 
-/// Rotation vector that takes unit vector a to b by the least angle. @returns false: b = -a nearly
+/// Rotation vector that takes unit vector a to b by the smallest angle.
+/// @returns false where b is nearly -a
 TETWARP_HD bool least_turn(const double* a, const double* b, double* turn) {
   cross3(a, b, turn);
   const double sine = std::sqrt(dot3(turn, turn)), cosine = dot3(a, b);
@@ -27,12 +28,12 @@ TETWARP_HD bool least_turn(const double* a, const double* b, double* turn) {
   return true;
 }
 
-/// Point 0 against the half-space of a plane; the distance has a sign.
+/// Point 0 against the half-space of a plane; the distance is negative inside the half-space.
 ///
 /// With x the vertex from the plane's point and n the normal, f = x . n changes by
 /// x' . n + x . n', at most |x'| + angle |x|: |x'| is bounded as that of any two points, and n'
-/// is at right angles to n with length at most `angle`. |x| is at most its largest value at either
-/// end, where straight ways have it, plus by how much the ways bend.
+/// is at right angles to n with length at most `angle`. |x| is at most the larger of its values at
+/// the two ends, where it is largest on straight paths, plus the deviation from straight paths.
 TETWARP_HD CcdResult vertex_plane_ccd(const MovingPoints& points,
                                       const MovingPlane& plane,
                                       const CcdLimits& limits) {

@@ -10,28 +10,28 @@
 
 namespace tetwarp {
 
-constexpr double cosine_45 = 0.7071067811865476;  ///< parts that face elsewhere differ by more
+constexpr double cosine_45 = 0.7071067811865476;  ///< parts that face elsewhere: less
 
-/// Side a is that of the pair's first feature. One that does not count only replaces earlier
-/// touches of its pair.
+/// The touch of a pair of features. Side a is that of the first feature. A touch with `counts` =
+/// false becomes no contact; it only replaces earlier touches of its pair.
 struct PairTouch {
   PairKind kind = PairKind::vertex_face;
-  bool counts = true;     ///< false: of edges that touch at an end, or that are not what is nearest
-  bool has_ends = false;  ///< capsules side by side, which touch at both ends of their overlap, too
+  bool counts = true;  ///< false: edges that touch at an end, or beside which a triangle is nearer
+  bool has_ends = false;  ///< capsules side by side, which also touch at both ends of their overlap
   bool is_inside = true;  ///< nearest point inside a face; of two edges: between all ends
   std::int32_t a = 0, b = 0;  ///< the features, as in TouchingPair
   std::int32_t end = 0;       ///< 1, 2: at an end of the overlap of two capsules side by side
   std::int32_t pass = 0;      ///< the detection of the step that found it, from 0
   std::int32_t body_a = 0, body_b = 0;  ///< bodies, then obstacles
-  Vec3 point_a{}, point_b{};            ///< of the material, at the start; `gap` apart
-  Vec3 normal{{0, 0, 1}};               ///< unit, from b to a
-  Vec3 way{};                           ///< by which a moves relative to b as first expected [m]
-  double gap = 0;                       ///< at the start along the normal, less the thickness [m]
-  double distance = 0;                  ///< between the surfaces at the start [m]
-  double time = 0;                      ///< of the hit, 0 to 1; 0 where they are near at the start
+  Vec3 point_a{}, point_b{};  ///< material points at the start, `gap` apart along the normal
+  Vec3 normal{{0, 0, 1}};     ///< unit, from b to a
+  Vec3 way{};           ///< displacement of a relative to b in the first motion of the step [m]
+  double gap = 0;       ///< at the start along the normal, less the thickness [m]
+  double distance = 0;  ///< between the surfaces at the start [m]
+  double time = 0;      ///< of the hit, 0 to 1; 0 where they are near at the start
   std::int32_t vertex_a[3] = {-1, -1, -1};    ///< of the vertex or edge a; -1: not used
   std::int32_t vertex_b[3] = {-1, -1, -1};    ///< of the face, edge or vertex b; none of a plane
-  double weight_a[3] = {}, weight_b[3] = {};  ///< of these, of the nearest points; sum 1
+  double weight_a[3] = {}, weight_b[3] = {};  ///< their weights in the nearest points; sum 1
 
   TETWARP_HD bool is_of_edges() const { return kind == PairKind::edge_edge; }
   bool operator==(const PairTouch&) const = default;
@@ -43,7 +43,7 @@ struct ChosenTouch {
   double area;  ///< that touches [m^2]
 };
 
-/// What stages read of surfaces and their motion.
+/// Surfaces and their motion as the stages of touches read them.
 struct TouchView {
   CollideView scene;
   TouchAreaView areas;
@@ -84,8 +84,8 @@ TETWARP_ANY_EXEC inline Vec3 turned(const TurningFrame& frame, double time, cons
   return plus(direction, plus(times(std::sin(time * angle), once), times(2 * half * half, twice)));
 }
 
-/// How far a point of a body has gone at a time.
-/// @param frame  that the body turns with, or null: it goes straight
+/// Displacement of a point of a body from the start to a time of the motion.
+/// @param frame  that the body follows, or null: the point moves straight
 TETWARP_HD Vec3 way_at(const TurningFrame* frame, const Vec3& start, const Vec3& end, double time) {
   if (frame == nullptr) return times(time, minus(end, start));
   const Vec3 arm = minus(start, vec3_of(frame->centre));

@@ -1,5 +1,5 @@
 /// @file touch_area.hpp
-/// The area that a vertex stands for in a contact, and the surface beside an edge.
+/// The area of the contact of a vertex, and the triangles beside an edge.
 #pragma once
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 
-/// Triangles around vertices; does not change during a simulation.
+/// The triangles around each vertex; constant during a simulation.
 struct TouchAreaView {
   View<const std::int32_t> start, triangle;  ///< of each vertex, see TouchAreas
   View<const std::int32_t> corners;          ///< [triangles][3] vertices
@@ -34,7 +34,8 @@ TETWARP_HD double facing_area(const TouchAreaView& areas,
 
 /// Areas of the triangles around a vertex.
 struct AreasAround {
-  double all = 0, along = 0, against = 0;  ///< a direction
+  double all = 0, along = 0, against = 0;  ///< along, against: projections of the triangles that
+                                           ///< face along and against a direction [m^2]
 };
 TETWARP_HD AreasAround areas_around(const TouchAreaView& areas,
                                     std::int64_t vertex,
@@ -50,9 +51,10 @@ TETWARP_HD AreasAround areas_around(const TouchAreaView& areas,
   return sum;
 }
 
-/// The share of a vertex's area that is seen along a direction: each triangle by the cosine of its
-/// angle. Of triangles that face along it, or of those that face against it, whichever is more: a
-/// sheet touches with either side, a body with its outside.
+/// The part of a vertex's area that is seen along a direction: each triangle counts by the cosine
+/// of the angle between its normal and the direction. Triangles that face along the direction or
+/// those that face against it count, whichever have the larger sum: a sheet touches with either
+/// side, a body with its outside.
 /// @param direction  unit
 TETWARP_HD double seen_area(const TouchAreaView& areas,
                             std::int64_t vertex,
@@ -65,16 +67,15 @@ TETWARP_HD double seen_area(const TouchAreaView& areas,
   return around.all > 0 ? area * min_of(1.0, most / around.all) : 0;
 }
 
-/// Share of the area of `body` where it touches `other`, both meshes: shares add up to 1, the finer
-/// mesh has more. 1/2 for equal ones.
+/// The weight of `body` in the area of a contact with `other`, both meshes: the weights of the two
+/// add up to 1, the finer mesh has the larger one.
 TETWARP_HD double area_share(const TouchAreaView& areas, std::int64_t body, std::int64_t other) {
   const double own = areas.mean_area[body], others = areas.mean_area[other];
   return own + others > 0 ? others / (own + others) : 0.5;
 }
 
-/// Whether an edge is what is nearest of the surface around it: false where a triangle beside the
-/// edge comes nearer to what lies in a direction from the edge, because the direction leans over
-/// the triangle by more than 3 degrees.
+/// Whether no triangle beside an edge is nearer than the edge itself to a point in direction
+/// `toward` from it: false where this direction leans over a triangle by more than 3 degrees.
 /// @param edge    its two vertices
 /// @param toward  unit, across the edge
 TETWARP_ANY_EXEC inline bool edge_is_nearest(const TouchAreaView& areas,

@@ -10,8 +10,8 @@
 
 namespace tetwarp {
 
-/// A pair of two sides of vertices at the time of its hit. The points are those of the material at
-/// the start, moved along the normal so that they are `gap` apart.
+/// Finds normal, nearest points and gap of a pair at the time of its hit. The points are material
+/// points at the start of the step, moved along the normal so that they are `gap` apart.
 class TouchMaker {
  public:
   /// @param view  kept by the caller
@@ -85,8 +85,8 @@ class TouchMaker {
   }
 
  private:
-  /// At the hit. On the way relative to where the first vertex of the pair starts: far from zero no
-  /// digits of distances are lost.
+  /// Place of a vertex at the hit, relative to the start of the pair's first vertex: far from the
+  /// origin of the world no digits of distances are lost.
   TETWARP_HD Vec3 place(std::int32_t vertex) const {
     const Vec3 start = view_.start(vertex), end = vec3_at(view_.motion.end, vertex);
     const TurningFrame* const frame = view_.motion.frame_of(view_.scene.vertex_body[vertex]);
@@ -138,8 +138,8 @@ class TouchMaker {
     apart_ = minus(hit_a_, hit_b_);
     otherwise_ = cross(minus(p1, p0), minus(q1, q0));
     if (!(norm(otherwise_) > 0)) otherwise_ = any_across(minus(p1, p0));
-    // An end that touches is a vertex that touches a face, of which there is another pair. There is
-    // none of two capsules, nor of a corner against the side of a capsule.
+    // Where an end of an edge is nearest, its vertex has a pair with the other surface, and that
+    // one counts. Two capsules have no such pair, nor has a corner against the side of a capsule.
     const bool ends_a = s <= 0 || s >= 1, ends_b = t <= 0 || t >= 1;
     const bool is_round_a = a_.radius > 0, is_round_b = b_.radius > 0;
     touch_.is_inside = (is_round_a && is_round_b) || (!(ends_a && (is_round_a || !is_round_b)) &&
@@ -191,7 +191,8 @@ class TouchMaker {
                                      : unit(lerp(normal, vec3_of(after + 3), time_));
     const Vec3 start_a = view_.start(touch_.a);
     touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
-    // The vertex's foot at the hit, in the material of the plane: turned back as the plane turned.
+    // The foot of the vertex on the plane at the hit, as a material point of the plane: turned back
+    // to the start.
     const Vec3 place = plus(minus(point, origin_), way_at(frame, point, vec3_of(after), time_));
     const Vec3 arm = minus(hit_a_, place);
     const Vec3 foot = minus(arm, times(dot(arm, touch_.normal), touch_.normal));
@@ -202,7 +203,8 @@ class TouchMaker {
                        minus(first_end, point));
     set_gap();
   }
-  /// Of a plane without a frame: by the least rotation that takes the normal back.
+  /// The foot turned back on a plane without a frame: by the smallest rotation that takes the
+  /// normal back.
   TETWARP_ANY_EXEC Vec3 turned_back(const Vec3& foot, const Vec3& before) const {
     const Vec3 axis = cross(touch_.normal, before);
     const double cosine = dot(touch_.normal, before);
@@ -211,7 +213,7 @@ class TouchMaker {
                 plus(cross(axis, foot), times(dot(axis, foot) / (1 + cosine), axis)));
   }
 
-  /// Sets the gap and moves the points along the normal to be as far apart.
+  /// Sets the gap and moves the points along the normal until they are `gap` apart.
   TETWARP_ANY_EXEC void set_gap() {
     for (int k = 0; k < 3; ++k) {
       touch_.vertex_a[k] = a_.vertex[k];
@@ -221,14 +223,16 @@ class TouchMaker {
     }
     const double apart = dot(touch_.normal, minus(touch_.point_a, touch_.point_b));
     touch_.gap = apart - view_.thickness;
-    // Surfaces that are apart do not overlap, however far the normal turns until the hit.
+    // Surfaces that are apart at the start have no negative gap, however far the normal turns until
+    // the hit.
     if (touch_.distance >= view_.thickness) touch_.gap = max_of(touch_.gap, 0.0);
     const double extra = apart - touch_.gap, share_a = share_of_a();
     touch_.point_a = minus(touch_.point_a, times(share_a * extra, touch_.normal));
     touch_.point_b = plus(touch_.point_b, times((1 - share_a) * extra, touch_.normal));
   }
-  /// Impulses at points that are apart would turn bodies: a rigid side gets the point at which the
-  /// other side is hit; one that does not move can have any.
+  /// The part of the correction that moves point a. Opposite impulses at two points apart would
+  /// turn bodies: so a rigid side uses the point of a deformable one. A side that does not move may
+  /// use any point.
   TETWARP_HD double share_of_a() const {
     const bool moves_a = view_.moves(touch_.body_a), moves_b = view_.moves(touch_.body_b);
     if (moves_a != moves_b) return moves_a ? 0 : 1;
@@ -238,11 +242,11 @@ class TouchMaker {
   }
 
   const TouchView& view_;
-  double time_;  ///< of the hit; 0 where it is near only
+  double time_;  ///< of the hit; 0 where the pair is near but not hit
   PairTouch touch_;
   SidePoint a_, b_;
   Vec3 origin_{};
-  Vec3 hit_a_{}, hit_b_{};  ///< from the origin, without radii
+  Vec3 hit_a_{}, hit_b_{};  ///< relative to origin_, without radii
   Vec3 apart_{}, otherwise_{{0, 0, 1}};
 };
 

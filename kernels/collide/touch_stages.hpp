@@ -28,7 +28,7 @@ struct TouchBody {
       touch.has_ends = ends.overlaps(part);
     }
     if (touch.has_ends) {
-      // Between ends that are as near a third contact would change nothing.
+      // A third contact between two ends with the same gap would change nothing.
       const double gap = min_of(ends.make_at(part[0], 1).gap, other.make_at(part[1], 2).gap);
       touch.counts = touch.counts && gap > touch.gap + same_gap * view.thickness;
     }
@@ -45,7 +45,7 @@ struct TouchBody {
   }
 };
 
-/// One index = one pair and its touch. Appends those at the ends of an overlap.
+/// One index = one pair and its touch. Appends the touches at both ends of an overlap of capsules.
 struct EndTouchBody {
   View<const FeatureTouch> pairs;
   View<const PairTouch> touches;
@@ -64,7 +64,7 @@ struct EndTouchBody {
   }
 };
 
-/// One index = one pair. Appends it if it is hit.
+/// One index = one pair. Appends it if it is hit during the motion.
 struct HitBody {
   View<const FeatureTouch> pairs;
 
@@ -74,7 +74,7 @@ struct HitBody {
   }
 };
 
-/// The touches of a step: those of the first detection, those at its ends of overlaps, and those of
+/// The touches of a step: those of the first detection, those at the ends of overlaps, and those of
 /// later detections.
 struct TouchList {
   View<const PairTouch> first, ends, later;
@@ -95,7 +95,8 @@ struct TouchCopyBody {
   TETWARP_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
 };
 
-/// One index = one touch: its first feature, edges after vertices, and its number.
+/// One index = one touch. Writes its key: the first feature, with edges after vertices, and the
+/// number of the touch.
 struct TouchKeyBody {
   TouchList touches;
   std::int64_t vertex_count;
@@ -107,11 +108,12 @@ struct TouchKeyBody {
   }
 };
 
-/// One index = one touch, sorted by its first feature; that which is the first of a feature orders
-/// and marks all of it. Of edges all count; a vertex touches another body once, at what is nearest:
-/// what is near at the start by distance, then what is hit on the way by time. Other parts of the
-/// body count, too, where they face elsewhere, see StepTouches. A pair that was only near and is
-/// hit in a later detection has the touch of the later one.
+/// One index = one touch in the order of first features. The index of the first touch of a feature
+/// orders and marks all touches of that feature. Touches of edges are all kept. Of a vertex, the
+/// nearest touch with each other body is kept: touches that are near at the start by distance, then
+/// those hit on the way by time. Its touches with other parts of that body are also kept where
+/// these face elsewhere, see StepTouches. Where a pair is near in one detection and hit in a later
+/// one, the later touch replaces the earlier one.
 struct TouchChoiceBody {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
   enum Mark : std::int8_t { dropped, kept, kept_with_area };
@@ -120,7 +122,7 @@ struct TouchChoiceBody {
   CollideView scene;
   double thickness;
   View<const CellPair> given;  ///< sorted by first feature
-  View<CellPair> order;        ///< out: the same, of vertices by body and distance
+  View<CellPair> order;        ///< out: the same; touches of a vertex by body, time and distance
   View<std::int8_t> mark;      ///< out [order] Mark
 
   TETWARP_HD void operator()(std::int64_t i) const {
@@ -165,7 +167,8 @@ struct TouchChoiceBody {
     }
     return false;
   }
-  /// Whether the nearest point of a part is on an edge or corner that a nearer part has, too.
+  /// Whether the nearest point is on an edge or a corner of the other body that a nearer touch
+  /// shares.
   TETWARP_HD static bool is_edge_of(const PairTouch& touch, const PairTouch& nearer) {
     bool is_inside = true;
     for (int k = 0; k < 3; ++k) {
@@ -183,8 +186,8 @@ struct TouchChoiceBody {
     return !is_inside && touch.vertex_b[0] >= 0;
   }
 
-  /// Marks the touches of one body from `first` on.
-  /// @returns past them
+  /// Marks the touches with one body from `first` on.
+  /// @returns the index after the last of them
   TETWARP_HD std::int64_t choose(std::int64_t first, std::int64_t begin, std::int64_t end) const {
     const std::int32_t body = touch_at(first).body_b;
     const bool is_round = scene.vertex_radius[touch_at(first).a] > 0;
@@ -202,7 +205,7 @@ struct TouchChoiceBody {
         if (!(cosine < limit) || is_edge_of(touch, nearer)) {
           own = dropped;
         } else if (cosine >= cosine_45) {
-          own = kept;  // a part that faces almost as a nearer one takes none of its area
+          own = kept;  // the area is that of a nearer part that faces almost the same way
         }
       }
       mark[i] = own;

@@ -7,9 +7,9 @@
 
 namespace tetwarp {
 
-// Boxes of a search are larger than those of the motion, so that later motions of the step, which
-// differ little, lie within them: they suit a distance of so many thicknesses, and are inflated by
-// this part of a vertex's way.
+// A search makes boxes larger than its motion needs, so that boxes of later motions of the step,
+// which differ little, lie within them: they are for a search distance of this many thicknesses,
+// and inflated by this fraction of a vertex's displacement.
 constexpr double found_thicknesses = 2.5;
 constexpr double found_fraction = 0.25;
 
@@ -20,26 +20,25 @@ struct VertexRun {
 
 struct RunBox {
   Box box;              ///< of all vertices of the run
-  std::int32_t leaves;  ///< a box is not within the one found before
+  std::int32_t leaves;  ///< 1: a box is not within the one found before
 };
 
 /// One index = one run of vertices. Writes the boxes of its vertices, or compares them with those
 /// found before, and writes their union.
-///
-/// A box holds the vertex during the whole motion, inflated by its radius, its sagitta and half the
-/// distance that is looked for, so that features within that distance have boxes that overlap. The
-/// larger boxes `found` are those that the pairs of items come from; later motions whose boxes lie
+/// A box contains the vertex during the whole motion. It is inflated by the vertex's radius, its
+/// sagitta and half the search distance, so that features within that distance have boxes that
+/// overlap. The pairs of items come from the larger boxes `found`; later motions whose boxes lie
 /// within them need no new pairs.
 struct VertexBoxBody {
   View<const VertexRun> runs;
   MotionView motion;
   View<const double> radius;
-  double half_distance;        ///< that is looked for [m]
+  double half_distance;        ///< half of the search distance [m]
   double found_half_distance;  ///< [m], at least half_distance
-  double fraction;             ///< of a vertex's way: added to `found` on all sides
+  double fraction;             ///< of a vertex's displacement, by which `found` is inflated
   std::int32_t finds;          ///< 1: writes `found`; 0: compares with it
   View<Box> found;             ///< [vertices]
-  View<RunBox> run_boxes;      ///< out: of the boxes written, or of those compared; more follow
+  View<RunBox> run_boxes;      ///< out: unions of the boxes written or compared; then their unions
 
   TETWARP_HD void operator()(std::int64_t r) const {
     const VertexRun run = runs[r];
@@ -69,7 +68,7 @@ struct VertexBoxBody {
     run_boxes[r] = all;
   }
 
-  /// Inflated also by four roundings of the coordinates.
+  /// The box of a vertex, inflated also by four roundings of its coordinates.
   TETWARP_HD Box box_of(std::int32_t v, double inflation) const {
     Box box;
     for (int k = 0; k < 3; ++k) {
@@ -83,10 +82,10 @@ struct VertexBoxBody {
   }
 };
 
-/// One index = one run of boxes. Writes their union behind them.
+/// One index = one run of boxes. Writes their union after them.
 struct BoxUniteBody {
   View<const VertexRun> runs;
-  std::int64_t first;  ///< of `runs`, which is also the place of its union in `boxes`
+  std::int64_t first;  ///< first run of `runs`; also the place of its union in `boxes`
   View<RunBox> boxes;  ///< in, out
 
   TETWARP_HD void operator()(std::int64_t i) const {

@@ -86,7 +86,8 @@ struct AndersonState {
     for (int k = 0; k < depth; ++k) gram[k][newest] = gram[newest][k] = sums.value[k];
   }
   TETWARP_HD void find_factors() {
-    // The changes differ in size by many orders of magnitude: scale first, then regularize.
+    // The changes differ in size by many orders of magnitude, so the matrix is scaled before it is
+    // regularized.
     double matrix[window][window], solution[window], scale[window];
     for (int i = 0; i < depth; ++i) {
       scale[i] = scale_of(i);
@@ -105,9 +106,9 @@ struct AndersonDecideBody {
   TETWARP_HD void operator()(std::int64_t) const { state->decide(); }
 };
 
-/// Anderson acceleration, type II, window 8 (Walker and Ni 2011), the least squares in a diagonal
-/// metric. An image whose defect g(x) - x is more than twice the last one is rejected, and the
-/// iteration restarts from the image before.
+/// Anderson acceleration, type II, window 8 (Walker and Ni 2011), with the least squares in a
+/// diagonal metric. An image whose defect g(x) - x is more than twice the last one is rejected; the
+/// iteration then restarts from the image before it.
 template <class Exec, class T>
 class AndersonMixer {
  public:

@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// The contacts of each block, in rising order.
+/// The contacts of each block, in ascending order.
 struct BlockContacts {
   View<const std::int64_t> start;    ///< [blocks + 1]
   View<const std::int32_t> contact;  ///< contacts that act on the block
@@ -61,7 +61,7 @@ TETWARP_HD void add_node_product(const T* m, const T* y, T* sum) {
 }
 
 /// out = A x in one block row. Products of 3 x 3 blocks are summed in registers. If all blocks are
-/// 3 x 3, no sizes are read, which takes two thirds of the time.
+/// 3 x 3, no sizes are read, which reduces the time to two thirds.
 template <class T>
 TETWARP_HD void multiply_block_row(const SystemView<T>& a, std::int64_t b, const T* x, T* out) {
   if (a.has_only_nodes) {

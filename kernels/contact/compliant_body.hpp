@@ -1,12 +1,12 @@
 /// @file compliant_body.hpp
-/// Bodies that give way to contacts by dense matrices M^-1: elastic bodies by the inverse of their
-/// system at rest, R A_0^-1 R^T; single rigid bodies by their own, A^-1; and of bodies that A
-/// couples to others each node and each rigid body by omega D^-1, D its diagonal block.
+/// The dense matrices M^-1 by which bodies give way to impulses of contacts: of an elastic body the
+/// inverse of its system at rest, R A_0^-1 R^T; of a single rigid body its own, A^-1; of other
+/// bodies that A couples, omega D^-1 for each node and each rigid body, with D its diagonal block.
 ///
-/// A solve numbers the rows of its bodies one body after the other. Vectors [rows][3] are in the
-/// world; vectors "in frames" have the numbers of elastic bodies turned by R^T. The rows that
-/// contacts touch, both rows of a rigid body, are also numbered: nodes. Between the nodes of a body
-/// acts its compliance, a part of M^-1.
+/// A solve numbers the rows of its bodies, body after body. Vectors [rows][3] are in the world; in
+/// vectors "in frames" the numbers of elastic bodies are turned by R^T. A row on which a contact
+/// acts, and the second row of a rigid body with it, is a node; nodes are numbered too. The
+/// compliance of a body is the part of M^-1 between its nodes.
 #pragma once
 #include <cstdint>
 
@@ -16,8 +16,8 @@
 namespace tetwarp {
 
 struct CompliantBody {
-  const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: by D^-1
-  double relaxation = 1;              ///< omega, where by D^-1
+  const float* inverse = nullptr;     ///< A_0^-1, [3 count][3 count], symmetric; null: omega D^-1
+  double relaxation = 1;              ///< omega, where omega D^-1 is used
   std::int32_t frame = -1;            ///< its rotation, -1: none
   std::int32_t system_row = 0;        ///< its first row of the system
   std::int32_t first = 0, count = 0;  ///< its rows
@@ -41,14 +41,14 @@ struct CompliantBodies {
   TETWARP_HD const CompliantBody& of_node(std::int64_t node) const {
     return of_row(row_of_node[node]);
   }
-  /// out = R^T v
+  /// out = R^T v.
   TETWARP_HD void to_frame(const CompliantBody& own, const double* v, double* out) const {
     const double* const r = rotation.data + 9 * std::int64_t{own.frame};
     for (int i = 0; i < 3; ++i) {
       out[i] = own.frame < 0 ? v[i] : r[i] * v[0] + r[3 + i] * v[1] + r[6 + i] * v[2];
     }
   }
-  /// out = R v
+  /// out = R v.
   TETWARP_HD void to_world(const CompliantBody& own, const double* v, double* out) const {
     const double* const r = rotation.data + 9 * std::int64_t{own.frame};
     for (int i = 0; i < 3; ++i) {
@@ -70,8 +70,8 @@ struct CompliantBodies {
   }
 };
 
-/// (node, other, item): one block of the compliance of their body, velocities of `other`, counted
-/// from the first node of the body, for unit forces on the node.
+/// Index (node, other, item): one 3x3 block of the compliance of a body: the velocity of node
+/// `other`, counted from the first node of the body, for unit impulses on `node`.
 struct ComplianceBlockBody {
   CompliantBodies of;
   View<float> compliance;  ///< out
@@ -87,8 +87,8 @@ struct ComplianceBlockBody {
   }
 };
 
-/// One index = one number of a node: velocities that pushes on the nodes cause. Neighbors read
-/// neighboring numbers of the compliance.
+/// One index = one number of a node: the velocity caused by impulses on the nodes. Successive
+/// indices read successive numbers of the compliance.
 struct NodeMoveBody {
   CompliantBodies of;
   View<const double> push, from;  ///< [nodes][3] in frames; `from` may be empty: zero
@@ -105,8 +105,8 @@ struct NodeMoveBody {
   }
 };
 
-/// One index = one number of `moved`: M^-1 push, both in frames. Neighbors read neighboring numbers
-/// of the inverse.
+/// One index = one number of `moved`: M^-1 push, both in frames. Successive indices read successive
+/// numbers of the inverse.
 struct ComplianceBody {
   CompliantBodies of;
   View<const double> push;
@@ -124,7 +124,7 @@ struct ComplianceBody {
   }
 
  private:
-  /// Of a row of a symmetric matrix, read as a column.
+  /// Product with a row of a symmetric matrix, which is read as a column.
   template <class T>
   TETWARP_HD double product(const T* a, std::int64_t first, std::int64_t size) const {
     double sum = 0;

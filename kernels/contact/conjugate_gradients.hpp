@@ -1,5 +1,5 @@
 /// @file conjugate_gradients.hpp
-/// Bodies of preconditioned conjugate gradients on A x = g, one index per block of dofs; see
+/// Stage bodies of preconditioned conjugate gradients on A x = g, one index per block of dofs; see
 /// host/contact/block_jacobi/coupled_system.hpp.
 #pragma once
 #include <cstdint>

@@ -59,7 +59,7 @@ class ConjugateDirection {
   struct State {
     PlainSums<1> square;  ///< |g(x) - x|^2
     double last = 0;      ///< its value at the step before
-    double ratio = 0;     ///< of the two: the factor of the old direction
+    double ratio = 0;     ///< of square and last: the factor of the old direction
     bool is_restart = true;
   };
 
@@ -104,7 +104,7 @@ class ConjugateDirection {
   TETWARP_ANY_EXEC void observe(View<const T> x, View<const T> image) {
     exec_.sum_to("contact/mix", 0, x.size, DefectBody<T>{weights_, x, image}, &state_->square);
   }
-  /// In memory of the executor.
+  /// The state, in memory of the executor.
   const State* state() const { return state_; }
   TETWARP_ANY_EXEC double defect() { return sqrt(exec_.load(&state_->square.value[0])); }
   TETWARP_ANY_EXEC bool advance(View<const T> x, View<T> image) {

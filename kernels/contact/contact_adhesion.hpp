@@ -43,9 +43,9 @@ TETWARP_HD double cut_intensity(double beta) {
   return min_of(max_of(beta, 0.0), 1.0);
 }
 
-/// Exact solution after `time` [s], clamped to [0, 1]. The rate is piecewise linear and does not
-/// grow with beta: beta can pass, once, from a piece where only bonding or only debonding acts to
-/// the piece where both act.
+/// Exact solution after `time` [s], clamped to [0, 1]. The rate is piecewise linear in beta and
+/// does not grow with it: once at most, beta moves from an interval in which only bonding or only
+/// debonding acts to the interval in which both act.
 TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double time) {
   const double bonding = bonding_rate_of(law, beta);
   const double debonding = debonding_rate_of(law, beta);
@@ -69,8 +69,8 @@ TETWARP_HD double exact_intensity(const IntensityLaw& law, double beta, double t
   return cut_intensity(relaxed_intensity(corner, both, law.bonding_decay + law.strain, left));
 }
 
-/// One explicit Euler step, clamped to [0, 1]; for comparison. If a decay rate times `time` exceeds
-/// 1, it overshoots the equilibrium.
+/// One explicit Euler step, clamped to [0, 1]; for comparison. It overshoots the equilibrium where
+/// a decay rate times `time` exceeds 1.
 TETWARP_HD double euler_intensity(const IntensityLaw& law, double beta, double time) {
   const double rate = bonding_rate_of(law, beta) + debonding_rate_of(law, beta);
   return cut_intensity(beta + time * rate);
@@ -81,7 +81,7 @@ TETWARP_HD double value_or(View<const double> values, std::int64_t i, double oth
   return values.size > 0 ? values[i] : otherwise;
 }
 
-/// Input of the stage, as in AdhesionState; a view of size 0 is a vector that was not given.
+/// Input of the stage, as in AdhesionState; an empty view is a vector that was not given.
 struct AdhesionViews {
   double time_step;  ///< [s], > 0
   View<const double> area;
@@ -142,8 +142,8 @@ struct ContactAdhesionBody {
     const bool debonds =
         beta > 0 && viscosity > 0 && (torn || (!(push > 0) && next < debond_intensity));
     if (debonds) next = 0;
-    // New bonds form without tension: the gap is reduced so that the force beta^2 C g is
-    // continuous; the stored energy decreases by the same factor.
+    // New bonds form without tension: the gap is reduced so that the force beta^2 C g does not
+    // jump; the stored energy decreases by the same factor.
     double keep = next > 0 ? 1 : 0;
     if (next > beta) keep = (beta / next) * (beta / next);
     next_intensity[c] = next;

@@ -85,10 +85,11 @@ __global__ void __launch_bounds__(island_threads, island_blocks)
   if (Exec::first() == 0) job.results[which] = result;
 }
 
-/// Shared memory of a block without being asked for more [bytes].
+/// Shared memory that a block has without a request for more [bytes].
 constexpr std::int64_t common_shared_bytes = std::int64_t{48} * 1024;
 
-/// Shared memory for the arrays of each island, so that the largest fits or a block has no more.
+/// Shared memory for the arrays of each island: enough for the largest island, or all that a block
+/// may have.
 /// @param tasks     in memory of the host
 /// @param most      shared memory that a block may have [bytes]
 template <class T, int threads>
@@ -107,9 +108,9 @@ std::int64_t shared_bytes_for(View<const IslandTask> tasks, bool is_local, std::
 /// @param stream  where to run
 /// @pre  at least one task
 ///
-/// Determinism: same bits in every run and for any number of threads per island; islands share no
-/// data, contacts of a color neither, sums are fixed trees. Cost: per stage one barrier, besides
-/// what the stages cost.
+/// Determinism: same bits in every run and for any number of threads per island, because islands
+/// share no data, contacts of one color share none, and sums are fixed trees. Cost: one barrier per
+/// stage, besides the stages.
 template <class T, int threads = island_threads>
 void contact_solve_islands(cudaStream_t stream, const IslandJob<T>& job) {
   constexpr std::int64_t islands = island_threads / threads;

@@ -9,8 +9,8 @@
 
 namespace tetwarp {
 
-/// One index = one contact: a lower bound of its share in the eta of zero impulses, for any B >=
-/// B'.
+/// One index = one contact: a lower bound of its share in the eta of zero impulses, for every block
+/// B that is at least B'.
 ///
 /// Each term of the natural map rises with its weight, then falls, so its minimum is at an end of
 /// the interval of weights. With tangential offsets this holds approximately: measured values of
@@ -44,7 +44,8 @@ struct FreeResidualBoundBody {
   }
 };
 
-/// One index = one contact: an upper bound of its share in eta, for any B >= B'.
+/// One index = one contact: an upper bound of its share in eta, for every block B that is at least
+/// B'.
 ///
 /// Let u' be velocities with which the impulses satisfy the law, and d = u - u'. The natural map is
 /// zero at u'. Its slope in u_n is at most rho_n. In u_t it is at most rho_t, plus kappa_t where

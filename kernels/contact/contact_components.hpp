@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// Reads a value that other threads may lower at the same time.
+/// Reads a value that other threads may lower at that time.
 TETWARP_HD std::int32_t load_relaxed(const std::int32_t* value) {
 #if defined(__CUDA_ARCH__)
   return *static_cast<const volatile std::int32_t*>(value);

@@ -1,6 +1,6 @@
 /// @file contact_fill.hpp
-/// Stage "setup" of the contact solver: from the numbers of a problem in its own order to those in
-/// the order of the structure, which the other stages read.
+/// Stage "setup" of the contact solver: copies the numbers of a problem from the order of the
+/// problem to the order of the structure, which the other stages use.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// The numbers of a problem as it stores them.
+/// The numbers of a problem in the problem's own order.
 struct ContactInput {
   View<const double> matrix;          ///< stored numbers of W, or of A
   View<const double> jacobian;        ///< stored numbers of J
@@ -23,7 +23,7 @@ struct ContactInput {
   double time_step = 0;
   View<const double> area, stiffness, tangential_stiffness, intensity, gap;  ///< or empty
 
-  /// Of problems with other blocks of rows than contacts, which follow the contacts; else empty.
+  /// Of blocks of rows that are not contacts, which follow the contacts; empty if there are none.
   View<const std::uint8_t> row_kind;     ///< ContactKind of these blocks, [contacts]
   View<const std::int32_t> row_contact;  ///< of rolling blocks: the contact that they belong to
   View<const double> torsion;            ///< of rolling blocks [m]
@@ -115,7 +115,7 @@ struct ContactConstantsBody {
   }
 };
 
-/// One index = one slot: notes it as the place of its contact.
+/// One index = one slot: stores it as the slot of its contact.
 struct SlotOfContactBody {
   View<const std::int32_t> contact_of_slot;
   View<std::int32_t> slot_of_contact;
@@ -125,7 +125,8 @@ struct SlotOfContactBody {
   }
 };
 
-/// One index = one slot: how far the contact of a rolling block is from it; see row_law.hpp.
+/// One index = one slot: how many slots the contact of a rolling block is away from it; see
+/// row_law.hpp.
 struct RollingLinkBody {
   ContactInput in;
   View<const std::int32_t> contact_of_slot;
@@ -204,7 +205,7 @@ struct ContactSetupBody {
   }
 };
 
-/// Counts of what was left out of a system because it cannot change the result.
+/// Counts of rows and springs that a system leaves out because they cannot change the result.
 struct ContactSavings {
   std::int64_t rows = 0;     ///< tangential rows
   std::int64_t springs = 0;  ///< contacts whose springs are left out

@@ -1,7 +1,7 @@
 /// @file contact_grid.cuh
-/// GridContactExec: the executor of the contact pipeline on a whole device, for islands too large
-/// for one block and for those whose blocks A couples. The host controls the iteration; each of its
-/// decisions reads one sum from the device.
+/// GridContactExec: the executor of the contact pipeline on a whole device, for islands that are
+/// too large for one block or whose blocks A couples. The host controls the iteration and reads one
+/// sum from the device for each decision.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -10,8 +10,8 @@
 
 namespace tetwarp {
 
-/// A slot is a position of a contact in the order of the structure, a place that of a dof. Targets
-/// map the stored numbers of a matrix to positions in the arrays of SystemMemory.
+/// A slot is a position of a contact in the order of the structure, a place is that of a dof.
+/// Targets map the stored numbers of a matrix to positions in the arrays of SystemMemory.
 struct ContactIndices {
   bool is_local = false;
   View<const std::int32_t> contact_of_slot;
@@ -20,7 +20,7 @@ struct ContactIndices {
   // Local form.
   View<const std::int64_t> delassus_row;  ///< [slots + 1]
   View<const std::int32_t> delassus_column;
-  View<const std::int64_t> delassus_target;    ///< empty: W is stored by blocks already
+  View<const std::int64_t> delassus_target;    ///< empty: W is stored by blocks in the problem
   View<const std::int64_t> delassus_diagonal;  ///< [slots]: entry of the diagonal block
 
   // Global form.
@@ -38,7 +38,8 @@ struct ContactIndices {
   std::int64_t jacobian_size = 0, system_size = 0, inverse_size = 0;
   bool has_only_nodes = false;  ///< all blocks have three dofs
 
-  /// Whether all targets of W or A differ, and those of J: then numbers are added in parallel.
+  /// Whether all targets of W or A, and all targets of J, differ: then numbers are added in
+  /// parallel.
   bool matrix_is_unique = true, jacobian_is_unique = true;
 
   std::int64_t slots() const { return contact_of_slot.size; }

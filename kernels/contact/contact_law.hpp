@@ -1,5 +1,5 @@
 /// @file contact_law.hpp
-/// The law of one contact: its impulse for given velocities with all other impulses constant.
+/// The law of one contact: its impulse for given velocities while all other impulses are constant.
 ///
 /// Letters: r impulse, u velocity, B the contact's own 3x3 block of the Delassus matrix,
 /// K = diag(kappa_n, kappa_t, kappa_t) the adhesive springs over one step, o_t the stored
@@ -19,13 +19,13 @@ struct ContactSwitches {
   bool operator==(const ContactSwitches&) const = default;
 };
 
-/// Which parts of the law a contact needs.
+/// The parts of the law that a contact needs.
 enum class ContactKind : std::uint8_t {
   frictionless,  ///< neither friction nor tangential spring: normal row only
   coulomb,       ///< friction, no springs
   adhesive,      ///< springs, with or without friction
-  bilateral,     ///< no contact: rows whose velocity is zero; see row_law.hpp
-  rolling        ///< no contact: torsional and rolling friction of one; see row_law.hpp
+  bilateral,     ///< not a contact: rows whose velocity is zero; see row_law.hpp
+  rolling        ///< not a contact: torsional and rolling friction of one; see row_law.hpp
 };
 
 /// Whether a block of three rows is a contact.
@@ -33,8 +33,9 @@ TETWARP_HD bool is_contact(ContactKind kind) {
   return kind < ContactKind::bilateral;
 }
 
-/// The constants of one contact during a solve, or of another block of three rows; see row_law.hpp
-/// for what the members of a `rolling` one mean. Those of a `bilateral` one are 0 but for `block`.
+/// The constants of one contact, or of another block of three rows, during a solve. The members of
+/// a `rolling` block have other meanings, see row_law.hpp; those of a `bilateral` block are 0
+/// except `block`.
 template <class T>
 struct ContactConstants {
   T block[9];           ///< B, row by row
@@ -83,8 +84,8 @@ TETWARP_HD T restrictive_slip(T free, T limit, T m, T coupling, T complement, T 
   return min_of(max_of(slip, T(0)), free);
 }
 
-/// Size of the friction impulse (without the springs) for a free tangential velocity of `speed`; it
-/// acts against that velocity.
+/// Magnitude of the friction impulse (without the springs) at a free tangential velocity of
+/// magnitude `speed`; it is directed against that velocity.
 /// @param limit   radius of friction, mu times the normal impulse
 /// @param metric  p; with the spring the effective metric is m = p / (1 + kappa p)
 /// @param along, across  stored gap along the velocity; square of the part across it
@@ -164,9 +165,9 @@ TETWARP_HD T solve_normal(const ContactConstants<T>& c, T velocity, T* impulse) 
   return impulse[0] - before;
 }
 
-/// Replaces the impulse of a contact by the solution of its law, the other impulses fixed: normal
-/// first, then the tangents under the friction limit of the new normal impulse. Impulses that no
-/// update changes satisfy the law exactly.
+/// Replaces the impulse of a contact by the solution of its law while the other impulses are
+/// constant: first the normal part, then the tangents under the friction limit of the new normal
+/// impulse. Impulses that no such update changes satisfy the law exactly.
 /// @param velocity  in: u with the old impulse; overwritten, [3]
 /// @param impulse   in and out: r, [3]
 template <class T>

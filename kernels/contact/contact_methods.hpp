@@ -54,7 +54,8 @@ struct MethodWork {
 template <class Exec, class T, class Log>
 class ContactMethods {
  public:
-  /// One index = one entry: product of gradient and last step; a positive sum: the step led uphill.
+  /// One index = one entry: product of gradient and last step; the step was uphill where the sum is
+  /// positive.
   struct SlopeBody {
     View<const double> weights;
     View<const T> before, x, last;
@@ -103,7 +104,7 @@ class ContactMethods {
   }
 
   /// Solves all contacts at once in the metric of split masses (see contact_split.hpp), with
-  /// Nesterov's acceleration, restarted when a step leads uphill.
+  /// Nesterov's acceleration, which restarts after an uphill step.
   TETWARP_ANY_EXEC StopReason mass_splitting(const Patience& patience) {
     convergence_.start_method(patience);
     pipeline_.split_metric(work_.metric);

@@ -1,7 +1,7 @@
 /// @file contact_pipeline.hpp
-/// The contact solver of one island as a list of stages, for any executor: host threads, a whole
-/// device, or one block of it. Start reading here: sweep() improves the impulses, measure() returns
-/// their residual.
+/// The stages by which the contact solver solves one island, for any executor: host threads, a
+/// whole device, or one block of it. Read this file first: sweep() improves the impulses, measure()
+/// returns their residual.
 #pragma once
 #include <cstdint>
 
@@ -112,8 +112,8 @@ class ContactPipeline {
                                state_.body_velocity});
   }
 
-  /// Residual of the current r and v. ContactSums::magnitude stays 0 where its bound shows
-  /// that rounding of the work does not matter, unless `is_final`.
+  /// Residual of the current r and v. Unless `is_final`, ContactSums::magnitude stays 0 where its
+  /// bound shows that rounding of the work does not matter.
   TETWARP_ANY_EXEC ContactSums measure(bool is_final = false) {
     constexpr double cancellation = 0x1p25;
     find_velocities();
@@ -128,8 +128,8 @@ class ContactPipeline {
     return sums;
   }
 
-  /// |r| . |B| |r| of the current r; see ContactSums. Of coupled islands the share of D^-1, the
-  /// diagonal blocks of A, times the relaxation.
+  /// |r| . |B| |r| of the current r; see ContactSums. In coupled islands B is omega J D^-1 J^T,
+  /// with D the diagonal blocks of A and omega the relaxation.
   TETWARP_ANY_EXEC double magnitude() {
     if (numbers_.is_local) {
       return exec_

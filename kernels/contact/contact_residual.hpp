@@ -38,16 +38,16 @@ struct ContactSums {
   }
 };
 
-/// Part of `work` that stands above its own rounding. Without this limit, huge impulses that cause
-/// no velocity (the null space of B) would enlarge the scale of eta by rounding errors, so that a
-/// problem without a solution would look solved.
+/// The part of `work` that exceeds its own rounding errors. Without this limit, huge impulses that
+/// cause no velocity (in the null space of B) would enlarge the scale of eta by rounding errors,
+/// and a problem without a solution would seem solved.
 TETWARP_HD double resolved_work(const ContactSums& sums) {
   constexpr double rounding = 0x1p-49;
   return max_of(sums.work - rounding * sums.magnitude, 0.0);
 }
 
-/// Energy [J] of the rounding errors of the velocities, from which the residual is computed: a
-/// smaller residual is not resolved.
+/// Energy [J] of the rounding errors of the velocities from which the residual is computed: a
+/// residual below it is not resolved.
 TETWARP_HD double unresolved_energy(const ContactSums& sums) {
   constexpr double rounding = 0x1p-53;
   return square_of(rounding) * sums.magnitude;
@@ -113,9 +113,8 @@ TETWARP_HD double eta_square(const ContactConstants<T>& c,
   return natural_square(c, switches, normal_weight(c), tangent_weight(c), impulse, velocity);
 }
 
-/// The term of one contact in ContactSums::fclib: squared distance of nu from the projection of nu
-/// - u~ on the friction cone, u~ = u + mu |u_t| n. For laws without a cone: the natural map with
-/// weights 1.
+/// The term of one contact in ContactSums::fclib: |nu - P(nu - u~)|^2 with u~ = u + mu |u_t| n and
+/// P the projection on the friction cone. For laws without a cone: the natural map with weights 1.
 template <class T>
 TETWARP_HD double fclib_square(const ContactConstants<T>& c,
                                ContactSwitches switches,
@@ -170,7 +169,7 @@ struct ContactResidualBody {
       sums.row_work += double{r[a]} * r[a] * fabs(double{constants[c].block[4 * a]});
       parts += fabs(double{r[a]}) + fabs(double{u[a]});
     }
-    // Comparisons with a number that is not finite could hide it from the sums.
+    // A comparison with NaN is false and could hide it from the sums.
     if (!(parts < INFINITY)) sums.eta = sums.fclib = sums.deepest = INFINITY;
     sums.largest = sums.eta;
     return sums;

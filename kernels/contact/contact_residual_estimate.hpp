@@ -13,9 +13,10 @@ namespace tetwarp {
 
 /// One index = one contact: its constants with a lower bound of its block of J A^-1 J^T.
 ///
-/// `constants` hold blocks of omega J D^-1 J^T. A diagonal block of A^-1 is at least that of D^-1,
-/// so contacts of one block use 1 / omega. The whole A^-1 is at least D^-1 over the largest
-/// eigenvalue of D^-1 A, which is below 2 / omega if the outer iteration converges: hence 1/2.
+/// `constants` hold the blocks of omega J D^-1 J^T. A diagonal block of A^-1 is at least that of
+/// D^-1, so the blocks of contacts on one block of A are divided by omega. All of A^-1 is at least
+/// D^-1 over the largest eigenvalue of D^-1 A, which is below 2 / omega if the outer iteration
+/// converges: hence the factor 1/2 of other contacts.
 struct LowerBlocksBody {
   View<const std::int64_t> pair_start;
   View<const ContactConstants<double>> constants;

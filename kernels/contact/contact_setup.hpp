@@ -87,7 +87,7 @@ struct ContactResponseBody {
   }
 };
 
-/// One index = one contact: the scalar metric of its tangents, from its block.
+/// One index = one contact: the scalar metric of its tangents, computed from its block.
 template <class T>
 struct ContactMetricBody {
   View<ContactConstants<T>> constants;

@@ -1,6 +1,6 @@
 /// @file contact_split.hpp
 /// Stage "split" of the contact solver: solves all contacts at once from the same velocities, as if
-/// the mass of each body were divided among its contacts. Needs no colors.
+/// the mass of each body were divided among its contacts. It needs no colors.
 #pragma once
 #include <cstdint>
 
@@ -58,9 +58,9 @@ struct DelassusSplitMetricBody {
   }
 };
 
-/// One index = one contact or bilateral block: solves its law for the given velocity, in the metric
-/// P. Rolling friction reads the impulse of its contact, which another thread may be writing, so a
-/// problem with it must not be solved by this stage.
+/// One index = one contact or bilateral block: solves its law for the given velocity in the metric
+/// P. Rolling friction reads the impulse of its contact, which another thread may be writing, so
+/// problems with rolling friction must not use this stage.
 template <class T>
 struct ContactSplitBody {
   View<const ContactConstants<T>> constants;

@@ -114,8 +114,8 @@ struct BodiesView {
   }
 };
 
-/// Freezes contacts whose impulse hardly changes: sweeps skip them, except one in every
-/// `revisit_interval`. With empty views no contact is ever frozen.
+/// Freezes contacts whose impulse hardly changes: sweeps skip them except once every
+/// `revisit_interval` sweeps. With empty views no contact is ever frozen.
 template <class T>
 struct FrozenContacts {
   /// Consecutive visits without a change that freeze a contact.
@@ -125,7 +125,7 @@ struct FrozenContacts {
 
   View<std::uint8_t> unchanged_visits;  ///< consecutive visits without a change, [contacts]
   View<std::int32_t> skipped_visits;    ///< visits skipped so far, [contacts]
-  bool all_active = true;               ///< this sweep visits frozen contacts, too
+  bool all_active = true;               ///< this sweep also visits frozen contacts
   T share = 0;  ///< largest relative change of the impulse that counts as unchanged
   bool operator==(const FrozenContacts&) const = default;
 
@@ -152,7 +152,8 @@ struct FrozenContacts {
   }
 };
 
-/// Replaces the impulse r of contact c by the solution of its law, the other impulses fixed.
+/// Replaces the impulse r of contact c by the solution of its law while the other impulses are
+/// constant.
 /// @param velocities  DelassusView or BodiesView
 /// @param cause       argument of velocities.velocity_at(): all impulses, or all body velocities
 /// @param r           in and out, [3]

@@ -24,7 +24,7 @@ struct StopCriterion {
     const double work = measure == ContactMeasure::eta ? sqrt(resolved_work(sums)) : 0.0;
     return allowed + tolerance * work;
   }
-  /// Error over allowed error: at most 1 when converged; infinity instead of NaN.
+  /// Error over allowed error: at most 1 once converged; infinity instead of NaN.
   TETWARP_HD double excess_of(const ContactSums& sums) const {
     double error = error_of(sums);
     if (measure == ContactMeasure::eta) error = sqrt(sums.eta + unresolved_energy(sums));
@@ -48,17 +48,17 @@ struct ContactEvent {
 
 constexpr std::int64_t endless = INT64_MAX;  ///< no limit of sweeps, or of patience
 
-/// Sweeps without progress after which a method has stalled: a number, and a share of the sweeps
-/// with which it has made progress, so that what it wastes is in proportion to what it has done.
-/// Sweeps that end far above the smallest residual count several times: an acceleration that does
-/// not fit the problem throws the iterates about, one that is slow creeps.
+/// Sweeps without progress after which a method has stalled: a constant, plus a share of the sweeps
+/// during which it made progress. Sweeps whose residual is far above the smallest one count several
+/// times: then the acceleration does not fit the problem, whereas a slow one stays near its
+/// smallest residual.
 struct Patience {
-  static constexpr double setback = 1.15;  ///< residual over the smallest one from which sweeps
-                                           ///< count `setback_weight` times
+  static constexpr double setback = 1.15;  ///< sweeps whose residual is more than this factor above
+                                           ///< the smallest count `setback_weight` times
 
   std::int64_t sweeps = endless;
   std::int64_t divisor = 0;  ///< of the share; 0: no share
-  double drop = 0.9;         ///< of the smallest residual, which counts as progress
+  double drop = 0.9;         ///< of the smallest residual: what is below counts as progress
   std::int64_t setback_weight = 1;
 
   TETWARP_HD std::int64_t after(std::int64_t progressed) const {
@@ -66,11 +66,11 @@ struct Patience {
   }
 };
 
-/// The convergence test of one island, over all methods that work on it. Measuring a residual costs
-/// about as much as a sweep. is_due() is true when the defect of the iteration, which costs
+/// The convergence test of one island, over all methods that solve it. Measuring a residual costs
+/// about as much as a sweep. So is_due() is true only when the defect of the iteration, which costs
 /// nothing, suggests convergence, and at growing intervals of 4 to 32 sweeps.
-/// @tparam Log  has note(ContactEvent), and stops(), called after every sweep: true ends the
-///              iteration as if its budget of sweeps were used up
+/// @tparam Log  has note(ContactEvent), and stops(), which is called after every sweep: true ends
+///              the iteration as if its budget of sweeps were used up
 template <class Log>
 class ConvergenceTest {
  public:

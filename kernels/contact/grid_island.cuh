@@ -111,8 +111,8 @@ class ResidentGridExec {
   }
   __device__ static std::int64_t stride() { return std::int64_t{gridDim.x} * island_threads; }
 
-  /// Sums of runs by the blocks in turn, then of these by every block for itself. The two halves of
-  /// the memory take turns: a block may be a sum ahead of the one that still reads.
+  /// Blocks sum runs in turn; then every block sums these sums. Calls use the two halves of the
+  /// memory alternately: a block may write the next sums while another still reads the last ones.
   template <class Sum, class Term>
   __device__ __forceinline__ Sum sum_terms(std::int64_t begin, std::int64_t end, const Term& term) {
     static_assert(sizeof(Sum) <= sizeof(LargestSum));

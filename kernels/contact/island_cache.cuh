@@ -102,7 +102,7 @@ std::int64_t island_bytes(const ContactIsland& island, const IslandArrays& array
   return bytes;
 }
 
-/// Replaces the arrays of an island by copies in shared memory, in turn while they fit.
+/// Replaces the arrays of an island by copies in shared memory, one after the other while they fit.
 template <class Exec>
 class IslandCache {
  public:

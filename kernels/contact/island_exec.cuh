@@ -12,8 +12,9 @@
 namespace tetwarp {
 
 /// The executor of the contact pipeline within a block of 128 threads, or within one warp. Every
-/// thread makes every call and receives the same results. Both have the same order of updates and
-/// the same trees of sums: a warp takes the parts of the block's warps in turn.
+/// thread makes every call and receives the same results. Blocks and warps have the same order of
+/// updates and the same trees of sums: a warp computes the parts of the block's warps one after the
+/// other.
 /// @tparam threads  sum_threads, or 32
 template <int threads>
 class IslandExec {

@@ -1,14 +1,14 @@
 /// @file majorant.hpp
-/// A diagonal matrix that is larger than J M^-1 J^T: for the steps of an iteration that moves all
-/// contacts at once.
+/// A diagonal matrix that is larger than J M^-1 J^T, for iterations that move all contacts at once.
 ///
-/// Let W_b be the part of J M^-1 J^T that body b makes, D_b its diagonal, and lambda_b the largest
-/// eigenvalue of D_b^-1 W_b. Then the sum over the bodies of lambda_b D_b is larger than all of
-/// J M^-1 J^T. A body with a few contacts so does not slow down because another one has hundreds.
+/// Let W_b be the part of J M^-1 J^T that is due to body b, D_b its diagonal, and lambda_b the
+/// largest eigenvalue of D_b^-1 W_b. The sum over the bodies of lambda_b D_b is then larger than
+/// J M^-1 J^T. Each body has its own factor, so that hundreds of contacts on one body do not slow
+/// down those of another.
 ///
-/// lambda_b is estimated from below by a power iteration, times a margin. Where that has missed it,
-/// a step changes velocities by more than 1.3 times what the majorant allows, and its caller
-/// doubles the majorant.
+/// lambda_b is estimated from below by a power iteration and multiplied by a margin. If the result
+/// is still too small, a step changes velocities by more than 1.3 times what the majorant allows;
+/// the caller then doubles the majorant.
 #pragma once
 #include <cstdint>
 
@@ -55,7 +55,7 @@ struct TouchingNodes {
     }
     for (int i = 0; i < 3; ++i) push[i] = sum[i];
   }
-  /// What a part adds to the block of its contact and itself in J M^-1 J^T.
+  /// The block that a part adds to its own contact in J M^-1 J^T.
   TETWARP_HD void own_block(std::int64_t part, double* block) const {
     for (int e = 0; e < 9; ++e) block[e] = 0;
     const std::int64_t begin = part_block[part], end = part_block[part + 1];
@@ -65,7 +65,7 @@ struct TouchingNodes {
   }
 
  private:
-  /// block += J_b C J_c^T
+  /// block += J_b C J_c^T.
   TETWARP_HD void add_product(std::int64_t b, std::int64_t c, double* block) const {
     const CompliantBody& own = bodies.of_row(rows.row[b]);
     const std::int64_t size = 3 * std::int64_t{own.node_count};
@@ -86,7 +86,7 @@ struct TouchingNodes {
   }
 };
 
-/// One index = one block of J: turns it.
+/// One index = one block of J: turns it into the frame of its body.
 struct TurnJacobianBody {
   CompliantBodies of;
   TouchingRows rows;
@@ -100,7 +100,8 @@ struct TurnJacobianBody {
   }
 };
 
-/// Numbers of size 0.5 to 1.5 without any order: contacts all around a body do not cancel.
+/// Numbers of magnitude 0.5 to 1.5 with scattered signs, so that contacts all around a body do not
+/// cancel.
 TETWARP_HD double scattered(std::int64_t i) {
   auto bits = static_cast<std::uint32_t>(i) * 2654435769u;
   bits = (bits ^ (bits >> 15)) * 2246822519u;
@@ -109,8 +110,8 @@ TETWARP_HD double scattered(std::int64_t i) {
   return (bits & 1u) != 0 ? size : -size;
 }
 
-/// One index = one contact: its own block, the diagonals of its parts, and a vector to start the
-/// power iteration from.
+/// One index = one contact: its own block, the diagonals of its parts, and the start vector of the
+/// power iteration.
 struct OwnBlockBody {
   TouchingNodes of;
   View<ContactConstants<double>> constants;  ///< in and out
@@ -133,7 +134,7 @@ struct OwnBlockBody {
   }
 };
 
-/// One index = one node: J^T v of the contacts on it, each with the vector of its part.
+/// One index = one node: J^T v of the contacts on it, with v the vector of each part.
 struct PartPushBody {
   TouchingNodes of;
   View<const double> vector;  ///< [parts][3]
@@ -163,9 +164,9 @@ struct PartVectorBody {
   }
 };
 
-/// One index = one body: lambda_b from two steps of the power iteration. With pushes q = J^T v and
-/// v = D_b^-1 J z, z the velocities before, it is about q . C q / q . z; it is at most the number
-/// of rows, three for each contact.
+/// One index = one body: lambda_b from two steps of the power iteration. With z the velocities
+/// before, v = D_b^-1 J z and q = J^T v, lambda_b is about q . C q / q . z. It is at most the
+/// number of rows, three per contact.
 struct BodyScaleBody {
   static constexpr double margin = 1.2;  ///< the estimate grows towards lambda_b
 
@@ -186,7 +187,7 @@ struct BodyScaleBody {
   }
 };
 
-/// One index = one contact: its constants with the majorant for its own block.
+/// One index = one contact: its constants, with the majorant in place of its own block.
 struct MajorantBody {
   TouchingNodes of;
   View<const ContactConstants<double>> constants;
@@ -206,7 +207,7 @@ struct MajorantBody {
   }
 };
 
-/// One index = one contact: twice its majorant.
+/// One index = one contact: doubles its majorant.
 struct MajorantGrowBody {
   View<ContactConstants<double>> majorant;  ///< in and out
 
@@ -224,10 +225,10 @@ struct MajorantArrays {
   View<double> push, before, after;          ///< work, [nodes][3]
 };
 
-/// Sets the own blocks of all contacts, and their constants with majorants for these.
+/// Sets the own blocks of all contacts, and their constants with majorants in place of these.
 /// @param exec  where to run
 ///
-/// Determinism: same bits on every back end with contraction off. Cost: of eight steps of the
+/// Determinism: same bits on every back end with contraction off. Cost: that of eight steps of the
 /// iteration that uses them.
 template <class Exec>
 void set_majorants(Exec& exec, const TouchingNodes& touching, const MajorantArrays& to) {

@@ -1,9 +1,9 @@
 /// @file proximal_step.hpp
-/// Accelerated proximal steps: every contact solves its law as if the others had no influence
-/// beyond the majorant, all at once, from impulses that run ahead of the last ones.
+/// Accelerated proximal steps: all contacts solve their laws at once, each with its majorant in
+/// place of the influence of the others, from impulses extrapolated beyond the last ones.
 ///
 /// Sources: Nesterov 1983, Beck and Teboulle 2009 (acceleration), O'Donoghue and Candes 2015
-/// (restart where a step points back).
+/// (restart where a step is directed back).
 #pragma once
 #include <cstdint>
 
@@ -11,22 +11,22 @@
 
 namespace tetwarp {
 
-/// Of an iteration, in memory of the device.
+/// State of an iteration, in memory of the device.
 struct ProximalState {
   static constexpr int steps_at_once = 8;
 
-  /// At the last step: natural_square(); product of the step and the change; d . J M^-1 J^T d,
-  /// d . D d and r . D r, d the change of the impulses `ahead` r since the step before and D the
-  /// majorant.
+  /// Sums at the last step of a run, over contacts: natural_square(); product of the step and the
+  /// change of impulses; d . J M^-1 J^T d, d . D d and r . D r, where r are the impulses `ahead`, d
+  /// their change in the last step and D the majorant.
   using Sums = PlainSums<5>;
 
   Sums sums;
-  std::int64_t age = 0;  ///< steps since the last restart, up to the present run of steps
+  std::int64_t age = 0;  ///< steps from the last restart to the start of the present run
 
-  /// Whether the majorant is too small. The impulses need not diverge then: as none along a normal
-  /// may be negative, they can go to and fro for ever. With momentum m, a mode grows whose product
-  /// is more than (2 + 2 m) / (1 + 2 m) > 4/3 times that of the majorant. The products of changes
-  /// that are small beside the impulses are those of roundings.
+  /// Whether the majorant is too small. The residual then need not diverge: normal impulses are
+  /// never negative, so the iteration can oscillate instead. With momentum m, a mode grows if its
+  /// product d . J M^-1 J^T d is more than (2 + 2 m) / (1 + 2 m) > 4/3 times d . D d. Changes that
+  /// are small against the impulses are ignored, as their products are those of rounding errors.
   static bool has_missed(const Sums& sums) {
     constexpr double harmless = 1.3, least_square = 1e-16;
     return sums.value[2] > harmless * sums.value[3] && sums.value[3] > least_square * sums.value[4];
@@ -38,13 +38,13 @@ struct ProximalStepBody {
   TouchingNodes of;
   View<const ContactConstants<double>> constants, majorant;
   ContactSwitches switches;
-  View<const double> node_velocity;  ///< with the impulses `ahead`
+  View<const double> node_velocity;  ///< of the nodes, for the impulses `ahead`
   const ProximalState* state;
   int step;              ///< of this run
   View<double> ahead;    ///< in and out, [3 contacts]
   View<double> impulse;  ///< in and out, [3 contacts]
-  View<double> past;     ///< work, [contacts][6]: `ahead` and velocities at the last step but one
-  View<ProximalState::Sums> terms;  ///< out of the last step of a run, [contacts]
+  View<double> past;     ///< work, [contacts][6]: `ahead` and velocities, one step before the last
+  View<ProximalState::Sums> terms;  ///< out, at the last step of a run, [contacts]
 
   TETWARP_HD void operator()(std::int64_t contact) const {
     double u[3], r[3];
@@ -96,7 +96,7 @@ struct ProximalStepBody {
   }
 };
 
-/// One index = one node: J^T (ahead - before) in frames.
+/// One index = one node: J^T (ahead - before), in frames.
 struct NodePushBody {
   TouchingNodes of;
   View<const double> ahead, before;  ///< [3 contacts]

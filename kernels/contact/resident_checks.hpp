@@ -1,6 +1,7 @@
 /// @file resident_checks.hpp
-/// Checks of a problem whose arrays are in memory of the executor. They only say whether the checks
-/// of the host would find nothing, so that the host needs the arrays for its message only.
+/// Checks of a problem whose arrays are in memory of the executor. They only decide whether the
+/// checks of the host would pass: if not, the host copies the arrays and repeats its checks for the
+/// message.
 #pragma once
 #include <cstdint>
 
@@ -57,12 +58,12 @@ struct RangeCheckBody {
   }
 };
 
-/// Whether a stored number of A was zero when the structure was made; `either`: the structure does
-/// not depend on it.
+/// Whether a stored number of A was zero when the structure was made; `either`: the structure is
+/// the same in both cases.
 enum class Zero : std::uint8_t { no, yes, either };
 
-/// One index = one stored number of A: 1 where it has become zero, or is zero no longer, and blocks
-/// or couplings follow from that.
+/// One index = one stored number of A: 1 where it has become zero or nonzero since the structure
+/// was made, and blocks or couplings depend on it.
 struct ZeroPatternBody {
   View<const double> system;
   View<const Zero> is_zero;
@@ -73,8 +74,8 @@ struct ZeroPatternBody {
   }
 };
 
-/// One index = one contact: scales of the checks below. [0]: largest |J|, or diagonal of W; [1]:
-/// largest of |gap_n| and |dt w_n| [m].
+/// One index = one contact: scales of the checks below. [0]: largest |J|, or largest diagonal entry
+/// of W; [1]: largest of |gap_n| and |dt w_n| [m].
 struct ContactScalesBody {
   ContactInput in;
   RowsView rows;  ///< of J, or of W
@@ -105,8 +106,8 @@ struct ContactScalesBody {
   }
 };
 
-/// One index = one contact: 1 where its rows are without effect or rounding, or where its normal
-/// spring has another gap than dt w_n.
+/// One index = one contact: 1 where its rows are zero or within rounding of zero, or where its
+/// normal spring has another gap than dt w_n.
 struct ContactCheckBody {
   ContactScalesBody scales;
   const LargestOf<2>* largest;

@@ -1,6 +1,6 @@
 /// @file resident_results.hpp
-/// Results of a problem in the order of its own arrays, and sums that check them. Products and sums
-/// of velocities are rounded one by one, so that they have the bits of the host.
+/// Results of a problem in the order of the problem's arrays, and sums that check them. Products
+/// and sums of velocities are rounded one by one, so that they have the same bits as on the host.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// One index = one contact: a normal offset of at least -speed.
+/// One index = one contact: raises its normal offset to at least -speed.
 struct RecoveryBody {
   View<const double> given;
   double speed;
@@ -24,7 +24,7 @@ struct RecoveryBody {
   }
 };
 
-/// One index = one place: copies its `width` numbers to those of its item.
+/// One index = one place: copies its `width` numbers to the place of its item.
 template <int width>
 struct ScatterItemsBody {
   View<const std::int32_t> item;

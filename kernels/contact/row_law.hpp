@@ -1,11 +1,12 @@
 /// @file row_law.hpp
-/// The laws of blocks of three rows that are no contacts, and the choice of the law of a block.
+/// The laws of blocks of three rows that are not contacts, and the choice of the law of a block.
 ///
 /// Letters as in contact_law.hpp: r impulse, u velocity, B the block's own part of the Delassus
 /// matrix.
 ///
-/// A `bilateral` block has one to three rows with u = 0; the others are empty: their B and u are 0.
-/// Compliance is a part of A (see host/contact/problem/row_blocks.hpp), so no law has it.
+/// A `bilateral` block has one to three rows with u = 0; its other rows are empty, with B = 0 and u
+/// = 0. Compliance is a part of A (see host/contact/problem/row_blocks.hpp), so the laws do not
+/// contain it.
 ///
 /// A `rolling` block has the relative angular velocities of a contact about its normal, tangent 1
 /// and tangent 2, and the angular impulses [N m s] against them. With r_n the normal impulse of the
@@ -14,8 +15,8 @@
 ///     |r_0| <= torsion max(r_n, 0),  r_0 u_0 = -torsion max(r_n, 0) |u_0|
 ///     |r_t| <= friction max(r_n, 0),  r_t . u_t = -friction max(r_n, 0) |u_t|,  r_t = (r_1, r_2)
 ///
-/// Its constants: `friction` [m], `tangent_offset` = {place of the contact less the own place,
-/// torsion [m]}.
+/// In its constants `friction` is in [m], `tangent_offset[0]` is the slot of the contact less the
+/// own slot, and `tangent_offset[1]` is torsion [m].
 #pragma once
 #include <cstdint>
 
@@ -24,19 +25,19 @@
 
 namespace tetwarp {
 
-/// Normal impulse, at least 0, of the contact that a rolling block belongs to.
+/// Normal impulse, at least 0, of the contact of a rolling block.
 /// @param impulse  of the block; that of the contact is in the same array
 template <class T>
 TETWARP_HD T rolling_push(const ContactConstants<T>& c, const T* impulse) {
   return max_of(impulse[3 * static_cast<std::int64_t>(c.tangent_offset[0])], T(0));
 }
 
-/// Adds the impulses that stop all rows of a bilateral block. Rows that depend on earlier ones, and
-/// empty rows, keep their impulse.
+/// Adds the impulses that stop all rows of a bilateral block. Rows that depend linearly on earlier
+/// ones, and empty rows, keep their impulse.
 /// @param velocity  u with the old impulse, [3]
 template <class T>
 TETWARP_HD void solve_bilateral(const ContactConstants<T>& c, const T* velocity, T* impulse) {
-  constexpr T dependent = sizeof(T) == 8 ? T(1e-12) : T(1e-5);  // share of the diagonal entry left
+  constexpr T dependent = sizeof(T) == 8 ? T(1e-12) : T(1e-5);  // of a diagonal entry, remaining
   T a[9], x[3];
   bool is_used[3];
   for (int e = 0; e < 9; ++e) a[e] = c.block[e];
@@ -57,7 +58,7 @@ TETWARP_HD void solve_bilateral(const ContactConstants<T>& c, const T* velocity,
   }
 }
 
-/// Replaces the impulse of a rolling block: torsion first, then rolling in the scalar metric.
+/// Replaces the impulse of a rolling block: first torsion, then rolling in the scalar metric.
 /// @param velocity  in: u with the old impulse; overwritten, [3]
 template <class T>
 TETWARP_HD void solve_rolling(const ContactConstants<T>& c, T* velocity, T* impulse) {
@@ -107,7 +108,7 @@ TETWARP_HD double rolling_weight(const ContactConstants<T>& c) {
   return c.tangent_metric > 0 ? 1 / double{c.tangent_metric} : 1;
 }
 
-/// The term of a block that is no contact in eta^2: sum of e_a^2 / rho_a with the natural map
+/// The term of a block that is not a contact in eta^2: sum of e_a^2 / rho_a with the natural map
 ///
 ///     bilateral: e_a = rho_a u_a        rolling: e = r - P(r - rho u)
 ///
@@ -132,7 +133,7 @@ TETWARP_HD double rolling_square(
   return sum;
 }
 
-/// The same, in the weights of eta.
+/// The same term in the weights of eta.
 template <class T>
 TETWARP_HD double row_eta_square(const ContactConstants<T>& c,
                                  const T* impulse,
@@ -145,7 +146,7 @@ TETWARP_HD double row_eta_square(const ContactConstants<T>& c,
   return sum;
 }
 
-/// The same with weights 1, for ContactSums::fclib.
+/// The same term with weights 1, for ContactSums::fclib.
 template <class T>
 TETWARP_HD double row_plain_square(const ContactConstants<T>& c,
                                    const T* impulse,

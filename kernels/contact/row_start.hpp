@@ -1,5 +1,5 @@
 /// @file row_start.hpp
-/// What the iteration over compliant bodies starts from, out of the system of a step.
+/// Start values of the iteration over compliant bodies, from the system of a step.
 #pragma once
 #include <cstdint>
 
@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 
-/// One index = one diagonal block: its inverse, by its first row of the system.
+/// One index = one diagonal block: its inverse, stored at its first row of the system.
 struct DiagonalInvertBody {
   View<const std::int32_t> first_row;
   RowInvertBody<double> invert;
@@ -15,7 +15,8 @@ struct DiagonalInvertBody {
   TETWARP_HD void operator()(std::int64_t i) const { invert(first_row[i]); }
 };
 
-/// One index = one row: velocities without contact, and the metric in which velocities are mixed.
+/// One index = one row: its velocity without contact, and its metric in the acceleration of
+/// velocities.
 struct RowStartBody {
   View<const std::int32_t> system_row;  ///< [rows]
   SystemRows rows;
@@ -32,7 +33,7 @@ struct RowStartBody {
   }
 };
 
-/// One index = one number.
+/// One index = one number: adds another vector.
 struct AddNumbersBody {
   View<const double> more;
   View<double> sum;  ///< in and out

@@ -18,7 +18,7 @@ class SweepGraph {
  public:
   template <class Body>
   SweepGraph(cudaStream_t stream, View<const std::int64_t> color_start, const Body& body) {
-    // A kernel is loaded by its first use, which must not be within the recording.
+    // The first use of a kernel loads it, and loading must not happen while the graph is recorded.
     cudaFuncAttributes attributes;
     check_cuda(cudaFuncGetAttributes(
                    &attributes, reinterpret_cast<const void*>(&each_kernel<FromContact<Body>>)),

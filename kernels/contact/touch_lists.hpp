@@ -1,7 +1,7 @@
 /// @file touch_lists.hpp
-/// Stages that make the rows and lists of contacts on compliant bodies: how many blocks, parts and
-/// nodes there are; then TouchingNodes and the nodes of CompliantBodies, at places that follow from
-/// sums of these counts.
+/// Stages that make the rows and lists of contacts on compliant bodies: first counts of blocks,
+/// parts and nodes, then, at places that follow from sums of these counts, the arrays of
+/// TouchingNodes and the nodes of CompliantBodies.
 #pragma once
 #include <cstdint>
 
@@ -20,8 +20,8 @@ struct TouchListInput {
   View<const std::int32_t> row_of_block;  ///< [blocks of the model], or -1: not in the solve
   View<const std::int32_t> body_of_row;   ///< [rows]
 
-  /// add(first row, arm, is it a frame) for the arms of a contact on rows of the solve, in the
-  /// order of their blocks: those of a body follow each other. A frame has two rows.
+  /// Calls add(first row, arm, whether it is a frame) for each arm of a contact on rows of the
+  /// solve, in the order of their blocks: arms on one body are successive. A frame has two rows.
   template <class Add>
   TETWARP_HD void for_arms(std::int64_t contact, const Add& add) const {
     ArmList arms;
@@ -33,9 +33,9 @@ struct TouchListInput {
   }
 };
 
-/// Numbers of blocks and parts of contacts, and of nodes. Before the sums over all before are made:
-/// block_count(), part_count(), and is_node() with 0 or 1; after it first_block(), first_part() and
-/// first_node(). Each list has an end.
+/// Counts of blocks and parts of contacts, and of nodes. Before the scan, block_count(),
+/// part_count() and is_node() (0 or 1) are the counts; after it, first_block(), first_part() and
+/// first_node() are sums over all earlier entries. Each list has one more entry for its end.
 struct TouchSums {
   View<std::int64_t> sums;  ///< [contacts + 1], [contacts + 1], [rows + 1]
   std::int64_t contacts;
@@ -58,7 +58,8 @@ struct TouchSums {
   }
 };
 
-/// One index = one contact. Counts are zero before. All contacts on a row store the same 1.
+/// One index = one contact. Counts are zero before. All contacts on one row store the same number
+/// 1.
 struct TouchCountBody {
   TouchListInput in;
   TouchSums out;
@@ -78,7 +79,7 @@ struct TouchCountBody {
   }
 };
 
-/// One index = one body, or the end of the list: its nodes.
+/// One index = one body, or the end of the list: counts its nodes.
 struct BodyNodesBody {
   TouchSums counted;
   View<CompliantBody> bodies;  ///< in, out
@@ -112,8 +113,8 @@ struct TouchTotalsBody {
   }
 };
 
-/// One index = one row, or the end of the list: its node, if it is one. Pairs of nodes of the same
-/// body are numbered by the first one.
+/// One index = one row, or the end of the list: its node, if it is one. Pairs of nodes of one body
+/// are numbered by their first node.
 struct NodeListBody {
   TouchSums counted;
   View<const std::int32_t> body_of_row;
@@ -137,7 +138,7 @@ struct NodeListBody {
   }
 };
 
-/// One index = one contact, or the end of the list: its blocks and parts, with J.
+/// One index = one contact, or the end of the list: its blocks and parts, with the numbers of J.
 struct TouchListBody {
   TouchListInput in;
   TouchSums counted;
@@ -178,7 +179,7 @@ struct TouchListBody {
   }
 };
 
-/// One index = one row, the end of their list, or one block: the blocks of each row.
+/// One index = one row, the end of the list of rows, or one block: lists the blocks of each row.
 struct RowTouchesBody {
   View<const CellPair> touches;    ///< sorted by row, then block
   View<std::int32_t> touch_start;  ///< out, [rows + 1]

@@ -1,5 +1,5 @@
 /// @file touching_rows.hpp
-/// Contacts on the rows of compliant bodies: their velocities, and the forces that they make.
+/// Contacts on the rows of compliant bodies: their velocities, and J^T times their impulses.
 #pragma once
 #include <cstdint>
 
@@ -10,7 +10,8 @@
 namespace tetwarp {
 
 /// J of the contacts in 3x3 blocks, row by row: velocities along the axes of a contact per velocity
-/// of a row. The blocks of a contact on the same body, a part of the contact, follow each other.
+/// of a row. The blocks of a contact on one body follow each other and are called a part of the
+/// contact.
 struct TouchingRows {
   View<const std::int32_t> block_start;               ///< [contacts + 1]
   View<const std::int32_t> row, node, contact, part;  ///< [blocks]
@@ -50,7 +51,7 @@ struct RowDefectBody {
     const CompliantBody& own = of.of_row(row);
     const std::int64_t place = own.system_row + row - own.first;
     double product[3], force[3];
-    // Columns of the system are rows of the same coupling island, which are all taken.
+    // Columns of the system are rows of the same coupling island, all of which are in the solve.
     const double* const from = velocity.data + 3 * (own.first - std::int64_t{own.system_row});
     multiply_blocks(values.data, rows.column.data, rows.start[place], rows.free_end[place], from,
                     product);
@@ -95,7 +96,7 @@ struct TouchVelocityBody {
   }
 };
 
-/// One index = one number: its share of d . M^-1 d.
+/// One index = one number: its term of d . M^-1 d.
 struct DefectSquareBody {
   View<const double> defect, moved;  ///< d and M^-1 d
 

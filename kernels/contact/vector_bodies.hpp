@@ -1,5 +1,5 @@
 /// @file vector_bodies.hpp
-/// Bodies for entries of vectors.
+/// Stage bodies for entries of vectors.
 #pragma once
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 """Checks that includes between folders point one way, from users down to what they use.
 
     folders.py           fails with one line per include that breaks the rules
-    folders.py --dot     prints the include graph of the folders for Graphviz
+    folders.py --dot     prints the include graph of the folders, docs/drawings/folders.dot
     folders.py --test    checks this script on small made-up trees
 """
 import re
@@ -159,11 +159,45 @@ def graph(root):
     return edges
 
 
+COLORS = {  # of drawings, by the longest folder that contains a folder
+    "kernels/base/tetwarp": "#fff6c9", "host/tetwarp": "#fff6c9", "io/tetwarp": "#fff6c9",
+    "kernels/warp": "#d9e7f5", "host/warp": "#d9e7f5", "host/reference/warp": "#d9e7f5",
+    "kernels/contact": "#dcefdc", "host/contact": "#dcefdc", "host/reference/contact": "#dcefdc",
+    "kernels/collide": "#e6dcf2", "host/collide": "#e6dcf2",
+    "kernels/body": "#fbe3d0", "host/simulate": "#fbe3d0", "host/scene": "#fbe3d0",
+    "host/reference/simulate": "#fbe3d0", "host/cli": "#f3e6d4", "io": "#f3e6d4",
+}
+
+
+def color_of(folder):
+    while folder and folder not in COLORS:
+        folder = folder.rpartition("/")[0]
+    return COLORS.get(folder, "white")
+
+
+def without_implied(edges):
+    """The edges of a graph without cycles that do not follow from others."""
+
+    def reachable(folder):
+        return set().union(*({other} | reachable(other) for other in edges.get(folder, ())))
+
+    return {folder: {other for other in others if not any(
+                other in reachable(third) for third in others)}
+            for folder, others in edges.items()}
+
+
 def print_dot(edges):
-    print("digraph folders {\n  rankdir=BT; node [shape=box, fontname=Helvetica];")
-    for folder in sorted(edges):
-        for other in sorted(edges[folder]):
-            print(f'  "{folder}" -> "{other}";')
+    print("""// Which folder includes which, without edges that follow from others: written by
+// tests/lint/folders.py --dot; ./dev docs draws it.
+digraph folders {
+  graph [rankdir=TB, nodesep=0.15, ranksep=0.4]
+  node [shape=box, style="filled,rounded", fontname="Helvetica", fontsize=11, color="#666666",
+        margin="0.08,0.04"]
+  edge [color="#666666", arrowsize=0.7]""")
+    for folder in sorted({*edges, *(other for others in edges.values() for other in others)}):
+        print(f'  "{folder}" [fillcolor="{color_of(folder)}"]')
+    for folder, others in sorted(without_implied(edges).items()):
+        print(f'  "{folder}" -> {{' + " ".join(f'"{other}"' for other in sorted(others)) + "}")
     print("}")
 
 
@@ -173,6 +207,7 @@ def test():
 
     assert cycle_in(ALLOWED) is None, cycle_in(ALLOWED)
     assert cycle_in({"a": ["b"], "b": ["c"], "c": ["b"]}) == ["b", "c", "b"]
+    assert without_implied({"a": {"b", "c"}, "b": {"c"}}) == {"a": {"b"}, "b": {"c"}}
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         for name, text in {

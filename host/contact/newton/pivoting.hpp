@@ -10,19 +10,20 @@
 
 namespace tetwarp {
 
-/// With the pyramid the laws of contact are linear complementarity conditions. Per contact, with
-/// nu_t = b+ - b- for each tangent and a slip speed g for each,
+/// With the friction pyramid the laws of contact are linear complementarity conditions. For each
+/// contact, with nu_t = b+ - b- along each tangent and a slip speed g for each tangent,
 ///
 ///     0 <= nu_n _|_ u_n >= 0,   0 <= b+- _|_ g +- u_t >= 0,   0 <= g _|_ mu nu_n - b+ - b- >= 0
 ///
-/// Lemke's method follows a path of solutions of a problem with a multiple of a positive vector
-/// added to the right sides until that multiple is 0. Paths of other vectors lead to other
-/// solutions, or to none: a path can end in a ray although there is a solution.
+/// Lemke's method adds a multiple of a positive vector to the right sides and follows a path of
+/// solutions along which the multiple decreases. Where it is 0, the conditions are solved. Paths of
+/// different vectors lead to different solutions; a path can also end in a ray although there is a
+/// solution.
 ///
 /// Source: Stewart, Trinkle 1996 (the conditions); Lemke 1965.
 class FrictionPivoting {
  public:
-  /// Contacts above which a path takes longer than Newton's method from some starts.
+  /// With more contacts a path takes longer than Newton's method from some starts.
   static constexpr std::int64_t max_contacts = 32;
 
   /// Whether the laws of a problem are such conditions.
@@ -31,14 +32,13 @@ class FrictionPivoting {
   /// @pre applies(problem, options)
   FrictionPivoting(const ContactProblem& problem, const ContactOptions& options);
 
-  /// The end of the path of one positive vector.
+  /// Follows the path of one positive vector to its end.
   /// @param start  seed of the vector
-  /// @return  impulses [3 contacts], the conditions hold to 1e-6 or better; none where the path
-  /// ends
-  ///          in a ray, or is lost by rounding
+  /// @return  impulses [3 contacts] for which the conditions hold to 1e-6 or better; none if the
+  ///          path ends in a ray or rounding errors prevent a solution
   ///
-  /// Determinism: serial; same bits. Cost: some 10 pivots per contact, each 200 times the square of
-  /// the contacts.
+  /// Determinism: serial; same bits. Cost: about 10 pivots per contact, each 200 times the square
+  /// of the number of contacts.
   std::optional<std::vector<double>> solve(std::uint32_t start) const;
 
  private:

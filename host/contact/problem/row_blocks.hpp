@@ -1,15 +1,14 @@
 /// @file row_blocks.hpp
-/// Problems with bilateral rows, rolling friction and friction ellipses, rewritten so that the
-/// solver needs nothing but blocks of three rows.
+/// Rewrites problems with bilateral rows, rolling friction and friction ellipses, so that the
+/// solver needs only blocks of three rows.
 ///
 /// - Every group of bilateral rows, and every entry of rolling friction, becomes a block of three
-///   rows of J, after the contacts; rows of groups with fewer are empty.
+///   rows of J, after the contacts; rows that a group does not have are empty.
 /// - A compliant row gets a dof of its own, with 1 / compliance on the diagonal of A: its velocity
 ///   is compliance lambda, and the row becomes a hard one.
-/// - A contact with friction mu_1 and mu_2 along its tangents is one with the larger of both, mu,
-///   whose tangential rows are multiplied by e_a = mu_a / mu. Then r_a = e_a r'_a, and |(r'_1,
-///   r'_2)|
-///   <= mu r_n is the ellipse. Its tangential springs become a compliant block.
+/// - A contact with friction mu_1 and mu_2 along its tangents becomes one with the larger of both,
+///   mu, and with tangential rows multiplied by e_a = mu_a / mu. Then r_a = e_a r'_a, and its cone
+///   |(r'_1, r'_2)| <= mu r_n is the ellipse. Its tangential springs become a compliant block.
 #pragma once
 #include <cstdint>
 #include <span>

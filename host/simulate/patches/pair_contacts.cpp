@@ -48,8 +48,8 @@ void PairContacts::list_groups(std::span<const ChosenTouch> touches) {
   }
 }
 
-/// Sets the number of a touch: that of the record whose normal is nearest, or one that is free.
-/// @returns the record of this number, or null
+/// Sets the number of a touch: that of the record with the nearest normal, or a free one.
+/// @returns the record with this number, or null
 const ContactRecord* PairContacts::set_slot(std::span<const ChosenTouch> touches,
                                             const Group& group,
                                             std::size_t t,
@@ -105,7 +105,7 @@ void PairContacts::list_records(std::span<const ContactRecord> records) {
   });
 }
 
-/// A point of a body from vertices of all bodies.
+/// A material point of a body, from numbers of vertices among those of all bodies.
 MaterialPoint PairContacts::material_of(const std::int32_t* vertex,
                                         const double* weight,
                                         std::int32_t body) const {
@@ -118,7 +118,7 @@ MaterialPoint PairContacts::material_of(const std::int32_t* vertex,
   return point;
 }
 
-/// The contact of a touch.
+/// Writes the contact of a touch.
 void PairContacts::report(const NamedTouch& named, ReportedContact& contact) const {
   const PairTouch& touch = *named.touch;
   contact = {};
@@ -141,13 +141,13 @@ void PairContacts::report(const NamedTouch& named, ReportedContact& contact) con
   }
 }
 
-/// Names the touches of a vertex and a body.
+/// Names the touches of a vertex with a body.
 void PairContacts::name_vertex(std::span<const ChosenTouch> touches,
                                const Group& group,
                                std::span<const ContactRecord> records) {
   for (std::size_t t = group.begin; t < group.end; ++t) {
     const PairTouch& touch = touches[t].touch;
-    // A bond keeps its area as the surfaces turn away from each other.
+    // The area of a bonded contact stays the same while the surfaces turn away from each other.
     const ContactRecord* const record = set_slot(touches, group, t, records);
     const bool is_bonded = record != nullptr && record->intensity > 0;
     const double area = touches[t].area;

@@ -1,5 +1,5 @@
 /// @file pair_contacts.hpp
-/// Contacts, with points, normals and areas, from the touches that a step found.
+/// Makes contacts, with points, normals and areas, from the touches of a step.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -16,8 +16,8 @@ namespace tetwarp {
 
 /// Makes the contacts of steps; keeps its memory between them.
 ///
-/// Contacts of two rigid bodies that touch with faces are reduced, see RigidPatches; all others are
-/// the touches that detection has chosen, see StepTouches, with names that last from step to step.
+/// Contacts of two rigid bodies that touch with faces are reduced, see RigidPatches. All others are
+/// the touches that detection has chosen, see StepTouches, with keys that last from step to step.
 class PairContacts {
  public:
   /// @param scene  kept by the caller
@@ -41,14 +41,14 @@ class PairContacts {
                                      std::span<const ContactRecord> records = {});
 
  private:
-  /// A record of the tracker of a vertex.
+  /// A record of a contact of a vertex.
   struct VertexRecord {
-    std::int32_t vertex = 0, body = 0;  ///< what touches, and the body that it touches
+    std::int32_t vertex = 0, body = 0;  ///< the vertex, and the body that it touches
     std::int32_t slot = 0;              ///< its number, below 0
     std::size_t record = 0;             ///< in the records
   };
 
-  /// A touch and the key of its contact, whose sides may be those of the touch turned.
+  /// A touch with the key of its contact; the sides of the key may be in the other order.
   struct NamedTouch {
     ContactKey key;
     const PairTouch* touch = nullptr;
@@ -56,7 +56,7 @@ class PairContacts {
     bool is_turned = false;
   };
 
-  /// Touches of a vertex and a body, or one of edges.
+  /// The touches of a vertex with one body, or one touch of edges.
   struct Group {
     std::size_t begin = 0, end = 0;
   };

@@ -1,5 +1,5 @@
 /// @file patch_frame.hpp
-/// Places of contacts in the plane of a patch.
+/// Coordinates of contacts in the plane of a patch.
 #pragma once
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace tetwarp {
 
-/// Two axes across a normal.
+/// Two axes perpendicular to a normal.
 struct PatchFrame {
   PatchFrame(const Point3& normal, const Point3& of_origin) : origin(of_origin) {
     std::size_t axis = 0;
@@ -38,7 +38,8 @@ inline double gap_of(const ReportedContact& contact) {
   return dot(contact.normal, minus(contact.point_a_world, contact.point_b_world));
 }
 
-/// Eigenvalues, the larger first, and the angle of its axis, of a symmetric 2x2 matrix.
+/// The eigenvalues of a symmetric 2x2 matrix, the larger first, and the angle of the first
+/// eigenvector.
 struct Axes2 {
   double large = 0, small = 0, angle = 0;
 };
@@ -47,7 +48,7 @@ inline Axes2 axes_of(double xx, double xy, double yy) {
   return {mean + radius, mean - radius, std::atan2(xy, half) / 2};
 }
 
-/// The slope s with M s = (x, y), M symmetric; none in directions in which M is almost zero.
+/// The slope s with M s = (x, y), M symmetric; 0 along directions in which M is almost zero.
 inline std::array<double, 2> slope_of(double xx, double xy, double yy, double x, double y) {
   const Axes2 axes = axes_of(xx, xy, yy);
   const double c = std::cos(axes.angle), s = std::sin(axes.angle);

@@ -6,7 +6,7 @@
 namespace tetwarp {
 namespace {
 
-/// The vertex whose area a contact has.
+/// The vertex of a contact, whose area the contact has.
 std::int32_t vertex_of(const ReportedContact& contact) {
   return std::max(contact.key.feature_a, contact.key.feature_b);
 }
@@ -48,7 +48,7 @@ PatchPoints PatchMoments::points_of(const std::vector<ReportedContact>& contacts
   spread_triangles(contacts, frame, vertices, moments);
 
   Axes2 axes = axes_of(moments.xx, moments.xy, moments.yy);
-  if (axes.large - axes.small <= 1e-9 * axes.large) {  // any axes: towards the corner farthest off
+  if (axes.large - axes.small <= 1e-9 * axes.large) {  // any axes: the first to the farthest corner
     double farthest = 0;
     for (const auto& [vertex, c] : corners_) {
       const auto [x, y] = frame.place(middle_of(contacts[c]));
@@ -67,7 +67,8 @@ PatchPoints PatchMoments::points_of(const std::vector<ReportedContact>& contacts
   return result;
 }
 
-/// In place of area at the corners of triangles that touch with all three, area spread over them.
+/// Replaces area at the corners of triangles that touch with all three corners by area spread over
+/// these triangles.
 void PatchMoments::spread_triangles(const std::vector<ReportedContact>& contacts,
                                     const PatchFrame& frame,
                                     const std::vector<Point3>& vertices,

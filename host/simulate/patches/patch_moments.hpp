@@ -1,5 +1,5 @@
 /// @file patch_moments.hpp
-/// Area, centroid and second moments of a patch, and four points that have them, too.
+/// Area, centroid and second moments of a patch, and four points with the same ones.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace tetwarp {
 
-/// A point of a patch that stands for a quarter of its area.
+/// One of the four points; it has a quarter of the patch's area.
 struct PatchPoint {
-  Point3 middle{0, 0, 0};  ///< between the surfaces [world]
-  double gap = 0;          ///< of the plane through the gaps of the patch [m]
+  Point3 middle{0, 0, 0};  ///< halfway between the surfaces [world]
+  double gap = 0;          ///< on the plane fitted to the gaps of the patch [m]
 };
 
 struct PatchPoints {

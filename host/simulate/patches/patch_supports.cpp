@@ -79,7 +79,7 @@ void PatchSupports::choose_flat(const std::vector<ReportedContact>& contacts,
   for (const Place& place : hull_) chosen.push_back(place.contact);
 }
 
-/// Whether gaps differ from a plane through them by no more than a tolerance.
+/// Whether gaps differ from their fitted plane by no more than a tolerance.
 bool PatchSupports::is_flat(double tolerance) const {
   double xx = 0, xy = 0, yy = 0, xg = 0, yg = 0, mean = 0;
   for (const Place& place : places_) {
@@ -94,9 +94,9 @@ bool PatchSupports::is_flat(double tolerance) const {
   });
 }
 
-/// The convex hull, counter-clockwise, without points on its sides. Points are visited by their
-/// angle about the middle of all, so that those of one side follow each other along it, whatever
-/// their rounding. Source: Graham 1972.
+/// The convex hull, counterclockwise, without points on its sides. Points are visited by their
+/// angle about the centroid, so that points on one side of the hull follow each other along it
+/// whatever their rounding. Source: Graham 1972.
 void PatchSupports::make_hull() {
   double xx = 0, xy = 0, yy = 0;
   for (const Place& place : places_) {
@@ -135,8 +135,8 @@ void PatchSupports::make_hull() {
   cut(hull_.front());
 }
 
-/// Leaves `count` corners, one after the other the one whose triangle with its neighbours is
-/// smallest.
+/// Removes corners until `count` are left, each time the one whose triangle with its neighbors is
+/// the smallest.
 void PatchSupports::cut_corners(std::size_t count) {
   while (hull_.size() > count) {
     std::size_t smallest = 0;

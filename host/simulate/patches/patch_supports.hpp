@@ -1,5 +1,6 @@
 /// @file patch_supports.hpp
-/// Which contacts of a flat patch of two rigid bodies keep the bodies apart.
+/// Chooses the contacts of a flat patch of two rigid bodies that are enough to keep the bodies
+/// apart.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,16 +12,17 @@ namespace tetwarp {
 
 /// Chooses the corners of a patch; keeps its memory.
 ///
-/// Contacts with one normal, whose gaps are those of two planes, hold two rigid bodies apart where
-/// the corners of their convex hull do. Of more than 8 corners those stay that keep most of the
-/// hull's area. The nearest contact, within a hundredth of the thickness, is one of those chosen.
+/// Where contacts have one normal and gaps on one plane, contacts at the corners of their
+/// convex hull keep two rigid bodies apart. If there are more than 8 corners, those that keep most
+/// of the hull's area are chosen. The nearest contact, within a hundredth of the thickness, is
+/// always one of those chosen.
 class PatchSupports {
  public:
   static constexpr std::size_t most = 8;
 
-  /// @param patch      indices of `contacts`, by key; of similar normals
+  /// @param patch      indices of `contacts`, by key; their normals are similar
   /// @param thickness  contact distance [m]
-  /// @param chosen     out: those that hold; all of them where the patch is not flat
+  /// @param chosen     out: the chosen contacts; all of the patch where it is not flat
   void choose(const std::vector<ReportedContact>& contacts,
               const std::vector<std::size_t>& patch,
               double thickness,
@@ -28,7 +30,7 @@ class PatchSupports {
 
  private:
   struct Place {
-    double x = 0, y = 0;  ///< across the normal, from the middle of the patch [m]
+    double x = 0, y = 0;  ///< in the plane of the patch, from its centroid [m]
     double gap = 0;
     std::size_t contact = 0;
   };

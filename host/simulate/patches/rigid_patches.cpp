@@ -10,7 +10,7 @@
 namespace tetwarp {
 namespace {
 constexpr double cosine_20 = 0.9396926207859084;
-constexpr double growth = 1.1;  ///< of a patch before a bonded point moves
+constexpr double growth = 1.1;  ///< of the area of a patch, above which a bonded point moves
 
 ContactKey point_key(const ContactKey& bodies, std::int32_t slot, std::int32_t point) {
   constexpr std::int32_t first = RigidPatches::first_feature;
@@ -83,7 +83,7 @@ void RigidPatches::reduce_pair(std::vector<ReportedContact>& contacts,
   }
 }
 
-/// The number of the patch of these bodies that faces this way, or one that is free.
+/// The number of the patch of these bodies that faces the same way, or a free one.
 std::int32_t RigidPatches::slot_of(const ContactKey& bodies,
                                    const Point3& normal,
                                    std::span<const ContactRecord> records) {
@@ -95,7 +95,7 @@ std::int32_t RigidPatches::slot_of(const ContactKey& bodies,
       record = find_record(records, point_key(bodies, slot, k));
     }
     if (record == nullptr) {
-      // Patches are numbered from 0; one that has ended leaves a gap of one number at most.
+      // Patches are numbered from 0; a patch that has ended leaves at most one unused number.
       if (free >= 0) return free;
       free = slot;
     } else if (dot(record->normal_world, normal) > cosine_20) {

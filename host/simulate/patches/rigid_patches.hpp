@@ -1,5 +1,5 @@
 /// @file rigid_patches.hpp
-/// Few contacts in place of the many of two rigid bodies that touch with faces.
+/// Replaces the many contacts of two rigid bodies that touch with faces by few.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -16,19 +16,21 @@ namespace tetwarp {
 /// Reduces the contacts of each pair of rigid bodies, or of a rigid body and an obstacle; keeps its
 /// memory.
 ///
-/// Contacts whose normals differ by less than 20 degrees are a patch. Its contacts become supports
+/// Contacts whose normals differ by less than 20 degrees form a patch. Its contacts become supports
 /// without area, see PatchSupports. If the bodies adhere, four adhesion points c +- sqrt(2 l_k) e_k
-/// have a quarter of the area each: area, centroid c and second moments l_k, with axes e_k, are
-/// those of the patch, and so are force and moment of a gap that is a plane. Triangles that touch
-/// with all corners count with the second moments of their area, others with those of corners.
+/// have a quarter of the area each: they have the same area, centroid c and second moments l_k
+/// (with axes e_k) as the patch, and the same force and moment for gaps on a plane. Triangles that
+/// touch with all three corners count with the second moments of their area, others with those of
+/// their corners.
 ///
-/// A point that is bonded is not reported again, and the tracker keeps it where it is, until the
-/// patch has grown by more than a tenth since: then it moves, and its beta is the mean over the
-/// larger area. All that this needs is in the records.
+/// A bonded point is not reported again, and the tracker keeps it in place, until the patch has
+/// grown by more than a tenth. Then the point moves, and its beta becomes the mean over the larger
+/// area. The records hold everything that this needs.
 class RigidPatches {
  public:
-  /// Features of adhesion points: of the first patch of two bodies first_feature to
-  /// first_feature - 3, of the second the next four; of body b always first_feature.
+  /// Features of adhesion points: those of the first patch of two bodies are first_feature to
+  /// first_feature - 3, those of the second the next four, and so on; the feature of body b is
+  /// always first_feature.
   static constexpr std::int32_t first_feature = -1000;
 
   /// @param scene, areas  kept by the caller
@@ -58,7 +60,7 @@ class RigidPatches {
   PatchMoments moments_;
   PatchSupports supports_;
   std::vector<std::size_t> order_, left_, next_left_, patch_, chosen_;
-  std::vector<std::int32_t> slots_;    ///< of patches, taken, of the current pair
+  std::vector<std::int32_t> slots_;    ///< of patches that are in use, of the current pair
   std::vector<ReportedContact> kept_;  ///< of the rigid bodies
 };
 

@@ -14,14 +14,14 @@ namespace {
 constexpr int most_steps = 300;
 constexpr int most_sweeps = 200;
 constexpr double longest_step = 0.05;    // of the body's size
-constexpr double shortest_step = 1e-4;   // of the body's size: below, the growth ends
-constexpr double least_fraction = 0.03;  // of a step, below which it is given up
-constexpr double flat_volume = 0.1;      // of the volume at rest: elements do not get smaller
-constexpr double shift_cost = 0.1;       // of a body as a whole, over that of deforming it
-constexpr double wanted_distance = 1.5;  // in thicknesses
-constexpr double least_distance = 1.05;  // in thicknesses
+constexpr double shortest_step = 1e-4;   // of the body's size: the growth ends with shorter steps
+constexpr double least_fraction = 0.03;  // of a step: with less, the step is given up
+constexpr double flat_volume = 0.1;      // of the volume at rest: the least volume of an element
+constexpr double shift_cost = 0.1;       // of a whole body, relative to its deformation
+constexpr double wanted_distance = 1.5;  // between features after a step, in thicknesses
+constexpr double least_distance = 1.05;  // between features, which a step must keep, in thicknesses
 
-/// sum over vertices of cages of weight direction . move >= least
+/// The sum over vertices of cages of weight direction . move must be at least `least`.
 struct Constraint {
   struct Side {
     std::size_t cage = 0;
@@ -60,7 +60,7 @@ class CageGrowth {
       double fraction = 1;
       while (fraction >= least_fraction && !is_free(fraction)) fraction /= 2;
       if (fraction < least_fraction) {
-        // Those in the way of the shortest step stay; the others go on.
+        // The cages that hinder the shortest step stop; the others continue.
         for (const std::size_t k : hindered_) is_held_[k] = 1;
         if (std::find(is_held_.begin(), is_held_.end(), 0) == is_held_.end()) return;
         continue;
@@ -94,7 +94,7 @@ class CageGrowth {
     }
   }
 
-  /// Where all is after a part of the moves: motion_.end.
+  /// Sets motion_.end to the places after a fraction of the moves.
   void place(double fraction) {
     moved_ = model_.start;
     for (std::size_t k = 0; k < cages_.size(); ++k) {
@@ -104,7 +104,7 @@ class CageGrowth {
     motion_.sagitta.assign(motion_.start.vertices.size(), 0);
   }
 
-  /// Of all features that the wanted moves would bring near.
+  /// One constraint for each pair of features that the wanted moves would bring near.
   void find_constraints() {
     constraints_.clear();
     parts_.detector.begin_step();
@@ -139,7 +139,8 @@ class CageGrowth {
     }
   }
 
-  /// The moves nearest to the wanted ones that keep the distances: Gauss-Seidel in the dual.
+  /// Changes the moves as little as possible so that they meet the constraints: Gauss-Seidel in the
+  /// dual.
   void project() {
     const double enough = 0.1 * surfaces().thickness;
     for (int sweep = 0; sweep < most_sweeps; ++sweep) {
@@ -168,8 +169,8 @@ class CageGrowth {
     }
   }
 
-  /// Whether a part of the moves passes nothing and ends apart, without flat elements. Otherwise
-  /// hindered_ are the cages that do.
+  /// Whether a fraction of the moves passes through nothing, ends with all pairs apart, and makes
+  /// no element flat. Otherwise sets hindered_ to the cages that do not.
   bool is_free(double fraction) {
     place(fraction);
     hindered_.clear();
@@ -201,7 +202,7 @@ class CageGrowth {
     }
   }
 
-  /// @returns the largest way of a vertex of a cage, over the size of its body
+  /// @returns the largest displacement of a vertex of a cage, over the size of its body
   double accept(double fraction) {
     double largest = 0;
     for (std::size_t k = 0; k < cages_.size(); ++k) {
@@ -219,11 +220,11 @@ class CageGrowth {
 
   const StartParts& parts_;
   Model& model_;
-  std::vector<std::int32_t> cage_of_body_;  ///< [bodies, then obstacles] or -1
+  std::vector<std::int32_t> cage_of_body_;  ///< [bodies, then obstacles] its cage, or -1
   std::vector<CagePose> cages_;
   std::vector<std::vector<Point3>> moves_;  ///< [cages][vertices]
-  std::vector<std::uint8_t> is_held_;       ///< [cages] does not move any more
-  std::vector<double> least_volume_;        ///< [cages] of an element over that at rest
+  std::vector<std::uint8_t> is_held_;       ///< [cages] the cage does not move any more
+  std::vector<double> least_volume_;  ///< [cages] smallest volume of an element, over that at rest
   std::vector<std::size_t> hindered_;
   std::vector<Constraint> constraints_;
   ModelState moved_;

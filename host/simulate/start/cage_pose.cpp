@@ -10,7 +10,7 @@
 namespace tetwarp {
 namespace {
 
-constexpr double most_cells = 3;        // of a cage along an axis
+constexpr double most_cells = 3;        // of a cage along its longest axis
 constexpr std::int64_t fine_parts = 4;  // of a box of the cage, for the weights
 
 std::array<std::int64_t, 3> cage_cells(const Bounds& bounds) {

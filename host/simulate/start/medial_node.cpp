@@ -13,7 +13,7 @@
 namespace tetwarp {
 namespace {
 
-/// Distances from the surface of a body or obstacle.
+/// Distance of points from the surface of a body or obstacle.
 class BodyDistance {
  public:
   BodyDistance(const CollisionSurfaces& surfaces, const SurfacePlaces& places, std::int32_t body)
@@ -28,7 +28,7 @@ class BodyDistance {
     search_ = std::make_unique<NearestItems<3>>(triangles_.points, triangles_.triangles);
   }
 
-  /// Without sign for triangles, negative within round bodies and below planes.
+  /// Of triangles without a sign; negative inside round bodies and below planes.
   double at_point(const Point3& x) const {
     double least = search_ ? search_->find(x).distance : std::numeric_limits<double>::infinity();
     for (std::int32_t p = body_.first_plane; p < body_.plane_end; ++p) {
@@ -59,7 +59,7 @@ class BodyDistance {
   std::unique_ptr<NearestItems<3>> search_;
 };
 
-/// How far cloth reaches beyond each node.
+/// The distance of each node of cloth from its border.
 std::vector<double> depths_of_cloth(const std::vector<Point3>& nodes) {
   Point3 mean{0, 0, 0};
   for (const Point3& x : nodes) mean = plus(mean, times(1 / static_cast<double>(nodes.size()), x));

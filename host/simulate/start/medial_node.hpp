@@ -1,5 +1,6 @@
 /// @file medial_node.hpp
-/// The node about which a body is scaled so that it stays within itself and comes out of others.
+/// The node about which a body is scaled, so that the scaled body stays within the full one and
+/// leaves other bodies.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,10 +9,10 @@
 
 namespace tetwarp {
 
-/// The node whose distance from the body's surface and from the surfaces of `others` is the
-/// largest, among those within the body and outside of the others; if there is none the one
-/// farthest from the surface. Cloth has no inside: what counts is the distance from its border,
-/// taken as the sphere around the mean of its nodes.
+/// The node with the largest distance from the body's own surface and from the surfaces of
+/// `others`, among the nodes inside the body and outside the others; if there is none, the node
+/// farthest from the body's own surface. Cloth has no inside: the distance from its own surface is
+/// that from its border, which is taken as the sphere around the mean of its nodes.
 /// @param places  of all surfaces, the body at full size
 /// @param nodes   of the body, world
 /// @param others  bodies and obstacles

@@ -12,7 +12,7 @@
 namespace tetwarp {
 namespace {
 
-/// Anchors of handles are where their points start.
+/// Moves the anchors of handles to the starts of their points.
 void move_anchors(const std::vector<ShrunkBody>& bodies, Model& model) {
   for (std::size_t s = 0; s < model.springs.a.size(); ++s) {
     if (model.springs.handle[s] < 0) continue;

@@ -1,5 +1,5 @@
 /// @file rest_growth.hpp
-/// Bodies that start smaller than they are grow back: their rest size grows linearly within 0.2 s.
+/// The growth of bodies that start smaller than they are: their rest size grows linearly in 0.2 s.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,16 +9,16 @@
 
 namespace tetwarp {
 
-/// Forces that make elastic bodies and cloth rest at a part of their size. An element that rests at
-/// the scale s has the stress 2 mu (e + 1 - s) + lambda (tr e + 3 (1 - s)) where e is the strain of
-/// its full size: the matrix of a step stays that of the full size, and the nodes get the forces
-/// -V (2 mu + 3 lambda) (1 - s) R g_a. Springs of cloth get the tension k (1 - s) L. All of them
-/// sum to zero over a body.
+/// Forces that let elastic bodies and cloth rest at a fraction of their size. An element that rests
+/// at scale s has the stress 2 mu (e + 1 - s) + lambda (tr e + 3 (1 - s)), where e is its strain
+/// relative to its full size. So the matrix of a step remains that of the full size, and the nodes
+/// get the forces -V (2 mu + 3 lambda) (1 - s) R g_a. Springs of cloth get the tension k (1 - s) L.
+/// All these forces sum to zero over a body.
 class RestGrowth {
  public:
   static constexpr double duration = 0.2;  ///< [s]
 
-  /// No body grows.
+  /// Nothing grows.
   RestGrowth() = default;
   /// @param full_start  positions of all nodes at full size, as ModelState::position
   RestGrowth(const SceneGeometry& geometry,
@@ -27,7 +27,7 @@ class RestGrowth {
              const std::vector<ShrunkBody>& bodies);
 
   /// Adds the forces at the end of the step to `block_force`, and changes the prescribed velocities
-  /// of fixed and driven nodes so that they grow with their body. Without bodies does nothing.
+  /// of fixed and driven nodes so that these grow with their body. Does nothing if no body grows.
   /// @param input  filled for a step that begins in `state`
   void apply(const Model& model, const ModelState& state, StepInput& input) const;
 

@@ -66,7 +66,7 @@ class StartSearch {
 
   const Point3& place(std::int32_t vertex) const { return at(places_.vertices, vertex); }
 
-  /// The first triangle that an edge crosses of each body.
+  /// Finds edges that cross triangles, and keeps the first such pair of each two bodies.
   void find_crossings(int threads) {
     const TriangleTree tree(places_.vertices, surfaces_.triangles);
     constexpr std::int64_t edges_per_task = 1024;
@@ -119,8 +119,8 @@ class StartSearch {
     return plus(place(from), times(start / (start - end), minus(place(to), place(from))));
   }
 
-  /// A vertex of every connected part of a body. Where no edge crosses a triangle, all of a part is
-  /// inside or outside of a closed surface.
+  /// A vertex of every connected part of a body. If no edge crosses a triangle, a part is
+  /// completely inside or completely outside a closed surface.
   std::vector<std::int32_t> representatives(const CollisionBody& body) const {
     const auto count = static_cast<std::size_t>(body.vertex_end - body.first_vertex);
     DisjointSets parts(count);
@@ -136,7 +136,7 @@ class StartSearch {
     return list;
   }
 
-  /// The triangles of a body if they are closed.
+  /// The triangles of a body if they form a closed surface.
   std::optional<Surface> closed_surface(const CollisionBody& body) const {
     if (body.first_triangle == body.triangle_end) return std::nullopt;
     std::vector<std::array<std::int32_t, 3>> half_edges;  // low, high, direction
@@ -183,7 +183,7 @@ class StartSearch {
         const bool is_outside =
             x[1] < box.low[1] || x[1] > box.high[1] || x[2] < box.low[2] || x[2] > box.high[2];
         if (is_outside || a == b || !may_meet(a, b)) continue;
-        // The middle of a ball around a whole body may be within that body.
+        // The centre of a ball around a whole body may be inside that body.
         const bool is_round = at(surfaces_.vertex_radius, part->second) > 0;
         if (is_round && found_.contains({std::min(a, b), std::max(a, b)})) continue;
         if (winding_number(*surface, x) < 0.5) continue;

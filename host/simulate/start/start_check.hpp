@@ -1,5 +1,5 @@
 /// @file start_check.hpp
-/// Whether the bodies of a scene are apart at the start.
+/// Checks that the bodies of a scene are apart at the start.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,16 +24,15 @@ struct StartConflict {
   double distance = 0;    ///< `near`: of the two surfaces [m]
 };
 
-/// One conflict for every two bodies that have any, sorted by bodies: the first kind in the order
-/// above that applies, of `near` the smallest distance.
+/// One conflict for every two bodies that have one, sorted by bodies: of the kinds that apply the
+/// first in the order above; of `near` the smallest distance.
 std::vector<StartConflict> start_conflicts(const SceneSurfaces& scene,
                                            const SurfacePlaces& places,
                                            Detector& detector,
                                            int threads);
 
-/// @throws std::invalid_argument  in one line: bodies that are nearer than the thickness or
-/// overlap,
-///         where and by how much, and the remedy
+/// @throws std::invalid_argument  in one line: bodies that overlap or are nearer than the
+///         thickness, where and by how much, and the remedy
 void check_start(const Scene& scene,
                  const SceneSurfaces& surfaces,
                  const SurfacePlaces& places,

@@ -22,7 +22,7 @@ class ShrinkingBodies {
       : parts_(parts), model_(model), start_(model.start.position) {}
 
   /// @param others  bodies in conflict with it that do not shrink
-  /// @returns false if the body is as small as it may be
+  /// @returns false if the body has the smallest allowed size
   bool shrink(std::int32_t body,
               const std::vector<std::int32_t>& others,
               const SurfacePlaces& places) {
@@ -70,7 +70,7 @@ std::vector<ShrunkBody> shrink_apart(const StartParts& parts,
   SurfacePlaces places;
   for (;;) {
     surface_places(parts.surfaces, model, model.start, parts.threads, places);
-    std::map<std::int32_t, std::vector<std::int32_t>> shrinking;  // and what does not shrink
+    std::map<std::int32_t, std::vector<std::int32_t>> shrinking;  // and those that do not
     std::vector<StartConflict> pairs;
     for (const StartConflict& conflict :
          start_conflicts(parts.surfaces, places, parts.detector, parts.threads)) {

@@ -1,5 +1,5 @@
 /// @file start_shrink.hpp
-/// Bodies that overlap at the start are scaled about a point within them until they are apart.
+/// Bodies that overlap at the start are scaled about a point inside them until they are apart.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace tetwarp {
 
-/// A body whose nodes are at centre + scale (x - centre), x where they would start.
+/// A body whose nodes are at centre + scale (x - centre), where x are their positions at full size.
 struct ShrunkBody {
   std::int32_t body = 0;
   Point3 centre{0, 0, 0};
   double scale = 1;
 };
 
-/// What the start of a scene is made of; members are kept by the caller.
+/// Input of the preparation of a start; members are kept by the caller.
 struct StartParts {
   const Scene& scene;
   const SceneGeometry& geometry;
@@ -27,10 +27,10 @@ struct StartParts {
 };
 
 /// Scales elastic bodies and cloth about their medial nodes, by successive factors of 0.9 for all
-/// bodies in conflict, until no pair with one of them is nearer than the thickness. Pairs without a
-/// body that may shrink are left as they are.
+/// bodies in conflict, until no pair with one of them is nearer than the thickness. Pairs of two
+/// bodies that must not shrink are ignored.
 /// @param may_shrink  [bodies]
-/// @param what        for messages: why the bodies shrink
+/// @param what        why the bodies shrink, for messages
 /// @param model       in, out: its start
 /// @returns the bodies that were scaled, by number
 /// @throws std::invalid_argument  in one line naming two bodies that are still in conflict at 1/30

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double default_fraction = 1e-3;
 constexpr double least_of_feature = 1e-10;     // of the largest edge or radius
-constexpr double least_of_coordinate = 1e-12;  // 4500 roundings of the coordinate
+constexpr double least_of_coordinate = 1e-12;  // 4500 times the rounding of the coordinate
 
 double default_thickness(const CollisionSurfaces& surfaces, const std::vector<double>& lengths) {
   std::vector<double> edges;

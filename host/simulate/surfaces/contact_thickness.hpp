@@ -5,9 +5,9 @@
 
 namespace tetwarp {
 
-/// The scene's thickness; without one a thousandth of the median length of the edges of all
-/// triangles at the start, or without triangles of the smallest radius [m]. Without either nothing
-/// touches: 1e-3 m.
+/// The scene's thickness. If it has none: a thousandth of the median length of the edges of all
+/// triangles at the start; without triangles, of the smallest radius; without either nothing can
+/// touch, 1e-3 [m].
 /// @param surfaces  with all parts of all bodies
 /// @throws std::invalid_argument  the thickness is less than 1e-10 of the largest edge or radius of
 ///         a body, or less than 1e-12 of its largest coordinate: distances could not be resolved

@@ -1,5 +1,5 @@
 /// @file find_record.hpp
-/// The record of a contact by its key.
+/// Finds the record of a contact by its key.
 #pragma once
 #include <algorithm>
 #include <span>

@@ -85,7 +85,7 @@ class FlatFaces {
                                [&](const Point3& x) { return height(x, of) <= tolerance_; });
   }
 
-  /// Joins neighbors on one plane to faces.
+  /// Joins neighboring triangles on one plane to faces.
   void join() {
     DisjointSets faces(area_.size());
     for (const auto& [edge, sides] : sides_) {
@@ -97,7 +97,7 @@ class FlatFaces {
     for (std::size_t t = 0; t < area_.size(); ++t) face_.push_back(faces.root_of(t));
   }
 
-  /// A face of many triangles that bend by little each is not flat as a whole.
+  /// Marks faces that are flat as a whole: many triangles that bend by little each are not.
   void check() {
     std::vector<std::size_t> largest(face_.size());
     std::iota(largest.begin(), largest.end(), std::size_t{0});
@@ -115,11 +115,11 @@ class FlatFaces {
   const CollisionBody& body_;
   std::span<const Point3> position_;
   double tolerance_;
-  std::vector<double> area_;    ///< [triangles of the body] twice
-  std::vector<Point3> normal_;  ///< [triangles] unit, or 0 of one without area
+  std::vector<double> area_;    ///< [triangles of the body] twice the area
+  std::vector<Point3> normal_;  ///< [triangles] unit; 0 of a triangle without area
   std::vector<std::pair<std::int32_t, std::array<std::size_t, 2>>> sides_;
-  std::vector<std::size_t> face_;      ///< [triangles] first triangle of the face
-  std::vector<std::uint8_t> is_flat_;  ///< [triangles] of first ones
+  std::vector<std::size_t> face_;      ///< [triangles] first triangle of its face
+  std::vector<std::uint8_t> is_flat_;  ///< [triangles] of the first triangle of each face
 };
 
 }  // namespace

@@ -9,9 +9,9 @@
 
 namespace tetwarp {
 
-/// Marks the edges of a body between triangles of one flat face: triangles joined by edges, with
-/// normals to the same side, whose vertices all lie on one plane. What touches such a face touches
-/// it with a vertex, or its outline.
+/// Marks the edges of a body between triangles of one flat face: triangles that are joined by
+/// edges, have normals on the same side, and whose vertices all lie on one plane. Another surface
+/// touches such a face at a vertex of either, or at the outline of the face.
 /// @param position   [vertices of the body] in a frame of the body [m]
 /// @param tolerance  largest distance from the plane [m]
 /// @param is_flat    in and out, [edges of all bodies]

@@ -1,5 +1,5 @@
 /// @file kept_places.hpp
-/// KeptPlaces: where all surfaces are in a state.
+/// KeptPlaces: the places of all surfaces in a state.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// Makes places again only if the positions or rotations differ from those of the last call.
+/// Computes the places again only if positions or rotations differ from those of the last call.
 class KeptPlaces {
  public:
   /// @param scene, model  kept by the caller
@@ -18,7 +18,7 @@ class KeptPlaces {
 
   /// @returns surface_places(), valid until the next call
   const SurfacePlaces& of(const ModelState& state);
-  /// The same, moved to `places`; what was there is memory for later calls.
+  /// The same, moved to `places`; the memory that was there is kept for later calls.
   void take(const ModelState& state, SurfacePlaces& places);
 
  private:

@@ -43,7 +43,7 @@ class PairPoints {
   const Point3& place(std::int32_t vertex) const { return at(places_.vertices, vertex); }
   const double* place_of(std::int32_t vertex) const { return place(vertex).data(); }
 
-  /// Of a with the weight, of b with minus the weight.
+  /// Adds a vertex of a with the weight, or one of b with minus the weight.
   void add(std::int32_t vertex, double weight) {
     const bool is_of_a = count_ < of_a_;
     Point3& point = is_of_a ? point_a_ : point_b_;
@@ -137,7 +137,7 @@ bool crosses(
   // Ends on different sides of the plane, and the line on the same side of all three edges.
   const double start = tet_volume(from, a, b, c), end = tet_volume(to, a, b, c);
   if ((start > 0 && end > 0) || (start < 0 && end < 0)) return false;
-  // Within rounding all lies in one plane, and the other signs mean nothing.
+  // If all points lie in one plane within rounding, the signs of the volumes mean nothing.
   double extent = 0, largest = 0;
   for (const Point3* x : {&from, &to, &b, &c}) {
     extent = std::max(extent, norm(minus(*x, a)));

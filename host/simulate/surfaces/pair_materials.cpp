@@ -13,8 +13,8 @@
 namespace tetwarp {
 namespace {
 
-/// Adhesion as numbers, the energy first: the lower of two is that of the lower energy, whatever
-/// the order of the two sides.
+/// Adhesion as numbers, the energy first: of two sides the smaller array is the one with the lower
+/// energy, in either order of the sides.
 using AdhesionNumbers = std::array<double, 7>;
 using Adhesion = std::optional<AdhesionNumbers>;
 struct Side {
@@ -38,7 +38,7 @@ Side side_of(const SurfaceContact& contact) {
   return {contact.friction, numbers_of(contact.adhesion)};
 }
 
-/// What a pair of two sides has.
+/// Friction and adhesion of a pair of two sides.
 Side joined(const Side& a, const Side& b) {
   Side pair{std::sqrt(a.friction) * std::sqrt(b.friction), std::nullopt};
   if (a.friction == b.friction) pair.friction = a.friction;

@@ -1,5 +1,6 @@
 /// @file pair_materials.hpp
-/// The contact material of every pair of bodies and obstacles, from those of the two.
+/// The contact material of every pair of bodies and obstacles, made from the materials of both
+/// sides.
 #pragma once
 #include <cstdint>
 
@@ -7,12 +8,13 @@
 
 namespace tetwarp {
 
-/// Fills the materials, classes and pairs of `surfaces`. Friction of a pair is the geometric mean
-/// of both sides, adhesion that of the side with the lower energy, none where a side has none;
-/// entries of Scene::contact.pairs override either. Sides without `contact` have the scene's.
+/// Fills the materials, classes and pairs of `surfaces`. The friction of a pair is the geometric
+/// mean of both sides. Its adhesion is that of the side with the lower energy; a side without
+/// adhesion leaves none. Entries of Scene::contact.pairs override either. Sides without `contact`
+/// have that of the scene.
 void add_pair_materials(const Scene& scene, SceneSurfaces& surfaces);
 
-/// Whether contacts of this material can hold two surfaces together.
+/// Whether contacts of this material can pull.
 bool adheres(const ContactMaterial& material);
 
 }  // namespace tetwarp

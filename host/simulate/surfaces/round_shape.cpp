@@ -12,11 +12,11 @@
 namespace tetwarp {
 namespace {
 
-/// Triangles of a round obstacle that adheres, about.
+/// About the number of triangles of a round obstacle that adheres.
 constexpr std::int64_t round_triangles = 1280;
 
-/// The shortest turn that takes the z axis, or where `axis` points down minus the z axis, to it:
-/// a capsule has two equal ends.
+/// The smallest rotation that turns the z axis onto `axis`, or minus the z axis if `axis` points
+/// down: the two ends of a capsule are equal.
 Quaternion turn_from_z(const Point3& axis) {
   const Point3 up = axis[2] < 0 ? times(-1, axis) : axis;
   const Point3 turn = cross({0, 0, 1}, up);

@@ -1,5 +1,5 @@
 /// @file round_shape.hpp
-/// Bodies and obstacles that touch by their exact shape: spheres and capsules.
+/// Bodies and obstacles whose exact shape touches: spheres and capsules.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// All points within `radius` of a line; a sphere where its ends are the same.
+/// All points within `radius` of a segment; a sphere where its ends are equal.
 struct RoundShape {
   Point3 from{0, 0, 0}, to{0, 0, 0};  ///< in the frame of the geometry
   double radius = 0;                  ///< [m]
@@ -16,14 +16,14 @@ struct RoundShape {
   bool is_sphere() const { return from == to; }
 };
 
-/// Of rigid spheres and capsules whose surface the scene does not give.
+/// The shape of a rigid sphere or capsule for which the scene gives no surface.
 std::optional<RoundShape> round_shape_of(const Body& body);
 std::optional<RoundShape> round_shape_of(const Obstacle& obstacle);
 
-/// Closed triangle surface whose points are on the shape, in the same frame.
+/// A closed triangle surface with its vertices on the shape, in the same frame.
 Surface surface_of(const RoundShape& shape);
 
-/// "bodies[2] 'ball'", from the number of bodies on "obstacles[0] 'floor'".
+/// "bodies[2] 'ball'", or "obstacles[0] 'floor'" for numbers from the number of bodies on.
 std::string place_of_body(const Scene& scene, std::int32_t body);
 
 }  // namespace tetwarp

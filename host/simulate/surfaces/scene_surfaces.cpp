@@ -105,7 +105,7 @@ class SurfaceParts {
     result_.body_size.push_back(size_of(parts));
   }
 
-  /// Of a body or obstacle.
+  /// Whether a body or obstacle has unknowns.
   bool has_unknowns(std::int32_t body) const {
     if (index_of(body) >= scene_.bodies.size()) return false;
     const auto is_free = [&](std::int32_t block) { return at(model_.prescribed, block) == 0; };
@@ -122,7 +122,7 @@ class SurfaceParts {
                               std::array<std::int32_t, 2>{std::min(a, b), std::max(a, b)});
   }
 
-  /// Whether the body can be held by another that it may meet.
+  /// Whether another body that the body may meet can hold it by adhesion.
   bool adheres_to_any(std::int32_t body) const {
     const auto& materials = result_.materials;
     if (std::none_of(materials.begin(), materials.end(), adheres)) return false;
@@ -137,7 +137,8 @@ class SurfaceParts {
     return false;
   }
 
-  /// A point of the geometry's frame of the current body, which has a frame.
+  /// A point of the frame of the current body, given in coordinates of its geometry. @pre the body
+  /// has a frame
   ModelPoint fixed_point(const Point3& x) const {
     ModelPoint point;
     point.body = body_;
@@ -172,7 +173,7 @@ class SurfaceParts {
                                 "surfaces or set collide to false");
   }
 
-  /// Triangles and the points that they use.
+  /// Adds triangles, and those of the points that they use.
   void add_surface(const std::vector<ModelPoint>& points, const std::vector<Triangle>& triangles) {
     check_counts(triangles);
     std::vector<std::int32_t> number(points.size(), -1);
@@ -231,8 +232,8 @@ class SurfaceParts {
   const SceneGeometry& geometry_;
   const Model& model_;
   SceneSurfaces& result_;
-  std::vector<std::int32_t> frame_;  ///< [bodies, then obstacles] rigid of the model, or -1
-  std::int32_t body_ = 0;            ///< whose parts are added
+  std::vector<std::int32_t> frame_;  ///< [bodies, then obstacles] frame in the model, or -1
+  std::int32_t body_ = 0;            ///< the one whose parts are added
 };
 
 void add_forbidden(const Scene& scene, CollisionSurfaces& surfaces) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t vertices_per_task = 512;
 
-/// task(begin, end) for ranges that cover [0, count).
+/// Calls task(begin, end) for ranges that cover [0, count).
 template <class Task>
 void for_ranges(int threads, std::size_t count, const Task& task) {
   const auto size = static_cast<std::int64_t>(count);
@@ -88,7 +88,7 @@ void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion) 
   const SurfaceVelocity by = velocity_of(step);
   for_ranges(threads, scene.vertex_point.size(), [&](std::size_t begin, std::size_t end) {
     MovedFrame frame{};
-    std::int32_t rigid = -1;  // of the frame; successive vertices are often of the same body
+    std::int32_t rigid = -1;  // frame of the last vertex; successive ones often have the same
     for (std::size_t v = begin; v < end; ++v) {
       const ModelPoint& point = scene.vertex_point[v];
       const double seconds = by.seconds_of(scene.surfaces.vertex_body[v]);

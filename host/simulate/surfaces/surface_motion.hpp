@@ -11,14 +11,13 @@
 
 namespace tetwarp {
 
-/// What ResidentSurfaces needs of them.
+/// The surfaces as ResidentSurfaces needs them.
 /// @param scene  kept by the caller
 SurfaceBinding binding_of(const SceneSurfaces& scene);
-
-/// A motion of ResidentSurfaces, for a Detector on the same device.
+/// The motion of ResidentSurfaces as a Detector on the same device needs it.
 MotionView view_of(const ResidentMotion& motion);
 
-/// World places of all vertices and planes.
+/// World positions of all vertices and planes.
 /// @param places  out; memory is kept
 void surface_places(const SceneSurfaces& scene,
                     const Model& model,
@@ -26,7 +25,7 @@ void surface_places(const SceneSurfaces& scene,
                     int threads,
                     SurfacePlaces& places);
 
-/// How all surfaces move in a step: nodes straight, rigid bodies by exp(dt omega), as
+/// The input of surface_motion(): nodes move straight, rigid bodies by exp(dt omega), as in
 /// BodyStepper::move(). Owns nothing.
 struct SurfaceStep {
   const SceneSurfaces& scene;
@@ -37,15 +36,13 @@ struct SurfaceStep {
   std::span<const double> fraction = {};  ///< [bodies, then obstacles] of the step that each moves,
                                           ///< 0 to 1; empty: 1
 };
-
 /// @param threads  any number: same motion
-/// @param motion   in: its start from surface_places(); out: all else but `resident`
+/// @param motion   in: its start from surface_places(); out: everything else except `resident`
 void surface_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
-
-/// Of surface_motion() the frames and planes; sets the sizes of the lists of vertices.
+/// The part of surface_motion() that sets frames and planes; also sets the sizes of the lists of
+/// vertices.
 void frame_motion(const SurfaceStep& step, SurfaceMotion& motion);
-
-/// Of surface_motion() the ends and sagittas of vertices, after frame_motion().
+/// The part of surface_motion() that sets ends and sagittas of vertices; after frame_motion().
 void vertex_motion(const SurfaceStep& step, int threads, SurfaceMotion& motion);
 
 }  // namespace tetwarp

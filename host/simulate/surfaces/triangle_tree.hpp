@@ -1,5 +1,5 @@
 /// @file triangle_tree.hpp
-/// Boxes of triangles as a binary tree: which triangles are near a box.
+/// Boxes of triangles as a binary tree: finds the triangles near a box.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace tetwarp {
 
 class TriangleTree {
  public:
-  /// Memory for two boxes per triangle; time n log n.
+  /// Memory: two boxes per triangle. Time: n log n.
   TriangleTree(const std::vector<Point3>& points,
                const std::vector<std::array<std::int32_t, 3>>& triangles);
 
-  /// visit(triangle) for all triangles whose boxes have a point in common with `box`, in an order
-  /// that depends on the triangles alone.
+  /// Calls visit(triangle) for all triangles whose boxes have a point in common with `box`, in an
+  /// order that depends only on the triangles.
   template <class Visit>
   void visit(const Bounds& box, const Visit& visit) const {
     if (!nodes_.empty()) visit_node(0, box, visit);

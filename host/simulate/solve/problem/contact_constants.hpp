@@ -1,5 +1,5 @@
 /// @file contact_constants.hpp
-/// The constants of contacts whose own blocks are not known yet, for the two-level iteration.
+/// The constants of contacts whose own blocks are computed later, for the two-level iteration.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,8 +12,8 @@ namespace tetwarp {
 
 struct ContactConstantsList {
   std::vector<ContactConstants<double>> constants;  ///< [contacts] all but block, tangent_metric
-  /// [contacts] normal impulse [N s] of a spring at u_n = 0 where its gap is not dt w_n; normal
-  /// impulses of the laws are those of the contacts plus it.
+  /// [contacts] impulse [N s] of the normal spring at u_n = 0 if its gap is not dt w_n. The normal
+  /// impulse of the law is that of the contact plus this one.
   std::vector<double> preload;
 
   /// @param laws  friction, offsets and adhesion of the contacts

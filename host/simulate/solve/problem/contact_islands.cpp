@@ -7,7 +7,7 @@
 
 namespace tetwarp {
 namespace {
-/// Weights below this one are rounding errors of zero: the point is one of prescribed blocks only.
+/// Smaller weights are rounding errors of zero: such a point moves with prescribed blocks only.
 constexpr double least_share = 1e-12;
 
 }  // namespace
@@ -87,7 +87,7 @@ void ContactIslands::join(std::span<const ContactSides> contacts) {
   contact_island_count_ = 0;
   std::fill(is_soft_.begin(), is_soft_.end(), 0);
   for (std::int32_t i = 0; i < count(); ++i) {
-    root_[index_of(i)] = root_of(i);  // the smallest island of each contact island
+    root_[index_of(i)] = root_of(i);  // the island of lowest number in the contact island
     if (is_coupled_[index_of(i)] != 0) is_soft_[index_of(root_[index_of(i)])] = 1;
     if (root_[index_of(i)] == i && has_contacts(i)) ++contact_island_count_;
   }

@@ -1,5 +1,5 @@
 /// @file contact_laws.hpp
-/// Friction, offsets, adhesion and guess of some of the contacts of a step.
+/// Copies friction, offsets, adhesion and guess of some of the contacts of a step.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace tetwarp {
 
-/// Copies the laws of some contacts; nothing else of the problems is read or changed.
+/// Copies the laws of some contacts; reads and changes nothing else.
 /// @param contacts  numbers of contacts of `from`
 void gather_laws(const std::vector<std::int32_t>& contacts,
                  const ContactProblem& from,

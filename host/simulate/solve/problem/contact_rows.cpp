@@ -9,9 +9,9 @@
 namespace tetwarp {
 namespace {
 
-constexpr std::size_t part_size = 64;  // contacts that one task takes
+constexpr std::size_t part_size = 64;  // contacts per task
 
-/// task(part, first contact, past its last one)
+/// Calls task(part, first contact, index after its last contact).
 template <class Task>
 void for_parts(int threads, std::size_t contacts, const Task& task) {
   parallel_tasks(threads, static_cast<std::int64_t>((contacts + part_size - 1) / part_size),

@@ -1,5 +1,5 @@
 /// @file contact_sides.hpp
-/// What the two points of contacts move with.
+/// The nodes and frames that the two points of contacts move with.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ namespace tetwarp {
 /// Frame of the model of each body and obstacle that has one, else -1.
 std::vector<std::int32_t> frames_of_bodies(const SceneSurfaces& scene, const Model& model);
 
-/// A point of a rigid body at x moves with v + omega x (x - centre); a point of a deformable body
-/// with the weighted mean of up to 12 nodes.
+/// A point x of a rigid body moves with v + omega x (x - centre), a point of a deformable body with
+/// the weighted mean of up to 12 nodes.
 /// @param frames   of frames_of_bodies()
 /// @param threads  any number: same sides
 /// @param sides    out, [contacts]; memory is kept

@@ -1,5 +1,6 @@
 /// @file following_motion.hpp
-/// Velocities that follow impulses accelerated by conjugate directions.
+/// FollowingMotion: velocities that are accelerated together with impulses, by conjugate
+/// directions.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,21 +9,21 @@
 
 namespace tetwarp {
 
-/// Numbers that depend linearly on the vector x of a ConjugateDirection: they take the same steps,
-/// which costs less than finding them from the vector.
+/// Numbers that depend linearly on the vector x of a ConjugateDirection. They are updated by the
+/// same steps as x, which costs less than computing them from x.
 class FollowingMotion {
  public:
-  /// Starts anew. @param places  of the numbers, in the vectors of the other functions
+  /// Restarts. @param places  of the numbers, in the vectors of the other functions
   void start(const std::vector<std::int64_t>& places) {
     places_ = places;
     before_.resize(places_.size());
     direction_.assign(places_.size(), 0.0);
   }
-  /// Copies the numbers that belong to x.
+  /// Copies the numbers at x.
   void keep(const double* motion) {
     for (std::size_t k = 0; k < places_.size(); ++k) before_[k] = motion[places_[k]];
   }
-  /// Replaces those of the image, after ConjugateDirection::advance() has replaced the image.
+  /// Replaces the numbers at the image, after ConjugateDirection::advance() has replaced the image.
   void advance(bool is_restart, double ratio, double* motion) {
     for (std::size_t k = 0; k < places_.size(); ++k) {
       double& own = motion[places_[k]];

@@ -1,5 +1,5 @@
 /// @file soft_problem.hpp
-/// SoftProblem: islands and contacts for the two-level iteration.
+/// SoftProblem: the islands and contacts that the two-level iteration solves.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,12 +17,12 @@ struct SoftProblem {
   const ModelState& state;  ///< at the start of the step
   const ContactIslands& islands;
   std::span<const ContactSides> sides;        ///< of all contacts
-  const ContactRows& rows;                    ///< of all contacts where the host solves
-  const std::vector<std::uint8_t>& takes;     ///< [coupling islands] which are taken
+  const ContactRows& rows;                    ///< of all contacts; set where the host solves
+  const std::vector<std::uint8_t>& takes;     ///< [coupling islands] 1: solved here
   const std::vector<std::int32_t>& contacts;  ///< on these islands; ascending
-  const ContactProblem& laws;         ///< friction, offsets, adhesion and guess of these contacts
-  const std::vector<Point3>& change;  ///< how contacts changed the velocities in the step before,
-                                      ///< [block_count], or empty
+  const ContactProblem& laws;  ///< friction, offsets, adhesion and guess of these contacts
+  /// Change of the velocities by contacts in the step before, [block_count], or empty.
+  const std::vector<Point3>& change;
 };
 
 }  // namespace tetwarp

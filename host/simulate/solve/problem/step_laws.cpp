@@ -11,9 +11,10 @@ double StepLaws::recovery_speed(const ContactKey& key) const {
          std::min(scene_.body_size[index_of(key.body_a)], scene_.body_size[index_of(key.body_b)]);
 }
 
-/// A contact that is not reported is a bond of surfaces that do not touch. As far as its ends are
-/// apart sideways, these pass each other without pushing. One whose normal has turned away, so that
-/// its ends seem to overlap, does nothing along it: pushing would oppose what does touch there.
+/// A contact that is not reported is a bond of surfaces that no longer touch. The sideways distance
+/// of its ends is added to its gap, so that the ends can pass each other without pushing. If its
+/// normal has turned away so far that its ends seem to overlap, its normal spring is off, because
+/// it would push against the contacts at that place.
 void StepLaws::set_bond(const TrackedContact& contact, std::size_t c) {
   double way = std::hypot(contact.gap[1], contact.gap[2]);
   if (contact.gap[0] < 0) way += scene_.surfaces.thickness - 2 * contact.gap[0];

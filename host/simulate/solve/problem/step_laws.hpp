@@ -17,19 +17,20 @@ class StepLaws {
   StepLaws(const SceneSurfaces& scene, double recovery_fraction)
       : scene_(scene), recovery_fraction_(recovery_fraction) {}
 
-  /// The laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and raises
-  /// the normal ones so that existing penetration is undone no faster than recovery_fraction says.
-  /// @param rows      with those of all contacts with prescribed blocks
+  /// Sets the laws of all contacts. Adds the velocities of prescribed blocks to the offsets, and
+  /// raises normal offsets so that existing penetration recovers at most at the speed of
+  /// recovery_fraction.
+  /// @param rows      of all contacts with prescribed blocks
   /// @param velocity  [block_count]
   void set(const ContactTracker& tracker,
            const std::vector<TrackedContact>& contacts,
            const StepRows& rows,
            const std::vector<Point3>& velocity);
 
-  /// Without matrices.
+  /// The laws as a problem without matrices.
   const ContactProblem& problem() const { return laws_; }
-  /// [contacts] normal offset that was added to slow recovery, or because only a bond is left
-  /// [m/s].
+  /// [contacts] what was added to the normal offset [m/s]: to slow down recovery, or for bonds of
+  /// surfaces that do not touch.
   const std::vector<double>& recovered() const { return recovered_; }
 
  private:

@@ -97,7 +97,7 @@ bool StepProblem::set_arms(const ContactRows& contact_rows,
     const auto axes = contact_rows.axes.begin() + static_cast<std::ptrdiff_t>(9 * contact);
     arms_.axes.insert(arms_.axes.end(), axes, axes + 9);
     const std::size_t first_arm = arm_places_.size();
-    std::int32_t width = 0;  // of a row of the contact
+    std::int32_t width = 0;  // length of a row of the contact
     for (std::int32_t a = contact_rows.arm_start[contact]; a < contact_rows.arm_start[contact + 1];
          ++a) {
       const std::int32_t block = contact_rows.block_of_arm(a);

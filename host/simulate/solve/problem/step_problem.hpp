@@ -1,5 +1,5 @@
 /// @file step_problem.hpp
-/// The ContactProblem of a step: rows of some coupling islands and of contacts on them.
+/// StepProblem: the ContactProblem of some coupling islands of a step and of the contacts on them.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,15 +14,15 @@
 
 namespace tetwarp {
 
-/// Keeps the arrays of the problem from step to step, and its index arrays while the same islands
-/// and contacts are taken. The numbers of A, J and b are computed here or where a device steps the
-/// bodies, by the same stage bodies.
+/// Keeps the arrays of the problem from step to step, and its index arrays while the islands and
+/// contacts in it stay the same. The numbers of A, J and b are computed here, or by the same stage
+/// bodies on the device that steps the bodies.
 class StepProblem {
  public:
   /// Sets the index arrays, and how the contacts act on the dofs.
   /// @param rows      of the system of the step
-  /// @param takes     [coupling islands] which are taken
-  /// @param contacts  that are taken, ascending; they act on rows of islands that are taken
+  /// @param takes     [coupling islands] 1: in the problem
+  /// @param contacts  in the problem, ascending; they act on rows of its islands
   /// @returns whether any index array or place differs from that of the call before
   bool set_pattern(const SystemRows& rows,
                    const ContactIslands& islands,
@@ -31,14 +31,14 @@ class StepProblem {
                    const std::vector<std::int32_t>& contacts);
   /// Computes the numbers of A, J and b in memory of the host.
   void set_numbers(const StepSystem& system);
-  /// Sets numbers of A and J that a check of the index arrays accepts: A = 1 and J full of ones.
+  /// Sets numbers of A and J that pass a check of the index arrays: A = 1, and J full of ones.
   void set_sample();
 
   /// The caller sets friction, offsets, adhesion and guess.
   ContactProblem& problem() { return problem_; }
   const ProblemPlaces& places() const { return places_; }
   const ProblemArms& arms() const { return arms_; }
-  /// Copies the velocities of its dofs to their blocks.
+  /// Copies the velocities of the problem's dofs to their blocks.
   void scatter(std::span<const double> dofs, std::vector<Point3>& velocity) const;
 
  private:
@@ -47,15 +47,15 @@ class StepProblem {
   bool set_arms(const ContactRows& contact_rows, const std::vector<std::int32_t>& contacts);
   void set_jacobian_pattern(std::size_t contact_count);
 
-  std::vector<std::uint8_t> takes_;           ///< of the pattern that the problem has
-  std::vector<std::int32_t> column_, start_;  ///< of that pattern
+  std::vector<std::uint8_t> takes_;           ///< those of the current pattern
+  std::vector<std::int32_t> column_, start_;  ///< of the current pattern
   std::vector<std::int32_t> dof_of_;          ///< [block_count], or -1
   ContactProblem problem_;
   ProblemPlaces places_;
   ProblemArms arms_;
-  std::vector<ArmPlace> arm_places_;      ///< of the present contacts, to compare with those before
-  std::vector<std::int32_t> arm_block_;   ///< [arms] first block of the model
-  std::vector<std::int32_t> next_block_;  ///< of the present contacts
+  std::vector<ArmPlace> arm_places_;     ///< of the current contacts, to compare with the next ones
+  std::vector<std::int32_t> arm_block_;  ///< [arms] first block of the model
+  std::vector<std::int32_t> next_block_;  ///< of the current contacts
 };
 
 }  // namespace tetwarp

@@ -20,10 +20,10 @@ class StepRows {
   /// Begins with the contacts of a step: sets their sides. set_all() or set_for_host() must follow.
   /// @param state  at the start of the step; kept by the caller
   void begin(const ModelState& state, std::span<const TrackedContact> contacts);
-  /// Sets the rows of all contacts, unless they are set.
+  /// Sets the rows of all contacts, if they are not set yet.
   void set_all();
-  /// Sets the rows of all contacts but those whose rows a device makes. Of these, only contacts
-  /// that act on prescribed blocks get rows here: the host adds velocities and impulses of such
+  /// Sets the rows of all contacts except those whose rows a device makes. Of the latter, contacts
+  /// that act on prescribed blocks get rows here too: the host adds velocities and impulses of such
   /// blocks.
   /// @param on_device  numbers of contacts
   void set_for_host(std::span<const std::int32_t> on_device);
@@ -31,7 +31,7 @@ class StepRows {
   std::span<const ContactSides> sides() const { return sides_; }
   const ContactRows& rows() const { return rows_; }
 
-  /// J_p v_p of the prescribed blocks of a contact, along its axes.
+  /// J_p v_p of a contact, along its axes: J and v of prescribed blocks.
   /// @param velocity  [block_count]
   Point3 prescribed_velocity(std::size_t contact, const std::vector<Point3>& velocity) const;
   /// J^T r on prescribed blocks.
@@ -49,7 +49,7 @@ class StepRows {
   const Model& model_;
   int threads_;
   std::vector<std::int32_t> frames_;          ///< [bodies, then obstacles]
-  std::vector<std::uint8_t> has_prescribed_;  ///< [vertices] whether any block is prescribed
+  std::vector<std::uint8_t> has_prescribed_;  ///< [vertices] moves with a prescribed block
   const ModelState* state_ = nullptr;
   std::vector<ContactSides> sides_;
   std::vector<std::uint8_t> takes_;  ///< [contacts]
