@@ -1,3 +1,5 @@
+/// @file body_geometry.cpp
+/// Makes the lattice, mesh, sheet or surface that a body names.
 #include "host/scene/body_geometry.hpp"
 
 #include <algorithm>

@@ -3,12 +3,12 @@
 /// scalar or as [1], and three per contact as [3 n] or [n][3].
 #include "io/fclib/fclib_numbers.hpp"
 
-#include "io/h5/h5_write.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tetwarp/error.hpp>
+
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::fclib {
 namespace {

@@ -1,3 +1,5 @@
+/// @file h5_rows.cpp
+/// Datasets with an unlimited first axis, flushed so that readers see whole rows.
 #include "io/h5/h5_rows.hpp"
 
 #include <array>

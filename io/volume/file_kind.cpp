@@ -1,3 +1,5 @@
+/// @file file_kind.cpp
+/// The kind of a file by its content.
 #include <string>
 #include <tetwarp/io.hpp>
 

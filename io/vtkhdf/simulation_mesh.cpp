@@ -1,3 +1,5 @@
+/// @file simulation_mesh.cpp
+/// Creates, extends and cuts temporal meshes.
 #include "io/vtkhdf/simulation_mesh.hpp"
 
 #include <algorithm>

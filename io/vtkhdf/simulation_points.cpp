@@ -1,3 +1,5 @@
+/// @file simulation_points.cpp
+/// Creates, extends and cuts temporal points.
 #include "io/vtkhdf/simulation_points.hpp"
 
 #include <algorithm>

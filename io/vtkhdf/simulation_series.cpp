@@ -1,3 +1,5 @@
+/// @file simulation_series.cpp
+/// Creates, extends and cuts columns of numbers.
 #include "io/vtkhdf/simulation_series.hpp"
 
 #include <cmath>

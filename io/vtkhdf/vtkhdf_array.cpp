@@ -1,3 +1,5 @@
+/// @file vtkhdf_array.cpp
+/// Shapes of chunks, and chunks that hold nothing but the background.
 #include "io/vtkhdf/vtkhdf_array.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file vtkhdf_image.cpp
+/// Attributes of grids, arrays of steps, and the checks of options.
 #include "io/vtkhdf/vtkhdf_image.hpp"
 
 #include <set>

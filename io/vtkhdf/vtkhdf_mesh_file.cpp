@@ -1,3 +1,5 @@
+/// @file vtkhdf_mesh_file.cpp
+/// Reads rows of points, cells and displacements.
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+/// @file row_blocks.cpp
+/// Makes the blocks of a problem, and turns their solution back into that of the problem.
 #include "host/contact/problem/row_blocks.hpp"
 
 #include <algorithm>

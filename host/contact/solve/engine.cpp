@@ -1,3 +1,5 @@
+/// @file engine.cpp
+/// The order in which the islands of a problem are solved.
 #include "host/contact/solve/engine.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file island_solver.cpp
+/// Solves islands on the host or the device and copies their results.
 #include "host/contact/solve/island_solver.hpp"
 
 #include <algorithm>

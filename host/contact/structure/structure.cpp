@@ -1,3 +1,5 @@
+/// @file structure.cpp
+/// Makes a structure in either form, and compares the patterns of problems.
 #include "host/contact/structure/structure.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file contact.cpp
+/// Solves by enumeration or by Gauss-Seidel, and fills the report.
 #include "host/reference/contact/contact.hpp"
 
 #include <chrono>

@@ -1,12 +1,14 @@
+/// @file dense.cpp
+/// Makes the dense matrices of a problem, and measures its residual.
 #include "host/reference/contact/dense.hpp"
-
-#include "host/reference/contact/bilateral.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "host/reference/contact/bilateral.hpp"
 
 namespace tetwarp::reference {
 

@@ -1,3 +1,5 @@
+/// @file assemble.cpp
+/// Adds up A and b from masses, elements, edges, rigid bodies and springs.
 #include "host/reference/simulate/assemble.hpp"
 
 #include "host/reference/simulate/forces.hpp"

@@ -1,3 +1,5 @@
+/// @file bodies.cpp
+/// Steps, states and records of the reference simulator.
 #include "host/reference/simulate/bodies.hpp"
 
 #include <optional>

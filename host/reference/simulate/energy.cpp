@@ -1,3 +1,5 @@
+/// @file energy.cpp
+/// Sums of kinetic, elastic and potential energy, and of work.
 #include "host/reference/simulate/energy.hpp"
 
 #include "host/reference/simulate/body_motion.hpp"

@@ -1,3 +1,5 @@
+/// @file forces.cpp
+/// Sums of forces by block.
 
 #include "host/reference/simulate/forces.hpp"
 

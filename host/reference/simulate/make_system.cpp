@@ -1,3 +1,5 @@
+/// @file make_system.cpp
+/// Numbers nodes and frames, adds bodies, and marks what is prescribed.
 #include "host/reference/simulate/make_system.hpp"
 
 #include "host/reference/simulate/nearest_material.hpp"

@@ -1,3 +1,5 @@
+/// @file named.cpp
+/// Searches lists of a scene for a name.
 #include "host/reference/simulate/named.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,5 @@
+/// @file shares.cpp
+/// Lumped volumes and areas of points, and the bindings of surfaces.
 #include "host/reference/simulate/shares.hpp"
 
 #include "host/reference/simulate/make_system.hpp"

@@ -1,3 +1,5 @@
+/// @file springs.cpp
+/// Divides the stiffness of couplings and handles, and loads, among selected points.
 #include "host/reference/simulate/springs.hpp"
 
 #include <numeric>

@@ -1,3 +1,5 @@
+/// @file cloth.cpp
+/// Springs and bending of sheets, and lumped masses of all cloth.
 #include "host/simulate/model/cloth.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file fem.cpp
+/// Gradients, volumes and mass matrices of tetrahedra.
 #include "host/simulate/model/fem.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file image_materials.cpp
+/// Sums density and moduli over the voxels that tetrahedra own.
 #include "host/simulate/model/image_materials.hpp"
 
 #include <algorithm>

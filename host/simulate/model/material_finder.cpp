@@ -1,3 +1,5 @@
+/// @file material_finder.cpp
+/// Searches bodies by NearestItems, and obstacles by their shapes.
 #include "host/simulate/model/material_finder.hpp"
 
 #include <cmath>

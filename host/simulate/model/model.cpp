@@ -1,3 +1,5 @@
+/// @file model.cpp
+/// Numbers nodes and rigid bodies, adds all bodies, and finds coupling islands.
 #include <algorithm>
 #include <limits>
 #include <numeric>

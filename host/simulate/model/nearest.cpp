@@ -1,3 +1,5 @@
+/// @file nearest.cpp
+/// Nearest points of edges, triangles and tetrahedra, and the search through the grid.
 #include "host/simulate/model/nearest.hpp"
 
 #include <algorithm>

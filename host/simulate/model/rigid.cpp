@@ -1,3 +1,5 @@
+/// @file rigid.cpp
+/// Mass properties of closed surfaces, principal axes, and states at the start.
 #include "host/simulate/model/rigid.hpp"
 
 #include <algorithm>

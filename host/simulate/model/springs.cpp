@@ -1,3 +1,5 @@
+/// @file springs.cpp
+/// Pairs of points of couplings and handles, and their shares of the stiffness.
 #include "host/simulate/model/springs.hpp"
 
 #include <numeric>

@@ -1,3 +1,5 @@
+/// @file triangle_cloth.cpp
+/// Weights of edges by the cotangents of the angles opposite to them.
 #include "host/simulate/model/triangle_cloth.hpp"
 
 #include <algorithm>

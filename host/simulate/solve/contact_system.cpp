@@ -1,10 +1,12 @@
+/// @file contact_system.cpp
+/// Sends islands to their solvers, and takes impulses and velocities from them.
 #include "host/simulate/solve/contact_system.hpp"
-#include "host/base/index_of.hpp"
-#include "host/base/point3.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
 #include "host/simulate/solve/contact_shares.hpp"
 #include "host/simulate/solve/problem/contact_islands.hpp"
 #include "host/simulate/solve/problem/step_laws.hpp"

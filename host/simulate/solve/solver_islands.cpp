@@ -1,3 +1,5 @@
+/// @file solver_islands.cpp
+/// Chooses the solver for few or for many contacts, and solves on the host or on the device.
 #include "host/simulate/solve/solver_islands.hpp"
 
 #include <algorithm>

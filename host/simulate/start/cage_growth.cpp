@@ -1,3 +1,6 @@
+/// @file cage_growth.cpp
+/// Moves the vertices of cages in small steps under constraints, and accepts steps that pass the
+/// check.
 #include "host/simulate/start/cage_growth.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file prepare_start.cpp
+/// Chooses how a scene starts, and moves the anchors of its handles along.
 #include "host/simulate/start/prepare_start.hpp"
 
 #include <algorithm>

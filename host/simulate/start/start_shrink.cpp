@@ -1,3 +1,5 @@
+/// @file start_shrink.cpp
+/// Shrinks the bodies of all pairs in conflict, step by step.
 #include "host/simulate/start/start_shrink.hpp"
 
 #include <map>

@@ -1,3 +1,5 @@
+/// @file reference_stepper.cpp
+/// Steps the system of the reference, and copies its state.
 #include "host/simulate/step/reference_stepper.hpp"
 
 #include <chrono>

@@ -1,8 +1,10 @@
+/// @file scene_drive.cpp
+/// Evaluates paths, scripts and handles at the end of a step.
 #include "host/simulate/step/scene_drive.hpp"
-#include "host/base/index_of.hpp"
 
 #include <stdexcept>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {

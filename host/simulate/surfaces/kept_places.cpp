@@ -1,8 +1,10 @@
+/// @file kept_places.cpp
+/// Computes the places of a state that are not known yet.
 #include "host/simulate/surfaces/kept_places.hpp"
 
-#include "host/simulate/surfaces/surface_motion.hpp"
-
 #include <utility>
+
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 

@@ -1,3 +1,5 @@
+/// @file round_shape.cpp
+/// Recognizes spheres and capsules among shapes and obstacles.
 #include "host/simulate/surfaces/round_shape.hpp"
 
 #include <cmath>

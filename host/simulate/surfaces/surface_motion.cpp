@@ -1,3 +1,5 @@
+/// @file surface_motion.cpp
+/// Moves vertices and planes by the same functions as a device.
 #include "host/simulate/surfaces/surface_motion.hpp"
 
 #include <algorithm>

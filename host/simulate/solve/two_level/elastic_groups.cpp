@@ -1,3 +1,5 @@
+/// @file elastic_groups.cpp
+/// Sorts contacts into groups, and changes the velocities of their bodies by sums of pushes.
 #include "host/simulate/solve/two_level/elastic_groups.hpp"
 
 #include <algorithm>

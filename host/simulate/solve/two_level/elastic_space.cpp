@@ -1,9 +1,11 @@
+/// @file elastic_space.cpp
+/// Chooses bodies, and computes columns of their inverses at rest.
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <iterator>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 
 namespace tetwarp {
