@@ -26,8 +26,8 @@ tetwarp_sources(tetwarp host/contact/problem
   budget.cpp checks.cpp delassus.cpp imbalance.cpp matrix.cpp measure.cpp problem.cpp residual.cpp
   row_blocks.cpp row_checks.cpp spring_offset.cpp)
 tetwarp_sources(tetwarp host/contact/solve
-  certificate.cpp condense.cpp engine.cpp engine_coupled.cpp feasibility.cpp island_fallback.cpp
-  island_restart.cpp island_solver.cpp method_choice.cpp status.cpp)
+  certificate.cpp condense.cpp coupled_islands.cpp engine.cpp feasibility.cpp island_attempt.cpp
+  island_fallback.cpp island_restart.cpp island_solver.cpp method_choice.cpp status.cpp)
 tetwarp_sources(tetwarp host/contact/structure
   color.cpp extract.cpp islands.cpp structure.cpp structure_global.cpp structure_local.cpp
   structure_parts.cpp system.cpp)
