@@ -15,7 +15,7 @@ namespace tetwarp {
 
 namespace {
 
-/// Sheets: u runs fastest.
+/// Adds a sheet of squares. Its nodes are numbered along u first.
 class SheetParts {
  public:
   SheetParts(const BodyPart& part, Model& model, std::vector<ScalarEntry>& entries)

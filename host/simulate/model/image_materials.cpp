@@ -72,7 +72,7 @@ struct VoxelSums {
   bool has_voxel = false;
   TetMass mass{};
   double count = 0;  ///< voxels that have a stiffness
-  /// Of lambda and mu, or with the harmonic mean of 1 / bulk modulus and 1 / mu.
+  /// Sums of lambda and mu; for the harmonic mean of 1 / bulk modulus and 1 / mu.
   double first = 0, second = 0;
 
   void add_moduli(const Material& material, MaterialMean mean) {

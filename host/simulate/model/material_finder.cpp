@@ -15,7 +15,7 @@
 namespace tetwarp {
 namespace {
 
-/// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi within.
+/// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi inside.
 bool encloses(const Surface& surface, const Point3& x) {
   double angle = 0;
   for (const auto& triangle : surface.triangles) {
@@ -43,7 +43,7 @@ struct MaterialFinder::Search {
   const Surface* surface = nullptr;                  ///< of a solid, in its own frame
   std::vector<std::array<std::int32_t, 3>> corners;  ///< of `triangles`
 
-  /// Of a solid in its own frame: the point itself within.
+  /// The point of a solid nearest to a point, in its own frame; inside, the point itself.
   Point3 nearest_of_solid(const Point3& x) const {
     if (surface->triangles.empty() || encloses(*surface, x)) return x;
     const NearestPoint<3> found = triangles->find(x);

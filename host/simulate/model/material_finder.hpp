@@ -24,7 +24,7 @@ class MaterialFinder {
 
   /// @param name  of a body, obstacle, or "world"
   NearestMaterial nearest(const std::string& name, const Point3& x_world);
-  /// As nearest(), but of rigid bodies the point itself, also outside of their surface.
+  /// As nearest(), but for a rigid body the point of its frame at x, also outside of its surface.
   ModelPoint fixed_at(const std::string& name, const Point3& x_world);
 
  private:

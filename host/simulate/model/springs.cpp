@@ -37,9 +37,11 @@ void add_list(const SpringList& list,
   }
 }
 
-constexpr double most_outside = 0.05;  ///< of the size of a body: points there are tied to it
+constexpr double most_outside =
+    0.05;  ///< times the size of a body: points up to there are tied to it
 
-/// Whether a body is elastic or cloth: points of others are tied where they are.
+/// Whether a body is elastic or cloth. Points of other bodies are tied where they are, however far
+/// from the body.
 bool gives_way(const Scene& scene, std::int32_t body) {
   const auto index = static_cast<std::size_t>(body);
   if (body < 0 || index >= scene.bodies.size()) return false;

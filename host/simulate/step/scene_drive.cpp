@@ -124,7 +124,7 @@ void SceneDrive::fill_anchors(double end_time, double dt, StepInput& input) {
     input.is_active[s] = next_handles_[h].has_value();
     if (!next_handles_[h]) continue;
     input.anchor[s] = plus(springs.b[s].local, *next_handles_[h]);
-    // An anchor that takes hold again has no way behind it.
+    // An anchor that takes hold again has no velocity in this step.
     const Point3 before = handles_[h].value_or(*next_handles_[h]);
     input.anchor_velocity[s] = times(1 / dt, minus(*next_handles_[h], before));
   }

@@ -159,7 +159,7 @@ void ElasticGroups::begin(std::int32_t group, const double* y) {
   std::ranges::fill(all.push, 0.0);
 }
 
-/// Of a piece of one body of a group.
+/// finish() for a piece of one body of a group.
 std::int64_t ElasticGroups::finish(const Group& group,
                                    const Body& own,
                                    const Piece& piece,

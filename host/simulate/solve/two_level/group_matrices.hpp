@@ -43,7 +43,7 @@ class GroupMatrices {
              double* impulse);
 
  private:
-  /// J M^-1 J^T of the contacts of a group, rounded; three columns of each contact.
+  /// J M^-1 J^T of the contacts of a group in float32; three columns of each contact.
   struct Matrix {
     std::int64_t stride = 0;       ///< numbers of a column, a multiple of 8
     std::vector<float> values;     ///< [3 contacts][stride]

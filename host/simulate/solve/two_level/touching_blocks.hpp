@@ -33,8 +33,9 @@ class TouchingBlocks {
   struct Part {
     std::int64_t first = 0;  ///< its first number in x and in forces
     std::int64_t place = 0;  ///< its first number in y
-    std::int64_t value = 0;  ///< of its first number in jacobian() and its like, each [3][size]
-    std::int32_t size = 0;   ///< its numbers: 3, of a rigid body 6
+    std::int64_t value =
+        0;  ///< its first number in the arrays of jacobian(), turned() ..., [3][size]
+    std::int32_t size = 0;  ///< its numbers: 3, of a rigid body 6
     bool is_elastic() const { return place != first; }
   };
 
@@ -72,7 +73,7 @@ class TouchingBlocks {
   const double* jacobian(const Part& part) const { return jacobian_.data() + part.value; }
   /// M^-1 J^T of a part of rows, [3][size].
   const double* response(const Part& part) const { return response_.data() + part.value; }
-  /// J R of a part of an elastic body, [3][3]; the same rounded.
+  /// J R of a part of an elastic body, [3][3], and the same rounded to float32.
   const double* turned(const Part& part) const { return turned_.data() + part.value; }
   const float* rounded(const Part& part) const { return rounded_.data() + part.value; }
 

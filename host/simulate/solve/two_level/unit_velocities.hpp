@@ -9,7 +9,7 @@
 namespace tetwarp {
 
 /// Velocities z of the nodes of the contact's group for unit impulses along its three axes.
-/// @param z  out, [3][size of the group], rounded
+/// @param z  out, [3][size of the group]
 void set_unit_velocities(const TouchingBlocks& blocks,
                          ElasticGroups& groups,
                          std::size_t contact,
