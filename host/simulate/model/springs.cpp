@@ -37,8 +37,8 @@ void add_list(const SpringList& list,
   }
 }
 
-constexpr double most_outside =
-    0.05;  ///< times the size of a body: points up to there are tied to it
+// Times the size of a body: points up to so far outside are tied to it.
+constexpr double most_outside = 0.05;
 
 /// Whether a body is elastic or cloth. Points of other bodies are tied where they are, however far
 /// from the body.
