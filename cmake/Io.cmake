@@ -12,8 +12,8 @@ foreach(library gif gmsh mpi vtk)
 endforeach()
 add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
 tetwarp_sources(tetwarp_io io/fclib
-  contact_checkpoint.cpp fclib_contact.cpp fclib_matrix.cpp fclib_numbers.cpp fclib_rows.cpp
-  fclib_write.cpp)
+  contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_matrix.cpp fclib_numbers.cpp
+  fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
   finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
@@ -26,8 +26,8 @@ tetwarp_sources(tetwarp_io io/nifti
 tetwarp_sources(tetwarp_io io/picture
   film_${tetwarp_gif}.cpp palette.cpp png_image.cpp)
 tetwarp_sources(tetwarp_io io/scene
-  scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_geometry.cpp
-  scene_json.cpp scene_motion.cpp)
+  scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
+  scene_geometry.cpp scene_json.cpp scene_motion.cpp)
 tetwarp_sources(tetwarp_io io/volume
   file_kind.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf

@@ -24,13 +24,13 @@ tetwarp_sources(tetwarp host/contact/newton
   associated.cpp contact_assembly.cpp natural_map.cpp newton.cpp newton_system.cpp pivoting.cpp)
 tetwarp_sources(tetwarp host/contact/problem
   budget.cpp checks.cpp delassus.cpp imbalance.cpp matrix.cpp measure.cpp problem.cpp residual.cpp
-  row_blocks.cpp row_checks.cpp row_solution.cpp spring_offset.cpp)
+  row_blocks.cpp row_checks.cpp spring_offset.cpp)
 tetwarp_sources(tetwarp host/contact/solve
-  certificate.cpp condense.cpp engine.cpp engine_coupled.cpp feasibility.cpp island_fallback.cpp
-  island_restart.cpp island_solver.cpp method_choice.cpp status.cpp)
+  certificate.cpp condense.cpp coupled_islands.cpp engine.cpp feasibility.cpp island_attempt.cpp
+  island_fallback.cpp island_restart.cpp island_solver.cpp method_choice.cpp status.cpp)
 tetwarp_sources(tetwarp host/contact/structure
   color.cpp extract.cpp islands.cpp structure.cpp structure_global.cpp structure_local.cpp
-  system.cpp)
+  structure_parts.cpp system.cpp)
 tetwarp_sources(tetwarp host/contact/sweeps
   run.cpp)
 tetwarp_sources(tetwarp host/contact/tracker
@@ -43,12 +43,12 @@ tetwarp_sources(tetwarp host/reference/contact
   bilateral.cpp contact.cpp dense.cpp enumerate.cpp feasible.cpp gauss_seidel.cpp least_norm.cpp
   local.cpp)
 tetwarp_sources(tetwarp host/reference/simulate
-  assemble.cpp bodies.cpp bodies_record.cpp cloth_body.cpp elements.cpp energy.cpp fem_body.cpp
+  assemble.cpp bodies.cpp body_motion.cpp cloth_body.cpp elements.cpp energy.cpp fem_body.cpp
   forces.cpp image_material.cpp make_system.cpp material_point.cpp motion.cpp named.cpp
   nearest_material.cpp prescribed.cpp rigid_mass.cpp shares.cpp springs.cpp step_system.cpp
   system.cpp)
 tetwarp_sources(tetwarp host/reference/warp
-  overlap.cpp sample.cpp sample_transform.cpp warp.cpp)
+  backend_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
   body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
   marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp
@@ -57,7 +57,8 @@ tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/model
   body_points.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp motion.cpp
-  nearest.cpp rigid.cpp springs.cpp surface_mesh.cpp triangle_cloth.cpp)
+  nearest.cpp rigid.cpp scalar_entries.cpp springs.cpp surface_mesh.cpp tet_materials.cpp
+  triangle_cloth.cpp)
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
@@ -71,9 +72,10 @@ tetwarp_sources(tetwarp host/simulate/solve/problem
   contact_constants.cpp contact_islands.cpp contact_laws.cpp contact_rows.cpp contact_sides.cpp
   step_laws.cpp step_problem.cpp step_rows.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/two_level
-  compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp solved_islands.cpp
-  touching_blocks.cpp touching_groups.cpp touching_sweeps.cpp two_level_on_device.cpp
-  two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp)
+  compliant_list_maker.cpp elastic_groups.cpp elastic_space.cpp group_matrices.cpp
+  packed_contacts.cpp solved_islands.cpp touching_blocks.cpp touching_sweep.cpp
+  two_level_on_device.cpp two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp
+  unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
   cage_growth.cpp cage_pose.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp start_check.cpp
   start_shrink.cpp)

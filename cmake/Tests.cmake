@@ -286,13 +286,15 @@ endif()
 
 include(cmake/SimulateTests.cmake)
 
-# ---- includes between folders have one direction -----------------------------------------------
+# ---- includes between folders have one direction; source files lie beside their headers ---------
 find_program(TETWARP_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(TETWARP_PYTHON python3)
 if(TETWARP_PYTHON)
-  add_test(NAME lint_folders COMMAND ${TETWARP_PYTHON}
-    ${PROJECT_SOURCE_DIR}/tests/lint/folders.py --test)
-  set_tests_properties(lint_folders PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+  foreach(lint folders sources)
+    add_test(NAME lint_${lint} COMMAND ${TETWARP_PYTHON}
+      ${PROJECT_SOURCE_DIR}/tests/lint/${lint}.py --test)
+    set_tests_properties(lint_${lint} PROPERTIES LABELS unit ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
+  endforeach()
 endif()
 
 # ---- the examples build and run with what was installed ---------------------------------------

@@ -1,3 +1,5 @@
+/// @file backend.cpp
+/// Which back ends this build and machine have, and which of them a choice means.
 #include <string>
 #include <tetwarp/backend.hpp>
 #include <tetwarp/error.hpp>

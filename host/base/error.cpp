@@ -1,3 +1,5 @@
+/// @file error.cpp
+/// The one line of text of an IoError.
 #include <tetwarp/error.hpp>
 #include <utility>
 

@@ -1,3 +1,5 @@
+/// @file mesh.cpp
+/// The check of a mesh: finite positions, and cells whose nodes exist.
 #include <cmath>
 #include <stdexcept>
 #include <string>

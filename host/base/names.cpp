@@ -1,3 +1,5 @@
+/// @file names.cpp
+/// The words of the enums of the library.
 #include <tetwarp/backend.hpp>
 #include <tetwarp/contact.hpp>
 #include <tetwarp/make.hpp>

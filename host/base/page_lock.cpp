@@ -1,3 +1,5 @@
+/// @file page_lock.cpp
+/// Locks memory in place for copies to a device, where CUDA is built in.
 #include <tetwarp/page_lock.hpp>
 #include <utility>
 

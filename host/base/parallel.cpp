@@ -1,3 +1,5 @@
+/// @file parallel.cpp
+/// The pool of threads, and loops that it shares out.
 #include "host/base/parallel.hpp"
 
 #include <atomic>

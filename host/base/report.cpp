@@ -1,3 +1,5 @@
+/// @file report.cpp
+/// Sums of counts and times, and a report as JSON.
 #include <nlohmann/json.hpp>
 #include <tetwarp/report.hpp>
 

@@ -1,3 +1,5 @@
+/// @file volume.cpp
+/// Volumes and views of them, and the maps between indices and the world.
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -1,3 +1,5 @@
+/// @file fill_report.cpp
+/// Sums the outcomes of the islands and joins their histories.
 #include "host/contact/fill_report.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file report.cpp
+/// The report of a solve as JSON.
 #include <nlohmann/json.hpp>
 #include <tetwarp/contact.hpp>
 

@@ -10,6 +10,7 @@
 #include "host/base/counter_hash.hpp"
 #include "host/base/parallel.hpp"
 #include "host/make/phantom_shapes.hpp"
+#include "host/make/phantom_torso.hpp"
 
 namespace tetwarp {
 namespace {

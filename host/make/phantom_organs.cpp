@@ -1,3 +1,5 @@
+/// @file phantom_organs.cpp
+/// Tubes along curves and branching vessels as rods.
 #include "host/make/phantom_organs.hpp"
 
 #include <algorithm>

@@ -110,7 +110,4 @@ struct Anatomy {
 /// Size of the box that the anatomy is made for, centered at the origin [mm].
 constexpr Point3 anatomy_size{384, 240, 366};
 
-/// A torso of an adult, somewhat shortened.
-Anatomy make_torso();
-
 }  // namespace tetwarp

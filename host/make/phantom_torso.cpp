@@ -1,5 +1,7 @@
 /// @file phantom_torso.cpp
 /// The torso of the phantom, organ by organ. Gray levels are those of a CT with contrast agent.
+#include "host/make/phantom_torso.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,3 +1,5 @@
+/// @file picture_view.cpp
+/// Projections of the camera and of the light.
 #include "host/make/picture_view.hpp"
 
 #include <algorithm>

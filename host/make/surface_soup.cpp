@@ -1,3 +1,5 @@
+/// @file surface_soup.cpp
+/// Collects the triangles and computes their normals.
 #include "host/make/surface_soup.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file body_geometry.cpp
+/// Makes the lattice, mesh, sheet or surface that a body names.
 #include "host/scene/body_geometry.hpp"
 
 #include <algorithm>
@@ -9,6 +11,7 @@
 #include "host/scene/isosurface.hpp"
 #include "host/scene/shape.hpp"
 #include "host/scene/shape_lattice.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/scene/sheet.hpp"
 #include "host/scene/surface.hpp"
 

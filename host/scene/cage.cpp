@@ -1,3 +1,5 @@
+/// @file cage.cpp
+/// Solves Laplace's equation on the lattice for the weights of each point.
 #include "host/scene/cage.hpp"
 
 #include <Eigen/IterativeLinearSolvers>

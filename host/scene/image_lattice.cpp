@@ -1,3 +1,5 @@
+/// @file image_lattice.cpp
+/// Finds the foreground, and keeps the tetrahedra that contain some of it.
 #include "host/scene/image_lattice.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file isosurface.cpp
+/// Samples the image on a lattice, marches its tetrahedra, and places the points.
 #include "host/scene/isosurface.hpp"
 
 #include <algorithm>

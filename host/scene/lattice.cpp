@@ -1,3 +1,5 @@
+/// @file lattice.cpp
+/// Frames, nodes and tetrahedra of lattices.
 #include "host/scene/lattice.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file lattice_search.cpp
+/// Searches the number of cells whose lattice comes nearest to the choice.
 #include "host/scene/lattice_search.hpp"
 
 #include <algorithm>

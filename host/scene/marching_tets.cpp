@@ -1,3 +1,5 @@
+/// @file marching_tets.cpp
+/// Triangles of one tetrahedron, and points that neighbors share.
 #include "host/scene/marching_tets.hpp"
 
 #include <algorithm>

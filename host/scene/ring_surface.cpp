@@ -1,3 +1,5 @@
+/// @file ring_surface.cpp
+/// Rings of cylinders, capsules, tori and arcs, and the triangles between them.
 #include "host/scene/ring_surface.hpp"
 
 #include <algorithm>

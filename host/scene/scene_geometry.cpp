@@ -1,3 +1,5 @@
+/// @file scene_geometry.cpp
+/// Makes the geometry of all bodies, and selects their points.
 #include "host/scene/scene_geometry.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file selection.cpp
+/// Tests each point against the parts of a selection.
 #include "host/scene/selection.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file shape.cpp
+/// Levels, boxes and volumes of each kind of shape.
 #include "host/scene/shape.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 /// @file shape.hpp
-/// Shapes of valid sizes (see check_scene()): which points are inside, bounding box, volume,
-/// surface.
+/// Shapes of valid sizes (see check_scene()): which points are inside, bounding box, volume.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -32,9 +31,5 @@ double rise_of(const BentStripShape& strip, double x);
 
 /// The box whose points rise_of() raises to the strip.
 Bounds straight_bounds(const BentStripShape& strip);
-
-/// Closed triangle surface of about `triangles` triangles, outwards; points are on the surface of
-/// the shape. The count is the nearest that the pattern of the shape allows.
-Surface make_shape_surface(const Shape& shape, std::int64_t triangles);
 
 }  // namespace tetwarp

@@ -1,3 +1,5 @@
+/// @file shape_fraction.cpp
+/// Divides tetrahedra that the surface may cross, and sums the parts inside.
 #include "host/scene/shape_fraction.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file shape_lattice.cpp
+/// Fills or covers a shape with cells, and corrects the total volume.
 #include "host/scene/shape_lattice.hpp"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 /// @file shape_surface.cpp
 /// Closed triangle surfaces of shapes.
+#include "host/scene/shape_surface.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

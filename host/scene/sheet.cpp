@@ -1,3 +1,5 @@
+/// @file sheet.cpp
+/// Nodes on a grid, and two triangles a square.
 #include "host/scene/sheet.hpp"
 
 #include <cstdint>

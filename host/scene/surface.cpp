@@ -1,3 +1,5 @@
+/// @file surface.cpp
+/// Finds outer triangles, and checks areas and edges.
 #include "host/scene/surface.hpp"
 
 #include <algorithm>

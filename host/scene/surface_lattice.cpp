@@ -1,3 +1,5 @@
+/// @file surface_lattice.cpp
+/// Tests boxes and tetrahedra against triangles, and winding numbers of the others.
 #include "host/scene/surface_lattice.hpp"
 
 #include <algorithm>

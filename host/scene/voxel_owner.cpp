@@ -1,3 +1,5 @@
+/// @file voxel_owner.cpp
+/// Warps the image with its mesh at rest, which writes the owners.
 #include "host/scene/voxel_owner.hpp"
 
 #include <algorithm>

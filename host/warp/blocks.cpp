@@ -1,3 +1,5 @@
+/// @file blocks.cpp
+/// Divides the output into blocks that fit a limit of memory.
 #include <algorithm>
 #include <atomic>
 #include <cmath>

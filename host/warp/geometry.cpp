@@ -1,3 +1,5 @@
+/// @file geometry.cpp
+/// Makes the frame, quantizes the mesh and checks its size.
 #include "host/warp/geometry.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,5 @@
+/// @file hex_split.cpp
+/// Six tetrahedra of a hexahedron: two for each face without its lowest corner.
 #include "host/warp/hex_split.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file step_queue.cpp
+/// Starts steps, waits for those that write to the same memory, and keeps errors for their step.
 #include "host/warp/step_queue.hpp"
 
 #include <algorithm>

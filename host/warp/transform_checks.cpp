@@ -1,3 +1,5 @@
+/// @file transform_checks.cpp
+/// Checks filters, quantities and conservative intensities.
 #include "host/warp/transform_checks.hpp"
 
 #include <cmath>

@@ -7,9 +7,11 @@
 #include <string>
 #include <tetwarp/contact_io.hpp>
 
-#include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_numbers.hpp"
 #include "io/files/finished_file.hpp"
+#include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,11 +1,14 @@
 /// @file fclib_matrix.cpp
 /// Matrices of FCLIB files, in CSparse's three storages: `nz` = -1 by columns, -2 by rows, else the
 /// number of triplets. Arrays may be longer than the number of entries.
+#include "io/fclib/fclib_matrix.hpp"
+
 #include <algorithm>
 #include <tetwarp/error.hpp>
 #include <utility>
 
-#include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_numbers.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::fclib {
 namespace {

@@ -1,12 +1,14 @@
 /// @file fclib_numbers.cpp
 /// Numbers and texts of FCLIB files. Shapes of datasets are ignored: programs store one number as a
 /// scalar or as [1], and three per contact as [3 n] or [n][3].
+#include "io/fclib/fclib_numbers.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tetwarp/error.hpp>
 
-#include "io/fclib/fclib.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::fclib {
 namespace {

@@ -1,11 +1,15 @@
 /// @file fclib_rows.cpp
 /// Friction ellipses, bilateral rows and rolling friction in FCLIB files. FCLIB's own G and b are
 /// bilateral rows, G^T v + b = 0; the rest is in groups beside it, which other readers ignore.
+#include "io/fclib/fclib_rows.hpp"
+
 #include <algorithm>
 #include <tetwarp/error.hpp>
 #include <utility>
 
-#include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_matrix.hpp"
+#include "io/fclib/fclib_numbers.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::fclib {
 namespace {

@@ -8,8 +8,12 @@
 #include <tetwarp/io.hpp>
 
 #include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_matrix.hpp"
+#include "io/fclib/fclib_numbers.hpp"
+#include "io/fclib/fclib_rows.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

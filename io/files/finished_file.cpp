@@ -1,3 +1,5 @@
+/// @file finished_file.cpp
+/// Renames a file when it is complete, and removes it otherwise.
 #include "io/files/finished_file.hpp"
 
 #include <fcntl.h>

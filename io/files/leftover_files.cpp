@@ -1,3 +1,5 @@
+/// @file leftover_files.cpp
+/// Names of temporary files hold the process that made them, which tells whether it still runs.
 #include "io/files/leftover_files.hpp"
 
 #include <unistd.h>

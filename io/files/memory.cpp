@@ -1,3 +1,5 @@
+/// @file memory.cpp
+/// Reads /proc, and writes numbers of bytes with units.
 #include "io/files/memory.hpp"
 
 #include <unistd.h>

@@ -1,3 +1,5 @@
+/// @file scratch_file.cpp
+/// Opens a file and removes it from its folder; reads and writes at offsets.
 #include "io/files/scratch_file.hpp"
 
 #include <fcntl.h>

@@ -23,11 +23,4 @@ class VolumeSink {
   virtual WrittenFile finish() = 0;
 };
 
-/// A NIfTI file of one array.
-std::unique_ptr<VolumeSink> make_nifti_sink(const std::string& path,
-                                            const Grid& grid,
-                                            const std::vector<ArrayHeader>& arrays,
-                                            const VolumeWriteOptions& options,
-                                            bool is_temporal);
-
 }  // namespace tetwarp

@@ -25,15 +25,4 @@ class VolumeSource {
   virtual void read(const Region& region, void* samples) = 0;
 };
 
-VolumeHeader read_vtkhdf_header(const std::string& path);
-std::unique_ptr<VolumeSource> open_vtkhdf_source(const std::string& path,
-                                                 const std::string& array,
-                                                 std::int64_t step);
-
-VolumeHeader read_nifti_volume_header(const std::string& path, const VolumeReadOptions& options);
-std::unique_ptr<VolumeSource> open_nifti_source(const std::string& path,
-                                                const std::string& array,
-                                                std::int64_t step,
-                                                const VolumeReadOptions& options);
-
 }  // namespace tetwarp

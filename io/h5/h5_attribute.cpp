@@ -1,9 +1,12 @@
 /// @file h5_attribute.cpp
 /// Reading attributes.
+#include "io/h5/h5_attribute.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_read.hpp"
 
 namespace tetwarp::h5 {
 namespace {

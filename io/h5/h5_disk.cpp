@@ -1,3 +1,5 @@
+/// @file h5_disk.cpp
+/// The functions of the driver, and files that use it.
 #include "io/h5/h5_disk.hpp"
 
 #include <fcntl.h>

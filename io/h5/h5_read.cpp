@@ -1,5 +1,7 @@
 /// @file h5_read.cpp
 /// Reading: nothing is allocated before its size was compared with the file and the memory.
+#include "io/h5/h5_read.hpp"
+
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file h5_rows.cpp
+/// Datasets with an unlimited first axis, flushed so that readers see whole rows.
 #include "io/h5/h5_rows.hpp"
 
 #include <array>
@@ -5,6 +7,8 @@
 #include <tetwarp/error.hpp>
 
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp::h5 {
 

@@ -1,5 +1,7 @@
 /// @file h5_write.cpp
 /// Writing: every failure is an IoError under the name the caller gave the file.
+#include "io/h5/h5_write.hpp"
+
 #include "io/h5/h5.hpp"
 
 namespace tetwarp::h5 {

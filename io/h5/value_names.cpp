@@ -1,8 +1,13 @@
+/// @file value_names.cpp
+/// Writes and parses the text "value name" line by line.
 #include "io/h5/value_names.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <sstream>
+
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,3 +1,5 @@
+/// @file child_process.cpp
+/// Forks, limits and isolates the child, and reads its pipe.
 #include "io/import/child_process.hpp"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+/// @file mesh_child.cpp
+/// Sends the mesh or the error of a reader through a pipe.
 #include "io/import/mesh_child.hpp"
 
 #include <cstdint>

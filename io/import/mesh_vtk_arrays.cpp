@@ -1,3 +1,5 @@
+/// @file mesh_vtk_arrays.cpp
+/// Copies VTK's arrays, as far as their types are known.
 #include "io/import/mesh_vtk_arrays.hpp"
 
 #include <vtkAbstractArray.h>

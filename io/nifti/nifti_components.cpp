@@ -1,3 +1,5 @@
+/// @file nifti_components.cpp
+/// Turns components between the order of files and that of volumes.
 #include "io/nifti/nifti_components.hpp"
 
 #include <nifti1.h>

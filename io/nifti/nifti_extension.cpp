@@ -1,3 +1,5 @@
+/// @file nifti_extension.cpp
+/// Makes and finds the extension.
 #include "io/nifti/nifti_extension.hpp"
 
 #include <algorithm>

@@ -1,8 +1,13 @@
+/// @file nifti_facts.cpp
+/// Writes facts as attributes, and reads them back.
 #include "io/nifti/nifti_facts.hpp"
 
 #include <nifti1.h>
 
 #include <string>
+
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,3 +1,5 @@
+/// @file nifti_fields.cpp
+/// Copies fields from and to bytes of either order.
 #include "io/nifti/nifti_fields.hpp"
 
 #include <algorithm>

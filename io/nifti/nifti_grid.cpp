@@ -1,3 +1,5 @@
+/// @file nifti_grid.cpp
+/// A grid from sizes, qform or sform, and both forms of a grid.
 #include "io/nifti/nifti_grid.hpp"
 
 #include <nifti1.h>

@@ -1,3 +1,5 @@
+/// @file nifti_header.cpp
+/// Reads a header, checks each field, and compares the file's size with it.
 #include "io/nifti/nifti_header.hpp"
 
 #include <nifti1_io.h>

@@ -1,3 +1,5 @@
+/// @file nifti_samples.cpp
+/// Reads plain and packed samples, swaps their bytes, and scales them.
 #include "io/nifti/nifti_samples.hpp"
 
 #include <fcntl.h>

@@ -1,5 +1,7 @@
 /// @file nifti_volume.cpp
 /// NIfTI files as volumes.
+#include "io/nifti/nifti_volume.hpp"
+
 #include <tetwarp/io.hpp>
 #include <utility>
 

@@ -1,5 +1,7 @@
 /// @file nifti_write.cpp
 /// Writing NIfTI files: whole volumes, step by step, block by block.
+#include "io/nifti/nifti_write.hpp"
+
 #include <fcntl.h>
 #include <nifti1.h>
 #include <unistd.h>

@@ -1,3 +1,5 @@
+/// @file film_gif.cpp
+/// Films as GIF: each picture is written as far as it differs from the one before.
 #include <gif_lib.h>
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file palette.cpp
+/// Divides the colors of a picture at the mean of the box that spreads most.
 #include "io/picture/palette.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file png_image.cpp
+/// Pictures as PNG files.
 #include <png.h>
 
 #include <tetwarp/io.hpp>

@@ -1,9 +1,14 @@
 /// @file scene_actions.cpp
 /// Obstacles, couplings, handles and loads of scene files.
+#include "io/scene/scene_actions.hpp"
+
 #include <algorithm>
 #include <array>
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_contact.hpp"
+#include "io/scene/scene_files.hpp"
+#include "io/scene/scene_geometry.hpp"
+#include "io/scene/scene_motion.hpp"
 
 namespace tetwarp {
 namespace {

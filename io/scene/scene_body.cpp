@@ -1,8 +1,13 @@
 /// @file scene_body.cpp
 /// Bodies of scene files: common keys, then those of the kind.
+#include "io/scene/scene_body.hpp"
+
 #include <array>
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_contact.hpp"
+#include "io/scene/scene_files.hpp"
+#include "io/scene/scene_geometry.hpp"
+#include "io/scene/scene_motion.hpp"
 
 namespace tetwarp {
 namespace {

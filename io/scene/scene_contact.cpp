@@ -1,6 +1,7 @@
 /// @file scene_contact.cpp
 /// Friction and adhesion in scene files.
-#include "io/scene/scene_parts.hpp"
+
+#include "io/scene/scene_contact.hpp"
 
 namespace tetwarp {
 namespace {

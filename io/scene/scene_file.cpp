@@ -9,7 +9,10 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/scene_io.hpp>
 
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_actions.hpp"
+#include "io/scene/scene_body.hpp"
+#include "io/scene/scene_contact.hpp"
+#include "io/scene/scene_files.hpp"
 
 namespace tetwarp {
 namespace {
@@ -118,37 +121,6 @@ Scene read_keys(const SceneValue& value, SceneFiles& files) {
   return scene;
 }
 }  // namespace
-
-std::string SceneFiles::path_of(const SceneValue& value) const {
-  const std::string name = value.text();
-  if (name.empty()) value.fail("is empty, expected the name of a file");
-  return (fs::path(folder_) / name).string();
-}
-
-void SceneFiles::add(const SceneValue& value, std::function<void()> read) {
-  reads_.push_back([value, read = std::move(read)] {
-    try {
-      read();
-    } catch (const IoError& error) {
-      value.fail(error.what());
-    }
-  });
-}
-
-void SceneFiles::add_volume(const SceneValue& value,
-                            const std::string& content,
-                            Body& into,
-                            std::function<Volume()> make) {
-  add(value, [this, content, &into, make = std::move(make)] {
-    Volume& volume = std::get<ImageGeometry>(into.geometry).volume;
-    const auto [found, is_new] = volumes_.emplace(content, &volume);
-    volume = is_new ? make() : *found->second;
-  });
-}
-
-void SceneFiles::read_all() {
-  for (const std::function<void()>& read : reads_) read();
-}
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::string& folder) {
   const SceneJson json = parse_json(text, name);

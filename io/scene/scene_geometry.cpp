@@ -1,12 +1,14 @@
 /// @file scene_geometry.cpp
 /// Shapes, volumes, meshes, sheets, lattices, surfaces and poses of scene files.
+#include "io/scene/scene_geometry.hpp"
+
 #include <cmath>
 #include <tetwarp/error.hpp>
 #include <tetwarp/io.hpp>
 #include <tetwarp/scene_io.hpp>
 
 #include "io/files/memory.hpp"
-#include "io/scene/scene_parts.hpp"
+#include "io/scene/scene_files.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,3 +1,5 @@
+/// @file scene_json.cpp
+/// Parses JSON, and reads values with the text of what was expected.
 #include "io/scene/scene_json.hpp"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 /// @file scene_motion.cpp
 /// Paths, hinges, waves and selections of scene files.
-#include "io/scene/scene_parts.hpp"
+
+#include "io/scene/scene_motion.hpp"
 
 namespace tetwarp {
 namespace {

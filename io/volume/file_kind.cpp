@@ -1,7 +1,11 @@
+/// @file file_kind.cpp
+/// The kind of a file by its content.
 #include <string>
 #include <tetwarp/io.hpp>
 
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/nifti/nifti_header.hpp"
 
 namespace tetwarp {

@@ -1,3 +1,5 @@
+/// @file mesh_arrays.cpp
+/// Numbers of cells as arrays, names that are free, and components in other axes.
 #include "io/volume/mesh_arrays.hpp"
 
 #include <algorithm>

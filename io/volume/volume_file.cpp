@@ -4,7 +4,11 @@
 
 #include "io/files/volume_source.hpp"
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/nifti/nifti_header.hpp"
+#include "io/nifti/nifti_volume.hpp"
+#include "io/vtkhdf/vtkhdf_volume.hpp"
 
 namespace tetwarp {
 namespace {

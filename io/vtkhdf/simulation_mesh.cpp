@@ -1,3 +1,5 @@
+/// @file simulation_mesh.cpp
+/// Creates, extends and cuts temporal meshes.
 #include "io/vtkhdf/simulation_mesh.hpp"
 
 #include <algorithm>
@@ -7,7 +9,9 @@
 #include <utility>
 
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/h5/h5_rows.hpp"
+#include "io/h5/h5_write.hpp"
 #include "io/vtkhdf/vtkhdf_cells.hpp"
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 

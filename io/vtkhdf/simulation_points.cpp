@@ -1,3 +1,5 @@
+/// @file simulation_points.cpp
+/// Creates, extends and cuts temporal points.
 #include "io/vtkhdf/simulation_points.hpp"
 
 #include <algorithm>
@@ -7,7 +9,9 @@
 #include <tetwarp/error.hpp>
 
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/h5/h5_rows.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

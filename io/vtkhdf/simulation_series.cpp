@@ -1,11 +1,16 @@
+/// @file simulation_series.cpp
+/// Creates, extends and cuts columns of numbers.
 #include "io/vtkhdf/simulation_series.hpp"
 
 #include <cmath>
 #include <map>
 #include <tetwarp/error.hpp>
 
+#include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_disk.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/h5/h5_rows.hpp"
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,3 +1,5 @@
+/// @file vtkhdf_array.cpp
+/// Shapes of chunks, and chunks that hold nothing but the background.
 #include "io/vtkhdf/vtkhdf_array.hpp"
 
 #include <algorithm>
@@ -5,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "io/h5/h5_write.hpp"
 #include "io/nifti/nifti_facts.hpp"
 
 namespace tetwarp {

@@ -1,4 +1,8 @@
+/// @file vtkhdf_cells.cpp
+/// Points, connectivity, offsets and types.
 #include "io/vtkhdf/vtkhdf_cells.hpp"
+
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 

@@ -1,9 +1,12 @@
+/// @file vtkhdf_image.cpp
+/// Attributes of grids, arrays of steps, and the checks of options.
 #include "io/vtkhdf/vtkhdf_image.hpp"
 
 #include <set>
 #include <span>
 #include <stdexcept>
 
+#include "io/h5/h5_write.hpp"
 #include "io/vtkhdf/vtkhdf_input.hpp"
 
 namespace tetwarp {

@@ -1,8 +1,13 @@
+/// @file vtkhdf_input.cpp
+/// Opens a file, checks its type and version, and reads its steps.
 #include "io/vtkhdf/vtkhdf_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <tetwarp/io.hpp>
+
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,8 +1,11 @@
+/// @file vtkhdf_mesh_file.cpp
+/// Reads rows of points, cells and displacements.
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
 #include <cmath>
 #include <utility>
 
+#include "io/h5/h5_read.hpp"
 #include "io/h5/value_names.hpp"
 
 namespace tetwarp {

@@ -1,6 +1,10 @@
+/// @file vtkhdf_output.cpp
+/// Creates the temporary file, and renames it at the end.
 #include "io/vtkhdf/vtkhdf_output.hpp"
 
 #include <array>
+
+#include "io/h5/h5_write.hpp"
 
 namespace tetwarp {
 

@@ -1,5 +1,7 @@
 /// @file vtkhdf_volume.cpp
 /// Reading VTKHDF ImageData, static and temporal.
+#include "io/vtkhdf/vtkhdf_volume.hpp"
+
 #include <cmath>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
@@ -7,6 +9,8 @@
 
 #include "io/files/volume_source.hpp"
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_attribute.hpp"
+#include "io/h5/h5_read.hpp"
 #include "io/nifti/nifti_facts.hpp"
 #include "io/vtkhdf/vtkhdf_input.hpp"
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <tetwarp/io.hpp>
 
+#include "io/nifti/nifti_write.hpp"
 #include "io/vtkhdf/vtkhdf_image.hpp"
 
 namespace tetwarp {

@@ -8,6 +8,8 @@
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 
+#include "io/h5/h5_read.hpp"
+#include "io/h5/h5_write.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/vtkhdf/vtkhdf_cells.hpp"
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"

@@ -9,6 +9,8 @@
 
 #include "host/reference/contact/contact.hpp"
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/enumerate.hpp"
+#include "host/reference/contact/feasible.hpp"
 #include "host/reference/contact/gauss_seidel.hpp"
 #include "tests/support/contact_samples.hpp"
 

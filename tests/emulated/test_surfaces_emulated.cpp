@@ -8,6 +8,7 @@
 
 #include "host/simulate/step/resident_surfaces.hpp"
 #include "host/simulate/step/stepper.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/emulated/device_calls.hpp"
 #include "tests/simulate/touch_run.hpp"
 

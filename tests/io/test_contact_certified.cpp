@@ -13,7 +13,8 @@
 #include <tetwarp/io.hpp>
 #include <vector>
 
-#include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_numbers.hpp"
+#include "io/h5/h5_attribute.hpp"
 #include "tests/support/elastic_block.hpp"
 
 namespace tetwarp::test {

@@ -39,6 +39,7 @@ lint() {
   refuse 'a path of one machine' -E '/(home|root|work|tmp|Users)/' \
     "${sources[@]}" cmake CMakeLists.txt dev .ci || status=1
   python3 tests/lint/folders.py || status=1
+  python3 tests/lint/sources.py || status=1
   refuse_twin_types || status=1
   source_files hpp cpp cuh cu py | xargs wc -l |
     awk '$1 > 400 && $2 != "total" { print "lint: long, one subject? " $2 ": " $1 " lines" }'
@@ -84,7 +85,9 @@ register_table() {
     END { exit refused > 0 }' | sort -k8 -k1
 }
 
-check_lint() { lint && python3 "$root/tests/lint/folders.py" --test; }
+check_lint() {
+  lint && python3 "$root/tests/lint/folders.py" --test && python3 "$root/tests/lint/sources.py" --test
+}
 
 check_format() {
   has clang-format || { echo "left out: no clang-format"; return 0; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/scene/shape.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/scene/surface.hpp"
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/scene/shape.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/scene/surface_lattice.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/shape_samples.hpp"

@@ -1,3 +1,5 @@
+/// @file coupled_system.cpp
+/// The bound of the error of a solve by conjugate gradients.
 #include "host/contact/block_jacobi/coupled_system.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,4 +1,5 @@
 /// @file contact_cuda.cu
+/// The stages of contact on a CUDA device, for ContactSolver.
 // Stages are host-device functions templated on the executor; nvcc warns of the executors whose
 // members run on one side only.
 #pragma nv_diag_suppress 20011, 20014

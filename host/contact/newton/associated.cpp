@@ -1,3 +1,5 @@
+/// @file associated.cpp
+/// An interior-point method for the convex problem.
 #include "host/contact/newton/associated.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file contact_assembly.cpp
+/// Finds the places of all sums once, then adds in these.
 #include "host/contact/newton/contact_assembly.hpp"
 
 #include <algorithm>

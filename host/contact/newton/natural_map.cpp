@@ -1,3 +1,5 @@
+/// @file natural_map.cpp
+/// Values and derivatives of the natural map, contact by contact.
 #include "host/contact/newton/natural_map.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file newton.cpp
+/// The phases of Newton's method, its starts and its line search.
 #include "host/contact/newton/newton.hpp"
 
 #include <Eigen/Core>

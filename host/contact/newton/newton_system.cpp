@@ -1,3 +1,5 @@
+/// @file newton_system.cpp
+/// Assembles and factorizes the equations, and counts what that costs.
 #include "host/contact/newton/newton_system.hpp"
 
 #include <Eigen/OrderingMethods>

@@ -1,3 +1,5 @@
+/// @file pivoting.cpp
+/// The linear complementarity problem of the friction pyramid, and Lemke's method on it.
 #include "host/contact/newton/pivoting.hpp"
 
 #include <Eigen/LU>

@@ -1,3 +1,5 @@
+/// @file budget.cpp
+/// Compares what a solve has used with its limits.
 #include "host/contact/problem/budget.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file checks.cpp
+/// Texts of numbers and indices, checks of arrays and of matrices.
 #include "host/contact/problem/checks.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,5 @@
+/// @file delassus.cpp
+/// Products by a factorization of A, or by a stored Delassus matrix.
 #include "host/contact/problem/delassus.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file imbalance.cpp
+/// The relative imbalance of the bodies of a problem.
 #include "host/contact/problem/imbalance.hpp"
 
 #include <algorithm>

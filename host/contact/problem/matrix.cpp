@@ -1,3 +1,5 @@
+/// @file matrix.cpp
+/// Sorts rows, expands dense blocks, copies matrices to Eigen, finds the blocks of A.
 #include "host/contact/problem/matrix.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file measure.cpp
+/// The natural map and FCLIB's error of one contact.
 #include "host/contact/problem/measure.hpp"
 
 #include <algorithm>

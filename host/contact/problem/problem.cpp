@@ -11,7 +11,7 @@
 
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "host/contact/problem/row_blocks.hpp"
+#include "host/contact/problem/row_checks.hpp"
 
 namespace tetwarp {
 namespace {

@@ -27,11 +27,6 @@ bool has_rolling(const ContactProblem& problem);
 /// Whether a problem has anything that BlockProblem rewrites.
 bool needs_blocks(const ContactProblem& problem);
 
-/// Checks of `second_friction`, `bilateral`, `rolling` and `row_blocks`, for check_problem().
-/// @pre the other members have passed their checks
-/// @throws ContactProblemError
-void check_row_blocks(const ContactProblem& problem);
-
 class BlockProblem {
  public:
   /// @param given  has passed check_problem(); kept by the caller

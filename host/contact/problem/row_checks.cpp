@@ -1,5 +1,7 @@
 /// @file row_checks.cpp
 /// check_row_blocks(): friction ellipses, bilateral rows and rolling friction.
+#include "host/contact/problem/row_checks.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -7,7 +9,6 @@
 
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/problem/vectors.hpp"
 
 namespace tetwarp {

@@ -1,3 +1,5 @@
+/// @file spring_offset.cpp
+/// The impulses kappa_n o_n, moved into a problem and out of its solution.
 #include "host/contact/problem/spring_offset.hpp"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+/// @file certificate.cpp
+/// Searches such impulses by the interior-point method of AssociatedContact, and bounds their
+/// work.
 #include "host/contact/solve/certificate.hpp"
 
 #include <algorithm>

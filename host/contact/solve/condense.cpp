@@ -1,3 +1,5 @@
+/// @file condense.cpp
+/// Factorizes A and makes the Delassus matrix.
 #include "host/contact/solve/condense.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file engine.cpp
+/// The order in which the islands of a problem are solved.
 #include "host/contact/solve/engine.hpp"
 
 #include <algorithm>
@@ -32,13 +34,15 @@ ContactProblem with_recovery_speed(ContactProblem problem, double speed) {
 }  // namespace
 
 ContactEngine::ContactEngine(const ContactOptions& options, int threads, ContactDevice* device)
-    : options_(options), threads_(threads), device_(device), islands_(options, threads, device) {}
+    : options_(options),
+      device_(device),
+      islands_(options, threads, device),
+      coupled_(options, threads, device) {}
 
 EngineResult ContactEngine::solve(const ContactProblem& given,
                                   SolveBudget& budget,
                                   DeviceRun* found) {
   const auto start = Clock::now();
-  budget_ = &budget;
   islands_.set_budget(&budget);
   std::optional<ContactProblem> changed;
   if (exceeds(given, options_.recovery_speed)) {
@@ -48,12 +52,12 @@ EngineResult ContactEngine::solve(const ContactProblem& given,
     budget.is_over();
     set_structure(problem);
     budget.is_over();
-    reset_cache_if_changed(problem);
+    coupled_.begin(problem, islands_.structure());
     EngineResult result = make_result(problem, islands_.structure());
     result.savings = islands_.set_problem(problem, std::exchange(found, nullptr));
     result.setup_seconds = std::chrono::duration<double>(Clock::now() - start).count();
     islands_.solve_uncoupled(result);
-    solve_coupled(problem, result);
+    coupled_.solve(problem, islands_, budget, result);
     solve_contactless(problem, result);
     return result;
   });
@@ -64,7 +68,7 @@ void ContactEngine::set_structure(const ContactProblem& problem) {
   islands_.set_structure(device_ != nullptr ? make_structure(problem, options_.skip, *device_)
                                             : make_structure(problem, options_.skip));
   pattern_ = pattern_of(problem);
-  cache_ = {};
+  coupled_.clear();
 }
 
 void ContactEngine::solve_contactless(const ContactProblem& problem, EngineResult& result) {

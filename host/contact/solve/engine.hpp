@@ -3,31 +3,17 @@
 /// structure, solves the islands whose bodies A does not couple, then coupled islands, then bodies
 /// without contacts, and repeats this with raised offsets where contacts contradict each other.
 #pragma once
-#include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
 
+#include "host/contact/solve/coupled_islands.hpp"
 #include "host/contact/solve/engine_result.hpp"
 #include "host/contact/solve/island_solver.hpp"
 #include "host/contact/structure/structure.hpp"
 
 namespace tetwarp {
-
-struct Condensation;
-
-/// Data of the coupled islands that problems of a series with the same A and J share.
-struct CoupledIslandCache {
-  struct Island {
-    std::shared_ptr<Condensation> condensation;  ///< null: not condensed so far
-    std::int64_t outer_iterations = 0;           ///< of all problems of the series
-  };
-
-  std::vector<double> system, jacobian;  ///< stored numbers of A and J
-  std::vector<Island> islands;           ///< empty: nothing is stored
-};
 
 class ContactEngine {
  public:
@@ -49,18 +35,13 @@ class ContactEngine {
   const ContactStructure& structure() const { return islands_.structure(); }
 
  private:
-  void reset_cache_if_changed(const ContactProblem& problem);
-  void solve_coupled(const ContactProblem& problem, EngineResult& result);
-  void condense(const ContactProblem& problem, std::int64_t island, EngineResult& result);
   void solve_contactless(const ContactProblem& problem, EngineResult& result);
 
   ContactOptions options_;
-  int threads_;
   ContactDevice* device_;
-  SolveBudget* budget_ = nullptr;          ///< of the running solve
   std::optional<ContactPattern> pattern_;  ///< that of the structure
   IslandSolver islands_;
-  CoupledIslandCache cache_;
+  CoupledIslands coupled_;
 };
 
 }  // namespace tetwarp

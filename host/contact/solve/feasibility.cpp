@@ -1,3 +1,6 @@
+/// @file feasibility.cpp
+/// Sweeps over the contacts without friction and springs, whose growing impulses show
+/// contradictions.
 #include "host/contact/solve/feasibility.hpp"
 
 #include <algorithm>

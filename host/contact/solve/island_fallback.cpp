@@ -1,5 +1,7 @@
 /// @file island_fallback.cpp
-/// What follows on an island where the first sweeps have not converged.
+/// The order of the methods, and the costs by which they take turns.
+#include "host/contact/solve/island_fallback.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -8,14 +10,13 @@
 #include "host/contact/problem/row_blocks.hpp"
 #include "host/contact/solve/best_impulses.hpp"
 #include "host/contact/solve/certificate.hpp"
-#include "host/contact/solve/island_solver.hpp"
+#include "host/contact/solve/island_restart.hpp"
 #include "host/contact/solve/method_choice.hpp"
-#include "host/contact/structure/extract.hpp"
-#include "host/contact/sweeps/method_names.hpp"
 
 namespace tetwarp {
 namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::int64_t search_sweeps = 4096;  ///< of a search for contradictions, at most
 /// Newton steps that an island is expected to take, and those that the phases of a trial share out.
 /// Stacks and jams take some ten, packings with friction hundreds.
 struct NewtonTrial {
@@ -26,13 +27,6 @@ constexpr NewtonTrial newton_trials[] = {{40, 60}, {200, 400}};
 /// A trial takes at most as long as the sweeps before it, so that sweeps which would have converged
 /// without it take at most twice as long; but it may take this many steps in any case.
 constexpr std::int64_t short_trial = 40;
-
-/// Whether a certificate may be searched for: it costs up to 60 factorizations, which other methods
-/// than Newton's take only where many sweeps are allowed, too.
-bool searches_certificates(const ContactOptions& options) {
-  return options.method == ContactMethod::automatic || options.method == ContactMethod::newton ||
-         options.max_sweeps >= 4096;
-}
 
 /// The contacts of an island that a direction of impulses pushes.
 std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
@@ -45,100 +39,97 @@ std::vector<std::int32_t> contacts_of(const ImpulseDirection& direction,
   }
   return contacts;
 }
+}  // namespace
 
-/// Whether an island has blocks of rows that are no contacts.
-bool has_other_blocks(const ContactProblem& problem,
-                      const ContactStructure& structure,
-                      const ContactIsland& island) {
-  if (problem.row_blocks.empty()) return false;
-  for (std::int64_t s = island.slot_begin; s < island.slot_end; ++s) {
-    const std::int32_t c = structure.contact_of_slot[index_of(s)];
-    if (!is_contact_block(problem, index_of(c))) return true;
+/// Whether the search for a direction costs less than the sweeps that are left, or than a few
+/// thousand.
+bool IslandFallback::searches_before_sweeps() {
+  constexpr double factorizations = 60;
+  constexpr std::int64_t few = 4096;
+  if (attempt_.options().max_newton == 0) return false;
+  const double step = attempt_.sweeps_per_newton_step();
+  const std::int64_t left =
+      std::max(attempt_.options().max_sweeps - attempt_.outcome().sweeps, few);
+  return factorizations * step < static_cast<double>(left);
+}
+
+/// Whether the island has blocks of rows that are no contacts.
+bool IslandFallback::has_other_blocks() const {
+  if (attempt_.problem().row_blocks.empty()) return false;
+  for (std::int64_t s = attempt_.island().slot_begin; s < attempt_.island().slot_end; ++s) {
+    const std::int32_t c = attempt_.structure().contact_of_slot[index_of(s)];
+    if (!is_contact_block(attempt_.problem(), index_of(c))) return true;
   }
   return false;
 }
-}  // namespace
 
-void IslandSolver::fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result) {
-  IslandOutcome& outcome = result.outcomes[index_of(island)];
-  if (budget_ != nullptr && budget_->is_over()) return;
-  if (has_other_blocks(*problem_, structure_, structure_.islands[index_of(island)])) {
-    continue_with_rows(island, run, result);
+void IslandFallback::run() {
+  const std::int64_t most = std::min(attempt_.options().max_sweeps, search_sweeps);
+  const std::int64_t few = std::max<std::int64_t>(attempt_.outcome().sweeps, 64);
+  if (attempt_.is_over()) return;
+  if (has_other_blocks()) return continue_with_rows();
+  if (!has_newton()) {
+    const bool allows_many = attempt_.options().max_sweeps >= search_sweeps;
+    if (!clamp_contradicting({most, false}) && allows_many) certify_after_sweeps();
     return;
   }
-  const bool is_automatic = options_.method == ContactMethod::automatic;
-  const ContradictionSearch full{std::min<std::int64_t>(options_.max_sweeps, 4096), false};
-  if (!is_automatic && options_.method != ContactMethod::newton) {
-    if (clamp_contradicting(island, run, full, result) || !searches_certificates(options_)) return;
-    const ContactProblem part =
-        make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
-    if (!find_contradiction(island, part, result)) find_unbounded(island, part, result);
-    return;
-  }
-  const ContradictionSearch brief{
-      std::min(full.max_sweeps, std::max<std::int64_t>(outcome.sweeps, 64)), true};
-  if (clamp_contradicting(island, run, brief, result)) return;
-  const ContactProblem part =
-      make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
-  std::vector<double> last;
-  if (is_automatic) {
-    const double step = sweeps_per_step(part);
-    for (const NewtonTrial& trial : newton_trials) {
-      const std::int64_t steps = std::min(trial.expected, max_newton_steps(part.contact_count()));
-      sweep_while_cheaper(island, run, outcome, static_cast<double>(steps) * step, last);
-      if (run.is_done(island, outcome.sums)) return;
-      const auto affordable = static_cast<std::int64_t>(static_cast<double>(outcome.sweeps) / step);
-      polish(island, part, run, outcome, {trial.shared, std::max(short_trial, affordable)});
-      if (run.is_done(island, outcome.sums)) return;
-    }
+  if (clamp_contradicting({std::min(most, few), true})) return;
+  is_automatic() ? alternate() : attempt_.polish({});
+  if (attempt_.is_done() || clamp_contradicting({most, false}) || find_contradiction()) return;
+  if (is_automatic()) {
+    finish_automatic();
   } else {
-    polish(island, part, run, outcome, {});
-    if (run.is_done(island, outcome.sums)) return;
+    find_unbounded();
   }
-  if (clamp_contradicting(island, run, full, result)) return;
-  if (find_contradiction(island, part, result)) return;
-  bool is_searched = false;
-  if (is_automatic) {
-    is_searched = searches_before_sweeps(part, outcome);
-    const bool is_unbounded = is_searched && find_unbounded(island, part, result);
-    if (is_unbounded) {
-      start_again(island, part, run, outcome);
-      last.clear();
-    }
-    if (!run.is_done(island, outcome.sums)) {
-      sweep_while_cheaper(island, run, outcome, infinity, last);
-    }
-    double before = infinity;
-    while (!run.is_done(island, outcome.sums) && run.excess(island, outcome.sums) < before / 2) {
-      before = run.excess(island, outcome.sums);
-      polish(island, part, run, outcome, {});  // each better start may converge
-    }
-  }
-  if (!is_searched && !run.is_done(island, outcome.sums)) find_unbounded(island, part, result);
 }
 
-/// fall_back() for an island with bilateral or rolling blocks: no certificates, and no Newton's
-/// method where there is rolling friction, which it does not have.
-void IslandSolver::continue_with_rows(std::int64_t island,
-                                      ContactRun<double>& run,
-                                      EngineResult& result) {
-  IslandOutcome& outcome = result.outcomes[index_of(island)];
-  const bool is_automatic = options_.method == ContactMethod::automatic;
-  const bool has_newton =
-      (is_automatic || options_.method == ContactMethod::newton) && !has_rolling(*problem_);
-  const ContactProblem part =
-      make_island_problem(*problem_, structure_, structure_.islands[index_of(island)]);
-  for (const bool is_first : {true, false}) {
-    if (has_newton) {
-      polish(island, part, run, outcome,
-             is_automatic && is_first ? NewtonLimits{.shared = newton_trials[1].shared}
-                                      : NewtonLimits{});
-    }
-    if (!is_first || !is_automatic || run.is_done(island, outcome.sums)) return;
-    run.sweep_on(island, options_.max_sweeps);
-    outcome.sums = run.measure(island);
-    if (run.is_done(island, outcome.sums)) return;
+/// Certificates cost up to 60 factorizations each.
+void IslandFallback::certify_after_sweeps() {
+  if (!find_contradiction()) find_unbounded();
+}
+
+/// Sweeps and Newton's method in turns.
+void IslandFallback::alternate() {
+  const double step = attempt_.sweeps_per_newton_step();
+  for (const NewtonTrial& trial : newton_trials) {
+    const std::int64_t steps =
+        std::min(trial.expected, max_newton_steps(attempt_.part().contact_count()));
+    sweep_while_cheaper(static_cast<double>(steps) * step);
+    if (attempt_.is_done()) return;
+    const auto affordable =
+        static_cast<std::int64_t>(static_cast<double>(attempt_.outcome().sweeps) / step);
+    attempt_.polish({trial.shared, std::max(short_trial, affordable)});
+    if (attempt_.is_done()) return;
   }
+}
+
+/// Other starts where impulses can grow without bound, then all sweeps and Newton's method.
+void IslandFallback::finish_automatic() {
+  const bool is_searched = searches_before_sweeps();
+  if (is_searched && find_unbounded()) {
+    IslandRestart(attempt_).run();
+    last_.clear();
+  }
+  if (!attempt_.is_done()) sweep_while_cheaper(infinity);
+  double before = infinity;
+  while (!attempt_.is_done() && attempt_.excess() < before / 2) {
+    before = attempt_.excess();
+    attempt_.polish({});  // each better start may converge
+  }
+  if (!is_searched && !attempt_.is_done()) find_unbounded();
+}
+
+/// For an island with bilateral or rolling blocks: no certificates, and no Newton's method where
+/// there is rolling friction, which it does not have.
+void IslandFallback::continue_with_rows() {
+  const bool polishes = has_newton() && !has_rolling(attempt_.problem());
+  const NewtonLimits first_limits =
+      is_automatic() ? NewtonLimits{.shared = newton_trials[1].shared} : NewtonLimits{};
+  if (polishes) attempt_.polish(first_limits);
+  if (!is_automatic() || attempt_.is_done()) return;
+  attempt_.run().sweep_on(attempt_.index(), attempt_.options().max_sweeps);
+  attempt_.measure();
+  if (polishes && !attempt_.is_done()) attempt_.polish({});
 }
 
 /// Continues with sweeps until Newton's method promises to be cheaper; see method_choice.hpp.
@@ -146,100 +137,58 @@ void IslandSolver::continue_with_rows(std::int64_t island,
 /// residual that are no solution the residual first grows, and sweeps from the best ones would
 /// return there.
 /// @param newton_sweeps  sweeps that take as long as Newton's method would
-/// @param last           in: where to continue, empty: the current impulses; out: the last ones
-void IslandSolver::sweep_while_cheaper(std::int64_t i,
-                                       ContactRun<double>& run,
-                                       IslandOutcome& outcome,
-                                       double newton_sweeps,
-                                       std::vector<double>& last) {
-  const ContactIsland& island = structure_.islands[index_of(i)];
-  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
-  const std::int64_t size = 3 * island.contact_count();
-  BestImpulses best(impulse, size, run.excess(i, outcome.sums));
-  std::copy(last.begin(), last.end(), impulse);
-  while (outcome.sweeps < options_.max_sweeps && !(budget_ != nullptr && budget_->is_over())) {
+void IslandFallback::sweep_while_cheaper(double newton_sweeps) {
+  const IslandOutcome& outcome = attempt_.outcome();
+  ContactRun<double>& run = attempt_.run();
+  double* const impulse = attempt_.impulse();
+  BestImpulses best(impulse, attempt_.size(), attempt_.excess());
+  std::copy(last_.begin(), last_.end(), impulse);
+  while (outcome.sweeps < attempt_.options().max_sweeps && !attempt_.is_over()) {
     const double before = best.excess();
     const std::int64_t from = outcome.sweeps;
-    const double least = run.sweep_past_best(i, from + std::max<std::int64_t>(64, from / 2));
-    outcome.sums = run.measure(i);
-    if (run.is_done(i, outcome.sums)) return;
-    best.keep(run.best_impulse(i), least);
+    const double least =
+        run.sweep_past_best(attempt_.index(), from + std::max<std::int64_t>(64, from / 2));
+    attempt_.measure();
+    if (attempt_.is_done()) return;
+    best.keep(run.best_impulse(attempt_.index()), least);
     const std::int64_t sweeps = outcome.sweeps - from;
     if (sweeps == 0) break;  // numbers are not finite
     const double left = sweeps_left(before, best.excess(), sweeps);
     if (prefers_newton(newton_sweeps, outcome.sweeps, left)) break;
   }
-  last.assign(impulse, impulse + size);
+  last_.assign(impulse, impulse + attempt_.size());
   best.restore();
-  outcome.sums = run.measure(i);
-}
-
-/// Sweeps that take as long as a step of Newton's method; infinity where it may not be used.
-double IslandSolver::sweeps_per_step(const ContactProblem& part) const {
-  const double memory = budget_ != nullptr ? budget_->memory_limit() : infinity;
-  const NewtonCost cost = newton_cost(part, memory);
-  if (cost.bytes > memory || options_.max_newton == 0) return infinity;
-  return sweeps_per_newton_step(cost, part.contact_count());
+  attempt_.measure();
 }
 
 /// @return  whether normal offsets that sweeps show to contradict each other were noted
-bool IslandSolver::clamp_contradicting(std::int64_t island,
-                                       const ContactRun<double>& run,
-                                       ContradictionSearch search,
-                                       EngineResult& result) {
+bool IslandFallback::clamp_contradicting(const ContradictionSearch& search) {
   for (const std::int64_t slot :
-       contradicting_slots(structure_, run.system(), structure_.islands[index_of(island)], search,
-                           contradiction_memory_, budget_)) {
-    result.clamped.push_back(structure_.contact_of_slot[index_of(slot)]);
+       contradicting_slots(attempt_.structure(), attempt_.run().system(), attempt_.island(), search,
+                           memory_, attempt_.budget())) {
+    result_.clamped.push_back(attempt_.structure().contact_of_slot[index_of(slot)]);
   }
-  return !result.clamped.empty();
+  return !result_.clamped.empty();
 }
 
 /// Searches for a certificate that normal offsets contradict each other. Sweeps, which come first,
 /// need about the square of the number of bodies in a chain to show it.
-bool IslandSolver::find_contradiction(std::int64_t i,
-                                      const ContactProblem& part,
-                                      EngineResult& result) {
-  const std::optional<ImpulseDirection> found =
-      find_direction(part, options_, DirectionCone::normals, budget_);
+bool IslandFallback::find_contradiction() {
+  const std::optional<ImpulseDirection> found = find_direction(
+      attempt_.part(), attempt_.options(), DirectionCone::normals, attempt_.budget());
   if (!found) return false;
-  result.clamped_speed = found->speed;
-  result.clamped = contacts_of(*found, structure_, structure_.islands[index_of(i)]);
+  result_.clamped_speed = found->speed;
+  result_.clamped = contacts_of(*found, attempt_.structure(), attempt_.island());
   return true;
 }
 
-bool IslandSolver::find_unbounded(std::int64_t i,
-                                  const ContactProblem& part,
-                                  EngineResult& result) {
-  const std::optional<ImpulseDirection> found =
-      find_direction(part, options_, DirectionCone::friction, budget_);
+bool IslandFallback::find_unbounded() {
+  const std::optional<ImpulseDirection> found = find_direction(
+      attempt_.part(), attempt_.options(), DirectionCone::friction, attempt_.budget());
   if (!found) return false;
-  result.unbounded_speed = found->speed;
-  result.unbounded = contacts_of(*found, structure_, structure_.islands[index_of(i)]);
+  result_.unbounded_speed = found->speed;
+  result_.unbounded = contacts_of(*found, attempt_.structure(), attempt_.island());
   return true;
-}
-
-/// Newton's method from the current impulses; keeps its impulses unless their error is larger.
-/// @param part  the island as a problem
-void IslandSolver::polish(std::int64_t i,
-                          const ContactProblem& part,
-                          ContactRun<double>& run,
-                          IslandOutcome& outcome,
-                          const NewtonLimits& limits) {
-  const ContactIsland& island = structure_.islands[index_of(i)];
-  ContactOptions options = options_;
-  options.tolerance /= 2;  // relative to this island, not to the whole problem
-  double* const impulse = run.state().impulse.data() + 3 * island.slot_begin;
-  std::vector<double> polished(impulse, impulse + 3 * island.contact_count()), body_velocity;
-  const std::vector<double> swept = polished;
-  const NewtonResult newton =
-      newton_polish(part, options, polished, body_velocity, budget_, limits);
-  outcome.newton_iterations += newton.iterations;
-  if (newton.iterations > 0) outcome.methods.push_back(report_name_of(ContactMethod::newton));
-  const double before = run.excess(i, outcome.sums);
-  std::copy(polished.begin(), polished.end(), impulse);
-  if (run.excess(i, run.measure(i)) > before) std::copy(swept.begin(), swept.end(), impulse);
-  outcome.sums = run.measure(i);
 }
 
 }  // namespace tetwarp

@@ -1,3 +1,5 @@
+/// @file island_solver.cpp
+/// Solves islands on the host or the device and copies their results.
 #include "host/contact/solve/island_solver.hpp"
 
 #include <algorithm>
@@ -5,6 +7,7 @@
 #include <utility>
 
 #include "host/contact/block_jacobi/block_jacobi.hpp"
+#include "host/contact/solve/island_fallback.hpp"
 #include "host/contact/structure/extract.hpp"
 
 namespace tetwarp {
@@ -125,7 +128,10 @@ void IslandSolver::finish(std::int64_t i, ContactRun<double>& run, EngineResult&
   IslandOutcome& outcome = result.outcomes[index_of(i)];
   outcome.sums = run.measure(i);
   outcome.reason = run.is_done(i, outcome.sums) ? StopReason::converged : outcome.reason;
-  if (!run.is_done(i, outcome.sums)) fall_back(i, run, result);
+  if (!run.is_done(i, outcome.sums)) {
+    IslandAttempt attempt({options_, structure_, *problem_, budget_}, i, run, outcome);
+    IslandFallback(attempt, contradiction_memory_, result).run();
+  }
   to_problem_index(structure_, 0, outcome.sums);
   scatter_impulses(structure_, island, run.state().impulse.data() + 3 * island.slot_begin,
                    result.impulse);

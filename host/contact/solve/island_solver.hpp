@@ -9,7 +9,6 @@
 #include <tetwarp/contact.hpp>
 
 #include "host/contact/cuda/device.hpp"
-#include "host/contact/newton/newton.hpp"
 #include "host/contact/problem/budget.hpp"
 #include "host/contact/solve/engine_result.hpp"
 #include "host/contact/solve/feasibility.hpp"
@@ -50,8 +49,8 @@ class IslandSolver {
   /// Call before another solver uses the device; the next use copies the problem again.
   void forget_device() { has_device_system_ = false; }
 
-  /// Solves all islands whose blocks A does not couple. If sweeps do not converge, searches for
-  /// contradicting contacts; if there are none, continues with Newton's method and more sweeps.
+  /// Solves all islands whose blocks A does not couple, by sweeps first; those that these do not
+  /// solve by IslandFallback.
   /// @param result  in: make_result()
   void solve_uncoupled(EngineResult& result);
 
@@ -71,34 +70,6 @@ class IslandSolver {
   void solve_on_host(EngineResult& result);
   void solve_on_device(EngineResult& result);
   void finish(std::int64_t island, ContactRun<double>& run, EngineResult& result);
-  void fall_back(std::int64_t island, ContactRun<double>& run, EngineResult& result);
-  void continue_with_rows(std::int64_t island, ContactRun<double>& run, EngineResult& result);
-  void sweep_while_cheaper(std::int64_t island,
-                           ContactRun<double>& run,
-                           IslandOutcome& outcome,
-                           double newton_sweeps,
-                           std::vector<double>& last);
-  bool clamp_contradicting(std::int64_t island,
-                           const ContactRun<double>& run,
-                           ContradictionSearch search,
-                           EngineResult& result);
-  bool find_contradiction(std::int64_t island, const ContactProblem& part, EngineResult& result);
-  bool find_unbounded(std::int64_t island, const ContactProblem& part, EngineResult& result);
-  bool searches_before_sweeps(const ContactProblem& part, const IslandOutcome& outcome) const;
-  bool pivot(std::int64_t island,
-             const ContactProblem& part,
-             ContactRun<double>& run,
-             IslandOutcome& outcome);
-  void start_again(std::int64_t island,
-                   const ContactProblem& part,
-                   ContactRun<double>& run,
-                   IslandOutcome& outcome);
-  void polish(std::int64_t island,
-              const ContactProblem& part,
-              ContactRun<double>& run,
-              IslandOutcome& outcome,
-              const NewtonLimits& limits);
-  double sweeps_per_step(const ContactProblem& part) const;
 
   ContactOptions options_;
   int threads_;

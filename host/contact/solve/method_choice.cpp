@@ -1,3 +1,5 @@
+/// @file method_choice.cpp
+/// The cost of a Newton step in sweeps, and when it is worth it.
 #include "host/contact/solve/method_choice.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file status.cpp
+/// Sums residuals over islands, and says why a solve has ended.
 #include "host/contact/solve/status.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file color.cpp
+/// Gives contacts, in their order, the lowest color that is free in all their groups.
 #include "host/contact/structure/color.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file extract.cpp
+/// Copies the rows, columns and arrays of an island.
 #include "host/contact/structure/extract.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file islands.cpp
+/// Components of the graph of contacts and bodies, and the order of contacts in them.
 #include "host/contact/structure/islands.hpp"
 
 #include <algorithm>

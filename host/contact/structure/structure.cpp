@@ -1,3 +1,5 @@
+/// @file structure.cpp
+/// Makes a structure in either form, and compares the patterns of problems.
 #include "host/contact/structure/structure.hpp"
 
 #include <algorithm>
@@ -5,6 +7,8 @@
 #include <utility>
 
 #include "host/contact/structure/indices.hpp"
+#include "host/contact/structure/structure_global.hpp"
+#include "host/contact/structure/structure_local.hpp"
 #include "host/contact/structure/structure_parts.hpp"
 
 namespace tetwarp {
@@ -43,20 +47,6 @@ ContactStructure empty_structure(bool is_local) {
 
 ContactIndices ContactStructure::indices() const {
   return make_indices(*this, [](const auto& array) { return view_of(array); });
-}
-
-void take_order(ContactStructure& structure, ContactOrder order) {
-  structure.contact_islands = static_cast<std::int64_t>(order.island_start.size()) - 1;
-  for (std::size_t i = 0; i + 1 < order.island_start.size(); ++i) {
-    ContactIsland island;
-    island.slot_begin = order.island_start[i];
-    island.slot_end = order.island_start[i + 1];
-    island.color_begin = order.island_colors[i];
-    island.color_end = order.island_colors[i + 1];
-    structure.islands.push_back(island);
-  }
-  structure.contact_of_slot = std::move(order.contact_of_slot);
-  structure.color_start = std::move(order.color_start);
 }
 
 ContactStructure make_structure(const ContactProblem& problem, const ContactSkipOptions& skip) {

@@ -1,5 +1,7 @@
 /// @file structure_global.cpp
 /// Structure of a problem given by A and J.
+#include "host/contact/structure/structure_global.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>

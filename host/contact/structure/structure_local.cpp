@@ -1,5 +1,7 @@
 /// @file structure_local.cpp
 /// Structure of a problem in local form, which is given by its Delassus matrix.
+#include "host/contact/structure/structure_local.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <utility>

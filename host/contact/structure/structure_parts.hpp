@@ -58,14 +58,4 @@ Lists block_columns(const SparseMatrix& matrix,
 /// Moves the order of the contacts into a structure and sets its islands.
 void take_order(ContactStructure& structure, ContactOrder order);
 
-void fill_local_structure(const ContactProblem& problem,
-                          const ContactSkipOptions& skip,
-                          StructureStages& stages,
-                          ContactStructure& structure);
-void fill_dense_structure(std::int64_t contacts, ContactStructure& structure);
-void fill_global_structure(const ContactProblem& problem,
-                           const ContactSkipOptions& skip,
-                           StructureStages& stages,
-                           ContactStructure& structure);
-
 }  // namespace tetwarp

@@ -1,3 +1,5 @@
+/// @file system.cpp
+/// Runs the stages that fill and set up the numbers, and rounds them to float32.
 #include "host/contact/structure/system.hpp"
 
 namespace tetwarp {

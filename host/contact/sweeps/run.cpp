@@ -1,3 +1,5 @@
+/// @file run.cpp
+/// Adds the results of islands, and shares out the allowed error among them.
 #include "host/contact/sweeps/run.hpp"
 
 #include "host/contact/sweeps/method_names.hpp"

@@ -1,3 +1,5 @@
+/// @file input_checks.cpp
+/// Checks of bodies, materials, reports and records.
 #include "host/contact/tracker/input_checks.hpp"
 
 #include <algorithm>

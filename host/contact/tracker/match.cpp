@@ -1,3 +1,5 @@
+/// @file match.cpp
+/// Matches by key first, then by place among contacts of the same two bodies.
 #include "host/contact/tracker/match.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file record_update.cpp
+/// Moves anchors and normals of a record with the material points of its bodies.
 #include "host/contact/tracker/record_update.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file tracker.cpp
+/// ContactTracker: records of contacts from step to step.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

@@ -2,6 +2,8 @@
 /// Elimination of bilateral rows: with S = G A^-1 G^T + R, G their Jacobian and R their
 /// compliances, G v + R lambda = c gives lambda = S^+ (c - G (v without lambda)), S^+ the
 /// pseudoinverse.
+#include "host/reference/contact/bilateral.hpp"
+
 #include "host/reference/contact/dense.hpp"
 #include "host/reference/contact/least_norm.hpp"
 

@@ -1,3 +1,5 @@
+/// @file contact.cpp
+/// Solves by enumeration or by Gauss-Seidel, and fills the report.
 #include "host/reference/contact/contact.hpp"
 
 #include <chrono>
@@ -7,6 +9,8 @@
 #include <vector>
 
 #include "host/reference/contact/dense.hpp"
+#include "host/reference/contact/enumerate.hpp"
+#include "host/reference/contact/feasible.hpp"
 #include "host/reference/contact/gauss_seidel.hpp"
 
 namespace tetwarp {

@@ -1,3 +1,5 @@
+/// @file dense.cpp
+/// Makes the dense matrices of a problem, and measures its residual.
 #include "host/reference/contact/dense.hpp"
 
 #include <Eigen/Cholesky>
@@ -5,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "host/reference/contact/bilateral.hpp"
 
 namespace tetwarp::reference {
 

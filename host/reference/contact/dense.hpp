@@ -47,16 +47,6 @@ struct DenseContacts {
 DenseContacts make_dense(const ContactProblem& problem,
                          double recovery_speed = std::numeric_limits<double>::infinity());
 
-/// Eliminates the bilateral rows of a problem from contacts in global form.
-/// @param system    A, factorized
-/// @param jacobian  of the rows of `contacts`
-/// @param offset    w of these rows
-void eliminate_bilateral(const ContactProblem& problem,
-                         const Eigen::LLT<Eigen::MatrixXd>& system,
-                         const Eigen::MatrixXd& jacobian,
-                         const Eigen::VectorXd& offset,
-                         DenseContacts& contacts);
-
 /// ContactMeasure::eta: the energy-weighted natural residual, relative to that without impulses; 0
 /// exactly at a solution; infinity where anything is not finite. r . B r counts in the scale only
 /// as far as it exceeds its own rounding error, 2^-49 |r| . |B| |r|. Of contacts with a friction
@@ -65,19 +55,5 @@ void eliminate_bilateral(const ContactProblem& problem,
 double eta_of(const DenseContacts& contacts,
               const Eigen::VectorXd& impulse,
               const ContactOptions& options);
-
-/// Impulses of the solutions of a pyramid or frictionless problem, one for each velocity. All
-/// combinations of open, sticking and sliding contacts are tried: in each the laws are a linear
-/// system, whose solution is kept if it satisfies all laws.
-/// @pre mode_count(contacts, options) is finite; the cost is proportional to it
-std::vector<Eigen::VectorXd> enumerate_impulses(const DenseContacts& contacts,
-                                                const ContactOptions& options);
-
-/// Linear systems that enumerate_impulses() solves; infinity for laws that are not piecewise
-/// linear.
-double mode_count(const DenseContacts& contacts, const ContactOptions& options);
-
-/// Whether impulses exist that make every u_n >= 0.
-bool is_feasible(const DenseContacts& contacts);
 
 }  // namespace tetwarp::reference

@@ -1,5 +1,7 @@
 /// @file enumerate.cpp
 /// All solutions of a small problem, by trying all combinations of states of its contacts.
+#include "host/reference/contact/enumerate.hpp"
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>

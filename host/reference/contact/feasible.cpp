@@ -1,5 +1,7 @@
 /// @file feasible.cpp
 /// Whether some velocity satisfies all contacts.
+#include "host/reference/contact/feasible.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>

@@ -1,3 +1,5 @@
+/// @file gauss_seidel.cpp
+/// Sweeps by the problem of one contact, until the residual is small enough.
 #include "host/reference/contact/gauss_seidel.hpp"
 
 #include <algorithm>

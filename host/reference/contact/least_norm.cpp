@@ -1,3 +1,5 @@
+/// @file least_norm.cpp
+/// By a complete orthogonal decomposition.
 #include "host/reference/contact/least_norm.hpp"
 
 #include <Eigen/QR>

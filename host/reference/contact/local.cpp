@@ -1,3 +1,5 @@
+/// @file local.cpp
+/// Cones by bisection, pyramids one tangent after the other.
 #include "host/reference/contact/local.hpp"
 
 #include <Eigen/LU>

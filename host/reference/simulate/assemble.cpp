@@ -1,4 +1,8 @@
-#include "host/reference/simulate/step_system.hpp"
+/// @file assemble.cpp
+/// Adds up A and b from masses, elements, edges, rigid bodies and springs.
+#include "host/reference/simulate/assemble.hpp"
+
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 namespace {

@@ -1,8 +1,16 @@
+/// @file bodies.cpp
+/// Steps, states and records of the reference simulator.
 #include "host/reference/simulate/bodies.hpp"
 
+#include <optional>
 #include <stdexcept>
 
-#include "host/reference/simulate/bodies_parts.hpp"
+#include "host/reference/simulate/body_motion.hpp"
+#include "host/reference/simulate/energy.hpp"
+#include "host/reference/simulate/forces.hpp"
+#include "host/reference/simulate/make_system.hpp"
+#include "host/reference/simulate/named.hpp"
+#include "host/reference/simulate/step_system.hpp"
 
 namespace tetwarp::reference {
 namespace {
@@ -15,7 +23,60 @@ std::vector<Point3> points_of(const std::vector<Vector3d>& vectors, int first, i
   return result;
 }
 
+Vector3d sum_of_blocks(const System& system, const BodyPlace& place, const VectorXd& impulse) {
+  if (place.rigid >= 0) return impulse.segment<3>(3 * system.linear_block(place.rigid));
+  Vector3d sum = Vector3d::Zero();
+  for (int n = place.first_node; n < place.first_node + place.node_count; ++n) {
+    sum += impulse.segment<3>(3 * n);
+  }
+  return sum;
+}
+
+void add_to(Point3& sum, const Vector3d& part) {
+  sum = point_of(vector_of(sum) + part);
+}
+
+/// Forces of the last step on bodies, obstacles and couplings.
+void record_forces(const System& system, const StepResult& last, StepRecord& record) {
+  const double per_time = 1 / system.scene.time_step;
+  const std::size_t body_count = system.scene.bodies.size();
+  for (std::size_t b = 0; b < body_count; ++b) {
+    const BodyPlace& place = system.places[b];
+    BodyRecord& of = record.bodies[b];
+    add_to(of.support_force, per_time * sum_of_blocks(system, place, last.support));
+    for (const VectorXd& load : last.loads) {
+      add_to(of.load_force, per_time * sum_of_blocks(system, place, load));
+    }
+  }
+  for (std::size_t s = 0; s < system.springs.size(); ++s) {
+    const BindingSpring& spring = system.springs[s];
+    const Vector3d force = per_time * last.spring_impulse[s];
+    const auto end = [&](const MaterialPoint& point, const Vector3d& on) {
+      if (point.body < 0) return;
+      const auto b = static_cast<std::size_t>(point.body);
+      if (b >= body_count) return;
+      add_to(spring.handle >= 0 ? record.bodies[b].handle_force : record.bodies[b].coupling_force,
+             on);
+    };
+    end(spring.a, force);
+    end(spring.b, -force);
+    if (spring.coupling >= 0) {
+      add_to(record.coupling_forces[static_cast<std::size_t>(spring.coupling)], force);
+    }
+  }
+}
+
 }  // namespace
+
+struct ReferenceBodies::Parts {
+  System system;
+  State state;
+  Overrides overrides;
+  Prescribed prescribed;  ///< where the state is
+  std::int64_t steps = 0;
+  std::optional<StepResult> last;
+  double work = 0;  ///< by scripts, anchors and loads [J]
+};
 
 ReferenceBodies::ReferenceBodies(const Scene& scene, const SceneGeometry& geometry)
     : parts_(std::make_unique<Parts>()) {
@@ -136,6 +197,39 @@ void ReferenceBodies::move_script(const std::string& name,
                                   const Point3& axis_angle) {
   parts_->overrides.bodies[script_named(parts_->system.scene, name)] =
       PathPlace{vector_of(displacement), vector_of(axis_angle)};
+}
+
+StepRecord ReferenceBodies::record() const {
+  const System& system = parts_->system;
+  const State& state = parts_->state;
+  StepRecord record;
+  record.time = time();
+  record.energy = energy_of(system, state, parts_->prescribed);
+  record.energy.work = parts_->work;
+  record.bodies.resize(system.scene.bodies.size());
+  record.obstacle_forces.resize(system.scene.obstacles.size());
+  record.coupling_forces.resize(system.scene.couplings.size());
+  for (std::size_t b = 0; b < record.bodies.size(); ++b) {
+    const BodyMotion motion = motion_of(system, state, b);
+    const Vector3d momentum = motion.mass * motion.velocity;
+    BodyRecord& of = record.bodies[b];
+    of.centre = point_of(motion.centre);
+    of.velocity = point_of(motion.velocity);
+    of.angular_momentum = point_of(motion.angular_momentum);
+    add_to(record.momentum, momentum);
+    add_to(record.angular_momentum, motion.centre.cross(momentum) + motion.angular_momentum);
+    if (system.places[b].rigid < 0) continue;
+    const int block = system.linear_block(system.places[b].rigid) + 1;
+    of.rotation =
+        quaternion_of(state.frame[static_cast<std::size_t>(system.places[b].rigid)].rotation);
+    of.angular_velocity = point_of(state.velocity[static_cast<std::size_t>(block)]);
+  }
+  for (const Element& element : system.elements) {
+    const Matrix3d deformation = positions_of(element, state) * element.gradients.transpose();
+    record.inverted += deformation.determinant() < 0;
+  }
+  if (parts_->last) record_forces(system, *parts_->last, record);
+  return record;
 }
 
 }  // namespace tetwarp::reference

@@ -1,3 +1,5 @@
+/// @file cloth_body.cpp
+/// Sheets of squares and triangle meshes as springs, and their forces.
 #include "host/reference/simulate/cloth_body.hpp"
 
 #include <algorithm>

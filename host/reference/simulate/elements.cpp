@@ -1,3 +1,5 @@
+/// @file elements.cpp
+/// Strain, stress, force, stiffness and energy of one element.
 #include "host/reference/simulate/elements.hpp"
 
 namespace tetwarp::reference {

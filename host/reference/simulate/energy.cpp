@@ -1,4 +1,9 @@
-#include "host/reference/simulate/bodies_parts.hpp"
+/// @file energy.cpp
+/// Sums of kinetic, elastic and potential energy, and of work.
+#include "host/reference/simulate/energy.hpp"
+
+#include "host/reference/simulate/body_motion.hpp"
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 namespace {

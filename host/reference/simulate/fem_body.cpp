@@ -1,3 +1,5 @@
+/// @file fem_body.cpp
+/// Fills elements uniformly, or by the voxels that they own.
 #include "host/reference/simulate/fem_body.hpp"
 
 #include <algorithm>

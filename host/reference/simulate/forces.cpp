@@ -1,4 +1,7 @@
-#include "host/reference/simulate/step_system.hpp"
+/// @file forces.cpp
+/// Sums of forces by block.
+
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 

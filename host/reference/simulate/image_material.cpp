@@ -1,3 +1,5 @@
+/// @file image_material.cpp
+/// Searches the owner of every voxel, and the material of its value.
 #include "host/reference/simulate/image_material.hpp"
 
 #include <algorithm>

@@ -1,6 +1,11 @@
+/// @file make_system.cpp
+/// Numbers nodes and frames, adds bodies, and marks what is prescribed.
 #include "host/reference/simulate/make_system.hpp"
 
+#include "host/reference/simulate/nearest_material.hpp"
 #include "host/reference/simulate/prescribed.hpp"
+#include "host/reference/simulate/shares.hpp"
+#include "host/reference/simulate/springs.hpp"
 
 namespace tetwarp::reference {
 namespace {

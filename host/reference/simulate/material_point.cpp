@@ -1,3 +1,5 @@
+/// @file material_point.cpp
+/// The nearest point of a simplex, and whether a surface encloses a point.
 #include "host/reference/simulate/material_point.hpp"
 
 #include <cmath>

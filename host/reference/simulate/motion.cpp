@@ -1,3 +1,5 @@
+/// @file motion.cpp
+/// Interpolates paths and hinges, and evaluates waves.
 #include "host/reference/simulate/motion.hpp"
 
 #include <algorithm>

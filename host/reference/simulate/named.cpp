@@ -1,3 +1,7 @@
+/// @file named.cpp
+/// Searches lists of a scene for a name.
+#include "host/reference/simulate/named.hpp"
+
 #include <stdexcept>
 
 #include "host/reference/simulate/make_system.hpp"

@@ -1,3 +1,7 @@
+/// @file nearest_material.cpp
+/// Searches all triangles or tetrahedra of a body, or the shape of an obstacle.
+#include "host/reference/simulate/nearest_material.hpp"
+
 #include <limits>
 #include <stdexcept>
 

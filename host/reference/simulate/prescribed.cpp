@@ -1,3 +1,5 @@
+/// @file prescribed.cpp
+/// Places of scripted nodes and frames and of the anchors of handles at a time.
 #include "host/reference/simulate/prescribed.hpp"
 
 #include <algorithm>

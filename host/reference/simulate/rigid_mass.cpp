@@ -1,3 +1,5 @@
+/// @file rigid_mass.cpp
+/// Sums signed tetrahedra between the triangles and a point.
 #include "host/reference/simulate/rigid_mass.hpp"
 
 namespace tetwarp::reference {

@@ -1,4 +1,9 @@
+/// @file shares.cpp
+/// Lumped volumes and areas of points, and the bindings of surfaces.
+#include "host/reference/simulate/shares.hpp"
+
 #include "host/reference/simulate/make_system.hpp"
+#include "host/reference/simulate/nearest_material.hpp"
 
 namespace tetwarp::reference {
 namespace {

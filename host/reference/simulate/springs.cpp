@@ -1,6 +1,13 @@
+/// @file springs.cpp
+/// Divides the stiffness of couplings and handles, and loads, among selected points.
+#include "host/reference/simulate/springs.hpp"
+
 #include <numeric>
 
 #include "host/reference/simulate/make_system.hpp"
+#include "host/reference/simulate/named.hpp"
+#include "host/reference/simulate/nearest_material.hpp"
+#include "host/reference/simulate/shares.hpp"
 
 namespace tetwarp::reference {
 namespace {

@@ -1,4 +1,9 @@
+/// @file step_system.cpp
+/// Solves for the unknown velocities, and moves the state by them.
 #include "host/reference/simulate/step_system.hpp"
+
+#include "host/reference/simulate/assemble.hpp"
+#include "host/reference/simulate/forces.hpp"
 
 namespace tetwarp::reference {
 namespace {

@@ -1,3 +1,5 @@
+/// @file system.cpp
+/// Positions and Jacobians of material points.
 #include "host/reference/simulate/system.hpp"
 
 namespace tetwarp::reference {

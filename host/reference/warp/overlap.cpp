@@ -1,3 +1,5 @@
+/// @file overlap.cpp
+/// Clips tetrahedra by the planes of boxes, and sums the volumes of the parts.
 #include "host/reference/warp/overlap.hpp"
 
 #include <algorithm>

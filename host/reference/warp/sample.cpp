@@ -1,3 +1,5 @@
+/// @file sample.cpp
+/// Weights of filters, coefficients of splines, and samples with the rules for the border.
 #include "host/reference/warp/sample.hpp"
 
 #include <numbers>

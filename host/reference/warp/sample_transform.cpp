@@ -1,3 +1,5 @@
+/// @file sample_transform.cpp
+/// Parts of source voxels, rotations of gradients, and transformed samples.
 #include "host/reference/warp/sample_transform.hpp"
 
 #include <algorithm>

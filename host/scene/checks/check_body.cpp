@@ -1,11 +1,15 @@
 /// @file check_body.cpp
 /// Checks of a body: what its kind may have, its material, motion and selections.
+#include "host/scene/checks/check_body.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <tetwarp/names.hpp>
 #include <variant>
 
+#include "host/scene/checks/check_geometry.hpp"
+#include "host/scene/checks/check_motion.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {

@@ -1,5 +1,7 @@
 /// @file check_geometry.cpp
 /// Checks of shapes, images, meshes, sheets, lattices and surfaces.
+#include "host/scene/checks/check_geometry.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -1,5 +1,7 @@
 /// @file check_motion.cpp
 /// Checks of paths, hinges, waves and selections.
+#include "host/scene/checks/check_motion.hpp"
+
 #include <cmath>
 #include <type_traits>
 #include <variant>

@@ -6,6 +6,9 @@
 #include <utility>
 #include <variant>
 
+#include "host/scene/checks/check_body.hpp"
+#include "host/scene/checks/check_geometry.hpp"
+#include "host/scene/checks/check_motion.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 
 namespace tetwarp {

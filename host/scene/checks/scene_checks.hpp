@@ -1,6 +1,6 @@
 /// @file scene_checks.hpp
-/// Checks of the parts of a scene. Each throws std::invalid_argument in one line: the place as a
-/// scene file spells it, the problem and the remedy.
+/// Checks of single numbers, vectors and names of a scene. Each throws std::invalid_argument in one
+/// line: the place as a scene file spells it, the problem and the remedy.
 #pragma once
 #include <map>
 #include <string>
@@ -19,35 +19,19 @@ using SceneNames = std::map<std::string, const Body*>;
 
 /// A number as text, at most 6 digits.
 std::string number_text(double value);
-
 void check_finite(const std::string& place, double value);
 void check_finite(const std::string& place, const Point3& value);
+
 /// @param unit  for the message, may be empty
 void check_positive(const std::string& place, double value, const char* unit);
 void check_not_negative(const std::string& place, double value, const char* unit);
 void check_range(const std::string& place, double value, double low, double high);
+
 /// A vector that has a direction.
 void check_direction(const std::string& place, const Point3& value);
+
 /// Letters, digits, '_' and '-', at most 100 of them, and not "world".
 void check_name(const std::string& place, const std::string& name);
 void check_unit_quaternion(const std::string& place, const std::array<double, 4>& quaternion);
-
-// ---- check_geometry.cpp ----
-/// The geometry of a body by itself, and its lattice and surface.
-void check_geometry(const std::string& place, const Body& body);
-/// Points and triangles, without their topology. @param place  of the mesh
-void check_surface(const std::string& place, const Surface& surface);
-
-// ---- check_motion.cpp ----
-/// @param may_release  whether the last point may let go
-void check_path(const std::string& place, const Path& path, bool may_release);
-void check_motion(const std::string& place, const Motion& motion);
-/// @param body  that the selection belongs to
-void check_selection(const std::string& place, const Selection& select, const Body& body);
-
-// ---- check_body.cpp ----
-void check_body(const std::string& place, const Body& body);
-void check_contact(const std::string& place, const SurfaceContact& contact);
-void check_adhesion(const std::string& place, const AdhesionMaterial& adhesion);
 
 }  // namespace tetwarp

@@ -1,8 +1,10 @@
+/// @file body_points.cpp
+/// Positions, shares and bindings of material points.
 #include "host/simulate/model/body_points.hpp"
-#include "host/base/index_of.hpp"
 
 #include <numeric>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/model/nearest.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "host/simulate/model/state_view.hpp"

@@ -1,10 +1,7 @@
 /// @file body_points.hpp
-/// Material points of bodies: what selections select, what is nearest to a place, what the points
-/// of surfaces are bound to.
+/// Material points of bodies: what selections select and what the points of surfaces are bound to.
 #pragma once
 #include <cstdint>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
@@ -32,32 +29,5 @@ std::vector<double> shares_of(const BodyGeometry& geometry,
 std::vector<ModelPoint> bound_surface(const Model& model,
                                       const SceneGeometry& geometry,
                                       std::int32_t body);
-
-struct NearestMaterial {
-  ModelPoint point;
-  double distance = 0;  ///< [m]
-};
-
-/// Finds the nearest material points of bodies and obstacles at the start.
-class MaterialFinder {
- public:
-  MaterialFinder(const Scene& scene, const SceneGeometry& geometry, const Model& model);
-  ~MaterialFinder();
-
-  /// @param name  of a body, obstacle, or "world"
-  NearestMaterial nearest(const std::string& name, const Point3& x_world);
-  /// As nearest(), but of rigid bodies the point itself, also outside of their surface.
-  ModelPoint fixed_at(const std::string& name, const Point3& x_world);
-
- private:
-  struct Search;
-  NearestMaterial nearest_of_body(std::int32_t body, const Point3& x_world);
-  Search& search_of(std::int32_t body);
-
-  const Scene& scene_;
-  const SceneGeometry& geometry_;
-  const Model& model_;
-  std::vector<std::unique_ptr<Search>> searches_;  ///< [bodies, then obstacles], made when needed
-};
 
 }  // namespace tetwarp

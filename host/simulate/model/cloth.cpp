@@ -1,35 +1,21 @@
+/// @file cloth.cpp
+/// Springs and bending of sheets, and lumped masses of all cloth.
+#include "host/simulate/model/cloth.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
+#include "host/simulate/model/scalar_entries.hpp"
+#include "host/simulate/model/triangle_cloth.hpp"
 
 namespace tetwarp {
 
-void add_scalar_entries(std::vector<ScalarEntry> entries, const Damping& damping, Model& model) {
-  std::stable_sort(entries.begin(), entries.end(), [](const ScalarEntry& a, const ScalarEntry& b) {
-    return a.row != b.row ? a.row < b.row : a.column < b.column;
-  });
-  ModelScalarBlocks& blocks = model.scalar_blocks;
-  for (std::size_t i = 0; i < entries.size();) {
-    ScalarEntry sum = entries[i];
-    for (++i; i < entries.size() && entries[i].row == sum.row && entries[i].column == sum.column;
-         ++i) {
-      sum.mass += entries[i].mass;
-      sum.bend += entries[i].bend;
-    }
-    blocks.nodes.push_back({sum.row, sum.column});
-    blocks.mass.push_back(sum.mass);
-    blocks.mass_alpha.push_back(sum.mass * damping.alpha);
-    blocks.bend.push_back(sum.bend);
-    blocks.bend_gamma.push_back(sum.bend * damping.gamma);
-  }
-}
-
 namespace {
 
-/// Sheets: u runs fastest.
+/// Adds a sheet of squares. Its nodes are numbered along u first.
 class SheetParts {
  public:
   SheetParts(const BodyPart& part, Model& model, std::vector<ScalarEntry>& entries)
@@ -111,14 +97,10 @@ class SheetParts {
 
 }  // namespace
 
-void add_sheet(const BodyPart& part, Model& model, std::vector<ScalarEntry>& entries) {
-  SheetParts(part, model, entries).add();
-}
-
 void add_cloth(const BodyPart& part, Model& model) {
   std::vector<ScalarEntry> entries;
   if (part.geometry.sheet_cells[0] > 0) {
-    add_sheet(part, model, entries);
+    SheetParts(part, model, entries).add();
   } else {
     add_triangle_cloth(part, model, entries);
   }

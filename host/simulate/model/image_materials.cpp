@@ -1,3 +1,7 @@
+/// @file image_materials.cpp
+/// Sums density and moduli over the voxels that tetrahedra own.
+#include "host/simulate/model/image_materials.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,7 +11,8 @@
 #include "host/base/point3.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
+#include "host/simulate/model/tet_materials.hpp"
 
 namespace tetwarp {
 namespace {
@@ -67,7 +72,7 @@ struct VoxelSums {
   bool has_voxel = false;
   TetMass mass{};
   double count = 0;  ///< voxels that have a stiffness
-  /// Of lambda and mu, or with the harmonic mean of 1 / bulk modulus and 1 / mu.
+  /// Sums of lambda and mu; for the harmonic mean of 1 / bulk modulus and 1 / mu.
   double first = 0, second = 0;
 
   void add_moduli(const Material& material, MaterialMean mean) {

@@ -1,3 +1,7 @@
+/// @file material_finder.cpp
+/// Searches bodies by NearestItems, and obstacles by their shapes.
+#include "host/simulate/model/material_finder.hpp"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -5,14 +9,13 @@
 #include <variant>
 
 #include "host/base/index_of.hpp"
-#include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/nearest.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {
 namespace {
 
-/// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi within.
+/// Whether a closed surface winds around x: the solid angles of its triangles sum to 4 pi inside.
 bool encloses(const Surface& surface, const Point3& x) {
   double angle = 0;
   for (const auto& triangle : surface.triangles) {
@@ -40,7 +43,7 @@ struct MaterialFinder::Search {
   const Surface* surface = nullptr;                  ///< of a solid, in its own frame
   std::vector<std::array<std::int32_t, 3>> corners;  ///< of `triangles`
 
-  /// Of a solid in its own frame: the point itself within.
+  /// The point of a solid nearest to a point, in its own frame; inside, the point itself.
   Point3 nearest_of_solid(const Point3& x) const {
     if (surface->triangles.empty() || encloses(*surface, x)) return x;
     const NearestPoint<3> found = triangles->find(x);

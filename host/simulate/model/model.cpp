@@ -1,17 +1,19 @@
+/// @file model.cpp
+/// Numbers nodes and rigid bodies, adds all bodies, and finds coupling islands.
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
+#include "host/simulate/model/cloth.hpp"
+#include "host/simulate/model/fem.hpp"
 #include "host/simulate/model/motion.hpp"
+#include "host/simulate/model/rigid.hpp"
 #include "host/simulate/model/rotations.hpp"
+#include "host/simulate/model/springs.hpp"
 
 namespace tetwarp {
-
-std::string error_prefix(const BodyPart& part) {
-  return "bodies[" + std::to_string(part.index) + "] '" + part.body.name + "': ";
-}
 
 namespace {
 
@@ -87,6 +89,37 @@ void add_obstacle_frames(const Scene& scene, Model& model) {
   }
 }
 
+/// Sets body_island and island_count.
+void find_islands(const Scene& scene, Model& model) {
+  const std::size_t count = scene.bodies.size();
+  std::vector<std::uint8_t> has_unknowns(count, 0);
+  for (std::size_t b = 0; b < count; ++b) {
+    for (std::int32_t n = model.body_node[b]; n < model.body_node[b + 1]; ++n) {
+      if (at(model.prescribed, n) == 0) has_unknowns[b] = 1;
+    }
+    if (scene.bodies[b].kind == BodyKind::rigid) has_unknowns[b] = 1;
+  }
+  std::vector<std::size_t> parent(count);
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t b) {
+    while (parent[b] != b) b = parent[b] = parent[parent[b]];
+    return b;
+  };
+  for (std::size_t s = 0; s < model.springs.a.size(); ++s) {
+    const auto a = static_cast<std::size_t>(model.springs.a[s].body);
+    const auto b = static_cast<std::size_t>(model.springs.b[s].body);
+    if (a >= count || b >= count || has_unknowns[a] == 0 || has_unknowns[b] == 0) continue;
+    const std::size_t root_a = root_of(a), root_b = root_of(b);
+    parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  }
+  model.body_island.assign(count, -1);
+  for (std::size_t b = 0; b < count; ++b) {
+    if (has_unknowns[b] == 0) continue;
+    const std::size_t root = root_of(b);
+    model.body_island[b] = root == b ? model.island_count++ : model.body_island[root];
+  }
+}
+
 }  // namespace
 
 Model make_model(const Scene& scene, const SceneGeometry& geometry) {
@@ -127,36 +160,6 @@ Model make_model(const Scene& scene, const SceneGeometry& geometry) {
   add_springs(scene, geometry, model);
   find_islands(scene, model);
   return model;
-}
-
-void find_islands(const Scene& scene, Model& model) {
-  const std::size_t count = scene.bodies.size();
-  std::vector<std::uint8_t> has_unknowns(count, 0);
-  for (std::size_t b = 0; b < count; ++b) {
-    for (std::int32_t n = model.body_node[b]; n < model.body_node[b + 1]; ++n) {
-      if (at(model.prescribed, n) == 0) has_unknowns[b] = 1;
-    }
-    if (scene.bodies[b].kind == BodyKind::rigid) has_unknowns[b] = 1;
-  }
-  std::vector<std::size_t> parent(count);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root_of = [&](std::size_t b) {
-    while (parent[b] != b) b = parent[b] = parent[parent[b]];
-    return b;
-  };
-  for (std::size_t s = 0; s < model.springs.a.size(); ++s) {
-    const auto a = static_cast<std::size_t>(model.springs.a[s].body);
-    const auto b = static_cast<std::size_t>(model.springs.b[s].body);
-    if (a >= count || b >= count || has_unknowns[a] == 0 || has_unknowns[b] == 0) continue;
-    const std::size_t root_a = root_of(a), root_b = root_of(b);
-    parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  }
-  model.body_island.assign(count, -1);
-  for (std::size_t b = 0; b < count; ++b) {
-    if (has_unknowns[b] == 0) continue;
-    const std::size_t root = root_of(b);
-    model.body_island[b] = root == b ? model.island_count++ : model.body_island[root];
-  }
 }
 
 }  // namespace tetwarp

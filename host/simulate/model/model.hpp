@@ -48,7 +48,8 @@ struct ModelSprings {
   std::vector<std::int32_t> coupling;  ///< index in Scene::couplings, or -1
   std::vector<std::int32_t> handle;    ///< index in Scene::handles, or -1: b is its anchor
 };
-/// Constant multiples of the identity in A, [entry], both (i, j) and (j, i); each pair once.
+/// Blocks of A that are constant multiples of the identity, [entry]; (i, j) and (j, i) are two
+/// entries, each there once.
 struct ModelScalarBlocks {
   std::vector<std::array<std::int32_t, 2>> nodes;
   std::vector<double> mass;        ///< m_ij [kg]

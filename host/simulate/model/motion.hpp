@@ -14,12 +14,11 @@ struct PathPlace {
   Point3 axis_angle{0, 0, 0};
 };
 
-/// Whether `time` is `moment` or later; times that are equal but for the rounding of the products
-/// that they come from are equal.
+/// Whether `time` is `moment` or later, up to the rounding of the products that times come from.
 bool has_come(double time, double moment);
 
-/// Linear between the points of a path, held before the first and after the last; nothing from a
-/// point without displacement up to the next point. An empty path does not move.
+/// The place on a path: linear between its points, constant before the first and after the last.
+/// Nothing from a point without displacement up to the next point. An empty path does not move.
 std::optional<PathPlace> place_at(const Path& path, double time);
 
 /// A frame that stood at `start`, after a move of its origin and a turn about it.

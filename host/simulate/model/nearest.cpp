@@ -1,3 +1,5 @@
+/// @file nearest.cpp
+/// Nearest points of edges, triangles and tetrahedra, and the search through the grid.
 #include "host/simulate/model/nearest.hpp"
 
 #include <algorithm>
@@ -186,7 +188,8 @@ NearestPoint<corners> NearestItems<corners>::find(const Point3& point) const {
   const double outside = norm(minus(point, clamped));
   const std::int64_t last = std::max({dims_[0], dims_[1], dims_[2]});
   for (std::int64_t shell = 0; shell < last; ++shell) {
-    // Cells not yet visited are at least so far from the clamped point, and it from the point.
+    // Cells not visited yet are at least `reach` from the clamped point, which is `outside` from
+    // the point.
     const double reach = static_cast<double>(std::max<std::int64_t>(shell - 1, 0)) * edge_;
     if (best.distance == 0) break;  // all that contain the point are in its cell
     if (best.distance < std::hypot(outside, reach) * (1 - 1e-12)) break;

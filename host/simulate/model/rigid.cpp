@@ -1,8 +1,12 @@
+/// @file rigid.cpp
+/// Mass properties of closed surfaces, principal axes, and states at the start.
+#include "host/simulate/model/rigid.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "kernels/base/symmetric_eigen.hpp"
 

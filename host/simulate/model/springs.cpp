@@ -1,10 +1,14 @@
+/// @file springs.cpp
+/// Pairs of points of couplings and handles, and their shares of the stiffness.
+#include "host/simulate/model/springs.hpp"
+
 #include <numeric>
 #include <stdexcept>
 
 #include "host/base/point3.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/simulate/model/body_points.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/material_finder.hpp"
 
 namespace tetwarp {
 namespace {
@@ -33,9 +37,11 @@ void add_list(const SpringList& list,
   }
 }
 
-constexpr double most_outside = 0.05;  ///< of the size of a body: points there are tied to it
+// Times the size of a body: points up to so far outside are tied to it.
+constexpr double most_outside = 0.05;
 
-/// Whether a body is elastic or cloth: points of others are tied where they are.
+/// Whether a body is elastic or cloth. Points of other bodies are tied where they are, however far
+/// from the body.
 bool gives_way(const Scene& scene, std::int32_t body) {
   const auto index = static_cast<std::size_t>(body);
   if (body < 0 || index >= scene.bodies.size()) return false;

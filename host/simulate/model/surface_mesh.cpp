@@ -6,6 +6,7 @@
 #include <tetwarp/surface.hpp>
 #include <utility>
 
+#include "host/scene/checks/check_geometry.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/isosurface.hpp"
 #include "host/scene/surface.hpp"

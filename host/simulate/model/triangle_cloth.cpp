@@ -1,10 +1,15 @@
+/// @file triangle_cloth.cpp
+/// Weights of edges by the cotangents of the angles opposite to them.
+#include "host/simulate/model/triangle_cloth.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "host/base/point3.hpp"
-#include "host/simulate/model/model_parts.hpp"
+#include "host/simulate/model/body_part.hpp"
+#include "host/simulate/model/scalar_entries.hpp"
 
 namespace tetwarp {
 namespace {

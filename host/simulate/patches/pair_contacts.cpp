@@ -1,3 +1,5 @@
+/// @file pair_contacts.cpp
+/// Names contacts by their features, and fills reports for the tracker.
 #include "host/simulate/patches/pair_contacts.hpp"
 
 #include <algorithm>

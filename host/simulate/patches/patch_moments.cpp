@@ -1,3 +1,5 @@
+/// @file patch_moments.cpp
+/// Integrates over the triangles of a patch, and places four points.
 #include "host/simulate/patches/patch_moments.hpp"
 
 #include <algorithm>

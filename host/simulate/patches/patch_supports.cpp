@@ -1,3 +1,5 @@
+/// @file patch_supports.cpp
+/// The convex hull of a flat patch, with few corners.
 #include "host/simulate/patches/patch_supports.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file rigid_patches.cpp
+/// Collects the contacts of each pair of rigid bodies, and reduces them.
 #include "host/simulate/patches/rigid_patches.hpp"
 
 #include <algorithm>

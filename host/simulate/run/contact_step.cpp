@@ -7,6 +7,7 @@
 #include "host/base/point3.hpp"
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/run/expected_motion.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

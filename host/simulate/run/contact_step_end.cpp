@@ -6,6 +6,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "host/simulate/run/contact_step.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

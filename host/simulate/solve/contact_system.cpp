@@ -1,10 +1,12 @@
+/// @file contact_system.cpp
+/// Sends islands to their solvers, and takes impulses and velocities from them.
 #include "host/simulate/solve/contact_system.hpp"
-#include "host/base/index_of.hpp"
-#include "host/base/point3.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
 #include "host/simulate/solve/contact_shares.hpp"
 #include "host/simulate/solve/problem/contact_islands.hpp"
 #include "host/simulate/solve/problem/step_laws.hpp"
@@ -122,9 +124,9 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
   outcome.outer_iterations += report.outer_iterations;
 }
 
-/// Contacts are linear in the velocities of a step. A body with corners that has no room between
-/// others can satisfy them by turning many times within the step, at any speed. One that contacts
-/// turn by more than half a turn stands still instead, without impulses. @returns whether one does
+/// Stops rigid bodies that contacts turn by more than half a turn in the step: they stand still,
+/// without impulses. The laws are linear in the velocities, and velocities that turn a body with
+/// corners many times in a step can satisfy them where it has no room. @returns whether one stops
 bool ContactSystem::State::stop_fast_turns(std::vector<Point3>& velocity) {
   const double most = std::acos(-1.0) / laws.problem().adhesion.time_step;
   std::vector<std::uint8_t> is_stopped;
@@ -189,7 +191,7 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
-  // The tracker reads gaps from the velocities: without what slows recovery.
+  // The tracker computes gaps from these velocities: they are without the limit of recovery.
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     s.solution.velocity[3 * c] -= s.laws.recovered()[c];
   }

@@ -1,3 +1,5 @@
+/// @file soft_islands.cpp
+/// Solves on the device where bodies are stepped there, else on the host.
 #include "host/simulate/solve/soft_islands.hpp"
 
 #include <utility>

@@ -1,3 +1,5 @@
+/// @file solver_islands.cpp
+/// Chooses the solver for few or for many contacts, and solves on the host or on the device.
 #include "host/simulate/solve/solver_islands.hpp"
 
 #include <algorithm>
@@ -9,8 +11,8 @@ namespace tetwarp {
 
 SolverIslands::SolverIslands(const ContactOptions& options) : options_(options), of_few_(options) {}
 
-/// Newton's method follows where sweeps have not converged. Its factors of many contacts take as
-/// long as hundreds of sweeps, of few contacts as long as some ten.
+/// Newton's method follows where sweeps have not converged. One factorization for many contacts
+/// takes as long as hundreds of sweeps, for few contacts as long as about ten.
 ContactSolver& SolverIslands::solver_for(std::size_t contact_count) {
   constexpr std::size_t many_contacts = 200;
   constexpr std::int64_t many_sweeps = 5000;
@@ -43,7 +45,7 @@ ContactReport SolverIslands::solve(BodyStepper& stepper,
   resident_ =
       can_be_resident(islands, takes, contacts.size()) ? stepper.resident_contacts() : nullptr;
   const SystemRows system_rows = resident_ != nullptr ? resident_->rows() : stepper.system().rows;
-  solver_ = &solver_for(contacts.size());  // another one only where the pattern is another
+  solver_ = &solver_for(contacts.size());  // changes only with the pattern
   const bool is_other = part_.set_pattern(system_rows, islands, rows, takes, contacts);
   gather_laws(contacts, laws, part_.problem());
   return resident_ != nullptr ? solve_on_device(is_other, velocity)

@@ -57,7 +57,7 @@ class SolverIslands {
   ContactSolution solution_;                ///< of a problem built on the host
   std::span<const double> impulse_, contact_velocity_;
   ResidentContacts* resident_ = nullptr;
-  ResidentContacts* with_pattern_ = nullptr;  ///< has the places of the problem, or null: none has
+  ResidentContacts* with_pattern_ = nullptr;  ///< that has the places of the problem, or null
 };
 
 }  // namespace tetwarp

@@ -1,3 +1,6 @@
+/// @file cage_growth.cpp
+/// Moves the vertices of cages in small steps under constraints, and accepts steps that pass the
+/// check.
 #include "host/simulate/start/cage_growth.hpp"
 
 #include <algorithm>
@@ -6,6 +9,7 @@
 #include "host/base/point3.hpp"
 #include "host/simulate/start/cage_pose.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

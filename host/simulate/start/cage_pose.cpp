@@ -1,3 +1,5 @@
+/// @file cage_pose.cpp
+/// Weights of nodes in their cage, and the least volume of their tetrahedra.
 #include "host/simulate/start/cage_pose.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file medial_node.cpp
+/// Searches the node that is farthest from the surfaces of its body and of others.
 #include "host/simulate/start/medial_node.hpp"
 
 #include <algorithm>

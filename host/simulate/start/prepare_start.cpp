@@ -1,3 +1,5 @@
+/// @file prepare_start.cpp
+/// Chooses how a scene starts, and moves the anchors of its handles along.
 #include "host/simulate/start/prepare_start.hpp"
 
 #include <algorithm>
@@ -7,6 +9,7 @@
 #include "host/simulate/start/cage_growth.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

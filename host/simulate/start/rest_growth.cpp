@@ -1,8 +1,10 @@
+/// @file rest_growth.cpp
+/// Forces of elements whose rest shapes are smaller, and velocities of prescribed nodes.
 #include "host/simulate/start/rest_growth.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "kernels/body/tet_force.hpp"
 

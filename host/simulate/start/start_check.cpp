@@ -1,3 +1,5 @@
+/// @file start_check.cpp
+/// Lists the pairs of bodies in conflict, and reports the worst.
 #include "host/simulate/start/start_check.hpp"
 
 #include <algorithm>

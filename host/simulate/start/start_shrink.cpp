@@ -1,3 +1,5 @@
+/// @file start_shrink.cpp
+/// Shrinks the bodies of all pairs in conflict, step by step.
 #include "host/simulate/start/start_shrink.hpp"
 
 #include <map>
@@ -8,6 +10,7 @@
 #include "host/simulate/start/medial_node.hpp"
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

@@ -114,7 +114,7 @@ class ConstantArrays {
 
   TetConstants tets;
   ScalarEntries scalars;
-  RigidConstants rigid;  ///< but its inertia, which each step sets
+  RigidConstants rigid;  ///< each step sets its inertia
   View<const double> moments, node_mass;
   View<const std::int32_t> edge_nodes;
   View<const double> edge_stiffness, edge_rest, edge_gamma;
@@ -193,7 +193,8 @@ struct StepArrays {
 
   Vector<double> position, centre, rotation, velocity, angular_momentum;  ///< of ModelState
   Vector<double> previous;                                                ///< NodeMovedBody
-  Vector<double> fraction;  ///< of the step that nodes, then rigid bodies move; or empty: all of it
+  Vector<double>
+      fraction;  ///< [nodes, then rigid bodies] part of the step that each moves; empty: all
   typename Exec::template Input<double> prescribed, force, guess, anchor,
       anchor_velocity;  ///< StepInput
   typename Exec::template Input<std::uint8_t> is_active, is_asleep;

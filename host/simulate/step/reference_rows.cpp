@@ -1,3 +1,5 @@
+/// @file reference_rows.cpp
+/// Copies the blocks that are not zero.
 #include "host/simulate/step/reference_rows.hpp"
 
 #include <utility>

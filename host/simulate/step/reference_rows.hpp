@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/reference/simulate/step_system.hpp"
+#include "host/reference/simulate/assemble.hpp"
 #include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {
@@ -17,7 +17,7 @@ class ReferenceRows {
 
   /// Takes the blocks that are not zero, and the diagonal.
   void set(const reference::LinearSystem& linear, const reference::VectorXd& velocity);
-  /// Without the lists of what adds to a block. Valid until the next set().
+  /// The lists of what adds to a block are empty. Valid until the next set().
   StepSystem system() const;
 
  private:

@@ -1,9 +1,12 @@
+/// @file reference_stepper.cpp
+/// Steps the system of the reference, and copies its state.
 #include "host/simulate/step/reference_stepper.hpp"
 
 #include <chrono>
 #include <stdexcept>
 #include <utility>
 
+#include "host/reference/simulate/assemble.hpp"
 #include "host/reference/simulate/make_system.hpp"
 #include "host/reference/simulate/step_system.hpp"
 #include "host/simulate/model/rotations.hpp"

@@ -9,10 +9,10 @@
 
 namespace tetwarp {
 
-/// Steps of the reference, which derives masses, springs, scripts and loads from the scene itself;
-/// of a StepInput it takes the times alone.
+/// Steps of the reference, which derives masses, springs, scripts and loads from the scene itself
+/// and reads only the times of a StepInput.
 /// @param model  for the order of bodies and blocks; like the other arguments kept by the caller
-/// @param drive  for what a user's hand has moved
+/// @param drive  for what callers have moved
 /// @throws std::invalid_argument  more blocks than its dense matrices have room for
 std::unique_ptr<BodyStepper> make_reference_stepper(const Scene& scene,
                                                     const SceneGeometry& geometry,

@@ -1,8 +1,10 @@
+/// @file scene_drive.cpp
+/// Evaluates paths, scripts and handles at the end of a step.
 #include "host/simulate/step/scene_drive.hpp"
-#include "host/base/index_of.hpp"
 
 #include <stdexcept>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {
@@ -122,7 +124,7 @@ void SceneDrive::fill_anchors(double end_time, double dt, StepInput& input) {
     input.is_active[s] = next_handles_[h].has_value();
     if (!next_handles_[h]) continue;
     input.anchor[s] = plus(springs.b[s].local, *next_handles_[h]);
-    // An anchor that takes hold again has no way behind it.
+    // An anchor that takes hold again has no velocity in this step.
     const Point3 before = handles_[h].value_or(*next_handles_[h]);
     input.anchor_velocity[s] = times(1 / dt, minus(*next_handles_[h], before));
   }

@@ -15,9 +15,9 @@
 
 namespace tetwarp {
 
-/// What a user's hand moves instead of a path, until it is moved again.
+/// What callers have moved away from its path.
 struct DriveOverrides {
-  /// [handles]: displacement of the anchors; inside nothing: released.
+  /// [handles] displacement of the anchors: nothing: by the path; nothing inside: released.
   std::vector<std::optional<std::optional<Point3>>> handles;
   std::vector<std::optional<PathPlace>> scripts;  ///< [bodies, then obstacles]
 };
@@ -33,9 +33,9 @@ class SceneDrive {
   void fill(const ModelState& state, double end_time, double time_step, StepInput& input);
   /// Adds the places that fill() reads of a state.
   void add_places(StatePlaces& places) const;
-  /// The step that fill() prepared has been made.
+  /// Call when the step that fill() prepared has been made.
   void accept() { handles_ = next_handles_; }
-  /// Bodies and obstacles that moved a part of a step only follow their paths later from now on.
+  /// Delays the paths of bodies and obstacles that moved only a part of a step.
   /// @param fraction  [bodies, then obstacles] of the step that each moved
   void delay(std::span<const double> fraction, double time_step);
 

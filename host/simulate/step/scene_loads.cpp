@@ -1,3 +1,5 @@
+/// @file scene_loads.cpp
+/// Finds the points that loads act on, and sums their forces.
 #include "host/simulate/step/scene_loads.hpp"
 
 #include <stdexcept>

@@ -1,9 +1,11 @@
+/// @file scene_record.cpp
+/// Sums over nodes, rigid bodies and springs.
 #include "host/simulate/step/scene_record.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "kernels/body/tet_force.hpp"

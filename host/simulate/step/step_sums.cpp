@@ -1,3 +1,5 @@
+/// @file step_sums.cpp
+/// Sums impulses of contacts, springs and loads on each body.
 #include "host/simulate/step/step_sums.hpp"
 #include "host/base/index_of.hpp"
 

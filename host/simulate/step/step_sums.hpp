@@ -10,7 +10,7 @@ namespace tetwarp {
 
 /// Impulses [N s], per body of the scene.
 struct StepSums {
-  std::vector<Point3> support;   ///< that kept fixed, driven and scripted blocks on their way
+  std::vector<Point3> support;   ///< that moved fixed, driven and scripted blocks as prescribed
   std::vector<Point3> handle;    ///< of springs of handles
   std::vector<Point3> coupling;  ///< of springs of couplings, on either side
   std::vector<Point3> load;

@@ -29,7 +29,7 @@ struct StepInput {
                                         ///< the springs of handles
   std::vector<Point3> anchor_velocity;  ///< [springs] of it over the step [m/s]; their damping acts
                                         ///< on the velocity relative to it
-  std::vector<std::uint8_t> is_active;  ///< [springs] 0: lets go
+  std::vector<std::uint8_t> is_active;  ///< [springs] 0: of a handle that has let go
   std::vector<std::uint8_t> is_asleep = {};  ///< [block_count] unknowns that stand still, coupled
                                              ///< to no other unknowns; or empty: none
   std::vector<Point3> guess = {};  ///< [block_count] velocities that the solve starts from, or
@@ -105,15 +105,14 @@ class BodyStepper {
   virtual std::vector<Point3> support_impulses() const = 0;
   /// Positions of successive nodes, in memory of the back end, valid until the next step.
   virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;
-  /// What allows to take steps without get_state(); null where the state is in memory of the host.
+  /// Reads the state where it is, in memory of a device; null where it is in memory of the host.
   virtual ResidentState* resident_state() { return nullptr; }
-  /// What builds contact problems in memory of a device; null where the state is in that of the
-  /// host.
+  /// Builds contact problems in memory of a device; null where the state is in memory of the host.
   virtual ResidentContacts* resident_contacts() { return nullptr; }
-  /// What solves contacts of deformable and coupled bodies there; null where the state is in memory
-  /// of the host.
+  /// Solves contacts of deformable and coupled bodies in memory of a device; null where the state
+  /// is in memory of the host.
   virtual ResidentTwoLevel* resident_two_level() { return nullptr; }
-  /// What moves surfaces in memory of a device; null where the state is in that of the host.
+  /// Moves surfaces in memory of a device; null where the state is in memory of the host.
   virtual ResidentSurfaces* resident_surfaces() { return nullptr; }
 };
 

@@ -1,5 +1,6 @@
+/// @file system_pattern.cpp
+/// Lists the blocks of all elements and springs, and sorts them.
 #include "host/simulate/step/system_pattern.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/step/element_lists.hpp"
 #include "kernels/body/point_spring.hpp"
 

@@ -9,7 +9,7 @@
 
 namespace tetwarp {
 
-/// As ItemLists, owning.
+/// ItemLists that owns its arrays.
 struct ItemArrays {
   std::vector<std::int32_t> start;
   std::vector<std::uint32_t> item;
@@ -18,7 +18,7 @@ struct ElementArrays {
   ItemArrays blocks, rows;
 };
 
-/// As SystemRows, owning.
+/// SystemRows that owns its arrays.
 struct SystemPattern {
   std::int32_t row_count = 0, unknown_count = 0;
   std::vector<std::int32_t> block_of, row_of;  ///< of rows, of blocks
@@ -35,7 +35,7 @@ struct SystemPattern {
 ///                                indices out of range, or unknowns that belong to no island
 SystemPattern make_system_pattern(const Model& model);
 
-/// Views of its arrays, but of those that say what adds to a block.
+/// Views of its arrays, without the lists of what adds to a block.
 SystemRows rows_of(const SystemPattern& pattern);
 
 }  // namespace tetwarp

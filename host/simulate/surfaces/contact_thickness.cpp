@@ -1,3 +1,5 @@
+/// @file contact_thickness.cpp
+/// The thickness that a scene gives or its edges suggest, and whether positions resolve it.
 #include "host/simulate/surfaces/contact_thickness.hpp"
 
 #include <algorithm>

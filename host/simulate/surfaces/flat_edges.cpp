@@ -1,3 +1,5 @@
+/// @file flat_edges.cpp
+/// Joins triangles of one plane to faces, and marks the edges within these.
 #include "host/simulate/surfaces/flat_edges.hpp"
 
 #include <algorithm>

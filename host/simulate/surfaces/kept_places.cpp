@@ -1,6 +1,10 @@
+/// @file kept_places.cpp
+/// Computes the places of a state that are not known yet.
 #include "host/simulate/surfaces/kept_places.hpp"
 
 #include <utility>
+
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 

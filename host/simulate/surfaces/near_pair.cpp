@@ -1,3 +1,5 @@
+/// @file near_pair.cpp
+/// Weights of the nearest points of two features.
 #include "host/simulate/surfaces/near_pair.hpp"
 
 #include "host/base/point3.hpp"

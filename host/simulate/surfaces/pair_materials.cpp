@@ -1,3 +1,5 @@
+/// @file pair_materials.cpp
+/// Joins the materials of both sides, and numbers different ones.
 #include "host/simulate/surfaces/pair_materials.hpp"
 
 #include <algorithm>

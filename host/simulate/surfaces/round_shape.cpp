@@ -1,3 +1,5 @@
+/// @file round_shape.cpp
+/// Recognizes spheres and capsules among shapes and obstacles.
 #include "host/simulate/surfaces/round_shape.hpp"
 
 #include <cmath>
@@ -6,6 +8,7 @@
 #include "host/base/point3.hpp"
 #include "host/scene/pose.hpp"
 #include "host/scene/shape.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {

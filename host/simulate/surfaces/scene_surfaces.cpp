@@ -1,5 +1,6 @@
+/// @file scene_surfaces.cpp
+/// Collects vertices, triangles and planes of all bodies and obstacles.
 #include "host/simulate/surfaces/scene_surfaces.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "host/base/index_of.hpp"
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "host/simulate/surfaces/contact_thickness.hpp"

@@ -1,3 +1,7 @@
+/// @file surface_motion.cpp
+/// Moves vertices and planes by the same functions as a device.
+#include "host/simulate/surfaces/surface_motion.hpp"
+
 #include <algorithm>
 
 #include "host/base/parallel.hpp"

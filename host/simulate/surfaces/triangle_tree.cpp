@@ -1,3 +1,5 @@
+/// @file triangle_tree.cpp
+/// Divides the triangles into halves along the longest extent of their boxes.
 #include "host/simulate/surfaces/triangle_tree.hpp"
 
 #include <algorithm>

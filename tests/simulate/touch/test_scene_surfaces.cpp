@@ -9,7 +9,8 @@
 #include <set>
 
 #include "host/scene/shape.hpp"
-#include "host/simulate/model/body_points.hpp"
+#include "host/scene/shape_surface.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
 

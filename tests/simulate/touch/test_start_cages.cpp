@@ -8,6 +8,7 @@
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/start/prepare_start.hpp"
 #include "host/simulate/start/start_check.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "host/simulate/start/start_check.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "host/simulate/surfaces/triangle_tree.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"

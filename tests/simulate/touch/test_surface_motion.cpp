@@ -9,6 +9,7 @@
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/model/rotations.hpp"
 #include "host/simulate/step/scene_drive.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 
 namespace tetwarp::test {

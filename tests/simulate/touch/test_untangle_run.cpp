@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/simulate/start/start_check.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
 

@@ -1,3 +1,5 @@
+/// @file contact_constants.cpp
+/// Runs the stage that sets constants, contact by contact.
 #include "host/simulate/solve/problem/contact_constants.hpp"
 
 #include <numeric>

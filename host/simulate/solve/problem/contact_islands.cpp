@@ -1,9 +1,12 @@
+/// @file contact_islands.cpp
+/// Joins coupling islands over contacts.
 #include "host/simulate/solve/problem/contact_islands.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 namespace {

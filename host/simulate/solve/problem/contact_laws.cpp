@@ -1,3 +1,5 @@
+/// @file contact_laws.cpp
+/// Copies arrays by the numbers of contacts.
 #include "host/simulate/solve/problem/contact_laws.hpp"
 #include "host/base/index_of.hpp"
 

@@ -1,9 +1,11 @@
+/// @file contact_rows.cpp
+/// Sets the blocks of nodes and frames along the axes of each contact.
 #include "host/simulate/solve/problem/contact_rows.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <numeric>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 
 namespace tetwarp {

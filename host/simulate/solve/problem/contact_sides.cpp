@@ -1,8 +1,10 @@
+/// @file contact_sides.cpp
+/// Finds the nodes or the frame of each side.
 #include "host/simulate/solve/problem/contact_sides.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 
 namespace tetwarp {

@@ -1,8 +1,11 @@
+/// @file step_laws.cpp
+/// Sets restitution, recovery and bonds of contacts.
 #include "host/simulate/solve/problem/step_laws.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 

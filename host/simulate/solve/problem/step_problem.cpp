@@ -1,8 +1,11 @@
+/// @file step_problem.cpp
+/// Makes the lists of a problem when its pattern has changed, and fills its numbers.
 #include "host/simulate/solve/problem/step_problem.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <utility>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 namespace {

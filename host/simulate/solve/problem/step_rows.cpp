@@ -1,7 +1,10 @@
+/// @file step_rows.cpp
+/// Sets rows when a solver asks for them.
 #include "host/simulate/solve/problem/step_rows.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 

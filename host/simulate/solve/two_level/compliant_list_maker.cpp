@@ -1,9 +1,12 @@
+/// @file compliant_list_maker.cpp
+/// Lists rows and bodies of the islands, with a new version where they have changed.
 #include "host/simulate/solve/two_level/compliant_list_maker.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <utility>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 namespace {

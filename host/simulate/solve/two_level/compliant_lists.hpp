@@ -9,7 +9,7 @@
 namespace tetwarp {
 
 struct CompliantLists {
-  std::int64_t version = 0;                 ///< other lists have another one, in the whole process
+  std::int64_t version = 0;                 ///< differs from that of all other lists of the process
   std::vector<CompliantBody> bodies;        ///< without inverses, nodes and contacts
   std::vector<std::int32_t> model_body;     ///< [frames] elastic bodies, numbers of the model
   std::vector<std::int32_t> body_of_row;    ///< [rows]

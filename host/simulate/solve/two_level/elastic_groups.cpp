@@ -1,3 +1,5 @@
+/// @file elastic_groups.cpp
+/// Sorts contacts into groups, and changes the velocities of their bodies by sums of pushes.
 #include "host/simulate/solve/two_level/elastic_groups.hpp"
 
 #include <algorithm>
@@ -157,7 +159,7 @@ void ElasticGroups::begin(std::int32_t group, const double* y) {
   std::ranges::fill(all.push, 0.0);
 }
 
-/// Of a piece of one body of a group.
+/// finish() for a piece of one body of a group.
 std::int64_t ElasticGroups::finish(const Group& group,
                                    const Body& own,
                                    const Piece& piece,

@@ -11,10 +11,10 @@
 
 namespace tetwarp {
 
-/// While a sweep visits a group, every impulse changes z, the velocities of the nodes that the
-/// contacts of the group touch, and the pushes on these nodes are summed. finish() then changes the
-/// velocities of all touched nodes of its bodies by these sums. Up to rounding the velocities are
-/// those of changing all of them for every impulse; a contact changes tens instead of hundreds.
+/// While a sweep visits a group, every impulse changes z, the velocities of the nodes that contacts
+/// of the group touch, and is added to the pushes on these nodes. finish() then changes the
+/// velocities of all touched nodes of the bodies by these pushes. Up to rounding the result is as
+/// if every impulse changed all velocities; but an impulse changes tens of numbers, not hundreds.
 class ElasticGroups {
  public:
   /// Forgets all groups. The arguments are kept and must outlive the groups.
@@ -23,8 +23,8 @@ class ElasticGroups {
   void set(const ElasticSpace& space,
            const std::vector<std::int32_t>& part_start,
            const std::vector<std::int32_t>& part_row);
-  /// Sorts a list of contacts into the order of sweeps, one group after the other. Groups that it
-  /// gives contacts that no list before had are made anew.
+  /// Sorts a list of contacts into the order of sweeps, one group after the other. Groups with
+  /// contacts that were in no list before are made again.
   /// @param threads  any number: same groups
   /// @returns these groups
   const std::vector<std::int32_t>& group(std::vector<std::int32_t>& list, int threads);

@@ -1,9 +1,11 @@
+/// @file elastic_space.cpp
+/// Chooses bodies, and computes columns of their inverses at rest.
 #include "host/simulate/solve/two_level/elastic_space.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <iterator>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 
 namespace tetwarp {
@@ -70,9 +72,9 @@ void ElasticSpace::choose(const SystemRows& rows,
   }
 }
 
-/// The nodes that are needed, and those of the compliance that is there as long as these are few
-/// more: contacts that come and go then do not change it. Nodes that are not needed change no
-/// result.
+/// Sets the touched nodes: those that are needed and, if these are not many more, those of the
+/// present compliance, which then stays the same where contacts come and go. Nodes that are not
+/// needed change no result.
 void ElasticSpace::set_touched(ElasticBody& own) const {
   own.touched.clear();
   if (own.source.body == own.body) {

@@ -23,7 +23,7 @@ struct ElasticBody {
                                       ///< a multiple of 8
   std::vector<float> compliance;      ///< [3 touched][size] of M^-1, a column at a time
 
-  /// Of what the compliance is: it stays as long as contacts touch no other nodes.
+  /// What the compliance was computed for. It is kept as long as contacts touch no other nodes.
   struct Source {
     std::int32_t body = -1;
     double time_step = 0, damping = 0;

@@ -1,3 +1,5 @@
+/// @file solved_islands.cpp
+/// Finds the rows of the islands.
 #include "host/simulate/solve/two_level/solved_islands.hpp"
 #include "host/base/index_of.hpp"
 

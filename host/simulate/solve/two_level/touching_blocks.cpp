@@ -1,8 +1,12 @@
+/// @file touching_blocks.cpp
+/// Sets J and its responses from the rows of contacts; products with them.
 #include "host/simulate/solve/two_level/touching_blocks.hpp"
-#include "host/base/index_of.hpp"
-#include "host/base/parallel.hpp"
 
 #include <algorithm>
+
+#include "host/base/index_of.hpp"
+#include "host/base/parallel.hpp"
+#include "kernels/contact/contact_residual.hpp"
 
 namespace tetwarp {
 void TouchingBlocks::set(const StepSystem& system,
@@ -15,28 +19,20 @@ void TouchingBlocks::set(const StepSystem& system,
                          double relaxation) {
   laws_.set(laws);
   offset_ = laws.velocity_offset;
-  elastic_ = &elastic;
-  row_of_block_.assign(index_of(system.rows.block_of.size), -1);
-  for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
-    if (islands.of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
-  }
-  set_parts(system, rows, contacts);
+  set_parts(system, islands, elastic, rows, contacts);
   set_responses(rows, islands, elastic, inverse, relaxation);
-  packed_start_.assign(laws_.constants.size(), -1);
-  packed_size_.resize(laws_.constants.size());
-  moves_rows_.resize(laws_.constants.size());
-  packed_.clear();
-  groups_.set(elastic, part_start_, part_row_);
-  matrix_place_.resize(laws_.constants.size());
-  elastic_start_.assign(laws_.constants.size(), -1);
-  elastic_response_.clear();
-  operations_ = 0;
 }
 
 /// The parts of all contacts, and the rows that they touch.
 void TouchingBlocks::set_parts(const StepSystem& system,
+                               const SolvedIslands& islands,
+                               const ElasticSpace& elastic,
                                const ContactRows& rows,
                                const std::vector<std::int32_t>& contacts) {
+  row_of_block_.assign(index_of(system.rows.block_of.size), -1);
+  for (std::int32_t row = 0; row < system.rows.unknown_count; ++row) {
+    if (islands.of_row(row) >= 0) row_of_block_[index_of(system.rows.block_of[row])] = row;
+  }
   part_start_.assign(1, 0);
   parts_.clear();
   part_row_.clear();
@@ -51,10 +47,10 @@ void TouchingBlocks::set_parts(const StepSystem& system,
       const bool is_rigid = system.rows.pair[row] == 1;
       const std::int32_t size = is_rigid ? 6 : 3;
       const std::int64_t first = 3 * std::int64_t{row};
-      const std::int32_t body = elastic_->body_of_row(row);
+      const std::int32_t body = elastic.body_of_row(row);
       const std::int64_t place = body < 0 ? first
-                                          : elastic_->bodies()[index_of(body)].first +
-                                                3 * std::int64_t{elastic_->slot_of_row(row)};
+                                          : elastic.bodies()[index_of(body)].first +
+                                                3 * std::int64_t{elastic.slot_of_row(row)};
       parts_.push_back({first, place, numbers, size});
       part_row_.push_back(row);
       part_entry_.push_back(e);
@@ -172,6 +168,105 @@ void TouchingBlocks::set_responses(const ContactRows& rows,
     laws_.constants[c].tangent_metric =
         larger_eigenvalue(block[4], (block[5] + block[7]) / 2, block[8]);
   });
+}
+
+void TouchingBlocks::push(const std::vector<std::int32_t>& list,
+                          const double* before,
+                          const double* after,
+                          double* y) const {
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::size_t c = index_of(list[k]);
+    const double r[3] = {after[3 * k] - before[3 * k], after[3 * k + 1] - before[3 * k + 1],
+                         after[3 * k + 2] - before[3 * k + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+    for (std::int32_t p = part_start_[c]; p < part_start_[c + 1]; ++p) {
+      const Part& part = parts_[index_of(p)];
+      const double* const response = response_.data() + part.value;
+      double* const v = y + part.place;
+      for (std::int32_t i = 0; i < part.size; ++i) {
+        v[i] += response[i] * r[0] + response[part.size + i] * r[1] +
+                response[2 * part.size + i] * r[2];
+      }
+    }
+  }
+}
+
+/// u of the rows of contacts.
+void TouchingBlocks::velocity_at(std::size_t contact, const double* x, double* velocity) const {
+  for (std::size_t a = 0; a < 3; ++a) velocity[a] = offset_[3 * contact + a];
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    const Part& part = parts_[index_of(p)];
+    for (int a = 0; a < 3; ++a) {
+      const double* const j = jacobian_.data() + part.value + a * part.size;
+      for (std::int32_t k = 0; k < part.size; ++k) velocity[a] += j[k] * x[part.first + k];
+    }
+  }
+}
+
+void TouchingBlocks::velocities_of_rows(const double* x, double* velocity) const {
+  parallel_for(threads(), count(), [=, this](std::int64_t contact) {
+    const std::size_t c = index_of(contact);
+    velocity_at(c, x, velocity + 3 * c);
+  });
+}
+
+TouchingSums TouchingBlocks::measure(ContactSwitches switches,
+                                     const double* impulse,
+                                     const double* velocity,
+                                     const double* free,
+                                     std::vector<std::int32_t>& working) const {
+  TouchingSums sums;
+  working.clear();
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
+    const ContactConstants<double>& own = laws_.constants[c];
+    const double* const r = impulse + 3 * c;
+    const double square =
+        natural_square(own, switches, normal_weight(own), tangent_weight(own), r, velocity + 3 * c);
+    if (square != 0 || r[0] != 0 || r[1] != 0 || r[2] != 0) {
+      working.push_back(static_cast<std::int32_t>(c));
+    }
+    sums.natural += square;
+    for (std::size_t a = 3 * c; a < 3 * c + 3; ++a) {
+      sums.work += impulse[a] * (velocity[a] - free[a]);
+    }
+  }
+  return sums;
+}
+
+/// force += J^T r of one contact.
+void TouchingBlocks::add_push(std::size_t contact, const double* r, double* force) const {
+  for (std::int32_t p = part_start_[contact]; p < part_start_[contact + 1]; ++p) {
+    const Part& part = parts_[index_of(p)];
+    const double* const j = jacobian_.data() + part.value;
+    for (std::int32_t k = 0; k < part.size; ++k) {
+      force[part.first + k] += j[k] * r[0] + j[part.size + k] * r[1] + j[2 * part.size + k] * r[2];
+    }
+  }
+}
+
+void TouchingBlocks::set_changes(const double* before, const double* after, double* force) const {
+  for (const std::int32_t row : touched_) std::fill_n(force + 3 * std::int64_t{row}, 3, 0.0);
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
+    const double r[3] = {after[3 * c] - before[3 * c], after[3 * c + 1] - before[3 * c + 1],
+                         after[3 * c + 2] - before[3 * c + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+    add_push(c, r, force);
+  }
+}
+
+void TouchingBlocks::add_impulses(View<const double> load,
+                                  const double* impulse,
+                                  double* force) const {
+  for (const std::int32_t row : touched_) {
+    for (std::int64_t i = 3 * std::int64_t{row}; i < 3 * std::int64_t{row} + 3; ++i) {
+      force[i] = load[i];
+    }
+  }
+  for (std::size_t c = 0; c < laws_.constants.size(); ++c) {
+    const double r[3] = {impulse[3 * c] - laws_.preload[c], impulse[3 * c + 1], impulse[3 * c + 2]};
+    if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
+    add_push(c, r, force);
+  }
 }
 
 }  // namespace tetwarp

@@ -43,7 +43,7 @@ struct TwoLevelError {
     error.work = std::sqrt(std::max(work, 0.0));
     return error;
   }
-  /// As small as the error of the velocities without contact, of this defect.
+  /// The error of the velocities without contact, by their defect, and a little more.
   static double least(double defect) {
     return 1.01 * defect_factor * std::sqrt(std::max(defect, 0.0));
   }
@@ -105,16 +105,17 @@ class TwoLevelControl {
   double enough() const { return enough_; }
 
  private:
-  // An iteration ends whose least residual has not shrunk to `least_progress` times in so many
+  // The iteration ends where its least residual has not shrunk by this factor in this number of
   // iterations.
   static constexpr std::int64_t patience = 150;
   static constexpr double least_progress = 0.9;
   // Errors of iterations that converge grow by less than this at times.
   static constexpr double divergence = 30;
-  // Of the error before an outer iteration, left by its sweeps; with single elastic bodies.
+  // Share of the error before an outer iteration that its sweeps may leave; elastic_share holds
+  // with single elastic bodies.
   static constexpr double inner_share = 0.002, elastic_share = 0.005;
-  // Of the error at which the solve ends: with single elastic bodies sweeps leave as much, as less
-  // would gain nothing. Cloth takes as many sweeps without it.
+  // Share of the error at which the solve ends. With single elastic bodies sweeps may leave as
+  // much: less would gain nothing. Cloth takes as many sweeps without this.
   static constexpr double final_share = 0.4;
 
   /// @returns false if the least residual no longer shrinks

@@ -1,7 +1,11 @@
+/// @file two_level_on_device.cpp
+/// Starts the iteration of a device, and reads its results.
 #include "host/simulate/solve/two_level/two_level_on_device.hpp"
-#include "host/base/index_of.hpp"
 
 #include <utility>
+
+#include "host/base/index_of.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,13 +1,16 @@
+/// @file two_level_solver.cpp
+/// The outer iterations: step, sweeps over contacts, acceleration, and when they end.
 #include "host/simulate/solve/two_level/two_level_solver.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
+#include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
 namespace {
@@ -16,36 +19,21 @@ namespace {
 constexpr std::int64_t most_operations = 1'000'000'000;
 // Up to these sizes the contact solver is quick where the iteration fails.
 constexpr std::int64_t small_contacts = 256, small_rows = 128;
-constexpr std::int32_t chunk_rows = 64;
 
 }  // namespace
 
 TwoLevelSolver::TwoLevelSolver(const Model& model,
                                const ContactOptions& options,
                                std::shared_ptr<RestFactors> factors)
-    : model_(model),
-      options_(options),
+    : options_(options),
       switches_{options.law == FrictionLaw::pyramid, options.rule == AdhesionRule::restrictive},
       threads_(thread_count(options.threads)),
       relaxation_(TwoLevelControl::relaxation(options)),
       factors_(std::move(factors)),
       elastic_(factors_),
-      blocks_(threads_) {}
-
-/// Parts of islands that one task takes; both rows of a rigid body are in one.
-void TwoLevelSolver::list_chunks(const SystemRows& rows) {
-  chunks_.clear();
-  for (std::size_t i = 0; i < islands_.list().size(); ++i) {
-    const SolvedIsland& island = islands_.list()[i];
-    for (std::int32_t row = island.row_begin; row < island.row_end;) {
-      std::int32_t end = std::min(row + chunk_rows, island.row_end);
-      if (end < island.row_end && rows.pair[end] == 2) ++end;
-      chunks_.push_back({row, end, static_cast<std::int32_t>(i)});
-      row = end;
-    }
-  }
-  squares_.resize(chunks_.size());
-}
+      blocks_(threads_),
+      step_(model, relaxation_, threads_),
+      sweeps_(blocks_, switches_, threads_) {}
 
 /// Sets the contacts in the metric M, and starts from the velocities without contact.
 void TwoLevelSolver::prepare(const StepSystem& system,
@@ -53,57 +41,37 @@ void TwoLevelSolver::prepare(const StepSystem& system,
                              const std::vector<Point3>& velocity) {
   const SystemRows& all = system.rows;
   const std::int64_t numbers = 3 * std::int64_t{all.count};
-  list_chunks(all);
-  inverse_.resize(
-      index_of(9 * std::int64_t{all.unknown_count} + 36 * std::int64_t{model_.rigid_count}));
-  diagonal_ = {all.pair,
-               all.block_of,
-               all.unknown_count,
-               model_.node_count,
-               {inverse_.data(), static_cast<std::int64_t>(inverse_.size())}};
-  for (auto* values : {&x_, &product_, &force_, &weights_, &pull_, &moved_}) {
-    values->resize(index_of(numbers));
-  }
-  y_.resize(index_of(numbers + elastic_.size()));
-  const RowInvertBody<double> invert{all, system.values, diagonal_};
-  std::fill(weights_.begin(), weights_.end(), 0.0);
-  parallel_tasks(threads_, static_cast<std::int64_t>(chunks_.size()), [&](std::int64_t c) {
-    const Chunk& chunk = chunks_[index_of(c)];
-    for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      invert(row);
-      const double* const own = system.values.data + 9 * std::int64_t{all.diagonal[row]};
-      for (int i = 0; i < 3; ++i) weights_[index_of(3 * std::int64_t{row} + i)] = own[4 * i];
-    }
-  });
+  step_.set(system, islands_, elastic_, weights_);
+  for (auto* values : {&x_, &force_}) values->resize(index_of(numbers));
   for (std::int32_t row = 0; row < all.count; ++row) {
     for (std::size_t i = 0; i < 3; ++i) {
       x_[3 * index_of(row) + i] = velocity[index_of(all.block_of[row])][i];
       force_[3 * index_of(row) + i] = system.load[3 * std::int64_t{row} + static_cast<int>(i)];
     }
   }
-  blocks_.set(system, islands_, elastic_, problem.rows, problem.contacts, problem.laws, diagonal_,
-              relaxation_);
+  blocks_.set(system, islands_, elastic_, problem.rows, problem.contacts, problem.laws,
+              step_.inverse(), relaxation_);
+  sweeps_.set(elastic_);
+  y_.resize(index_of(numbers + elastic_.size()));
   std::copy(x_.begin(), x_.end(), y_.begin());
   impulse_ = problem.laws.impulse_guess;
   for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] += blocks_.preload()[c];
   contact_velocity_.resize(impulse_.size());
   free_.resize(impulse_.size());
   blocks_.velocities_of_rows(x_.data(), free_.data());
-  least_error_ = TwoLevelError::least(step(system));
+  least_error_ = TwoLevelError::least(step_.run(system, x_, force_, y_));
   if (problem.change.size() != velocity.size()) return;
-  for (const Chunk& chunk : chunks_) {
-    for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const Point3& own = problem.change[index_of(all.block_of[row])];
-      for (std::size_t i = 0; i < 3; ++i) x_[3 * index_of(row) + i] += own[i];
-    }
-  }
+  step_.for_each_row([&](std::int32_t row) {
+    const Point3& own = problem.change[index_of(all.block_of[row])];
+    for (std::size_t i = 0; i < 3; ++i) x_[3 * index_of(row) + i] += own[i];
+  });
 }
 
 /// The error of r and v = x.
 TwoLevelError TwoLevelSolver::find_error(double defect) {
   blocks_.velocities_of_rows(x_.data(), contact_velocity_.data());
   const TouchingSums sums =
-      blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data());
+      blocks_.measure(switches_, impulse_.data(), contact_velocity_.data(), free_.data(), working_);
   return TwoLevelError::of(defect, sums.natural, sums.work);
 }
 
@@ -119,24 +87,24 @@ void TwoLevelSolver::take_best(TwoLevelOutcome& outcome) {
 TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
                                             bool ends_early,
                                             TwoLevelOutcome& outcome) {
-  const std::int64_t begin = 3 * std::int64_t{chunks_.front().row_begin};
-  const std::int64_t size = 3 * std::int64_t{chunks_.back().row_end} - begin;
+  const std::int64_t begin = step_.begin(), size = step_.end() - begin;
   CpuContactExec exec(threads_);
   using Mixer = AndersonMixer<CpuContactExec, double>;
   mixed_.resize(index_of(Mixer::columns * size));
   Mixer mixer(exec, {weights_.data() + begin, size}, {mixed_.data(), Mixer::columns * size});
   contact_velocity_.assign(impulse_.size(), 0.0);  // no impulses
-  TwoLevelControl control(
-      {.has_elastic = !elastic_.bodies().empty(),
-       .ends_early = ends_early,
-       .tolerance = options_.tolerance,
-       .natural_alone =
-           blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data()).natural,
-       .least_error = least_error_});
+  const TouchingSums alone =
+      blocks_.measure(switches_, contact_velocity_.data(), free_.data(), free_.data(), working_);
+  TwoLevelControl control({.has_elastic = !elastic_.bodies().empty(),
+                           .ends_early = ends_early,
+                           .tolerance = options_.tolerance,
+                           .natural_alone = alone.natural,
+                           .least_error = least_error_});
   best_.residual = std::numeric_limits<double>::infinity();
   while (outcome.outer_iterations < TwoLevelControl::most_iterations) {
     blocks_.add_impulses(system.load, impulse_.data(), force_.data());
-    const TwoLevelControl::Next next = control.next(find_error(step(system)), outcome.sweeps);
+    const TwoLevelControl::Next next =
+        control.next(find_error(step_.run(system, x_, force_, y_)), outcome.sweeps);
     outcome.residual = control.residual();
     if (control.is_best()) {
       best_.residual = control.residual();
@@ -146,14 +114,14 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     if (next == TwoLevelControl::Next::fails) return End::fails;
     if (next == TwoLevelControl::Next::converges) return End::converges;
     if (next == TwoLevelControl::Next::diverges) return End::diverges;
-    if (blocks_.operations() > most_operations) return End::fails;
+    if (sweeps_.operations() > most_operations) return End::fails;
     stepped_ = impulse_;
-    outcome.sweeps += sweep(control.enough());
+    outcome.sweeps += sweeps_.run(working_, control.enough(), y_, impulse_);
     ++outcome.outer_iterations;
     if (options_.progress && !options_.progress({clock_.seconds(), outcome.sweeps, 0})) {
       return End::is_stopped;
     }
-    add_elastic();
+    step_.add_elastic(blocks_, stepped_.data(), impulse_.data(), y_);
     const View<const double> before{x_.data() + begin, size};
     const View<double> image{y_.data() + begin, size};
     if (control.mixes()) {
@@ -163,6 +131,11 @@ TwoLevelSolver::End TwoLevelSolver::iterate(const StepSystem& system,
     std::copy_n(y_.data() + begin, size, x_.data() + begin);
   }
   return End::fails;
+}
+
+/// Whether the contact solver would be quick.
+bool TwoLevelSolver::is_small() const {
+  return blocks_.count() <= small_contacts && step_.end() - step_.begin() <= 3 * small_rows;
 }
 
 TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
@@ -179,29 +152,23 @@ TwoLevelOutcome TwoLevelSolver::solve(const StepSystem& system,
     prepare(system, problem, velocity);
     const bool can_be_damped =
         !elastic_.bodies().empty() && damping > TwoLevelControl::least_damping;
-    if (!chunks_.empty()) end = iterate(system, can_be_damped, outcome);
+    if (!step_.is_empty()) end = iterate(system, can_be_damped, outcome);
     if (end != End::diverges) break;
   }
-  if (chunks_.empty()) {
+  if (step_.is_empty()) {
     outcome.converged = outcome.is_result = true;
     return outcome;
   }
   outcome.is_stopped = end == End::is_stopped;
   if (outcome.is_stopped) return outcome;
   outcome.converged = end == End::converges;
-  const bool is_small = blocks_.count() <= small_contacts &&
-                        chunks_.back().row_end - chunks_.front().row_begin <= small_rows;
-  outcome.is_result = outcome.converged || (!is_small && std::isfinite(best_.residual));
+  outcome.is_result = outcome.converged || (!is_small() && std::isfinite(best_.residual));
   if (!outcome.is_result) return outcome;
   if (!outcome.converged) take_best(outcome);
-  for (const Chunk& chunk : chunks_) {
-    for (std::int32_t row = chunk.row_begin; row < chunk.row_end; ++row) {
-      const std::size_t block = index_of(system.rows.block_of[row]);
-      for (std::size_t i = 0; i < 3; ++i) {
-        velocity[block][i] = x_[3 * index_of(row) + i];
-      }
-    }
-  }
+  step_.for_each_row([&](std::int32_t row) {
+    Point3& own = velocity[index_of(system.rows.block_of[row])];
+    for (std::size_t i = 0; i < 3; ++i) own[i] = x_[3 * index_of(row) + i];
+  });
   for (std::size_t c = 0; c < impulse_.size() / 3; ++c) impulse_[3 * c] -= blocks_.preload()[c];
   return outcome;
 }

@@ -1,67 +1,74 @@
 /// @file two_level_sweeps.cpp
-/// The sweeps of an outer iteration of TwoLevelSolver.
+/// Which contacts are swept, how often, and the acceleration of their impulses.
+#include "host/simulate/solve/two_level/two_level_sweeps.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "host/base/index_of.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
-#include "host/simulate/solve/two_level/two_level_solver.hpp"
+#include "kernels/contact/anderson.hpp"
 
 namespace tetwarp {
 namespace {
 
 // In an outer iteration; with single elastic bodies most sweeps are over few groups.
-constexpr std::int64_t most_sweeps = 50, most_elastic_sweeps = 200;
+constexpr std::int64_t most_coupled_sweeps = 50, most_elastic_sweeps = 200;
 
 }  // namespace
 
-std::int64_t TwoLevelSolver::most_of_iteration() const {
-  return elastic_.bodies().empty() ? most_sweeps : most_elastic_sweeps;
+void TwoLevelSweeps::set(const ElasticSpace& elastic) {
+  has_elastic_ = !elastic.bodies().empty();
+  sweep_.set(elastic);
+}
+
+std::int64_t TwoLevelSweeps::most_sweeps() const {
+  return has_elastic_ ? most_elastic_sweeps : most_coupled_sweeps;
 }
 
 /// Copies the impulses of `list`.
-void TwoLevelSolver::gather_impulses(const std::vector<std::int32_t>& list) {
+void TwoLevelSweeps::gather_impulses(const std::vector<std::int32_t>& list, const double* impulse) {
   swept_.clear();
   for (const std::int32_t contact : list) {
-    const auto begin = impulse_.begin() + 3 * std::ptrdiff_t{contact};
-    swept_.insert(swept_.end(), begin, begin + 3);
+    const double* const own = impulse + 3 * std::ptrdiff_t{contact};
+    swept_.insert(swept_.end(), own, own + 3);
   }
 }
 
-void TwoLevelSolver::scatter_impulses(const std::vector<std::int32_t>& list) {
+void TwoLevelSweeps::scatter_impulses(const std::vector<std::int32_t>& list,
+                                      double* impulse) const {
   for (std::size_t k = 0; k < list.size(); ++k) {
     std::copy_n(swept_.begin() + 3 * static_cast<std::ptrdiff_t>(k), 3,
-                impulse_.begin() + 3 * std::ptrdiff_t{list[k]});
+                impulse + 3 * std::ptrdiff_t{list[k]});
   }
 }
 
 /// One sweep over the contacts that work. @returns the norm of the change in its energy
-double TwoLevelSolver::sweep_working() {
-  const std::vector<std::int32_t>& list = blocks_.working();
-  gather_impulses(list);
+double TwoLevelSweeps::sweep_all(const std::vector<std::int32_t>& working,
+                                 const Progress& progress) {
+  gather_impulses(working, progress.impulse);
   before_ = swept_;
-  blocks_.sweep(switches_, list, y_.data(), swept_.data());
-  group_squares_.assign(index_of(blocks_.group_count()), 0.0);
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    double& square = group_squares_[index_of(blocks_.group_of(list[k]))];
+  sweep_.run(working, progress.y, swept_.data());
+  group_squares_.assign(index_of(sweep_.group_count()), 0.0);
+  for (std::size_t k = 0; k < working.size(); ++k) {
+    double& square = group_squares_[index_of(sweep_.group_of(working[k]))];
     for (std::size_t a = 0; a < 3; ++a) {
-      square += blocks_.diagonal()[3 * index_of(list[k]) + a] *
+      square += blocks_.diagonal()[3 * index_of(working[k]) + a] *
                 square_of(swept_[3 * k + a] - before_[3 * k + a]);
     }
   }
-  scatter_impulses(list);
+  scatter_impulses(working, progress.impulse);
   return std::sqrt(std::accumulate(group_squares_.begin(), group_squares_.end(), 0.0));
 }
 
-/// Sweeps over `list`, accelerated, until a sweep changes its impulses by at most `enough` or
-/// `sweeps` is at its limit.
+/// Sweeps over `list`, accelerated, until a sweep changes its impulses by at most
+/// `progress.enough` or the number of sweeps is at its limit.
 /// @param follow  (accelerator): moves y as the accelerator has changed `swept_`
 template <class Accelerator, class Follow>
-void TwoLevelSolver::sweep_accelerated(const std::vector<std::int32_t>& list,
-                                       double enough,
+void TwoLevelSweeps::sweep_accelerated(const std::vector<std::int32_t>& list,
                                        const Follow& follow,
-                                       std::int64_t& sweeps) {
+                                       Progress& progress) {
   const auto size = static_cast<std::int64_t>(3 * list.size());
   CpuContactExec exec(threads_);
   accelerated_.resize(index_of(Accelerator::columns * size));
@@ -72,73 +79,75 @@ void TwoLevelSolver::sweep_accelerated(const std::vector<std::int32_t>& list,
   }
   Accelerator accelerator(exec, {listed_diagonal_.data(), size},
                           {accelerated_.data(), Accelerator::columns * size});
-  gather_impulses(list);
-  const std::int64_t most = most_of_iteration();
+  gather_impulses(list, progress.impulse);
   const View<double> image{swept_.data(), size};
-  while (sweeps < most) {
+  while (progress.sweeps < most_sweeps()) {
     before_ = swept_;
-    motion_.keep(y_.data());
+    motion_.keep(progress.y);
     const View<const double> before{before_.data(), size};
-    blocks_.sweep(switches_, list, y_.data(), swept_.data());
-    ++sweeps;
+    sweep_.run(list, progress.y, swept_.data());
+    ++progress.sweeps;
     accelerator.observe(before, image);
-    if (accelerator.defect() <= enough || sweeps == most) break;
+    if (accelerator.defect() <= progress.enough || progress.sweeps == most_sweeps()) break;
     unaccelerated_ = swept_;
     if (accelerator.advance(before, image)) follow(accelerator);
   }
-  scatter_impulses(list);
+  scatter_impulses(list, progress.impulse);
 }
 
 /// Conjugate directions follow impulses that drift, as those of many contacts between elastic
 /// bodies do, whose velocities determine them poorly. Springs, which hold cloth, are linear:
 /// Anderson acceleration finds their impulses sooner.
-void TwoLevelSolver::sweep_listed(const std::vector<std::int32_t>& list,
-                                  double enough,
-                                  std::int64_t& sweeps) {
+void TwoLevelSweeps::sweep_listed(const std::vector<std::int32_t>& list, Progress& progress) {
   using Directions = ConjugateDirection<CpuContactExec, double>;
   using Mixer = AndersonMixer<CpuContactExec, double>;
   moved_places_.clear();
-  if (elastic_.bodies().empty()) {
-    motion_.start(moved_places_);
-    sweep_accelerated<Mixer>(
-        list, enough,
-        [&](const Mixer&) { blocks_.push(list, unaccelerated_.data(), swept_.data(), y_.data()); },
-        sweeps);
+  if (has_elastic_) sweep_.list_moved(list, moved_places_);
+  motion_.start(moved_places_);
+  if (has_elastic_) {
+    const auto follow = [&](const Directions& directions) {
+      motion_.advance(directions.state()->is_restart, directions.state()->ratio, progress.y);
+    };
+    sweep_accelerated<Directions>(list, follow, progress);
   } else {
-    blocks_.list_moved(list, moved_places_);
-    motion_.start(moved_places_);
-    sweep_accelerated<Directions>(
-        list, enough,
-        [&](const Directions& directions) {
-          motion_.advance(directions.state()->is_restart, directions.state()->ratio, y_.data());
-        },
-        sweeps);
+    const auto follow = [&](const Mixer&) {
+      blocks_.push(list, unaccelerated_.data(), swept_.data(), progress.y);
+    };
+    sweep_accelerated<Mixer>(list, follow, progress);
   }
 }
 
-/// Sweeps until one over all contacts that work changes their impulses by at most `enough` in the
-/// norm of their energy. Between these, sweeps over those with impulses only, as a contact that is
-/// open stays so in most of them, and of these over groups that still change: all others together
-/// by at most the half of `enough`, in squares. @returns the sweeps
-std::int64_t TwoLevelSolver::sweep(double enough) {
-  std::int64_t sweeps = 0;
-  blocks_.begin_sweeps();
-  const std::vector<std::int32_t>& working = blocks_.working();
-  while (!working.empty() && sweeps < most_of_iteration()) {
-    ++sweeps;
-    if (sweep_working() <= enough) break;
-    const double least = square_of(enough) / (2.0 * static_cast<double>(group_squares_.size()));
-    pushing_.clear();
-    for (const std::int32_t contact : working) {
-      const double* const r = impulse_.data() + 3 * std::ptrdiff_t{contact};
-      if (!(group_squares_[index_of(blocks_.group_of(contact))] > least)) continue;
-      if (r[0] != 0 || r[1] != 0 || r[2] != 0) pushing_.push_back(contact);
-    }
-    const bool are_most = 4 * pushing_.size() > 3 * working.size();
-    sweep_listed(are_most ? working : pushing_, enough, sweeps);
+/// Lists the contacts with impulses in groups that sweep_all() has changed. All other groups
+/// together have changed by at most the half of `progress.enough`, in squares.
+void TwoLevelSweeps::list_changing(const std::vector<std::int32_t>& working,
+                                   const Progress& progress) {
+  const double least =
+      square_of(progress.enough) / (2.0 * static_cast<double>(group_squares_.size()));
+  changing_.clear();
+  for (const std::int32_t contact : working) {
+    const double* const r = progress.impulse + 3 * std::ptrdiff_t{contact};
+    if (!(group_squares_[index_of(sweep_.group_of(contact))] > least)) continue;
+    if (r[0] != 0 || r[1] != 0 || r[2] != 0) changing_.push_back(contact);
+  }
+}
+
+// Between sweeps over all contacts are those over the contacts with impulses only: a contact that
+// is open stays so in most sweeps.
+std::int64_t TwoLevelSweeps::run(std::vector<std::int32_t>& working,
+                                 double enough,
+                                 std::vector<double>& y,
+                                 std::vector<double>& impulse) {
+  Progress progress{y.data(), impulse.data(), enough, 0};
+  sweep_.begin(working);
+  while (!working.empty() && progress.sweeps < most_sweeps()) {
+    ++progress.sweeps;
+    if (sweep_all(working, progress) <= enough) break;
+    list_changing(working, progress);
+    const bool are_most = 4 * changing_.size() > 3 * working.size();
+    sweep_listed(are_most ? working : changing_, progress);
     if (are_most) break;
   }
-  return sweeps;
+  return progress.sweeps;
 }
 
 }  // namespace tetwarp

@@ -46,9 +46,9 @@ class CpuGradientExec {
   Value load(const Value* value) const {
     return *value;
   }
-  /// Iterations between two looks at their sums.
+  /// Iterations between two reads of their sums.
   std::int64_t iterations_at_once() const { return 1; }
-  /// Runs an iteration so often.
+  /// Runs an iteration that many times.
   template <class Iteration>
   void repeat(std::int64_t count, const Iteration& iteration) const {
     for (std::int64_t i = 0; i < count; ++i) iteration.run(*this);

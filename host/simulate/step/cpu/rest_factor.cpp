@@ -1,9 +1,11 @@
+/// @file rest_factor.cpp
+/// Factorization, solves in the turned frame, and columns of the inverse.
 #include "host/simulate/step/cpu/rest_factor.hpp"
-#include "host/base/index_of.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
+#include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
 #include "host/simulate/step/cpu/rest_matrix.hpp"
 #include "host/simulate/step/cpu/vector_stages.hpp"

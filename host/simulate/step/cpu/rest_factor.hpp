@@ -12,7 +12,7 @@ namespace tetwarp {
 
 /// L L^T = A_0, the mass, stiffness, damping and springs of a body in the frame of its rest shape.
 /// Blocks are of nodes with unknowns, in the order of the model. Numbers of L are rounded to
-/// float32: what it solves is a symmetric positive definite matrix near A_0, always the same.
+/// float32: L is the exact factor of a symmetric positive definite matrix near A_0.
 class RestFactor {
  public:
   /// Whether a body is one of tetrahedra alone and has a factor of moderate size.

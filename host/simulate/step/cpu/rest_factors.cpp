@@ -1,3 +1,5 @@
+/// @file rest_factors.cpp
+/// Makes factors when a length of a step is new.
 #include "host/simulate/step/cpu/rest_factors.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file rest_gradients.cpp
+/// The iteration, with factors at rest as its preconditioner.
 #include "host/simulate/step/cpu/rest_gradients.hpp"
 
 #include <algorithm>

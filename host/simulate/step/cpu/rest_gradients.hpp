@@ -16,7 +16,7 @@ class RestGradients {
   /// @param factors  shared with the solution of contacts, or null: own ones
   RestGradients(const Model& model, std::shared_ptr<RestFactors> factors);
 
-  /// Before the solves of a step. @param position  of all nodes, [nodes][3], until they end
+  /// Call before the solves of a step. @param position  of all nodes, [nodes][3], until they end
   void begin(double time_step, const double* position);
   /// Whether solve() takes a coupling island.
   bool is_possible(std::int32_t island) const { return factors_->body_of_island(island) >= 0; }

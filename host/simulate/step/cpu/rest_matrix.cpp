@@ -1,7 +1,10 @@
+/// @file rest_matrix.cpp
+/// Sums of elements, masses and springs, in an order that keeps factors sparse.
 #include "host/simulate/step/cpu/rest_matrix.hpp"
-#include "host/base/index_of.hpp"
 
 #include <Eigen/OrderingMethods>
+
+#include "host/base/index_of.hpp"
 
 namespace tetwarp {
 

@@ -1,3 +1,5 @@
+/// @file vector_stages.cpp
+/// Chooses the widest instruction set that the processor has.
 #include "host/simulate/step/cpu/vector_stages.hpp"
 
 namespace tetwarp {

@@ -1,4 +1,5 @@
 /// @file vector_stages_avx2.cpp
+/// Vectors of four numbers, for processors with AVX2.
 #include "host/simulate/step/cpu/vector_stages-inl.hpp"
 
 namespace tetwarp {

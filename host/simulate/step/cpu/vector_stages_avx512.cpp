@@ -1,4 +1,5 @@
 /// @file vector_stages_avx512.cpp
+/// Vectors of eight numbers, for processors with AVX-512.
 #include "host/simulate/step/cpu/vector_stages-inl.hpp"
 
 namespace tetwarp {

@@ -1,4 +1,5 @@
 /// @file stepper_cuda.cu
+/// The stages of a step of bodies on a CUDA device, as a BodyStepper.
 // Stages are host-device functions templated on the executor; nvcc warns of the executors whose
 // members run on one side only.
 #pragma nv_diag_suppress 20011, 20013, 20014, 20015

@@ -1,4 +1,4 @@
-/// @file warp.cpp
+/// @file backend_reference.cpp
 /// Back end reference: the warp straight from its definition, serially and without culling; values
 /// in float64. It shares no code with the kernels that are tested against it.
 #include <Eigen/Dense>

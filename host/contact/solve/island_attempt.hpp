@@ -1,0 +1,70 @@
+/// @file island_attempt.hpp
+/// An island that its first sweeps have not solved: its impulses, and how far they are from a
+/// solution.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include <tetwarp/contact.hpp>
+
+#include "host/contact/newton/newton.hpp"
+#include "host/contact/problem/budget.hpp"
+#include "host/contact/structure/structure.hpp"
+#include "host/contact/sweeps/run.hpp"
+
+namespace tetwarp {
+
+/// A problem that is solved on the host. The caller keeps all parts.
+struct HostProblem {
+  const ContactOptions& options;
+  const ContactStructure& structure;
+  const ContactProblem& problem;
+  SolveBudget* budget;  ///< null: no limits
+};
+
+/// The current impulses are those of a ContactRun; outcome().sums are those of the last measure().
+class IslandAttempt {
+ public:
+  /// @param run, outcome  kept by the caller
+  IslandAttempt(const HostProblem& all,
+                std::int64_t island,
+                ContactRun<double>& run,
+                IslandOutcome& outcome)
+      : all_(all), index_(island), run_(run), outcome_(outcome) {}
+
+  const ContactOptions& options() const { return all_.options; }
+  const ContactStructure& structure() const { return all_.structure; }
+  const ContactProblem& problem() const { return all_.problem; }
+  SolveBudget* budget() const { return all_.budget; }
+  ContactRun<double>& run() { return run_; }
+  IslandOutcome& outcome() { return outcome_; }
+  /// Its number in the structure.
+  std::int64_t index() const { return index_; }
+  const ContactIsland& island() const { return all_.structure.islands[index_of(index_)]; }
+  /// The island as a problem of its own; made at the first call.
+  const ContactProblem& part();
+
+  /// The current impulses [N s], [3 contacts].
+  double* impulse() { return run_.state().impulse.data() + 3 * island().slot_begin; }
+  std::int64_t size() const { return 3 * island().contact_count(); }
+
+  bool is_over() const { return all_.budget != nullptr && all_.budget->is_over(); }
+  void measure() { outcome_.sums = run_.measure(index_); }
+  /// Error over allowed error, of the last measure().
+  double excess() const { return run_.excess(index_, outcome_.sums); }
+  bool is_done() const { return run_.is_done(index_, outcome_.sums); }
+
+  /// Newton's method from the current impulses; keeps its impulses unless their error is larger.
+  void polish(const NewtonLimits& limits);
+  /// Sweeps that take as long as a step of Newton's method; infinity where it may not be used.
+  double sweeps_per_newton_step();
+
+ private:
+  HostProblem all_;
+  std::int64_t index_;
+  ContactRun<double>& run_;
+  IslandOutcome& outcome_;
+  std::optional<ContactProblem> part_;
+};
+
+}  // namespace tetwarp

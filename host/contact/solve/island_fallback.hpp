@@ -1,0 +1,58 @@
+/// @file island_fallback.hpp
+/// What follows on an island where the first sweeps have not converged: other methods, and
+/// certificates that no method can succeed.
+#pragma once
+#include <vector>
+
+#include "host/contact/solve/engine_result.hpp"
+#include "host/contact/solve/feasibility.hpp"
+#include "host/contact/solve/island_attempt.hpp"
+
+namespace tetwarp {
+
+/// With the method `automatic`, in this order until the island is solved or its contacts are shown
+/// to contradict each other:
+///
+/// 1. Sweeps show contradictions of normal offsets, as far as they do so soon.
+/// 2. Sweeps and Newton's method in turns, each as long as it promises to be the cheaper one.
+/// 3. Contradictions, by more sweeps and by a certificate.
+/// 4. A direction in which impulses can grow without bound; if there is one, other starts.
+/// 5. All sweeps that are left, then Newton's method as long as it improves the impulses.
+///
+/// The method `newton` does 1, Newton's method, 3 and 4, without other starts. Methods of sweeps do
+/// 3 and 4, without other starts; the certificates only where many sweeps are allowed.
+class IslandFallback {
+ public:
+  /// @param attempt  kept by the caller
+  /// @param memory   of searches on islands of this problem
+  /// @param result   contacts that contradict each other or that impulses grow at are noted in it
+  IslandFallback(IslandAttempt& attempt, ContradictionMemory& memory, EngineResult& result)
+      : attempt_(attempt), memory_(memory), result_(result) {}
+
+  /// Changes the impulses of the attempt and measures them.
+  void run();
+
+ private:
+  bool is_automatic() const { return attempt_.options().method == ContactMethod::automatic; }
+  bool has_newton() const {
+    return is_automatic() || attempt_.options().method == ContactMethod::newton;
+  }
+  bool searches_before_sweeps();
+  bool has_other_blocks() const;
+
+  void continue_with_rows();
+  void certify_after_sweeps();
+  void alternate();
+  void finish_automatic();
+  void sweep_while_cheaper(double newton_sweeps);
+  bool clamp_contradicting(const ContradictionSearch& search);
+  bool find_contradiction();
+  bool find_unbounded();
+
+  IslandAttempt& attempt_;
+  ContradictionMemory& memory_;
+  EngineResult& result_;
+  std::vector<double> last_;  ///< impulses from which sweep_while_cheaper() goes on; empty: current
+};
+
+}  // namespace tetwarp

@@ -1,0 +1,42 @@
+/// @file scene_files.cpp
+/// Reads the files that a scene names, equal volumes once.
+#include "io/scene/scene_files.hpp"
+
+#include <filesystem>
+#include <tetwarp/error.hpp>
+#include <utility>
+
+namespace tetwarp {
+
+std::string SceneFiles::path_of(const SceneValue& value) const {
+  const std::string name = value.text();
+  if (name.empty()) value.fail("is empty, expected the name of a file");
+  return (fs::path(folder_) / name).string();
+}
+
+void SceneFiles::add(const SceneValue& value, std::function<void()> read) {
+  reads_.push_back([value, read = std::move(read)] {
+    try {
+      read();
+    } catch (const IoError& error) {
+      value.fail(error.what());
+    }
+  });
+}
+
+void SceneFiles::add_volume(const SceneValue& value,
+                            const std::string& content,
+                            Body& into,
+                            std::function<Volume()> make) {
+  add(value, [this, content, &into, make = std::move(make)] {
+    Volume& volume = std::get<ImageGeometry>(into.geometry).volume;
+    const auto [found, is_new] = volumes_.emplace(content, &volume);
+    volume = is_new ? make() : *found->second;
+  });
+}
+
+void SceneFiles::read_all() {
+  for (const std::function<void()>& read : reads_) read();
+}
+
+}  // namespace tetwarp

@@ -1,0 +1,43 @@
+/// @file scene_files.hpp
+/// The files that a scene names.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tetwarp/scene.hpp>
+
+#include "io/scene/scene_json.hpp"
+
+namespace tetwarp {
+
+/// The volumes and meshes that a scene names. They are read after all of the text, so that a slip
+/// of the pen is reported without waiting for them.
+class SceneFiles {
+ public:
+  explicit SceneFiles(std::string folder) : folder_(std::move(folder)) {}
+
+  /// The file that a value names, relative to the folder of the scene.
+  std::string path_of(const SceneValue& value) const;
+
+  /// Has `read` called by read_all(), with its IoErrors put down to `value`.
+  void add(const SceneValue& value, std::function<void()> read);
+
+  /// The same for the volume of an image. Volumes with equal `content` are made once and copied.
+  /// @param into  kept by the caller until read_all()
+  void add_volume(const SceneValue& value,
+                  const std::string& content,
+                  Body& into,
+                  std::function<Volume()> make);
+
+  void read_all();
+
+ private:
+  std::string folder_;
+  std::vector<std::function<void()>> reads_;
+  std::map<std::string, const Volume*> volumes_;  // by content
+};
+
+}  // namespace tetwarp
