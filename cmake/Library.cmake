@@ -61,10 +61,11 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  contact_step.cpp contact_step_end.cpp contact_step_sleep.cpp expected_motion.cpp fingerprint.cpp
-  island_lists.cpp island_sleep.cpp simulator.cpp simulator_checkpoint.cpp simulator_impl.cpp
-  simulator_record.cpp simulator_sleep.cpp simulator_state.cpp simulator_step.cpp step_groups.cpp
-  tet_energies.cpp)
+  adhesion_record.cpp contact_history.cpp contact_impulses.cpp contact_part.cpp contact_passes.cpp
+  contact_points.cpp contact_rest.cpp contact_step.cpp end_check.cpp expected_motion.cpp
+  fingerprint.cpp island_lists.cpp island_sleep.cpp part_motion.cpp simulator.cpp
+  simulator_checkpoint.cpp simulator_impl.cpp simulator_record.cpp simulator_sleep.cpp
+  simulator_state.cpp simulator_step.cpp sleeping_contacts.cpp step_groups.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem

@@ -1,31 +1,14 @@
 #include "host/simulate/run/contact_step.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
-#include "host/base/stopwatch.hpp"
-#include "host/simulate/run/expected_motion.hpp"
+#include "host/simulate/run/added_seconds.hpp"
+#include "host/simulate/run/adhesion_record.hpp"
 
 namespace tetwarp {
 namespace {
-
-/// Adds the seconds from its start to its end.
-class Clock {
- public:
-  explicit Clock(double& seconds) : seconds_(seconds) {}
-  Clock(Clock&&) = delete;
-  ~Clock() { seconds_ += stopwatch_.seconds(); }
-
- private:
-  double& seconds_;
-  Stopwatch stopwatch_;
-};
-
-bool are_finite(const std::vector<Point3>& list) {
-  return std::all_of(list.begin(), list.end(), [](const Point3& x) { return is_finite(x); });
-}
 
 std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
                                         const ContactStepOptions& options) {
@@ -37,61 +20,7 @@ std::unique_ptr<Detector> make_detector(const CollisionSurfaces& surfaces,
                                           : make_cpu_detector(surfaces, of);
 }
 
-/// Every material twice: the second ones without adhesion of surfaces that are near at the start.
-ContactTrackerOptions tracker_options(const SceneSurfaces& surfaces, int threads) {
-  ContactTrackerOptions of;
-  of.materials = surfaces.materials;
-  of.materials.insert(of.materials.end(), surfaces.materials.begin(), surfaces.materials.end());
-  for (std::size_t m = surfaces.materials.size(); m < of.materials.size(); ++m) {
-    of.materials[m].initial_intensity = 0;
-  }
-  of.match_distance = surfaces.surfaces.thickness;
-  of.touch_distance = surfaces.surfaces.thickness;
-  of.threads = threads;
-  return of;
-}
-
-ContactSystemOptions system_options(const Scene& scene,
-                                    const ContactStepOptions& options,
-                                    std::function<bool(const ContactProgress&)> progress) {
-  ContactSystemOptions of;
-  of.solver.tolerance = scene.solver.contact_tolerance;
-  of.solver.law = scene.solver.pyramid ? FrictionLaw::pyramid : FrictionLaw::cone;
-  of.solver.rule = scene.solver.restrictive ? AdhesionRule::restrictive : AdhesionRule::parallel;
-  of.solver.backend = options.backend;
-  of.solver.device = options.device;
-  of.solver.threads = options.threads;
-  // Islands that these sweeps do not solve follow with Newton's method: a few contacts with
-  // friction between two bodies, as of a stone on an edge, may take thousands of sweeps. A step
-  // that is not solved is divided. Very tight tolerances take many sweeps also where all is well,
-  // and so do many contacts, see SolverIslands.
-  of.solver.max_sweeps = scene.solver.contact_tolerance < 1e-6 ? 5000 : 300;
-  of.solver.max_newton = 20000;
-  // A solver that remembers systems would not go on from a checkpoint bit for bit.
-  of.solver.skip.constant_systems = false;
-  if (options.progress) of.solver.progress = std::move(progress);
-  of.skips_islands = options.skip.islands;
-  of.factors = options.factors;
-  return of;
-}
-
 }  // namespace
-
-void add_part(const ContactPart& part, ContactPart& sum) {
-  sum.is_completed = sum.is_completed && part.is_completed;
-  sum.converged = sum.converged && part.converged;
-  sum.residual = std::max(sum.residual, part.residual);
-  sum.contacts = part.contacts;
-  sum.islands = part.islands;
-  sum.passes += part.passes;
-  sum.sweeps += part.sweeps;
-  sum.outer_iterations += part.outer_iterations;
-  sum.clamped_islands += part.clamped_islands;
-  sum.stalled_scripts += part.stalled_scripts;
-  sum.smallest_fraction = std::min(sum.smallest_fraction, part.smallest_fraction);
-  sum.detection_seconds += part.detection_seconds;
-  sum.contact_seconds += part.contact_seconds;
-}
 
 ContactStep::ContactStep(const Scene& scene,
                          const Model& model,
@@ -101,143 +30,37 @@ ContactStep::ContactStep(const Scene& scene,
       model_(model),
       surfaces_(surfaces),
       options_(options),
-      material_count_(static_cast<std::int32_t>(surfaces.materials.size())),
       detector_(make_detector(surfaces.surfaces, options)),
-      tracker_options_(tracker_options(surfaces, options.threads)),
-      pair_contacts_(surfaces, options.threads),
-      tracker_(tracker_options_),
-      system_(surfaces,
-              model,
-              system_options(scene,
-                             options,
-                             [this](const ContactProgress&) {
-                               was_ended_ = was_ended_ || !options_.progress();
-                               return !was_ended_;
-                             })),
-      groups_(model, surfaces.surfaces),
-      places_(surfaces, model, options.threads),
-      motions_(static_cast<std::size_t>(std::max(1, scene.solver.max_passes))) {}
+      history_(surfaces, options.threads),
+      sleeping_(surfaces, model, options.threads),
+      motion_(surfaces, model, options.threads, std::max(1, scene.solver.max_passes)),
+      passes_({scene, model, surfaces, *detector_, history_, motion_}, options),
+      end_check_(surfaces, model, *detector_, motion_),
+      points_(surfaces, options.threads) {}
 
-void ContactStep::set_places(const ModelState& state,
-                             const SurfacePlaces& of,
-                             std::vector<BodyPlace>& places) const {
-  places.resize(surfaces_.surfaces.bodies.size());
-  for (std::size_t b = 0; b < places.size(); ++b) {
-    places[b] = {};
-    const CollisionBody& body = surfaces_.surfaces.bodies[b];
-    if (body.is_rigid) {
-      const auto rigid = static_cast<std::size_t>(surfaces_.body_rigid[b]);
-      places[b].pose = {state.position[static_cast<std::size_t>(model_.node_count) + rigid],
-                        state.rotation[rigid]};
-    } else {
-      places[b].vertices = {of.vertices.data() + body.first_vertex,
-                            static_cast<std::size_t>(body.vertex_end - body.first_vertex)};
+bool ContactStep::can_touch(const CollisionSurfaces& surfaces) {
+  std::vector<std::int32_t> solid;
+  for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
+    const CollisionBody& body = surfaces.bodies[b];
+    if (body.touches_itself && body.triangle_end > body.first_triangle) return true;
+    const bool has_parts = body.vertex_end > body.first_vertex || body.plane_end > body.first_plane;
+    if (has_parts) solid.push_back(static_cast<std::int32_t>(b));
+  }
+  const auto is_free = [&](std::int32_t b) { return at(surfaces.bodies, b).has_unknowns; };
+  for (std::size_t i = 0; i < solid.size(); ++i) {
+    for (std::size_t j = i + 1; j < solid.size(); ++j) {
+      const std::array<std::int32_t, 2> pair{solid[i], solid[j]};
+      if (!is_free(pair[0]) && !is_free(pair[1])) continue;
+      if (!std::ranges::binary_search(surfaces.forbidden, pair)) return true;
     }
   }
-}
-
-void ContactStep::move_surfaces(std::span<const double> fraction, SurfaceMotion& motion) {
-  if (&motion != final_) std::swap(motion.start, final_->start);
-  final_ = &motion;
-  frame_motion({surfaces_, model_, *start_, velocity_, time_step_, fraction}, motion);
-  if (resident_ == nullptr) return move_vertices(fraction, motion);
-  motion.resident = view_of(resident_->move(
-      is_free_ ? std::span<const Point3>{} : std::span(velocity_), time_step_, fraction));
-}
-
-/// Of surfaces that move on a device, only what the end check finds needs them on the host.
-void ContactStep::move_vertices(std::span<const double> fraction, SurfaceMotion& motion) const {
-  vertex_motion({surfaces_, model_, *start_, velocity_, time_step_, fraction}, options_.threads,
-                motion);
-}
-
-void ContactStep::report(bool is_first) {
-  std::vector<ReportedContact>& reports =
-      pair_contacts_.find(detector_->touches(), final_->start.vertices, tracker_.start_records());
-  for (ReportedContact& report : reports) {
-    const double gap = dot(report.normal, minus(report.point_a_world, report.point_b_world));
-    if (!is_first || gap > surfaces_.surfaces.thickness) report.material += material_count_;
-  }
-  set_places(*start_, final_->start, start_places_);
-  contacts_ = &tracker_.begin_step(reports, start_places_, time_step_);
-}
-
-bool ContactStep::solve(BodyStepper& stepper, ContactPart& part) {
-  const Clock clock(part.contact_seconds);
-  velocity_ = free_velocity_;
-  is_free_ = contacts_->empty();
-  if (is_free_) return false;
-  const ContactSolveOutcome outcome =
-      system_.solve(stepper, *start_, tracker_, *contacts_, velocity_, &change_);
-  part.converged = outcome.converged;
-  part.residual = outcome.residual;
-  part.sweeps += outcome.sweeps;
-  part.outer_iterations += outcome.outer_iterations;
-  part.is_completed = !was_ended_;
-  return part.is_completed && are_finite(velocity_);
-}
-
-void ContactStep::find_velocities(bool is_first, BodyStepper& stepper, ContactPart& part) {
-  velocity_ = free_velocity_;
-  // Axes of the pyramid follow the motion without contact. The expected motion is not the final
-  // one, so that it takes a second detection.
-  const bool is_expected =
-      options_.skip.hits && !scene_.solver.pyramid && has_change() && motions_.size() > 1;
-  if (is_expected) expect_contacts(model_, *start_, change_, velocity_);
-  is_free_ = !is_expected;
-  for (std::size_t pass = 0; pass < motions_.size(); ++pass) {
-    bool is_new = false;
-    {
-      const Clock clock(part.detection_seconds);
-      move_surfaces({}, motions_[pass]);
-      const std::int64_t added = detector_->find_touches(motions_[pass]);
-      ++part.passes;
-      has_pairs_ = has_pairs_ || added > 0;
-      part.woken = detector_->reached();
-      if (!part.woken.empty()) return;
-      is_new = added > 0 || (pass == 0 && (is_expected || !tracker_.records().empty()));
-      if (!is_new) return;
-      report(is_first);
-    }
-    const bool was_free = is_free_;
-    const bool is_solved = solve(stepper, part);
-    const bool lets_go = contacts_->empty() && !was_free;  // this pass was another motion
-    if (!is_solved && !lets_go) return;
-  }
-  const Clock clock(part.detection_seconds);
-  move_surfaces({}, clamped_);
-}
-
-void ContactStep::keep_apart(ContactPart& part) {
-  const Clock clock(part.detection_seconds);
-  static const std::vector<TrackedContact> none;
-  groups_.begin(contacts_ == nullptr ? none : *contacts_, sleeping_links());
-  part.islands = groups_.island_count();
-  // A motion without pairs has passed a detection at a larger distance already.
-  if (!has_pairs_) return;
-  bool is_whole = true;
-  for (;;) {
-    const std::vector<TouchingPair>& hits = detector_->check(*final_);
-    // The groups see in the whole motion which bodies move.
-    if (resident_ != nullptr && is_whole && !hits.empty()) move_vertices({}, *final_);
-    if (!groups_.stop(hits, *final_)) break;
-    is_whole = false;
-    move_surfaces(fractions(), clamped_);
-  }
-  part.smallest_fraction = groups_.smallest_fraction();
-  if (groups_.all_move()) return;
-  part.clamped_islands = groups_.stopped_islands();
-  part.stalled_scripts = stalled_scripts();
-}
-
-bool ContactStep::has_change() const {
-  return change_.size() == index_of(model_.block_count());
+  return false;
 }
 
 std::vector<Point3> ContactStep::guess(const ModelState& start, double time_step) {
-  set_time_step(time_step);
-  if (!has_change()) return {};
-  return differences(start.velocity, change_);
+  history_.set_time_step(time_step);
+  if (std::ssize(history_.change()) != model_.block_count()) return {};
+  return differences(start.velocity, history_.change());
 }
 
 ContactPart ContactStep::advance(const ModelState& start,
@@ -246,39 +69,119 @@ ContactPart ContactStep::advance(const ModelState& start,
                                  BodyStepper& stepper,
                                  StepSeconds& seconds) {
   ContactPart part;
-  start_ = &start;
-  set_time_step(time_step);
-  was_ended_ = false;
-  contacts_ = nullptr;
-  has_pairs_ = false;
-  block_impulses_.assign(static_cast<std::size_t>(model_.block_count()), {0, 0, 0});
-  body_impulses_.assign(surfaces_.surfaces.bodies.size(), {0, 0, 0});
-  groups_.begin({}, {});
-  stepper.get_velocities(free_velocity_);
-  if (are_finite(free_velocity_)) {
-    {
-      const Clock clock(part.detection_seconds);
-      final_ = &motions_[0];
-      places_.take(start, final_->start);
-      resident_ = stepper.resident_surfaces();
-      if (resident_ != nullptr) resident_->begin(binding_of(surfaces_));
-      detector_->begin_step();
-    }
-    find_velocities(is_first, stepper, part);
+  history_.set_time_step(time_step);
+  history_.begin_part();
+  impulses_.reset(index_of(model_.block_count()), surfaces_.surfaces.bodies.size());
+  end_check_.begin(nullptr, {});
+  if (motion_.take_velocities(stepper)) {
+    begin(start, time_step, stepper, part);
+    passes_.run(is_first, stepper, part);
     if (!part.is_completed || !part.woken.empty()) return part;
-    if (are_finite(velocity_)) keep_apart(part);
-    if (contacts_ == nullptr || contacts_->empty()) {
-      change_.clear();
-    } else {
-      part.contacts = static_cast<std::int64_t>(contacts_->size());
-      system_.set_velocities(velocity_, stepper);
-      sum_impulses();
-    }
+    if (motion_.is_finite()) keep_apart(part);
+    take_solution(stepper, part);
   }
-  add_sleeping(start, time_step, part);
+  add_sleeping(start, part);
   seconds.update += stepper.move(
-      time_step, groups_.all_move() ? std::span<const double>{} : std::span(fractions()));
+      time_step, end_check_.all_move() ? std::span<const double>{} : std::span(fractions()));
   return part;
+}
+
+void ContactStep::begin(const ModelState& start,
+                        double time_step,
+                        BodyStepper& stepper,
+                        ContactPart& part) {
+  const AddedSeconds seconds(part.detection_seconds);
+  motion_.begin(start, time_step, stepper);
+  detector_->begin_step();
+}
+
+void ContactStep::keep_apart(ContactPart& part) {
+  const AddedSeconds seconds(part.detection_seconds);
+  end_check_.begin(history_.contacts(), sleeping_links());
+  part.islands = end_check_.island_count();
+  // A motion without pairs has passed a detection at a larger distance already.
+  if (passes_.has_pairs()) end_check_.run(part);
+}
+
+/// Gives the velocities with contact to the stepper, and sums the impulses.
+void ContactStep::take_solution(BodyStepper& stepper, ContactPart& part) {
+  const std::vector<TrackedContact>* const contacts = history_.contacts();
+  if (contacts == nullptr || contacts->empty()) return history_.change().clear();
+  part.contacts = std::ssize(*contacts);
+  passes_.system().set_velocities(motion_.velocity(), stepper);
+  impulses_.add_contacts(*contacts, passes_.system());
+}
+
+void ContactStep::add_sleeping(const ModelState& start, ContactPart& part) {
+  part.contacts += std::ssize(sleeping_.list());
+  sleeping_.add_impulses(start, history_.time_step(), impulses_);
+}
+
+void ContactStep::end(const ModelState& after, ContactPart& part) {
+  const AddedSeconds seconds(part.contact_seconds);
+  const std::vector<double> before = intensities();
+  if (history_.contacts() == nullptr) {
+    points_.clear();
+  } else {
+    end_contacts(after);
+  }
+  if (!options_.sleeps) return points_.finish();
+  points_.finish_with(sleeping_.list(), history_);
+  rest_ = contact_rest(surfaces_, history_, points_.solved(), before, passes_.system().solution(),
+                       fractions());
+}
+
+/// Of the contacts of the part, before it ends; needed where bodies may sleep.
+std::vector<double> ContactStep::intensities() const {
+  std::vector<double> all;
+  if (!options_.sleeps || history_.contacts() == nullptr) return all;
+  for (const ContactRecord& record : history_.tracker().records()) all.push_back(record.intensity);
+  return all;
+}
+
+void ContactStep::end_contacts(const ModelState& after) {
+  static const ContactSolution nothing;
+  const ContactSolution& solution =
+      history_.contacts()->empty() ? nothing : passes_.system().solution();
+  const std::vector<BodyPlace>& bodies = motion_.bodies_in(after);
+  points_.make(history_, solution, motion_.bodies_at_start(), bodies);
+  points_.set_intensities(history_.end_part(solution, bodies).intensity);
+}
+
+void ContactStep::remember(ContactMemory& memory) const {
+  history_.remember(memory);
+  memory.sleeping = sleeping_.list();
+}
+
+void ContactStep::restore(const ContactMemory& memory) {
+  history_.restore(memory);
+  sleeping_.set(memory.sleeping);
+}
+
+void ContactStep::set_still(std::span<const std::uint8_t> is_still) {
+  if (is_still.empty() && sleeping_.still().empty()) return;
+  sleeping_.set_still(is_still);
+  detector_->set_still(sleeping_.still());
+}
+
+void ContactStep::thaw(std::span<const std::uint8_t> is_still) {
+  set_still(is_still);
+  if (sleeping_.list().empty()) return;
+  history_.add_records(sleeping_.thaw(history_.time_step()));
+}
+
+void ContactStep::freeze(std::span<const std::uint8_t> is_still) {
+  set_still(is_still);
+  if (sleeping_.still().empty() || history_.contacts() == nullptr) return;
+  history_.set_records(sleeping_.freeze(history_, points_.solved()));
+}
+
+void ContactStep::record(const ModelState& state, StepRecord& record) {
+  const double cap = 100 * surfaces_.surfaces.thickness;
+  const MotionView on_device = motion_.surfaces_on_device();
+  record.smallest_distance =
+      detector_->closest(motion_.surfaces_in(state), cap, on_device).distance;
+  add_bonds(history_, sleeping_, motion_.bodies_in(state), scene_.time_step, record);
 }
 
 }  // namespace tetwarp

@@ -60,13 +60,13 @@ void Simulator::Impl::end_part(double time_step) {
   }
   std::vector<Point3> supports = stepper->support_impulses();
   if (contact_) {
-    const std::vector<Point3>& of_contacts = contact_->block_impulses();
+    const std::vector<Point3>& of_contacts = contact_->impulses().on_blocks();
     for (std::size_t block = 0; block < supports.size(); ++block) {
       if (model.prescribed[block] != 0) {
         supports[block] = minus(supports[block], of_contacts[block]);
       }
     }
-    sums_.add_contacts(contact_->body_impulses());
+    sums_.add_contacts(contact_->impulses().on_bodies());
   }
   add_step(model, part_start_, state_, input_, supports, sums_);
   drive.accept();
