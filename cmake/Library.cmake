@@ -61,11 +61,13 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  adhesion_record.cpp contact_history.cpp contact_impulses.cpp contact_part.cpp contact_passes.cpp
-  contact_points.cpp contact_rest.cpp contact_step.cpp end_check.cpp expected_motion.cpp
-  fingerprint.cpp island_lists.cpp island_sleep.cpp part_motion.cpp simulator.cpp
-  simulator_checkpoint.cpp simulator_impl.cpp simulator_record.cpp simulator_sleep.cpp
-  simulator_state.cpp simulator_step.cpp sleeping_contacts.cpp step_groups.cpp tet_energies.cpp)
+  adhesion_record.cpp body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp
+  contact_history.cpp contact_impulses.cpp contact_part.cpp contact_passes.cpp contact_points.cpp
+  contact_rest.cpp contact_step.cpp divided_step.cpp end_check.cpp expected_motion.cpp
+  fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
+  part_motion.cpp saved_state.cpp simulated_scene.cpp simulator.cpp sleeping_contacts.cpp
+  step_attempt.cpp step_division.cpp step_groups.cpp step_records.cpp step_start.cpp
+  tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem

@@ -31,7 +31,7 @@ class ContactPoints {
             const std::vector<BodyPlace>& end);
   /// @param intensities  [solved contacts] at the end of the part
   void set_intensities(const std::vector<double>& intensities);
-  /// Of the solved contacts, [contacts]. @pre bodies may sleep
+  /// Of the solved contacts, [contacts]; not after finish().
   const std::vector<ContactPoint>& solved() const { return solved_; }
 
   /// All points are those of the solved contacts; solved() is memory for later parts.

@@ -14,9 +14,9 @@ class IslandLists {
  public:
   struct Island {
     std::vector<std::int32_t> bodies;
-    std::vector<std::int32_t> blocks;  ///< with unknowns
-    std::vector<std::int32_t>
-        driven;  ///< prescribed blocks of its bodies and of what it is coupled to, ascending
+    std::vector<std::int32_t> blocks;   ///< with unknowns
+    std::vector<std::int32_t> driven;   ///< prescribed blocks of its bodies and of what it is
+                                        ///< coupled to, ascending
     std::vector<std::int32_t> springs;  ///< of handles
     double size = 0;                    ///< of its smallest body [m]
   };
