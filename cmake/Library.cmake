@@ -55,6 +55,10 @@ tetwarp_sources(tetwarp host/scene
   shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
+tetwarp_sources(tetwarp host/simulate/contact_step
+  adhesion_record.cpp contact_history.cpp contact_impulses.cpp contact_part.cpp contact_passes.cpp
+  contact_points.cpp contact_rest.cpp contact_step.cpp end_check.cpp expected_motion.cpp
+  part_motion.cpp sleeping_contacts.cpp step_groups.cpp)
 tetwarp_sources(tetwarp host/simulate/model
   body_points.cpp cloth.cpp fem.cpp image_materials.cpp material_finder.cpp model.cpp motion.cpp
   nearest.cpp rigid.cpp scalar_entries.cpp springs.cpp surface_mesh.cpp tet_materials.cpp
@@ -62,10 +66,10 @@ tetwarp_sources(tetwarp host/simulate/model
 tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
-  contact_step.cpp contact_step_end.cpp contact_step_sleep.cpp expected_motion.cpp fingerprint.cpp
-  island_lists.cpp island_sleep.cpp simulator.cpp simulator_checkpoint.cpp simulator_impl.cpp
-  simulator_record.cpp simulator_sleep.cpp simulator_state.cpp simulator_step.cpp step_groups.cpp
-  tet_energies.cpp)
+  body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
+  fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
+  saved_state.cpp simulated_scene.cpp simulator.cpp step_attempt.cpp step_division.cpp
+  step_records.cpp step_start.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem

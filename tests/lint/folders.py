@@ -77,7 +77,11 @@ ALLOWED = {
         "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
     "host/simulate/step/cuda": [
         "host/simulate/solve/problem", "host/simulate/solve/two_level", "kernels/exec", *SOLVE],
+    "host/simulate/contact_step": [
+        "host/simulate/patches", "host/simulate/solve", "host/simulate/solve/problem",
+        "host/simulate/solve/two_level", *SOLVE],
     "host/simulate/run": [
+        "host/simulate/contact_step",
         "host/simulate/start", "host/simulate/patches", "host/simulate/solve",
         "host/simulate/solve/problem", "host/simulate/solve/two_level", *SOLVE],
     "io/tetwarp": ["host/tetwarp", "kernels/base/tetwarp"],

@@ -61,7 +61,7 @@ DECLARED_IN = {
         "host/cli/warp/volume_run_step.cpp"],
     "host/cli/warp/batch.hpp": ["host/cli/warp/batch_file.cpp"],
     "host/simulate/run/checkpoint.hpp": ["host/simulate/run/fingerprint.cpp"],
-    "host/simulate/run/contact_step.hpp": [
+    "host/simulate/contact_step/contact_step.hpp": [
         "host/simulate/run/contact_step_end.cpp", "host/simulate/run/contact_step_sleep.cpp"],
     "host/simulate/run/island_sleep.hpp": ["host/simulate/run/island_lists.cpp"],
     "host/simulate/run/simulator_impl.hpp": [

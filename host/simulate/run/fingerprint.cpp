@@ -1,7 +1,12 @@
+#include "host/simulate/run/fingerprint.hpp"
+
 #include <algorithm>
+#include <array>
+#include <type_traits>
+#include <variant>
+#include <vector>
 
 #include "host/base/number_hash.hpp"
-#include "host/simulate/run/checkpoint.hpp"
 
 namespace tetwarp {
 namespace {
@@ -131,27 +136,7 @@ void add_surfaces(const SceneSurfaces& scene, Hash& hash) {
   hash.add(scene.pair_materials);
 }
 
-}  // namespace
-
-std::uint64_t checksum_of(std::span<const std::byte> bytes) {
-  NumberHash hash;
-  for (; !bytes.empty(); bytes = bytes.subspan(std::min<std::size_t>(8, bytes.size()))) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, bytes.data(), std::min<std::size_t>(8, bytes.size()));
-    hash.add_bits(bits);
-  }
-  return hash.value();
-}
-
-std::uint64_t fingerprint_of(const Scene& scene,
-                             const SceneGeometry& geometry,
-                             const SimulateOptions& options,
-                             const Model& model,
-                             const SceneSurfaces& surfaces) {
-  Hash hash;
-  add_scene(scene, geometry, hash);
-  add_options(options, hash);
-  add_surfaces(surfaces, hash);
+void add_model(const Model& model, Hash& hash) {
   hash.add(model.body_node);
   hash.add(model.body_rigid);
   hash.add(model.prescribed);
@@ -183,6 +168,16 @@ std::uint64_t fingerprint_of(const Scene& scene,
   hash.add(model.start.velocity);
   hash.add(model.start.rotation);
   hash.add(model.start.angular_momentum);
+}
+
+}  // namespace
+
+std::uint64_t fingerprint_of(const SimulatedScene& scene) {
+  Hash hash;
+  add_scene(scene.scene, scene.geometry, hash);
+  add_options(scene.options, hash);
+  add_surfaces(scene.surfaces, hash);
+  add_model(scene.model, hash);
   return hash.value();
 }
 

@@ -1,10 +1,9 @@
 #include "host/simulate/run/island_sleep.hpp"
-#include "host/base/index_of.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "host/base/index_of.hpp"
 #include "host/base/number_hash.hpp"
 #include "host/base/point3.hpp"
 
@@ -17,28 +16,28 @@ void add_to(NumberHash& hash, const Point3& x) {
   for (const double number : x) hash.add(number + 0.0);  // -0 as 0
 }
 
-std::int32_t root_of(std::vector<std::int32_t>& parent, std::size_t island) {
-  auto i = static_cast<std::int32_t>(island);
-  while (parent[index_of(i)] != i) {
-    parent[index_of(i)] = parent[index_of(parent[index_of(i)])];
-    i = parent[index_of(i)];
-  }
-  return i;
-}
-
 }  // namespace
 
-std::int32_t IslandSleep::island_of(std::int32_t body) const {
-  return index_of(body) < model_.body_island.size() ? model_.body_island[index_of(body)] : -1;
+IslandSleep::IslandSleep(const Scene& scene, const SceneGeometry& geometry, const Model& model) {
+  if (!scene.solver.sleeping) return;
+  lists_.emplace(scene, geometry, model);
+  const std::size_t count = lists_->islands().size();
+  now_ = {std::vector<std::uint8_t>(count), std::vector<double>(count),
+          std::vector<std::uint64_t>(count)};
+  is_driven_.resize(lists_->body_count());
 }
 
 bool IslandSleep::is_asleep(std::int32_t body) const {
-  const std::int32_t island = island_of(body);
-  return is_on_ && island >= 0 && now_.is_asleep[index_of(island)] != 0;
+  const std::int32_t island = lists_->island_of(body);
+  return island >= 0 && at(now_.is_asleep, island) != 0;
 }
 
 bool IslandSleep::any_asleep() const {
   return std::find(now_.is_asleep.begin(), now_.is_asleep.end(), 1) != now_.is_asleep.end();
+}
+
+bool IslandSleep::is_driven(std::int32_t body) const {
+  return at(is_driven_, body) != 0;
 }
 
 void IslandSleep::interrupt() {
@@ -47,29 +46,32 @@ void IslandSleep::interrupt() {
 
 /// Whether a prescribed block moves by more than the rounding of its place.
 bool IslandSleep::moves(std::int32_t block, const ModelState& state, const StepInput& input) const {
-  const auto k = index_of(block);
-  const double way = norm(input.prescribed_velocity[k]) * input.time_step;
-  if (way == 0) return false;
-  const std::int64_t past = std::int64_t{block} - model_.node_count;
-  if (past >= 0 && past % 2 == 1) return way > rounding;
-  const Point3& place = state.position[past < 0 ? k : index_of(model_.node_count + past / 2)];
-  const std::int32_t body = block_body_[k];
-  return way > rounding * (norm(place) + (body < 0 ? 0 : body_size_[index_of(body)]));
+  const double moved = norm(at(input.prescribed_velocity, block)) * input.time_step;
+  if (moved == 0) return false;
+  if (lists_->turning_frame(block) >= 0) return moved > rounding;
+  return moved > rounding * (norm(lists_->place_of(block, state)) + lists_->size_of(block));
+}
+
+bool IslandSleep::any_moves(const std::vector<std::int32_t>& blocks,
+                            const ModelState& state,
+                            const StepInput& input) const {
+  return std::any_of(blocks.begin(), blocks.end(),
+                     [&](std::int32_t block) { return moves(block, state, input); });
 }
 
 void IslandSleep::note_what_moves(const ModelState& state, const StepInput& input) {
-  for (std::size_t b = 0; b < body_driven_.size(); ++b) {
-    is_driven_[b] = std::any_of(body_driven_[b].begin(), body_driven_[b].end(),
-                                [&](std::int32_t block) { return moves(block, state, input); });
+  for (std::size_t b = 0; b < is_driven_.size(); ++b) {
+    is_driven_[b] = any_moves(lists_->driven_of(b), state, input);
   }
 }
 
 std::uint64_t IslandSleep::hash_of(const Island& island, const StepInput& input) const {
   NumberHash hash;
-  for (const std::int32_t block : island.blocks) add_to(hash, input.block_force[index_of(block)]);
+  for (const std::int32_t block : island.blocks) add_to(hash, at(input.block_force, block));
   for (const std::int32_t s : island.springs) {
-    hash.add(input.is_active[index_of(s)] != 0 ? 1.0 : 0.0);
-    if (input.is_active[index_of(s)] != 0) add_to(hash, input.anchor[index_of(s)]);
+    const bool is_active = at(input.is_active, s) != 0;
+    hash.add(is_active ? 1.0 : 0.0);
+    if (is_active) add_to(hash, at(input.anchor, s));
   }
   return hash.value();
 }
@@ -77,21 +79,22 @@ std::uint64_t IslandSleep::hash_of(const Island& island, const StepInput& input)
 void IslandSleep::set_still() {
   still_.clear();
   if (!any_asleep()) return;
-  still_.resize(body_driven_.size());
+  still_.resize(lists_->body_count());
   for (std::size_t b = 0; b < still_.size(); ++b) {
     const auto body = static_cast<std::int32_t>(b);
-    still_[b] = island_of(body) >= 0 ? is_asleep(body) : is_driven_[b] == 0;
+    still_[b] = lists_->island_of(body) >= 0 ? is_asleep(body) : !is_driven(body);
   }
 }
 
 void IslandSleep::fill(StepInput& input) const {
   input.is_asleep.clear();
   if (still_.empty()) return;
-  input.is_asleep.assign(block_body_.size(), 0);
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
+  input.is_asleep.assign(lists_->block_count(), 0);
+  for (std::size_t i = 0; i < now_.is_asleep.size(); ++i) {
     if (now_.is_asleep[i] == 0) continue;
-    for (const std::int32_t block : islands_[i].blocks) input.is_asleep[index_of(block)] = 1;
-    for (const std::int32_t block : islands_[i].driven) {
+    const Island& island = lists_->islands()[i];
+    for (const std::int32_t block : island.blocks) input.is_asleep[index_of(block)] = 1;
+    for (const std::int32_t block : island.driven) {
       input.prescribed_velocity[index_of(block)] = {0, 0, 0};
     }
   }
@@ -100,20 +103,18 @@ void IslandSleep::fill(StepInput& input) const {
 bool IslandSleep::begin(const ModelState& state,
                         std::span<const BodyLink> links,
                         StepInput& input) {
-  if (!is_on_) return false;
+  if (!is_on()) return false;
   note_what_moves(state, input);
   std::vector<std::int32_t> woken;
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    const Island& island = islands_[i];
+  for (std::size_t i = 0; i < now_.is_asleep.size(); ++i) {
+    const Island& island = lists_->islands()[i];
     if (now_.is_asleep[i] == 0) continue;
-    const bool is_pulled =
-        std::any_of(island.driven.begin(), island.driven.end(),
-                    [&](std::int32_t block) { return moves(block, state, input); });
+    const bool is_pulled = any_moves(island.driven, state, input);
     if (is_pulled || hash_of(island, input) != now_.inputs[i]) woken.push_back(island.bodies[0]);
   }
   for (const auto& [a, b] : links) {
-    if (is_driven_[index_of(a)] != 0 && is_asleep(b)) woken.push_back(b);
-    if (is_driven_[index_of(b)] != 0 && is_asleep(a)) woken.push_back(a);
+    if (is_driven(a) && is_asleep(b)) woken.push_back(b);
+    if (is_driven(b) && is_asleep(a)) woken.push_back(a);
   }
   wake(woken, links, input);
   return !woken.empty();
@@ -125,15 +126,15 @@ void IslandSleep::wake(std::span<const std::int32_t> bodies,
   std::vector<std::int32_t> next(bodies.begin(), bodies.end());
   while (!next.empty()) {
     for (const std::int32_t body : next) {
-      const std::int32_t island = island_of(body);
+      const std::int32_t island = lists_->island_of(body);
       if (island < 0) continue;
       now_.is_asleep[index_of(island)] = 0;
       now_.calm_time[index_of(island)] = 0;
     }
     next.clear();
     for (const auto& [a, b] : links) {
-      if (island_of(a) < 0 || island_of(b) < 0 || is_asleep(a) == is_asleep(b)) continue;
-      next.push_back(is_asleep(a) ? a : b);
+      if (lists_->island_of(a) < 0 || lists_->island_of(b) < 0) continue;
+      if (is_asleep(a) != is_asleep(b)) next.push_back(is_asleep(a) ? a : b);
     }
   }
   set_still();
@@ -143,41 +144,39 @@ void IslandSleep::wake(std::span<const std::int32_t> bodies,
 double IslandSleep::speed_of(const Island& island, const ModelState& state) const {
   double speed = 0;
   for (const std::int32_t block : island.blocks) {
-    const auto k = index_of(block);
-    const std::int64_t past = std::int64_t{block} - model_.node_count;
-    const bool turns = past >= 0 && past % 2 == 1;
-    const double lever = turns ? body_size_[index_of(block_body_[k])] / 2 : 1;
-    speed = std::max(speed, lever * norm(state.velocity[k]));
+    const bool turns = lists_->turning_frame(block) >= 0;
+    const double lever = turns ? lists_->size_of(block) / 2 : 1;
+    speed = std::max(speed, lever * norm(at(state.velocity, block)));
   }
   return speed;
 }
 
-bool IslandSleep::is_calm(std::size_t i, const ContactRest& rest, const ModelState& state) const {
-  const Island& island = islands_[i];
+bool IslandSleep::is_calm(const Island& island,
+                          const ContactRest& rest,
+                          const ModelState& state) const {
   for (const std::int32_t body : island.bodies) {
-    if (is_driven_[index_of(body)] != 0) return false;
-    if (!rest.is_restless.empty() && rest.is_restless[index_of(body)] != 0) return false;
+    if (is_driven(body)) return false;
+    if (!rest.is_restless.empty() && at(rest.is_restless, body) != 0) return false;
   }
   return speed_of(island, state) <= rest_speed * island.size;
 }
 
-/// Sets parent_ to a forest of the islands that links join.
-void IslandSleep::join(std::span<const BodyLink> links) const {
-  parent_.resize(islands_.size());
-  for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = static_cast<std::int32_t>(i);
+/// Sets of islands that links join.
+DisjointSets IslandSleep::joined(std::span<const BodyLink> links) const {
+  DisjointSets sets(now_.is_asleep.size());
   for (const auto& [a, b] : links) {
-    if (island_of(a) < 0 || island_of(b) < 0) continue;
-    const std::int32_t first = root_of(parent_, index_of(island_of(a)));
-    const std::int32_t second = root_of(parent_, index_of(island_of(b)));
-    parent_[index_of(std::max(first, second))] = std::min(first, second);
+    const std::int32_t of_a = lists_->island_of(a), of_b = lists_->island_of(b);
+    if (of_a >= 0 && of_b >= 0) sets.unite(index_of(of_a), index_of(of_b));
   }
+  return sets;
 }
 
 std::int64_t IslandSleep::group_count(std::span<const BodyLink> links) const {
-  join(links);
+  if (!is_on()) return 0;
+  DisjointSets sets = joined(links);
   std::int64_t count = 0;
-  for (std::size_t i = 0; i < parent_.size(); ++i) {
-    count += now_.is_asleep[i] != 0 && index_of(parent_[i]) == i;
+  for (std::size_t i = 0; i < now_.is_asleep.size(); ++i) {
+    count += now_.is_asleep[i] != 0 && sets.root_of(i) == i;
   }
   return count;
 }
@@ -186,42 +185,68 @@ bool IslandSleep::end(const StepInput& input,
                       const ContactRest& rest,
                       double time_step,
                       ModelState& state) {
-  if (!is_on_) return false;
-  std::vector<std::uint8_t> is_ready(islands_.size());
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
+  if (!is_on()) return false;
+  std::vector<std::uint8_t> is_ready = count_calm_time(input, rest, time_step, state);
+  keep_awake_beside_driven(rest.links, is_ready);
+  const bool has_slept = fall_asleep(rest.links, std::move(is_ready), state);
+  if (has_slept) set_still();
+  return has_slept;
+}
+
+/// @returns of each island whether it has been at rest for long enough
+std::vector<std::uint8_t> IslandSleep::count_calm_time(const StepInput& input,
+                                                       const ContactRest& rest,
+                                                       double time_step,
+                                                       const ModelState& state) {
+  std::vector<std::uint8_t> is_ready(now_.is_asleep.size());
+  for (std::size_t i = 0; i < is_ready.size(); ++i) {
     if (now_.is_asleep[i] != 0) continue;
-    const std::uint64_t inputs = hash_of(islands_[i], input);
-    const bool is_pulled =
-        std::any_of(islands_[i].driven.begin(), islands_[i].driven.end(),
-                    [&](std::int32_t block) { return moves(block, state, input); });
-    const bool rests = inputs == now_.inputs[i] && !is_pulled && is_calm(i, rest, state);
+    const Island& island = lists_->islands()[i];
+    const std::uint64_t inputs = hash_of(island, input);
+    const bool rests = inputs == now_.inputs[i] && !any_moves(island.driven, state, input) &&
+                       is_calm(island, rest, state);
     now_.inputs[i] = inputs;
     now_.calm_time[i] = rests ? now_.calm_time[i] + time_step : 0;
     is_ready[i] = now_.calm_time[i] >= rest_time * (1 - 1e-9);
   }
-  for (const auto& [a, b] : rest.links) {
-    const std::int32_t of_a = island_of(a), of_b = island_of(b);
-    if (of_a < 0 && of_b >= 0 && is_driven_[index_of(a)] != 0) is_ready[index_of(of_b)] = 0;
-    if (of_b < 0 && of_a >= 0 && is_driven_[index_of(b)] != 0) is_ready[index_of(of_a)] = 0;
+  return is_ready;
+}
+
+/// Islands that touch a driven body or obstacle are not ready.
+void IslandSleep::keep_awake_beside_driven(std::span<const BodyLink> links,
+                                           std::vector<std::uint8_t>& is_ready) const {
+  for (const auto& [a, b] : links) {
+    const std::int32_t of_a = lists_->island_of(a), of_b = lists_->island_of(b);
+    if (of_a < 0 && of_b >= 0 && is_driven(a)) is_ready[index_of(of_b)] = 0;
+    if (of_b < 0 && of_a >= 0 && is_driven(b)) is_ready[index_of(of_a)] = 0;
   }
-  join(rest.links);
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    if (is_ready[i] == 0) is_ready[index_of(root_of(parent_, i))] = 0;
+}
+
+/// Islands fall asleep where all that links join are ready.
+/// @returns whether one has fallen asleep
+bool IslandSleep::fall_asleep(std::span<const BodyLink> links,
+                              std::vector<std::uint8_t> is_ready,
+                              ModelState& state) {
+  DisjointSets sets = joined(links);
+  for (std::size_t i = 0; i < is_ready.size(); ++i) {
+    if (is_ready[i] == 0) is_ready[sets.root_of(i)] = 0;
   }
   bool has_slept = false;
-  for (std::size_t i = 0; i < islands_.size(); ++i) {
-    if (now_.is_asleep[i] != 0 || is_ready[i] == 0) continue;
-    if (is_ready[index_of(root_of(parent_, i))] == 0) continue;
+  for (std::size_t i = 0; i < is_ready.size(); ++i) {
+    if (now_.is_asleep[i] != 0 || is_ready[i] == 0 || is_ready[sets.root_of(i)] == 0) continue;
     now_.is_asleep[i] = 1;
     has_slept = true;
-    for (const std::int32_t block : islands_[i].blocks) {
-      state.velocity[index_of(block)] = {0, 0, 0};
-      const std::int64_t past = std::int64_t{block} - model_.node_count;
-      if (past >= 0 && past % 2 == 1) state.angular_momentum[index_of(past / 2)] = {0, 0, 0};
-    }
+    stand_still(lists_->islands()[i], state);
   }
-  if (has_slept) set_still();
   return has_slept;
+}
+
+void IslandSleep::stand_still(const Island& island, ModelState& state) const {
+  for (const std::int32_t block : island.blocks) {
+    state.velocity[index_of(block)] = {0, 0, 0};
+    const std::int32_t frame = lists_->turning_frame(block);
+    if (frame >= 0) state.angular_momentum[index_of(frame)] = {0, 0, 0};
+  }
 }
 
 }  // namespace tetwarp

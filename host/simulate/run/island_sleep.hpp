@@ -2,27 +2,20 @@
 /// IslandSleep: which coupling islands are at rest and are left out of steps until something
 /// reaches them.
 #pragma once
-#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
+#include "host/base/disjoint_sets.hpp"
 #include "host/scene/scene_geometry.hpp"
 #include "host/simulate/model/model.hpp"
+#include "host/simulate/contact_step/body_link.hpp"
+#include "host/simulate/contact_step/contact_rest.hpp"
+#include "host/simulate/run/island_lists.hpp"
 #include "host/simulate/step/stepper.hpp"
 
 namespace tetwarp {
-
-/// Two bodies or obstacles with a contact; numbered as ModelPoint::body.
-using BodyLink = std::array<std::int32_t, 2>;
-
-/// What contacts say about rest.
-struct ContactRest {
-  std::vector<BodyLink> links;            ///< of all contacts of the step
-  std::vector<std::uint8_t> is_restless;  ///< [bodies, then obstacles] slides, or is held up, or
-                                          ///< has a bond that changes; or empty: none
-};
 
 /// What goes on from step to step; [islands].
 struct SleepState {
@@ -39,23 +32,19 @@ struct SleepState {
 class IslandSleep {
  public:
   static constexpr double rest_time = 0.5;    ///< [s]
-  static constexpr double rest_speed = 2e-3;  ///< [body sizes / s]
 
   /// @param model  kept by the caller
   IslandSleep(const Scene& scene, const SceneGeometry& geometry, const Model& model);
 
   /// Whether the scene asks for it; if not, nothing ever sleeps.
-  bool is_on() const { return is_on_; }
+  bool is_on() const { return lists_.has_value(); }
   const SleepState& state() const { return now_; }
+  void set_state(SleepState state) { now_ = std::move(state); }
   /// Whether bodies are asleep or do not move in the step; [bodies, then obstacles], empty where
   /// nothing sleeps. Valid from begin() on.
   const std::vector<std::uint8_t>& still() const { return still_; }
   /// Islands that sleep, those with a contact between them counted as one.
   std::int64_t group_count(std::span<const BodyLink> links) const;
-  /// [bodies]
-  bool is_asleep(std::int32_t body) const;
-
-  void set_state(SleepState state) { now_ = std::move(state); }
 
   /// Before the solve of a step or part of one: wakes the islands whose inputs have changed, and
   /// fills StepInput::is_asleep.
@@ -75,38 +64,37 @@ class IslandSleep {
   void interrupt();
 
  private:
-  struct Island {
-    std::vector<std::int32_t> bodies;
-    std::vector<std::int32_t> blocks;   ///< unknowns
-    std::vector<std::int32_t> driven;   ///< prescribed blocks of its bodies and of what it is
-                                        ///< coupled to
-    std::vector<std::int32_t> springs;  ///< of handles
-    double size = 0;                    ///< of its smallest body [m]
-  };
+  using Island = IslandLists::Island;
 
+  bool is_asleep(std::int32_t body) const;
   bool any_asleep() const;
-  std::int32_t island_of(std::int32_t body) const;
+  bool is_driven(std::int32_t body) const;
   bool moves(std::int32_t block, const ModelState& state, const StepInput& input) const;
+  bool any_moves(const std::vector<std::int32_t>& blocks,
+                 const ModelState& state,
+                 const StepInput& input) const;
   void note_what_moves(const ModelState& state, const StepInput& input);
   void set_still();
   void fill(StepInput& input) const;
-  void join(std::span<const BodyLink> links) const;
+  DisjointSets joined(std::span<const BodyLink> links) const;
   std::uint64_t hash_of(const Island& island, const StepInput& input) const;
   double speed_of(const Island& island, const ModelState& state) const;
-  bool is_calm(std::size_t island, const ContactRest& rest, const ModelState& state) const;
-  void add_driven(const ModelPoint& point, Island& island) const;
+  bool is_calm(const Island& island, const ContactRest& rest, const ModelState& state) const;
+  std::vector<std::uint8_t> count_calm_time(const StepInput& input,
+                                            const ContactRest& rest,
+                                            double time_step,
+                                            const ModelState& state);
+  void keep_awake_beside_driven(std::span<const BodyLink> links,
+                                std::vector<std::uint8_t>& is_ready) const;
+  bool fall_asleep(std::span<const BodyLink> links,
+                   std::vector<std::uint8_t> is_ready,
+                   ModelState& state);
+  void stand_still(const Island& island, ModelState& state) const;
 
-  const Model& model_;
-  bool is_on_ = false;
+  std::optional<IslandLists> lists_;  ///< none: nothing ever sleeps
   SleepState now_;
-  std::vector<Island> islands_;
-  std::vector<std::vector<std::int32_t>> body_driven_;  ///< [bodies, then obstacles] prescribed
-                                                        ///< blocks
-  std::vector<std::int32_t> block_body_;                ///< [blocks] body or obstacle
-  std::vector<double> body_size_;                       ///< [bodies, then obstacles] [m]
   std::vector<std::uint8_t> is_driven_;  ///< [bodies, then obstacles] a prescribed block moves
   std::vector<std::uint8_t> still_;
-  mutable std::vector<std::int32_t> parent_;  ///< [islands] of join()
 };
 
 }  // namespace tetwarp

@@ -1,8 +1,49 @@
 #include <tetwarp/simulate.hpp>
 
-#include "host/simulate/run/simulator_impl.hpp"
+#include <utility>
+
+#include "host/simulate/run/body_places.hpp"
+#include "host/simulate/run/checkpoint.hpp"
+#include "host/simulate/run/divided_step.hpp"
+#include "host/simulate/run/moving_bodies.hpp"
+#include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/run/step_count.hpp"
+#include "host/simulate/run/step_records.hpp"
 
 namespace tetwarp {
+
+/// The parts of a Simulator; each refers to those above it.
+class Simulator::Impl {
+ public:
+  Impl(Scene scene_of_caller, const SimulateOptions& options)
+      : scene(std::move(scene_of_caller), options),
+        count(scene.scene.time_step, options.progress),
+        bodies(scene, count),
+        steps(scene, count, bodies),
+        records(scene, count, bodies, steps.last()),
+        places(scene, count, bodies) {}
+
+  SavedState saved() {
+    SavedState now;
+    now.steps = count.done();
+    bodies.save(now);
+    steps.save(now);
+    return now;
+  }
+  void restore(const SavedState& saved) {
+    bodies.restore(saved);
+    steps.restore(saved);
+    count.set_done(saved.steps);
+    records.forget();
+  }
+
+  SimulatedScene scene;
+  StepCount count;
+  MovingBodies bodies;
+  DividedStep steps;
+  StepRecords records;
+  BodyPlaces places;
+};
 
 Simulator::Simulator(Scene scene, const SimulateOptions& options)
     : impl_(std::make_unique<Impl>(std::move(scene), options)) {}
@@ -11,71 +52,70 @@ Simulator::Simulator(Simulator&&) noexcept = default;
 Simulator& Simulator::operator=(Simulator&&) noexcept = default;
 
 const Scene& Simulator::scene() const {
-  return impl_->scene;
+  return impl_->scene.scene;
 }
 std::int64_t Simulator::step_index() const {
-  return impl_->step_index;
+  return impl_->count.done();
 }
 double Simulator::time() const {
-  return impl_->time_of(static_cast<double>(impl_->step_index));
+  return impl_->count.time();
 }
 Backend Simulator::backend() const {
-  return impl_->backend;
+  return impl_->scene.backend;
 }
 std::string Simulator::device() const {
-  return impl_->stepper->device();
+  return impl_->bodies.stepper().device();
 }
 
 bool Simulator::step() {
-  return impl_->step();
+  if (!impl_->steps.step()) return false;
+  impl_->records.forget();
+  return true;
 }
 const StepRecord& Simulator::record() {
-  return impl_->record();
+  return impl_->records.get();
 }
 
 std::vector<ContactPoint> Simulator::contacts() const {
-  return impl_->contact_points;
+  return impl_->steps.last().points;
 }
 double Simulator::thickness() const {
-  return impl_->contact_surfaces.surfaces.thickness;
+  return impl_->scene.surfaces.surfaces.thickness;
 }
 
 const BodyMesh& Simulator::body(std::size_t index) const {
-  impl_->check_body(index);
-  return impl_->meshes[index];
+  return impl_->places.mesh(index);
 }
 PositionsView Simulator::positions(std::size_t index) const {
-  return impl_->positions(index);
+  return impl_->places.positions(index);
 }
 std::vector<Point3> Simulator::node_positions(std::size_t index) const {
-  return impl_->node_positions(index);
+  return impl_->places.node_positions(index);
 }
 std::vector<Point3> Simulator::node_velocities(std::size_t index) const {
-  impl_->check_body(index);
-  const auto first = impl_->state().velocity.begin() + impl_->model.body_node[index];
-  return {first, first + (impl_->model.body_node[index + 1] - impl_->model.body_node[index])};
+  return impl_->places.node_velocities(index);
 }
 std::vector<Point3> Simulator::surface_positions(std::size_t index) const {
-  return impl_->surface_positions(index);
+  return impl_->places.surface_positions(index);
 }
 
 void Simulator::move_handle(const std::string& name, const Point3& displacement) {
-  impl_->drive.move_handle(name, displacement);
+  impl_->bodies.drive().move_handle(name, displacement);
 }
 void Simulator::release_handle(const std::string& name) {
-  impl_->drive.release_handle(name);
+  impl_->bodies.drive().release_handle(name);
 }
 void Simulator::move_script(const std::string& name,
                             const Point3& displacement,
                             const Point3& axis_angle) {
-  impl_->drive.move_script(name, {displacement, axis_angle});
+  impl_->bodies.drive().move_script(name, {displacement, axis_angle});
 }
 
 std::vector<std::byte> Simulator::checkpoint() const {
-  return impl_->checkpoint();
+  return write_checkpoint(impl_->scene, impl_->saved());
 }
 void Simulator::restore(std::span<const std::byte> checkpoint) {
-  impl_->restore(checkpoint);
+  impl_->restore(read_checkpoint(checkpoint, impl_->scene, impl_->saved()));
 }
 
 }  // namespace tetwarp

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/run/contact_step.hpp"
-#include "host/simulate/run/expected_motion.hpp"
+#include "host/simulate/contact_step/contact_step.hpp"
+#include "host/simulate/contact_step/expected_motion.hpp"
 #include "tests/simulate/body_models.hpp"
 #include "tests/simulate/touch_run.hpp"
 

@@ -1,5 +1,5 @@
 /// @file expected_motion.hpp
-/// What the contacts of the step before let one expect of the next step.
+/// Velocities with the contacts of the last step, as a guess for those of this step.
 #pragma once
 #include <vector>
 
@@ -7,11 +7,11 @@
 
 namespace tetwarp {
 
-/// Adds the changes of the step before to the velocities of bodies whose contacts are expected to
-/// act as in that step. These are the bodies that keep their velocity better with the changes than
-/// without: those at rest or sliding, not those that have just had an impact.
+/// Adds the changes of the last step to the velocities of the bodies that keep their velocity
+/// better with these changes than without. These are bodies at rest or sliding, not those that had
+/// an impact in the last step: its changes do not come again.
 /// @param start     state at the start of the step
-/// @param change    by how much contacts changed the velocities in the step before, [block_count]
+/// @param change    by how much contacts changed the velocities in the last step, [block_count]
 ///                  [m/s, rad/s]
 /// @param velocity  in: without contact, [block_count] [m/s, rad/s]; out: expected
 void expect_contacts(const Model& model,

@@ -13,11 +13,11 @@ struct SleepingContact {
   ContactRecord record;
   TrackedContact contact;
   ContactPoint point;
-  double time_step = 0;  ///< [s] of the impulse
+  double time_step = 0;  ///< over which the impulse acted [s]
 };
 
 struct ContactMemory {
-  double time_step = 0;  ///< of impulses and changes [s]
+  double time_step = 0;  ///< over which impulses and changes of velocities acted [s]
   std::vector<ContactRecord> records;
   std::vector<Point3> change;             ///< of velocities by contacts in the last step, or empty
   std::vector<SleepingContact> sleeping;  ///< sorted by key

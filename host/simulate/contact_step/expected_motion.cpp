@@ -1,4 +1,4 @@
-#include "host/simulate/run/expected_motion.hpp"
+#include "host/simulate/contact_step/expected_motion.hpp"
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
@@ -6,10 +6,9 @@
 namespace tetwarp {
 namespace {
 
-// Contacts hold where, with their changes, the square of the change of velocity over the step is
-// at most this part of that without. Right after an impact it is not: its changes do not come
-// again.
-constexpr double holding = 0.3;
+// Changes are added to a body where the sum of squares of its accelerations with them is less than
+// this share of that without: after an impact it is not.
+constexpr double holding_share = 0.3;
 
 }  // namespace
 
@@ -17,24 +16,25 @@ void expect_contacts(const Model& model,
                      const ModelState& start,
                      const std::vector<Point3>& change,
                      std::vector<Point3>& velocity) {
-  const auto expect = [&](std::int32_t begin, std::int32_t end) {
+  const auto expect_of_blocks = [&](std::int32_t begin, std::int32_t end) {
     double with = 0, without = 0;
     for (std::size_t i = index_of(begin); i < index_of(end); ++i) {
-      const Point3 way = minus(velocity[i], start.velocity[i]), changed = plus(way, change[i]);
-      without += dot(way, way);
+      const Point3 gained = minus(velocity[i], start.velocity[i]);
+      const Point3 changed = plus(gained, change[i]);
+      without += dot(gained, gained);
       with += dot(changed, changed);
     }
-    if (!(with < holding * without)) return;
+    if (!(with < holding_share * without)) return;
     for (std::size_t i = index_of(begin); i < index_of(end); ++i) {
       velocity[i] = plus(velocity[i], change[i]);
     }
   };
   for (std::size_t b = 0; b + 1 < model.body_node.size(); ++b) {
-    expect(model.body_node[b], model.body_node[b + 1]);
+    expect_of_blocks(model.body_node[b], model.body_node[b + 1]);
   }
   for (std::int32_t r = 0; r < model.rigid_count; ++r) {
     const std::int32_t first = model.node_count + 2 * r;
-    expect(first, first + 2);
+    expect_of_blocks(first, first + 2);
   }
 }
 

@@ -1,0 +1,141 @@
+#include "host/simulate/run/checkpoint.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+#include <stdexcept>
+
+#include "host/base/index_of.hpp"
+#include "host/base/point3.hpp"
+#include "host/simulate/run/checkpoint_bytes.hpp"
+#include "host/simulate/run/fingerprint.hpp"
+#include "host/simulate/step/scene_record.hpp"
+
+namespace tetwarp {
+namespace {
+
+constexpr std::uint64_t checkpoint_kind = 0x7477'7363'0000'0000;  // "twsc", then the version
+constexpr std::uint64_t checkpoint_version = checkpoint_kind + 5;
+
+bool has_checksum(std::span<const std::byte> bytes) {
+  std::uint64_t checksum = 0;
+  if (bytes.size() < sizeof checksum) return false;
+  const auto of_bytes = bytes.first(bytes.size() - sizeof checksum);
+  std::memcpy(&checksum, bytes.data() + of_bytes.size(), sizeof checksum);
+  return checksum == checksum_of(of_bytes);
+}
+
+[[noreturn]] void refuse_contact() {
+  throw std::invalid_argument("checkpoint: damaged, a contact is not on bodies of its scene");
+}
+
+/// Bodies and vertices of contacts have to exist; ContactTracker checks the rest.
+void check_contacts(const ContactMemory& memory, const SceneSurfaces& scene) {
+  const auto check_side = [&](std::int32_t body, const MaterialPoint& point) {
+    if (body < 0 || body >= scene.body_count()) refuse_contact();
+    const CollisionBody& of = at(scene.surfaces.bodies, body);
+    for (const std::int32_t vertex : point.vertex) {
+      if (vertex >= of.vertex_end - of.first_vertex) refuse_contact();
+    }
+  };
+  const auto check_record = [&](const ContactRecord& record) {
+    check_side(record.key.body_a, record.material_a);
+    check_side(record.key.body_b, record.material_b);
+  };
+  std::ranges::for_each(memory.records, check_record);
+  for (const SleepingContact& sleeping : memory.sleeping) {
+    const ContactKey& key = sleeping.record.key;
+    check_record(sleeping.record);
+    check_side(key.body_a, sleeping.contact.material_a);
+    check_side(key.body_b, sleeping.contact.material_b);
+    if (sleeping.point.body_a != index_of(key.body_a) ||
+        sleeping.point.body_b != index_of(key.body_b) || !(sleeping.time_step > 0)) {
+      refuse_contact();
+    }
+  }
+}
+
+/// Bodies and surface points of contacts have to exist.
+void check_points(const std::vector<ContactPoint>& points, const SimulatedScene& scene) {
+  const auto check_side = [&](std::size_t body, const ContactPlace& place) {
+    if (body >= scene.surfaces.surfaces.bodies.size()) refuse_contact();
+    const bool is_body = body < scene.geometry.bodies.size();
+    const std::int64_t count = is_body ? std::ssize(scene.geometry.bodies[body].surface.points) : 0;
+    for (const std::int32_t point : place.point) {
+      if (point >= count) refuse_contact();
+    }
+  };
+  for (const ContactPoint& point : points) {
+    check_side(point.body_a, point.place_a);
+    check_side(point.body_b, point.place_b);
+  }
+}
+
+void check_head(std::span<const std::byte> bytes,
+                const SimulatedScene& scene,
+                CheckpointReader& reader) {
+  std::uint64_t version = 0, fingerprint = 0;
+  reader.read(version);
+  if (version != checkpoint_version) {
+    throw std::invalid_argument(
+        version >> 32 == checkpoint_kind >> 32
+            ? "checkpoint: written by another version of tetwarp, which cannot be continued; run "
+              "the scene from its start"
+            : "checkpoint: not a checkpoint of this version of tetwarp on this kind of machine");
+  }
+  if (!has_checksum(bytes)) {
+    throw std::invalid_argument(
+        "checkpoint: damaged or incomplete, its checksum is another; use an earlier one");
+  }
+  reader.read(fingerprint);
+  if (fingerprint != fingerprint_of(scene)) {
+    throw std::invalid_argument(
+        "checkpoint: it belongs to another scene; restart the scene that wrote it, unchanged");
+  }
+}
+
+void check_end(CheckpointReader& reader, const SavedState& saved) {
+  std::uint64_t checksum = 0;
+  reader.read(checksum);
+  if (!reader.is_at_end() || saved.steps < 0) {
+    throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
+  }
+}
+
+void check_numbers(const SavedState& saved) {
+  if (!is_finite_state(saved.state)) {
+    throw std::invalid_argument("checkpoint: damaged, a position or velocity is not a number");
+  }
+  const std::vector<Point3>& change = saved.memory.change;
+  if (!change.empty() && change.size() != saved.state.velocity.size()) {
+    throw std::invalid_argument("checkpoint: damaged, changes of velocities have another length");
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SavedState& saved) {
+  CheckpointWriter writer;
+  writer.add(checkpoint_version);
+  writer.add(fingerprint_of(scene));
+  write_state(saved, writer);
+  writer.add(checksum_of(writer.bytes()));
+  return writer.take();
+}
+
+SavedState read_checkpoint(std::span<const std::byte> checkpoint,
+                           const SimulatedScene& scene,
+                           SavedState now) {
+  CheckpointReader reader(checkpoint);
+  check_head(checkpoint, scene, reader);
+  now.last.outcome = {};
+  now.last.contact = {};
+  read_state(reader, now);
+  check_end(reader, now);
+  check_numbers(now);
+  check_contacts(now.memory, scene.surfaces);
+  check_points(now.last.points, scene);
+  return now;
+}
+
+}  // namespace tetwarp

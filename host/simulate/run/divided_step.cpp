@@ -1,0 +1,129 @@
+#include "host/simulate/run/divided_step.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace tetwarp {
+
+DividedStep::DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies)
+    : scene_(scene), count_(count), bodies_(bodies), division_(scene) {
+  last_.sums.reset(scene.scene.bodies.size(), scene.scene.obstacles.size(),
+                   scene.scene.couplings.size());
+}
+
+bool DividedStep::step() {
+  stopwatch_ = {};
+  seconds_ = {};
+  count_.begin_step();
+  bodies_.begin_step();
+  try {
+    const bool is_made = make();
+    if (!is_made) go_back();
+    return is_made;
+  } catch (...) {
+    go_back();
+    throw;
+  }
+}
+
+bool DividedStep::make() {
+  int parts = division_.first_parts(bodies_.state().largest_spin());
+  StepAttempt made = attempt(parts);
+  while (made.is_completed && !made.is_good && division_.can_double(parts)) {
+    go_back();
+    parts *= 2;
+    made = attempt(parts);
+  }
+  if (!made.is_completed) return false;
+  if (!made.is_finite) {
+    refuse("positions would not be finite", parts, "reduce time_step or the stiffness");
+  }
+  bodies_.end_step(made.is_good);
+  accept(std::move(made), parts);
+  count_.end_step();
+  return true;
+}
+
+void DividedStep::go_back() {
+  bodies_.go_back();
+  division_.forget_counts();
+}
+
+StepAttempt DividedStep::attempt(int parts) {
+  StepAttempt made;
+  made.sums.reset(scene_.scene.bodies.size(), scene_.scene.obstacles.size(),
+                  scene_.scene.couplings.size());
+  for (int part = 0; part < parts; ++part) {
+    if (!make_part(part, parts, made)) break;
+  }
+  add_all_seconds(made);
+  return made;
+}
+
+/// @returns whether the next part may follow
+bool DividedStep::make_part(int part, int parts, StepAttempt& made) {
+  const StepPart of = part_of(part, parts);
+  ContactPart contact;
+  try {
+    contact = bodies_.advance(of, made);
+  } catch (const TooManyPairs& error) {
+    if (!division_.can_double(parts)) {
+      refuse(error.what(), parts, "reduce time_step or the speeds");
+    }
+    made.is_good = false;
+    return false;
+  }
+  if (!made.is_completed) return false;
+  made.is_good = division_.is_good(made, contact, of.time_step, bodies_.state()) && made.is_good;
+  if (!made.is_good && division_.can_double(parts)) return false;
+  if (!made.is_finite) return false;
+  bodies_.end_part(of, made.sums);
+  return true;
+}
+
+StepPart DividedStep::part_of(int part, int parts) const {
+  const auto steps = static_cast<double>(count_.done());
+  StepPart of;
+  of.end_time =
+      count_.time_of(part + 1 == parts ? steps + 1 : steps + static_cast<double>(part + 1) / parts);
+  of.time_step = scene_.scene.time_step / parts;
+  of.is_first = count_.done() == 0 && part == 0;
+  return of;
+}
+
+void DividedStep::add_all_seconds(const StepAttempt& made) {
+  add_seconds(made.outcome.seconds, seconds_);
+  seconds_.detection += made.contact.detection_seconds;
+  seconds_.contact += made.contact.contact_seconds;
+}
+
+void DividedStep::accept(StepAttempt made, int parts) {
+  division_.accept(made);
+  seconds_.total = stopwatch_.seconds();
+  last_.outcome = made.outcome;
+  last_.outcome.seconds = seconds_;
+  last_.contact = std::move(made.contact);
+  last_.sums = std::move(made.sums);
+  last_.substeps = parts;
+  last_.work += last_.sums.work;
+  last_.points.clear();
+  if (bodies_.contact() != nullptr) bodies_.contact()->take_points(last_.points);
+}
+
+void DividedStep::refuse(const std::string& what, int parts, const std::string& remedy) const {
+  throw std::runtime_error("step " + std::to_string(count_.done()) + ": " + what + ", also in " +
+                           std::to_string(parts) + " substeps; " + remedy);
+}
+
+void DividedStep::save(SavedState& saved) const {
+  saved.last = last_;
+  division_.save(saved);
+}
+
+void DividedStep::restore(const SavedState& saved) {
+  last_ = saved.last;
+  division_.restore(saved);
+}
+
+}  // namespace tetwarp

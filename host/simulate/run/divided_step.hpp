@@ -1,0 +1,50 @@
+/// @file divided_step.hpp
+/// DividedStep: makes a step, in parts where an attempt as a whole is not good. Start at make(),
+/// which lists what a step does.
+#pragma once
+#include "host/base/stopwatch.hpp"
+#include "host/simulate/run/last_step.hpp"
+#include "host/simulate/run/moving_bodies.hpp"
+#include "host/simulate/run/saved_state.hpp"
+#include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/run/step_attempt.hpp"
+#include "host/simulate/run/step_count.hpp"
+#include "host/simulate/run/step_division.hpp"
+
+namespace tetwarp {
+
+class DividedStep {
+ public:
+  /// @param scene, count, bodies  kept by the caller
+  DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies);
+
+  /// Makes a step. @returns false if `progress` ended it; then all is as before
+  /// @throws std::runtime_error  positions would not be finite, or too many pairs are near each
+  ///                             other, in the smallest parts too; then all is as before
+  bool step();
+  /// Of the last step.
+  const LastStep& last() const { return last_; }
+
+  void save(SavedState& saved) const;
+  void restore(const SavedState& saved);
+
+ private:
+  bool make();
+  void go_back();
+  StepAttempt attempt(int parts);
+  bool make_part(int part, int parts, StepAttempt& attempt);
+  StepPart part_of(int part, int parts) const;
+  void add_all_seconds(const StepAttempt& made);
+  void accept(StepAttempt made, int parts);
+  [[noreturn]] void refuse(const std::string& what, int parts, const std::string& remedy) const;
+
+  const SimulatedScene& scene_;
+  StepCount& count_;
+  MovingBodies& bodies_;
+  StepDivision division_;
+  LastStep last_;
+  Stopwatch stopwatch_;  ///< of the running step
+  StepSeconds seconds_;  ///< of all its attempts
+};
+
+}  // namespace tetwarp
