@@ -60,14 +60,6 @@ DECLARED_IN = {
         "host/cli/warp/volume_run_parts.cpp", "host/cli/warp/volume_run_queue.cpp",
         "host/cli/warp/volume_run_step.cpp"],
     "host/cli/warp/batch.hpp": ["host/cli/warp/batch_file.cpp"],
-    "host/simulate/run/checkpoint.hpp": ["host/simulate/run/fingerprint.cpp"],
-    "host/simulate/contact_step/contact_step.hpp": [
-        "host/simulate/run/contact_step_end.cpp", "host/simulate/run/contact_step_sleep.cpp"],
-    "host/simulate/run/island_sleep.hpp": ["host/simulate/run/island_lists.cpp"],
-    "host/simulate/run/simulator_impl.hpp": [
-        "host/simulate/run/simulator_checkpoint.cpp", "host/simulate/run/simulator_record.cpp",
-        "host/simulate/run/simulator_sleep.cpp", "host/simulate/run/simulator_state.cpp",
-        "host/simulate/run/simulator_step.cpp"],
 }
 
 

@@ -1,3 +1,5 @@
+/// @file adhesion_record.cpp
+/// Sums energies and areas of bonds over the records of contacts.
 #include "host/simulate/contact_step/adhesion_record.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file contact_history.cpp
+/// Records of contacts, velocity changes, and memory of earlier parts of a step.
 #include "host/simulate/contact_step/contact_history.hpp"
 
 #include <algorithm>

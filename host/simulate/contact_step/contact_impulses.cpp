@@ -1,3 +1,5 @@
+/// @file contact_impulses.cpp
+/// Sums the impulses of contacts over the blocks and bodies that they act on.
 #include "host/simulate/contact_step/contact_impulses.hpp"
 
 #include "host/base/index_of.hpp"

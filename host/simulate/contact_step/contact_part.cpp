@@ -1,3 +1,5 @@
+/// @file contact_part.cpp
+/// Adds the counts and seconds of parts of a step.
 #include "host/simulate/contact_step/contact_part.hpp"
 
 #include <algorithm>

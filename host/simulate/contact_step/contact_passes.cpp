@@ -1,3 +1,5 @@
+/// @file contact_passes.cpp
+/// Passes of detection and solution until no pair is newly hit.
 #include "host/simulate/contact_step/contact_passes.hpp"
 
 #include <utility>

@@ -6,11 +6,11 @@
 #include <tetwarp/simulate.hpp>
 
 #include "host/collide/detector.hpp"
-#include "host/simulate/patches/pair_contacts.hpp"
 #include "host/simulate/contact_step/contact_history.hpp"
 #include "host/simulate/contact_step/contact_part.hpp"
 #include "host/simulate/contact_step/contact_step_options.hpp"
 #include "host/simulate/contact_step/part_motion.hpp"
+#include "host/simulate/patches/pair_contacts.hpp"
 #include "host/simulate/solve/contact_system.hpp"
 
 namespace tetwarp {

@@ -1,10 +1,12 @@
+/// @file contact_points.cpp
+/// Places, gaps and impulses of contacts at the end of a part of a step.
 #include "host/simulate/contact_step/contact_points.hpp"
 
 #include "host/base/index_of.hpp"
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
-#include "host/simulate/model/rotations.hpp"
 #include "host/simulate/contact_step/contact_impulses.hpp"
+#include "host/simulate/model/rotations.hpp"
 
 namespace tetwarp {
 namespace {

@@ -1,3 +1,5 @@
+/// @file contact_rest.cpp
+/// Finds bodies whose contacts slide, are held up, or have bonds that change.
 #include "host/simulate/contact_step/contact_rest.hpp"
 
 #include <algorithm>

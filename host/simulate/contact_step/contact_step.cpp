@@ -1,3 +1,5 @@
+/// @file contact_step.cpp
+/// A part of a step: passes, end check, impulses, contacts that sleep.
 #include "host/simulate/contact_step/contact_step.hpp"
 
 #include <algorithm>

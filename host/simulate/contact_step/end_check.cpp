@@ -1,3 +1,5 @@
+/// @file end_check.cpp
+/// Checks the motion of a part of a step and stops the groups of bodies that would come too near.
 #include "host/simulate/contact_step/end_check.hpp"
 
 #include "host/base/index_of.hpp"

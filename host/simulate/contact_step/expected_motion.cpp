@@ -1,3 +1,5 @@
+/// @file expected_motion.cpp
+/// Adds the change of the last step by contact where it is likely to happen again.
 #include "host/simulate/contact_step/expected_motion.hpp"
 
 #include "host/base/index_of.hpp"

@@ -1,3 +1,5 @@
+/// @file part_motion.cpp
+/// Moves surfaces along the velocities of a part of a step, on the host or on a device.
 #include "host/simulate/contact_step/part_motion.hpp"
 
 #include <algorithm>

@@ -12,6 +12,7 @@
 #include "host/simulate/step/stepper.hpp"
 #include "host/simulate/surfaces/kept_places.hpp"
 #include "host/simulate/surfaces/scene_surfaces.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 
 namespace tetwarp {
 

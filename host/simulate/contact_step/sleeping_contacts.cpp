@@ -1,3 +1,5 @@
+/// @file sleeping_contacts.cpp
+/// Keeps, wakes and records contacts between bodies that stand still.
 #include "host/simulate/contact_step/sleeping_contacts.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file step_groups.cpp
+/// Joins bodies that must stop together, and finds the fraction of the step that each moves.
 #include "host/simulate/contact_step/step_groups.hpp"
 
 #include <algorithm>

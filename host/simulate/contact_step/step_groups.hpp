@@ -11,8 +11,8 @@
 
 #include "host/base/disjoint_sets.hpp"
 #include "host/collide/detector.hpp"
-#include "host/simulate/model/model.hpp"
 #include "host/simulate/contact_step/body_link.hpp"
+#include "host/simulate/model/model.hpp"
 
 namespace tetwarp {
 

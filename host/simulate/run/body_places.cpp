@@ -1,3 +1,5 @@
+/// @file body_places.cpp
+/// Places and meshes of bodies from the state after the last step.
 #include "host/simulate/run/body_places.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,5 @@
+/// @file body_sleep.cpp
+/// Falls asleep and wakes at the start and the end of a step.
 #include "host/simulate/run/body_sleep.hpp"
 
 namespace tetwarp {

@@ -1,3 +1,5 @@
+/// @file checkpoint.cpp
+/// Writes and reads checkpoints, and checks them before anything changes.
 #include "host/simulate/run/checkpoint.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file checkpoint_bytes.cpp
+/// Appends and reads numbers and lists as bytes.
 #include "host/simulate/run/checkpoint_bytes.hpp"
 
 #include <algorithm>

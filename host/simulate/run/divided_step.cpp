@@ -1,3 +1,5 @@
+/// @file divided_step.cpp
+/// Attempts with ever more parts of a step, until one is good.
 #include "host/simulate/run/divided_step.hpp"
 
 #include <stdexcept>

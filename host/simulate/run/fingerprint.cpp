@@ -1,3 +1,5 @@
+/// @file fingerprint.cpp
+/// Hashes the numbers of a scene that its steps depend on.
 #include "host/simulate/run/fingerprint.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file host_state.cpp
+/// Copies the state of a stepper to the host when it is read.
 #include "host/simulate/run/host_state.hpp"
 
 #include <algorithm>

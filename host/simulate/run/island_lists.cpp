@@ -1,3 +1,5 @@
+/// @file island_lists.cpp
+/// Lists of bodies, blocks and springs by coupling island.
 #include "host/simulate/run/island_lists.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file island_sleep.cpp
+/// Decides by speeds and times which islands sleep.
 #include "host/simulate/run/island_sleep.hpp"
 
 #include <algorithm>

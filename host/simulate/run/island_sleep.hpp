@@ -9,9 +9,9 @@
 
 #include "host/base/disjoint_sets.hpp"
 #include "host/scene/scene_geometry.hpp"
-#include "host/simulate/model/model.hpp"
 #include "host/simulate/contact_step/body_link.hpp"
 #include "host/simulate/contact_step/contact_rest.hpp"
+#include "host/simulate/model/model.hpp"
 #include "host/simulate/run/island_lists.hpp"
 #include "host/simulate/step/stepper.hpp"
 
@@ -31,7 +31,7 @@ struct SleepState {
 /// change, and when something that moves reaches it.
 class IslandSleep {
  public:
-  static constexpr double rest_time = 0.5;    ///< [s]
+  static constexpr double rest_time = 0.5;  ///< [s]
 
   /// @param model  kept by the caller
   IslandSleep(const Scene& scene, const SceneGeometry& geometry, const Model& model);

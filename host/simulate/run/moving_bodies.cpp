@@ -1,3 +1,5 @@
+/// @file moving_bodies.cpp
+/// One part of a step: inputs, solution without contact, contact, end.
 #include "host/simulate/run/moving_bodies.hpp"
 
 #include <algorithm>

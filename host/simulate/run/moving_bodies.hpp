@@ -3,8 +3,8 @@
 #pragma once
 #include <memory>
 
-#include "host/simulate/run/body_sleep.hpp"
 #include "host/simulate/contact_step/contact_step.hpp"
+#include "host/simulate/run/body_sleep.hpp"
 #include "host/simulate/run/host_state.hpp"
 #include "host/simulate/run/saved_state.hpp"
 #include "host/simulate/run/simulated_scene.hpp"

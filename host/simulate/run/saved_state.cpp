@@ -1,3 +1,5 @@
+/// @file saved_state.cpp
+/// Takes and restores what a checkpoint holds.
 #include "host/simulate/run/saved_state.hpp"
 
 namespace tetwarp {

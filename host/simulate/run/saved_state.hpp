@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "host/simulate/contact_step/contact_memory.hpp"
 #include "host/simulate/model/model.hpp"
 #include "host/simulate/run/checkpoint_bytes.hpp"
-#include "host/simulate/contact_step/contact_memory.hpp"
 #include "host/simulate/run/island_sleep.hpp"
 #include "host/simulate/run/last_step.hpp"
 #include "host/simulate/step/scene_drive.hpp"

@@ -1,3 +1,5 @@
+/// @file simulated_scene.cpp
+/// Makes geometry, model and surfaces of a scene.
 #include "host/simulate/run/simulated_scene.hpp"
 
 #include <stdexcept>

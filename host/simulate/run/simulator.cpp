@@ -1,3 +1,5 @@
+/// @file simulator.cpp
+/// Public calls of Simulator, passed on to the classes that do the work.
 #include <tetwarp/simulate.hpp>
 
 #include <utility>

@@ -1,3 +1,5 @@
+/// @file step_attempt.cpp
+/// Whether an attempt is good, and its sums over parts.
 #include "host/simulate/run/step_attempt.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+/// @file step_division.cpp
+/// Into how many parts the next attempt divides a step.
 #include "host/simulate/run/step_division.hpp"
 
 #include <utility>

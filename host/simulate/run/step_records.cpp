@@ -1,3 +1,5 @@
+/// @file step_records.cpp
+/// Energies, momenta, forces and counts of the last step.
 #include "host/simulate/run/step_records.hpp"
 
 #include "host/base/point3.hpp"

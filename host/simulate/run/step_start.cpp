@@ -1,3 +1,5 @@
+/// @file step_start.cpp
+/// Keeps the state before a step and restores it.
 #include "host/simulate/run/step_start.hpp"
 
 namespace tetwarp {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "host/simulate/run/body_sleep.hpp"
 #include "host/simulate/contact_step/contact_memory.hpp"
 #include "host/simulate/contact_step/contact_step.hpp"
+#include "host/simulate/run/body_sleep.hpp"
 #include "host/simulate/run/host_state.hpp"
 #include "host/simulate/step/scene_drive.hpp"
 

@@ -1,3 +1,5 @@
+/// @file tet_energies.cpp
+/// Elastic energies of tetrahedra, several at a time.
 #include "host/simulate/run/tet_energies.hpp"
 
 #include <algorithm>
