@@ -11,6 +11,7 @@
 #include "host/contact/cuda/device.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/spring_offset.hpp"
+#include "host/contact/problem/vectors.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_adhesion.hpp"
@@ -96,11 +97,6 @@ void check_arrays(const ContactArrays& arrays,
   check("adhesion.viscosity", adhesion.viscosity, contacts, true);
   check("adhesion.bonding_rate", adhesion.bonding_rate, contacts, true);
   check("adhesion.saturation_pressure", adhesion.saturation_pressure, contacts, true);
-}
-
-template <class T>
-View<T> view_of(std::span<T> array) {
-  return {array.data(), static_cast<std::int64_t>(array.size())};
 }
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "host/contact/fill_report.hpp"
+#include "host/contact/problem/vectors.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/contact/structure/extract.hpp"
 
@@ -79,11 +80,6 @@ void check_memory(const ContactArrays& given,
   check("impulse", target.impulse.data(), target.impulse.size());
   check("velocity", target.velocity.data(), target.velocity.size());
   check("body_velocity", target.body_velocity.data(), target.body_velocity.size());
-}
-
-template <class T>
-View<T> view_of(std::span<T> array) {
-  return {array.data(), static_cast<std::int64_t>(array.size())};
 }
 
 ResidentProblem resident_problem(const ContactArrays& given,
