@@ -78,8 +78,8 @@ tetwarp_sources(tetwarp host/simulate/start
   cage_growth.cpp cage_pose.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp start_check.cpp
   start_shrink.cpp)
 tetwarp_sources(tetwarp host/simulate/step
-  cell_fields.cpp reference_rows.cpp reference_stepper.cpp scene_drive.cpp scene_loads.cpp
-  scene_record.cpp step_sums.cpp system_pattern.cpp)
+  cell_fields.cpp scene_drive.cpp scene_loads.cpp scene_record.cpp step_sums.cpp system_pattern.cpp
+  ALONE reference_rows.cpp reference_stepper.cpp)
 tetwarp_sources(tetwarp host/simulate/step/cpu
   rest_factor.cpp rest_factors.cpp rest_gradients.cpp rest_matrix.cpp stepper_cpu.cpp
   vector_stages.cpp ALONE vector_stages_base.cpp)

@@ -2,7 +2,7 @@
 
 # tetwarp_sources(TARGET FOLDER FILE... [ALONE FILE...]): sources of a folder. Parsing their includes
 # takes longer than compiling their code, so up to eight files are compiled as one unit, except those
-# that have options of their own (ALONE).
+# that have options of their own or the reference's short names (ALONE).
 function(tetwarp_sources target folder)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "ALONE")
   string(MAKE_C_IDENTIFIER ${folder} unit)
