@@ -7,6 +7,10 @@
 #include "io/h5/h5.hpp"
 
 namespace tetwarp::h5 {
+
+/// Rows of datasets with one row per step that are stored together.
+inline constexpr hsize_t step_chunk = 256;
+
 struct Disk;
 
 /// A chunked dataset [row] or [row][width] whose rows are appended.

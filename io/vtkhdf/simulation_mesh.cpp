@@ -13,7 +13,6 @@
 
 namespace tetwarp {
 namespace {
-constexpr hsize_t step_chunk = 256;             // rows of datasets with one row per step
 constexpr hsize_t value_chunk_bytes = 1 << 20;  // at most, of arrays
 
 /// Datasets below Steps with one number per step that is the same in all steps.
@@ -124,9 +123,9 @@ void StepMeshWriter::State::create(std::span<const Point3> points, const CellRow
                                   h5::create_group(root, "CellData")};
     const h5::Object steps = h5::create_group(root, "Steps");
     h5::write_scalar_attribute(steps, "NSteps", std::int64_t{0});
-    h5::GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, step_chunk);
+    h5::GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, h5::step_chunk);
     for (const SteadyColumn& column : steady_columns) {
-      h5::GrowingDataset::create(steps, column.name, H5T_STD_I64LE, column.width, step_chunk);
+      h5::GrowingDataset::create(steps, column.name, H5T_STD_I64LE, column.width, h5::step_chunk);
     }
     const h5::Object offset_groups[2] = {h5::create_group(steps, "PointDataOffsets"),
                                          h5::create_group(steps, "CellDataOffsets")};
@@ -136,7 +135,7 @@ void StepMeshWriter::State::create(std::span<const Point3> points, const CellRow
       h5::GrowingDataset::create(groups[array.is_of_cells], array.name, H5T_IEEE_F64LE,
                                  width_of(array), chunk_rows(rows, array.components));
       h5::GrowingDataset::create(offset_groups[array.is_of_cells], array.name, H5T_STD_I64LE, 0,
-                                 step_chunk);
+                                 h5::step_chunk);
     }
   }
   h5::close_written(file, disk);

@@ -12,7 +12,6 @@
 namespace tetwarp {
 namespace {
 constexpr std::uint8_t vtk_vertex = 1;
-constexpr hsize_t step_chunk = 256;    // rows of datasets with one row per step
 constexpr hsize_t point_chunk = 4096;  // rows of datasets with one row per point
 
 /// A dataset with one number per step: where the step begins, or how much it has.
@@ -71,10 +70,10 @@ StepPointsWriter::State::State(const std::string& path, const std::vector<PointA
   const h5::Object data = h5::create_group(root, "PointData");
   steps = h5::create_group(root, "Steps");
   h5::write_scalar_attribute(steps, "NSteps", std::int64_t{0});
-  times = GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, step_chunk);
+  times = GrowingDataset::create(steps, "Values", H5T_IEEE_F64LE, 0, h5::step_chunk);
   for (const StepColumn& column : step_columns) {
     columns.push_back(GrowingDataset::create(column.is_of_steps ? steps : root, column.name,
-                                             H5T_STD_I64LE, column.width, step_chunk));
+                                             H5T_STD_I64LE, column.width, h5::step_chunk));
   }
   const h5::Object data_offsets = h5::create_group(steps, "PointDataOffsets");
   for (const PointArray& array : arrays) {
@@ -82,7 +81,7 @@ StepPointsWriter::State::State(const std::string& path, const std::vector<PointA
                                             array.is_integer ? H5T_STD_I64LE : H5T_IEEE_F64LE,
                                             width_of(array), point_chunk));
     value_offsets.push_back(
-        GrowingDataset::create(data_offsets, array.name, H5T_STD_I64LE, 0, step_chunk));
+        GrowingDataset::create(data_offsets, array.name, H5T_STD_I64LE, 0, h5::step_chunk));
   }
   h5::flush(file);
   disk.check(file);

@@ -9,7 +9,6 @@
 
 namespace tetwarp {
 namespace {
-constexpr hsize_t chunk_rows = 256;
 
 hsize_t width_of(const SeriesColumn& column) {
   return column.components > 1 ? static_cast<hsize_t>(column.components) : 0;
@@ -101,7 +100,7 @@ SeriesWriter::SeriesWriter(const std::string& path,
             const Place place = place_of(column);
             h5::GrowingDataset::create(groups.at(place.group), place.name,
                                        column.is_integer ? H5T_STD_I64LE : H5T_IEEE_F64LE,
-                                       width_of(column), chunk_rows);
+                                       width_of(column), h5::step_chunk);
           }
         }
         h5::close_written(file, state->disk);
