@@ -14,10 +14,11 @@ tetwarp_sources(tetwarp_command host/cli/tools
   cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp cmd_mesh.cpp
   cmd_render.cpp displacement.cpp read_array.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  array_checks.cpp batch.cpp batch_file.cpp cmd_warp.cpp fingerprint.cpp job_plan.cpp job_share.cpp
-  memory_plan.cpp output_files.cpp output_grid.cpp output_writer.cpp report_exchange.cpp
-  source_scan.cpp step_selection.cpp volume_run.cpp volume_run_parts.cpp volume_run_queue.cpp
-  volume_run_step.cpp warnings.cpp warp_arguments.cpp warp_job.cpp)
+  array_checks.cpp batch.cpp batch_file.cpp block_warper.cpp cmd_warp.cpp fingerprint.cpp
+  job_plan.cpp job_share.cpp memory_plan.cpp output_files.cpp output_grid.cpp output_writer.cpp
+  part_exchange.cpp part_queue.cpp report_exchange.cpp series_in_parts.cpp source_scan.cpp
+  step_selection.cpp step_writer.cpp volume_blocks.cpp volume_run.cpp volume_sources.cpp
+  volume_steps.cpp volume_task.cpp warnings.cpp warp_arguments.cpp warp_job.cpp)
 set_target_properties(tetwarp_command PROPERTIES
   OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_command PRIVATE ${PROJECT_SOURCE_DIR})

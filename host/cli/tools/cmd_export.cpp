@@ -1,3 +1,5 @@
+/// @file cmd_export.cpp
+/// The subcommand export.
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,3 +1,5 @@
+/// @file array_checks.cpp
+/// The checks of the arrays of a volume.
 #include "host/cli/warp/array_checks.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+/// @file fingerprint.cpp
+/// The hash of words, and what of options and volumes is hashed.
 #include "host/cli/warp/fingerprint.hpp"
 
 #include <fmt/format.h>

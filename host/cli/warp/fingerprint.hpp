@@ -18,7 +18,7 @@ namespace tetwarp::cli {
 /// after each multiplication that mixes high bits into low ones. The size of an item is hashed
 /// before it, so that different sequences of items give different hashes. Not a cryptographic hash.
 ///
-/// Equal on all little-endian machines. A copy continues independently of its original.
+/// Equal on all little-endian machines.
 class Fingerprint {
  public:
   void add(std::span<const std::byte> bytes);

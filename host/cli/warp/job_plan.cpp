@@ -1,3 +1,5 @@
+/// @file job_plan.cpp
+/// Reads all headers, checks all arguments and names all outputs.
 #include "host/cli/warp/job_plan.hpp"
 
 #include <fmt/format.h>
@@ -46,7 +48,7 @@ bool is_turned(const ArrayHeader& array) {
   return !is_integer(array.type) && (array.components == 3 || array.components == 9 || is_tensor);
 }
 
-/// How a volume is read: along the axes of the option if it is a NIfTI image of vectors or tensors.
+/// How a volume is read: --axes applies if it is a NIfTI image of vectors or tensors.
 VolumeReadOptions read_options(const std::string& path,
                                const WarpArguments& arguments,
                                const fs::path& output) {
@@ -151,6 +153,29 @@ std::vector<std::string> output_names(const fs::path& output,
   return names;
 }
 
+/// Sets steps and names of outputs, and warns of times that the output does not keep.
+void set_outputs(VolumePlan& plan,
+                 const fs::path& output,
+                 const WarpArguments& arguments,
+                 const MeshReader& mesh,
+                 const std::vector<std::int64_t>& steps) {
+  plan.steps = steps;
+  plan.outputs = output_names(output, steps, arguments.temporal);
+  for (const std::string& name : plan.outputs) {
+    const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
+    plan.files.insert(plan.files.end(), files.begin(), files.end());
+  }
+  if (arguments.temporal) {
+    std::vector<double> times;
+    times.reserve(steps.size());
+    for (const std::int64_t step : steps) {
+      times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
+    }
+    const std::string warning = times_warning(output.string(), times);
+    if (!warning.empty()) plan.warnings.push_back(warning);
+  }
+}
+
 VolumePlan plan_volume(const std::string& path,
                        const fs::path& output,
                        const WarpArguments& arguments,
@@ -186,25 +211,12 @@ VolumePlan plan_volume(const std::string& path,
                        leaves_time(backend, arguments);
   // On the cpu begin_step() computes the step: the previous one is finished and written first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
-  plan.steps = steps;
-  plan.outputs = output_names(output, steps, arguments.temporal);
-  for (const std::string& name : plan.outputs) {
-    const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
-    plan.files.insert(plan.files.end(), files.begin(), files.end());
-  }
-  if (arguments.temporal) {
-    std::vector<double> times;
-    times.reserve(steps.size());
-    for (const std::int64_t step : steps) {
-      times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
-    }
-    const std::string warning = times_warning(output.string(), times);
-    if (!warning.empty()) plan.warnings.push_back(warning);
-  }
+  set_outputs(plan, output, arguments, mesh, steps);
   return plan;
 }
 
-/// The name of an output in a folder: that of its volume; of a pair .hdr and .img one NIfTI file.
+/// The name of an output in a folder: that of its volume. A pair .hdr and .img becomes one file
+/// .nii.gz.
 std::string output_name_of(const std::string& volume) {
   std::string name = fs::path(volume).filename().string();
   for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz"}) {
@@ -253,6 +265,12 @@ std::vector<std::string> JobPlan::outputs() const {
     all.insert(all.end(), volume.files.begin(), volume.files.end());
   }
   return all;
+}
+
+bool may_resume_within(const VolumePlan& volume, const WarpArguments& arguments) {
+  if (!arguments.temporal || !arguments.resume) return false;
+  // VTKHDF holds no image of a single slice.
+  return std::ranges::find(volume.written_grid.dims, 1) == volume.written_grid.dims.end();
 }
 
 JobPlan plan_job(const WarpArguments& arguments) {

@@ -21,8 +21,8 @@ struct VolumePlan {
   std::vector<ArrayHeader> arrays;  ///< to warp, at least one
   std::string active;               ///< VolumeHeader::active
   Grid source_grid;
-  Grid output_grid;  ///< without regard to the region
-  Grid written_grid;
+  Grid output_grid;                  ///< the whole, of which --roi may be a part
+  Grid written_grid;                 ///< output_grid, or the part that --roi takes of it
   std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
   std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
   std::vector<std::string> files;    ///< all that are written: of NIfTI one per output and array
@@ -30,8 +30,10 @@ struct VolumePlan {
   double memory = 0;                 ///< of the process that computes the whole [byte]
   std::string refusal;               ///< with --dry-run: why it cannot run here
   bool writes_beside = false;        ///< write a step while the next one is computed
-  bool overlaps = false;  ///< begin a step before the previous one is copied back and written
+  bool overlaps = false;             ///< begin a step before the previous one is copied to the host
   Warnings warnings;
+
+  std::int64_t files_per_output() const { return std::ssize(files) / std::ssize(outputs); }
 };
 
 /// A whole job.

@@ -1,3 +1,5 @@
+/// @file job_share.cpp
+/// Divides the outputs of a job among ranks and gathers their results.
 #include "host/cli/warp/job_share.hpp"
 
 #include <algorithm>

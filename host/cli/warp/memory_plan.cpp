@@ -1,3 +1,5 @@
+/// @file memory_plan.cpp
+/// Estimates of memory and disk, and whether a volume is computed in blocks.
 #include "host/cli/warp/memory_plan.hpp"
 
 #include <fmt/format.h>
@@ -69,7 +71,7 @@ double fixed_memory(const VolumePlan& plan,
                     const WarpArguments& arguments,
                     const MeshHeader& mesh) {
   constexpr double mebibyte = 1 << 20;
-  // Pages of code that a run touches first, the heap, HDF5's lists of freed buffers and its index.
+  // Pages of code that a run loads later, the heap, HDF5's lists of freed buffers and its index.
   constexpr double growth = 10 * mebibyte;
   constexpr double thread_bytes = mebibyte / 4;  // stack and heap in use
   // HDF5's cache of chunks per array, and a buffer for converted numbers or for deflate.
@@ -82,7 +84,7 @@ double fixed_memory(const VolumePlan& plan,
                  160 * static_cast<double>(mesh.tet_count + tets_per_hex * mesh.hex_count) +
                  120 * static_cast<double>(mesh.node_count);
   for (const ArrayHeader& array : plan.arrays) {
-    // A chunk as it is stored, while it grows during inflation, and as it was before it grew.
+    // A stored chunk, and its buffer before and after it grows during inflation.
     const VolumeReader reader(plan.path, array.name, arguments.source_step.value_or(0), plan.read);
     bytes += cache + buffer + 1.5 * reader.chunk_bytes();
   }

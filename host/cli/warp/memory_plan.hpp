@@ -20,20 +20,20 @@ double voxel_bytes(const std::vector<ArrayHeader>& arrays);
 /// The warped arrays of a volume, then the extra outputs.
 std::vector<ArrayHeader> arrays_written(const VolumePlan& plan, const WarpArguments& arguments);
 
-/// Memory of a run besides samples and lists of cells [byte]: the process as it is now, what it
-/// loads later, threads, mesh, caches and buffers of the files.
+/// Memory of a run without samples and lists of cells [byte]: of the process as it is now, of code
+/// that it loads later, of threads, mesh, caches and buffers of the files.
 double fixed_memory(const VolumePlan& plan, const WarpArguments& arguments, const MeshHeader& mesh);
 
-/// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Sources, outputs and
-/// extra outputs must fit in memory, with --memory at least block by block. Throws
-/// std::invalid_argument, IoError.
+/// Sets `memory`, `memory_limit` and, with --dry-run, `refusal` of a plan. Throws
+/// std::invalid_argument, IoError if sources, outputs and extra outputs do not fit in memory; with
+/// --memory if they cannot be computed in blocks.
 /// @returns whether a second set of outputs also fits
 bool plan_memory(VolumePlan& plan,
                  const WarpArguments& arguments,
                  const MeshReader& mesh,
                  const std::vector<std::int64_t>& steps);
 
-/// Space on the disk that temporary files take while the output has its own [byte]: the unpacked
+/// Space on the disk that temporary files take in addition to the output [byte]: the unpacked
 /// source, steps of a series that can be resumed, and NIfTI outputs that are not written from their
 /// beginning to their end.
 /// @param blocks  of the output; 0: it is computed as a whole

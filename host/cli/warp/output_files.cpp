@@ -1,3 +1,5 @@
+/// @file output_files.cpp
+/// Options, fingerprints and counts of output files.
 #include "host/cli/warp/output_files.hpp"
 
 #include <algorithm>
@@ -72,6 +74,13 @@ void repeat_report(const StepReport& last, StepReport& report) {
   }
   report.counts.steps_unchanged = 1;
   report.totals = last.totals;
+}
+
+void add_step(const StepReport& step, Report& job) {
+  job.timings += step.timings;
+  job.counts += step.counts;
+  job.steps.push_back(step);
+  job.steps.back().timings.total += step.timings.read + step.timings.write;
 }
 
 Counts counts_of(const WrittenFile& file) {

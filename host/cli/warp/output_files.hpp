@@ -39,6 +39,9 @@ std::optional<NiftiFacts> facts_of_extra(const std::optional<NiftiFacts>& source
 /// copied, counts of work stay zero.
 void repeat_report(const StepReport& last, StepReport& report);
 
+/// Adds a step that is complete to the report of a job.
+void add_step(const StepReport& step, Report& job);
+
 /// What a written file adds to a report.
 Counts counts_of(const WrittenFile& file);
 

@@ -1,3 +1,5 @@
+/// @file output_grid.cpp
+/// The output grid from a choice: the grid of a volume, or a box around the deformed mesh.
 #include "host/cli/warp/output_grid.hpp"
 
 #include <algorithm>
@@ -85,9 +87,7 @@ Grid with_box_kept(const GridChoice& choice, const Grid& base) {
   if (!choice.direction) grid.origin = base.world_of(first);
   return grid;
 }
-}  // namespace
 
-namespace {
 /// @param bounds  the grid of `--grid bounds`
 template <class Bounds>
 Grid resolve(const GridChoice& choice, const Grid& source, const Bounds& bounds) {

@@ -25,7 +25,7 @@ struct GridChoice {
 /// The base grid with those parts replaced that are given. Of dims and spacing, one that is given
 /// alone determines the other: the box of the base grid's voxels is kept. Where voxels of that
 /// spacing do not fill the box, they protrude equally on both sides. A given origin or direction
-/// keeps the origin from moving along with the size of the voxels.
+/// keeps the origin where it is when the size of the voxels changes.
 /// Throws std::invalid_argument when the result is no valid grid.
 Grid resolve_grid(const GridChoice& choice,
                   const Grid& source,

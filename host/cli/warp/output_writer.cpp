@@ -1,3 +1,5 @@
+/// @file output_writer.cpp
+/// Names of output files, and one writer for each.
 #include "host/cli/warp/output_writer.hpp"
 
 #include <filesystem>

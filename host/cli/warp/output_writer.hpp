@@ -9,7 +9,7 @@
 
 namespace tetwarp::cli {
 
-/// An array as a NIfTI image holds it: its facts, or the defaults, along axes.
+/// An array as a NIfTI image holds it: with its facts, or the defaults if it has none.
 /// @param axes  of vectors and tensors; nothing: LPS for displacement fields of the warp, which ITK
 ///              and ANTs read, else those of the file that the array comes from
 ArrayHeader nifti_array(ArrayHeader array, const std::optional<Axes>& axes = {});

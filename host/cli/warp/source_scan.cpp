@@ -1,3 +1,5 @@
+/// @file source_scan.cpp
+/// Reads a source in parts.
 #include "host/cli/warp/source_scan.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file source_scan.hpp
-/// One pass over a source that does not fit in memory: its fingerprint and range.
+/// Reads a source that does not fit in memory once: for its fingerprint and range.
 #pragma once
 #include <vector>
 

@@ -1,3 +1,5 @@
+/// @file step_selection.cpp
+/// Parses step numbers and slices, and applies them to a number of steps.
 #include "host/cli/warp/step_selection.hpp"
 
 #include <fmt/format.h>

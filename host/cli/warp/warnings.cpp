@@ -1,3 +1,5 @@
+/// @file warnings.cpp
+/// The texts of warnings and when they are given.
 #include "host/cli/warp/warnings.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +34,7 @@ double stored_value(PixelType type, double value) {
   return stored;
 }
 
-/// True when a type holds a value up to the rounding of its floating-point numbers.
+/// True when a type can hold a value: integers exactly, floating-point numbers rounded.
 bool fits(PixelType type, double value) {
   const double stored = stored_value(type, value);
   return is_integer(type) ? stored == value : std::isfinite(stored) == std::isfinite(value);
@@ -47,6 +49,7 @@ std::string steps_text(const Steps& steps) {
   if (steps.size() > 1) text += fmt::format(" and {} more", steps.size() - 1);
   return text;
 }
+
 /// Times that are not equally spaced, of a NIfTI series; empty when they are.
 std::string uneven_times(const std::string& output, const std::vector<double>& times) {
   const auto last = static_cast<double>(times.size()) - 1;

@@ -1,5 +1,5 @@
 /// @file warnings.hpp
-/// Warnings of a warp: inputs and results that are valid but seldom meant. One line each.
+/// Warnings of a warp: inputs and results that are valid but rarely intended. One line each.
 #pragma once
 #include <span>
 #include <string>
@@ -17,21 +17,22 @@ using Warnings = std::vector<std::string>;
 /// A mesh without a deformation.
 Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments);
 
-/// A volume of several steps of which one is warped by all steps of the mesh; unless arrays are
-/// named, what of the volume is not warped, and floats of 2 bytes.
+/// A volume of several steps of which one is warped by all steps of the mesh. Unless --array names
+/// arrays: those that are not read, and those of float16, which become float32.
 Warnings volume_warnings(const std::string& path,
                          const VolumeHeader& volume,
                          const MeshHeader& mesh,
                          const WarpArguments& arguments);
 
-/// Values that do not fit the type of an array: the background, densities and totals.
+/// A background that the type of an array cannot hold; densities and totals that its integers
+/// round.
 /// @param arrays  those that are warped
 Warnings array_warnings(const std::string& volume,
                         const std::vector<ArrayHeader>& arrays,
                         const WarpArguments& arguments);
 
 /// Results of steps: inverted cells, and meshes that cover no voxel. Steps that were not computed
-/// give none.
+/// have no warnings.
 Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps);
 
 /// Times of the steps of a series that its format or its readers do not keep: in NIfTI those that

@@ -1,3 +1,5 @@
+/// @file warp_arguments.cpp
+/// The options of tetwarp warp.
 #include "host/cli/warp/warp_arguments.hpp"
 
 #include <algorithm>
@@ -196,15 +198,7 @@ void declare_result(CLI::App& app, WarpArguments& arguments) {
   app.add_flag("--resume", arguments.resume, "keep outputs that are complete and up to date");
 }
 
-void declare_running(CLI::App& app, WarpArguments& arguments) {
-  WarpOptions& warp = arguments.warp;
-  add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
-  app.add_option("--device", warp.device, "CUDA device number [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
-      ->check(between(0, max_threads))
-      ->type_name("N");
+void declare_skips(CLI::App& app, SkipOptions& skip) {
   using Switch = std::vector<bool SkipOptions::*>;
   const Choices<Switch> skips{
       {"rejected-cells", {&SkipOptions::rejected_cells}},
@@ -219,13 +213,24 @@ void declare_running(CLI::App& app, WarpArguments& arguments) {
        {&SkipOptions::rejected_cells, &SkipOptions::accepted_cells, &SkipOptions::copied_voxels,
         &SkipOptions::unchanged_steps, &SkipOptions::unchanged_tets, &SkipOptions::constant_cells,
         &SkipOptions::interior_cells, &SkipOptions::background_chunks}}};
-  SkipOptions& skip = warp.skip;
   add_word_list(
       app, "--no-skip", skips,
       [&skip](const Switch& members) {
         for (bool SkipOptions::*member : members) skip.*member = false;
       },
       "disable optimizations, none of which changes the result");
+}
+
+void declare_running(CLI::App& app, WarpArguments& arguments) {
+  WarpOptions& warp = arguments.warp;
+  add_choice(app, "--backend", warp.backend, choices_of<Backend>(), "where to compute [auto]");
+  app.add_option("--device", warp.device, "CUDA device number [0]")
+      ->check(at_least(0))
+      ->type_name("N");
+  app.add_option("--threads", warp.threads, "threads of the cpu back end, 0 for all cores [0]")
+      ->check(between(0, max_threads))
+      ->type_name("N");
+  declare_skips(app, warp.skip);
   add_parsed(app, "--memory", arguments.memory, parse_bytes, "LIMIT",
              "memory limit, e.g. 4G or 512M; larger volumes are computed in blocks");
   app.add_flag("--dry-run", arguments.dry_run,

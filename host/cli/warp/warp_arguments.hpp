@@ -40,7 +40,7 @@ struct WarpArguments {
   bool quiet = false;
   std::string report;
   std::string batch;
-  bool makes_folder = false;  ///< of the output, if it does not exist; of jobs in a batch
+  bool makes_folder = false;  ///< the output's folder is made if it is missing: for jobs of a batch
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
@@ -57,8 +57,9 @@ struct WarpArguments {
 /// Declares every option and binds it to `arguments`, which must outlive `app`.
 void declare_warp_options(CLI::App& app, WarpArguments& arguments);
 
-/// Parts of these options, which `tetwarp simulate` has, too: --grid, --dims, --origin, --spacing
-/// and --direction; --filter, --overshoot, --antialias and --intensity; --outside and --background.
+/// Declare parts of these options, which `tetwarp simulate` has, too: --grid, --dims, --origin,
+/// --spacing and --direction; --filter, --overshoot, --antialias and --intensity; --outside and
+/// --background.
 void declare_grid_options(CLI::App& app, GridChoice& grid);
 void declare_sampling_options(CLI::App& app, WarpOptions& warp);
 void declare_outside_options(CLI::App& app, WarpOptions& warp);

@@ -1,3 +1,5 @@
+/// @file warp_job.cpp
+/// Runs a job from its plan to its report.
 #include "host/cli/warp/warp_job.hpp"
 
 #include <fmt/format.h>

@@ -60,9 +60,9 @@ std::string report_json(const JobResult& result);
 /// plan of each output.
 std::string summary(const JobResult& result);
 
-/// One line to print on standard error after a warp with Intensity::conservative to integers: what
-/// storing them has changed in the total, of the step and component where that is most. Empty if no
-/// total has changed.
+/// One line to print on standard error after a warp with Intensity::conservative to integers: by
+/// how much rounding and clipping changed the total, for the step and component where that is most.
+/// Empty if no total has changed.
 std::string storing_note(const Report& report);
 
 }  // namespace tetwarp::cli
