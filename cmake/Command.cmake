@@ -6,6 +6,9 @@ tetwarp_sources(tetwarp_command host/cli/common
   declare.cpp file_checks.cpp interrupt.cpp progress_bar.cpp ranks.cpp ranks_${tetwarp_mpi}.cpp)
 tetwarp_sources(tetwarp_command host/cli/contact
   cmd_contact.cpp contact_arguments.cpp)
+tetwarp_sources(tetwarp_command host/cli/job
+  array_checks.cpp fingerprint.cpp job_plan.cpp memory_plan.cpp output_files.cpp output_grid.cpp
+  output_writer.cpp source_scan.cpp step_selection.cpp warnings.cpp warp_arguments.cpp)
 tetwarp_sources(tetwarp_command host/cli/simulate
   cmd_simulate.cpp obstacle_surface.cpp simulate_arguments.cpp simulate_bodies.cpp
   simulate_contacts.cpp simulate_frames.cpp simulate_pictures.cpp simulate_report.cpp
@@ -14,10 +17,9 @@ tetwarp_sources(tetwarp_command host/cli/tools
   cmd_deform.cpp cmd_demo.cpp cmd_export.cpp cmd_import.cpp cmd_info.cpp cmd_mesh.cpp
   cmd_render.cpp displacement.cpp read_array.cpp)
 tetwarp_sources(tetwarp_command host/cli/warp
-  array_checks.cpp batch.cpp batch_file.cpp cmd_warp.cpp fingerprint.cpp job_plan.cpp job_share.cpp
-  memory_plan.cpp output_files.cpp output_grid.cpp output_writer.cpp report_exchange.cpp
-  source_scan.cpp step_selection.cpp volume_run.cpp volume_run_parts.cpp volume_run_queue.cpp
-  volume_run_step.cpp warnings.cpp warp_arguments.cpp warp_job.cpp)
+  batch.cpp batch_file.cpp block_warper.cpp cmd_warp.cpp job_share.cpp part_exchange.cpp
+  part_queue.cpp report_exchange.cpp series_in_parts.cpp step_writer.cpp volume_blocks.cpp
+  volume_run.cpp volume_sources.cpp volume_steps.cpp volume_task.cpp warp_job.cpp)
 set_target_properties(tetwarp_command PROPERTIES
   OUTPUT_NAME tetwarp UNITY_BUILD ${TETWARP_UNITY} UNITY_BUILD_MODE GROUP)
 target_include_directories(tetwarp_command PRIVATE ${PROJECT_SOURCE_DIR})

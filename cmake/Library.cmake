@@ -9,7 +9,7 @@ add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
   backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
-  body_partners.cpp collide_items.cpp grid_plan.cpp touch_areas.cpp)
+  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
   detector_cpu.cpp)
 tetwarp_sources(tetwarp host/collide/cuda
@@ -44,7 +44,7 @@ tetwarp_sources(tetwarp host/reference/contact
   local.cpp)
 tetwarp_sources(tetwarp host/reference/simulate
   assemble.cpp bodies.cpp body_motion.cpp cloth_body.cpp elements.cpp energy.cpp fem_body.cpp
-  forces.cpp image_material.cpp make_system.cpp material_point.cpp motion.cpp named.cpp
+  forces.cpp image_material.cpp make_system.cpp material_point.cpp motion.cpp
   nearest_material.cpp prescribed.cpp rigid_mass.cpp shares.cpp springs.cpp step_system.cpp
   system.cpp)
 tetwarp_sources(tetwarp host/reference/warp

@@ -1,3 +1,5 @@
+/// @file collide_items.cpp
+/// Makes items and runs of vertices, and checks the surfaces.
 #include "host/collide/collide_items.hpp"
 
 #include <algorithm>
@@ -160,6 +162,13 @@ bool has_twins(const std::vector<VertexRun>& runs, std::int64_t first) {
              [](const VertexRun& a, const VertexRun& b) { return a.body == b.body; }) != runs.end();
 }
 }  // namespace
+
+CollideView CollideItems::view_of_bodies() const {
+  CollideView view{};
+  view.bodies = {bodies.data(), std::ssize(bodies)};
+  view.forbidden = {forbidden.data(), std::ssize(forbidden)};
+  return view;
+}
 
 CollideItems make_collide_items(const CollisionSurfaces& surfaces, bool skips_flat_edges) {
   check_sizes(surfaces);

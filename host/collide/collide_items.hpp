@@ -18,6 +18,9 @@ struct CollideItems {
                                 ///< each body has one
   std::vector<std::int64_t> levels;  ///< first run of vertices, of boxes, ..., end
   std::int64_t flat_edges = 0;       ///< edges that no item owns, as they lie within flat faces
+
+  /// Bodies and forbidden pairs, for CollideView::may_touch() on the host; the rest is empty.
+  CollideView view_of_bodies() const;
 };
 
 /// @param skips_flat_edges  false: they are owned as all others

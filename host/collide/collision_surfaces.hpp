@@ -1,6 +1,6 @@
 /// @file collision_surfaces.hpp
 /// What can touch in a scene: triangles, spheres, capsules and planes of all bodies, and which
-/// bodies may meet. Does not change during a simulation.
+/// bodies may meet. Constant during a simulation.
 ///
 /// A sphere is a vertex with a radius; a capsule is an edge with a radius and its two vertices with
 /// the same radius. Bodies are numbered as ModelPoint::body: bodies of the scene, then obstacles.
@@ -22,7 +22,7 @@ struct CollisionBody {
   std::int32_t first_triangle = 0, triangle_end = 0;
   std::int32_t first_plane = 0, plane_end = 0;
   bool has_unknowns = false;    ///< false: fixed or prescribed; two of these are never a pair
-  bool is_rigid = false;        ///< all is fixed in one frame
+  bool is_rigid = false;        ///< all parts are fixed in one frame
   bool touches_itself = false;  ///< pairs of its own features count, unless they share a vertex
 };
 
@@ -41,7 +41,7 @@ struct CollisionSurfaces {
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< vertices, counter-clockwise from outside
   std::vector<std::int32_t> plane_body;                ///< [planes]
 
-  /// Pairs of bodies a < b that never touch, sorted. Bodies do not touch themselves but for
+  /// Pairs of bodies a < b that never touch, sorted. A body touches itself only with
   /// CollisionBody::touches_itself.
   std::vector<std::array<std::int32_t, 2>> forbidden;
   double thickness = 0;  ///< contact distance h_c [m], > 0
@@ -53,25 +53,25 @@ struct PlanePlace {
   Point3 normal{0, 0, 1};  ///< unit
 };
 
-/// Where all is at one time.
+/// Places of all vertices and planes at one time.
 struct SurfacePlaces {
   std::vector<Point3> vertices;    ///< [vertices], world
   std::vector<PlanePlace> planes;  ///< [planes]
 };
 
-/// A motion of all surfaces from start to end. Bodies without a frame move their vertices straight;
-/// a body that turns follows its frame (kernels/collide/moving_points.hpp).
+/// A motion of all surfaces from start to end. Vertices of bodies without a frame move straight; a
+/// body that turns follows its frame (kernels/collide/moving_points.hpp).
 struct SurfaceMotion {
   SurfacePlaces start, end;
   /// [vertices] [m] 0 where the way is straight. At the fraction t of the motion a vertex is within
-  /// 4 t (1 - t) sagitta of the straight way: r angle^2 / 8 at distance r from the axis of a frame
-  /// that turns by an angle, however large the angle.
+  /// 4 t (1 - t) sagitta of the straight way. At distance r from the axis of a frame that turns by
+  /// any angle, sagitta = r angle^2 / 8.
   std::vector<double> sagitta;
-  /// [bodies] with turn 0 where all goes straight; or empty: sagittas are all that is known of
-  /// turns (pairs then touch earlier), and planes turn by the least angle about their points.
+  /// [bodies] with turn 0 where all goes straight; or empty: turns are bounded by sagittas only, so
+  /// that pairs touch earlier, and planes turn by the least angle about their points.
   std::vector<TurningFrame> frames = {};
-  /// The same, but for rounding, in memory of the device of the detector; or empty: it copies what
-  /// is here. Which bodies a plane may reach is decided by what is here.
+  /// The same motion up to rounding, in memory of the detector's device; or empty: the detector
+  /// copies the members above. Which bodies a plane may reach is always found from those.
   MotionView resident = {};
 };
 

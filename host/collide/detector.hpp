@@ -1,9 +1,9 @@
 /// @file detector.hpp
 /// Detector: the pairs of vertices, edges, faces and planes that touch during a motion.
 ///
-/// No pair whose surfaces touch is ever missed, whatever the speed; a pair may be reported that
-/// only comes within the thickness. Sources: Li, Kaufman and Jiang 2021 (additive continuous
-/// collision detection); slack, thickness and the bound of turning bodies are ours.
+/// No pair whose surfaces touch is missed, at any speed; a pair may be reported that only comes
+/// within the thickness. Sources: Li, Kaufman and Jiang 2021 (additive continuous collision
+/// detection); slack, thickness and the bound of turning bodies are ours.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -45,18 +45,17 @@ struct ClosestPair {
   double distance = 0;          ///< [m]; without a pair the cap
 };
 
-/// A motion so fast, or surfaces so large beside each other, that pairs do not fit the memory that
-/// detection allows itself.
+/// More pairs than pair_limit.hpp allows: the motion is too fast, or too much of the surfaces is
+/// near each other.
 class TooManyPairs : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 struct DetectorOptions {
-  int threads = 1;  ///< of the cpu; any number: same pairs
-  int device = 0;   ///< CUDA device number
-  bool reuse_pairs =
-      true;  ///< keeps the broad phase's pairs where boxes lie inside the former ones
+  int threads = 1;              ///< of the cpu; any number: same pairs
+  int device = 0;               ///< CUDA device number
+  bool reuse_pairs = true;      ///< pairs of the broad phase suffice while boxes lie within its own
   bool skip_flat_edges = true;  ///< edges within flat faces of rigid bodies are in no pair
 };
 
@@ -64,36 +63,36 @@ class Detector {
  public:
   virtual ~Detector() = default;
 
-  /// Starts a step: pairs and touches of earlier motions are forgotten.
+  /// Starts a step: pairs and touches of earlier motions are discarded.
   virtual void begin_step() = 0;
-  /// Bodies that do not move until the next call: pairs of two of them are left out, but for
-  /// closest().
+  /// Sets the bodies that do not move until the next call of this function: pairs of two of them
+  /// are left out, except by closest().
   /// @param is_still  [bodies], or empty: none
   virtual void set_still(std::span<const std::uint8_t> is_still) = 0;
   /// Pairs that come within half the thickness, and pairs within twice the thickness at the start;
   /// sorted, each once. Valid until the next call.
   virtual const std::vector<TouchingPair>& detect(const SurfaceMotion& motion) = 0;
-  /// Of these, those that come within half the thickness: pairs near at the start are known from
-  /// another motion that begins at the same places.
+  /// Only pairs that come within half the thickness, for a further motion from the same places:
+  /// detect() has found the pairs that are near at the start. Valid as there.
   virtual const std::vector<TouchingPair>& detect_hits(const SurfaceMotion& motion) = 0;
-  /// Pairs that come within a tenth of the thickness, sorted, each once: what a step must not do.
-  /// A motion that begins with all pairs apart by more has none where it does not move.
+  /// Pairs that come within a tenth of the thickness, sorted, each once: the final motion of a step
+  /// must have none. A pair that starts farther apart and does not move is not among them.
   virtual const std::vector<TouchingPair>& check(const SurfaceMotion& motion) = 0;
   /// Finds the pairs of a motion, as detect() in the first call of a step and as detect_hits() in
-  /// later ones, and where they touch. All motions of a step have the same start, and are kept by
-  /// the caller.
-  /// @returns the number of pairs that no earlier call of the step found, or found near only; if
-  ///          there are none, of those of two rigid bodies that are hit again, which then touch as
-  ///          they do in this motion
+  /// later ones, and makes their touches, as StepTouches::add(). All motions of a step have the
+  /// same start, and are kept by the caller.
+  /// @returns the number of pairs of which touches were made. First call of a step: all pairs.
+  ///          Later calls: the hits that no earlier call of the step found as hits; without such
+  ///          hits, all hits of two rigid bodies
   virtual std::int64_t find_touches(const SurfaceMotion& motion) = 0;
-  /// Bodies with unknowns that stand still, of the pairs of the last find_touches(), ascending.
+  /// Bodies in pairs of the last find_touches() that have unknowns and do not move, ascending.
   virtual const std::vector<std::int32_t>& reached() const = 0;
-  /// Of all pairs of the step: those that become contacts, as StepTouches::choose(). Ways of
-  /// touches are those of the first motion. To be called before other motions are looked at; valid
-  /// until the next call.
+  /// The touches of the step that become contacts, as StepTouches::choose(). PairTouch::way is that
+  /// of the first motion. Call it after find_touches() and before any other detection; valid until
+  /// the next call.
   virtual std::span<const ChosenTouch> touches() = 0;
   /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
-  /// @param resident  a motion that stays at these places, as SurfaceMotion::resident
+  /// @param resident  a motion that starts and ends at these places, as SurfaceMotion::resident
   virtual ClosestPair closest(const SurfacePlaces& places,
                               double cap,
                               const MotionView& resident) = 0;

@@ -1,3 +1,5 @@
+/// @file grid_plan.cpp
+/// The sizes of grids of least estimated work, and how their cells are numbered.
 #include "host/collide/grid_plan.hpp"
 
 #include <algorithm>
@@ -7,9 +9,9 @@
 
 namespace tetwarp {
 namespace {
-constexpr double cells_per_box = 1 / 1.3;  // inverse of the edge of a cell in mean boxes
+constexpr double cells_per_box = 1 / 1.3;  // extent of a mean box over the edge of a cell
 constexpr double most_cells = 8;           // along an axis of the largest box of a grid
-constexpr double linear_cells = 0x1p22;    // grids with more cells in all scatter their numbers
+constexpr double linear_cells = 0x1p22;    // numbers of cells are hashed if there are more
 
 /// Boxes of one size.
 struct SizeClass {
@@ -66,8 +68,8 @@ ClassNumbers best_grids(const SizeClass* classes, std::size_t count) {
   return first;
 }
 
-/// Numbers of cells: consecutive where there are few, else scattered over some more than the
-/// entries.
+/// Sets how cells are numbered: consecutively where all grids together have few cells; else the
+/// coordinates of a cell are hashed to 8 to 16 times as many numbers as there are items.
 void set_keys(GridPlan& plan, const Box& space, double items) {
   double total = 0;
   for (int l = 0; l < plan.level_count; ++l) {

@@ -1,5 +1,5 @@
 /// @file pair_limit.hpp
-/// How many pairs detection takes memory for.
+/// The largest number of pairs that detection stores.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -11,8 +11,8 @@ namespace tetwarp {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 
-/// Of triangles, capsules and spheres whose boxes overlap. Steps that a simulation can use have 20
-/// to 100 per item.
+/// Limit for pairs of items whose boxes overlap. Usual steps of simulations have 20 to 100 pairs
+/// per item.
 inline std::int64_t most_pairs(std::int64_t items) {
   return 8'000'000 + 200 * items;
 }

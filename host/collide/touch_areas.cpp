@@ -1,3 +1,5 @@
+/// @file touch_areas.cpp
+/// Lists of triangles around vertices, and mean areas.
 #include "host/collide/touch_areas.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 /// @file touch_areas.hpp
-/// Triangles around vertices, and the areas that they stand for in a contact.
+/// Triangles around vertices, and the mean area of the vertices of a body.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -96,9 +96,10 @@ ALLOWED = {
     "io/picture": ["io/files", *IO],
     "host/cli/common": CLI,
     "host/cli/contact": ["host/cli/common", *CLI],
-    "host/cli/warp": ["host/cli/common", *CLI],
-    "host/cli/simulate": ["host/cli/common", "host/cli/warp", "io/vtkhdf", *CLI],
-    "host/cli/tools": ["host/cli/common", "host/cli/warp", *CLI],
+    "host/cli/job": ["host/cli/common", *CLI],
+    "host/cli/warp": ["host/cli/common", "host/cli/job", *CLI],
+    "host/cli/simulate": ["host/cli/common", "host/cli/job", "io/vtkhdf", *CLI],
+    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", *CLI],
     "host/cli": ["host/cli/common", *CLI],
 }
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>

@@ -54,12 +54,6 @@ DECLARED_IN = {
         "io/import/mesh_vtk.cpp"],
     # Compiling CUB takes long: only this file includes it.
     "kernels/exec/exec_cuda.cuh": ["kernels/exec/primitives_cuda.cu"],
-    # Parts of a command and of a simulation, each beside the header of the whole.
-    "host/cli/simulate/simulate_run.hpp": ["host/cli/simulate/simulate_report.cpp"],
-    "host/cli/warp/volume_run.hpp": [
-        "host/cli/warp/volume_run_parts.cpp", "host/cli/warp/volume_run_queue.cpp",
-        "host/cli/warp/volume_run_step.cpp"],
-    "host/cli/warp/batch.hpp": ["host/cli/warp/batch_file.cpp"],
 }
 
 

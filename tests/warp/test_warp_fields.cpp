@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/affine_scenes.hpp"
 #include "tests/support/each_backend.hpp"
 #include "tests/support/field_buffers.hpp"
 #include "tests/support/warp_run.hpp"
@@ -47,10 +48,6 @@ class WarpFields : public EachBackend {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Backends, WarpFields, each_backend, name_of_backend);
-
-Vector vector_of(const Point3& point) {
-  return {point[0], point[1], point[2]};
-}
 
 Vector place_of(const Grid& grid, std::size_t voxel) {
   const auto v = static_cast<std::int64_t>(voxel);

@@ -10,7 +10,7 @@
 
 namespace tetwarp::cli {
 
-/// Declares --axes ras|lps; without it `target` stays empty, which `description` explains.
+/// Declares --axes ras|lps. Without the option `target` stays empty.
 inline void add_axes(CLI::App& app, std::optional<Axes>& target, const std::string& description) {
   app.add_option_function<std::string>(
          "--axes",
@@ -21,8 +21,8 @@ inline void add_axes(CLI::App& app, std::optional<Axes>& target, const std::stri
       ->type_name("ras|lps");
 }
 
-/// Axes for reading a mesh: those of the option. Throws IoError where it is given for a VTKHDF
-/// mesh, which has no other axes than its own.
+/// Axes for reading a mesh: those of the option. Throws IoError if they are given for a VTKHDF
+/// mesh, whose axes are always as stored.
 inline Axes axes_of_mesh(const std::string& path, const std::optional<Axes>& option) {
   if (option == Axes::lps && kind_of(path) == FileKind::mesh) {
     throw IoError(path, "",

@@ -1,3 +1,5 @@
+/// @file declare.cpp
+/// Usage lines, validators and texts.
 #include "host/cli/common/declare.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +12,7 @@
 
 namespace tetwarp::cli {
 namespace {
-/// Help of CLI11 with a given usage line: its own cannot express "VOLUME... MESH".
+/// The help of CLI11 with a given usage line: that of CLI11 cannot express "VOLUME... MESH".
 class UsageFormatter : public CLI::Formatter {
  public:
   explicit UsageFormatter(std::string synopsis) : synopsis_(std::move(synopsis)) {

@@ -1,3 +1,5 @@
+/// @file file_checks.cpp
+/// The checks of paths and their messages.
 #include "host/cli/common/file_checks.hpp"
 
 #include <unistd.h>

@@ -1,3 +1,5 @@
+/// @file interrupt.cpp
+/// The handlers of signals.
 #include "host/cli/common/interrupt.hpp"
 
 #include <sys/time.h>
@@ -21,8 +23,8 @@ volatile std::sig_atomic_t ends_after_hold = 0;
 volatile std::sig_atomic_t is_silent = 0;    // one of several ranks
 volatile std::sig_atomic_t is_terminal = 0;  // standard error shows a progress bar
 
-// The functions of the handlers make async-signal-safe calls only; setitimer(), a plain system call
-// on Linux, is one of them there.
+// Handlers make async-signal-safe calls only. setitimer() is such a call on Linux, where it is a
+// plain system call.
 
 void say(std::string_view line) {
   constexpr std::string_view clear = "\r\033[K";
@@ -71,7 +73,7 @@ void install_interrupt_handlers() {
 }
 
 void exit_on_first_signal() {
-  flag_scopes = -1'000'000;  // far below zero: scopes cannot make it positive
+  flag_scopes = -1'000'000;  // InterruptFlag objects cannot make it positive
 }
 
 InterruptFlag::InterruptFlag() {

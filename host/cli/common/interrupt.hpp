@@ -1,7 +1,7 @@
 /// @file interrupt.hpp
 /// Ctrl-C and SIGTERM. The command prints a line at once, removes its temporary files and exits
-/// with code 130: at the next check of a flag while an InterruptFlag exists, but no later than 0.7
-/// s after the signal; at once elsewhere.
+/// with code 130: without an InterruptFlag at once; with one at the next check of the flag, but at
+/// most 0.7 s after the signal.
 #pragma once
 
 namespace tetwarp::cli {
@@ -13,13 +13,13 @@ constexpr int interrupted_exit_code = 130;
 /// full disk, with a message, and temporary files are removed.
 void install_interrupt_handlers();
 
-/// From now on the first signal ends the process at once and without a line, whether or not an
-/// InterruptFlag exists: for processes under mpirun, which sends signals after errors, too.
+/// From now on the first signal ends the process at once, without a line and regardless of an
+/// InterruptFlag. For processes under mpirun, which sends signals also after errors.
 void exit_on_first_signal();
 
-/// While one exists the first signal sets a flag, so that the work in hand can be ended in order:
-/// e.g. the report of a batch is written. The second signal ends the process at once, and so does a
-/// timer where the flag is not checked in time.
+/// While one exists the first signal sets a flag, so that the caller can finish its files, for
+/// example the report of a batch. The second signal ends the process at once. So does a timer if
+/// the flag is not checked in time.
 class InterruptFlag {
  public:
   InterruptFlag();
@@ -28,8 +28,8 @@ class InterruptFlag {
   InterruptFlag& operator=(const InterruptFlag&) = delete;
 };
 
-/// While one exists a signal does not end the process, so that a file that is changed in place is
-/// left complete; the process ends when the last one is gone. For short work.
+/// While one exists a signal does not end the process, so that files that are changed in place are
+/// complete; the process then ends when the last one is destroyed. For work that takes little time.
 class SignalHold {
  public:
   SignalHold();

@@ -1,3 +1,5 @@
+/// @file progress_bar.cpp
+/// The text of the bar, and when it is drawn.
 #include "host/cli/common/progress_bar.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +17,7 @@ namespace tetwarp::cli {
 namespace {
 constexpr auto redraw_interval = std::chrono::milliseconds(100);
 
-/// Columns of the terminal, 80 where it does not tell.
+/// Columns of the terminal, 80 if they are not known.
 std::size_t terminal_width() {
   winsize size{};
   const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -25,7 +27,7 @@ std::size_t terminal_width() {
 
 std::string progress_line(const ProgressState& state, std::size_t width) {
   const double share = std::clamp(state.share, 0.0, 1.0);
-  // 100 % would mean that the files are written, too.
+  // 100 % is not shown before the files are written.
   const int percent = std::min(static_cast<int>(100 * share), 99);
   const std::string step = fmt::format(" {:2}%  step {:.0f} of {:.0f}", percent,
                                        std::min(state.step, state.step_count), state.step_count);

@@ -15,13 +15,13 @@ struct ProgressState {
   double step = 1;          ///< number of the current step, from 1
   double step_count = 1;    ///< steps of the whole job
   double voxel_rate = 0;    ///< output voxels per second
-  double seconds_left = 0;  /// negative: not known yet
+  double seconds_left = 0;  ///< negative: not known yet
   std::string note;         ///< shown in place of the rate, e.g. simulated time; empty: the rate
   std::string phase;        ///< shown instead of the remaining time; empty: computing
 };
 
-/// The line of a progress bar, at most `width` characters: a short bar, then no rate, where all
-/// does not fit.
+/// The line of a progress bar, at most `width` characters. Where it does not fit, the bar is
+/// shortened, then the rate is left out.
 std::string progress_line(const ProgressState& state, std::size_t width);
 
 /// One line on standard error, redrawn at most ten times a second and cleared by the destructor:
@@ -34,13 +34,13 @@ class ProgressBar {
   /// @param step_work   work of each step of the job in the order in which they are computed, in
   ///                    units that take equal time
   ProgressBar(bool is_enabled, std::string label, std::vector<double> step_work);
-  /// Of steps that take equal time, in any number.
+  /// The same for steps that take equal time; their number may be large.
   ProgressBar(bool is_enabled, std::string label, std::size_t step_count);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// @param steps_done   steps since the last that was finished, with the share of the current one
+  /// @param steps_done   steps since the last finish_step(), with the share of the current one
   /// @param voxels_done  output voxels computed so far
   void update(double steps_done, double voxels_done);
 
@@ -69,9 +69,9 @@ class ProgressBar {
   double work_ = 0;                ///< done
   double voxels_ = 0;              ///< done
   bool has_begun_ = false;         ///< update() has been called
-  double work_at_begin_ = 0;       ///< and voxels are counted from the first update on: rates
-  double voxels_at_begin_ = 0;
-  Clock::time_point begin_{};
+  double work_at_begin_ = 0;       ///< of the first update(), from which rates are measured
+  double voxels_at_begin_ = 0;     ///< likewise
+  Clock::time_point begin_{};      ///< likewise
   Clock::time_point drawn_{};
 };
 

@@ -1,5 +1,6 @@
 /// @file ranks.cpp
-/// Ranks before MPI_Init: environment variables that mpirun of Open MPI and of MPICH sets.
+/// What is known of ranks before MPI_Init: environment variables that mpirun of Open MPI and of
+/// MPICH sets.
 #include "host/cli/common/ranks.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace tetwarp::cli {
 namespace {
-/// The first of these environment variables that is set.
+/// The value of the first of these environment variables that is set.
 int number_of(std::initializer_list<const char*> names, int otherwise) {
   for (const char* name : names) {
     const char* const text = std::getenv(name);

@@ -11,7 +11,7 @@
 
 namespace tetwarp::cli {
 
-/// The ranks of a job and their messages. Used by one thread at a time. Errors in MPI end all
+/// The ranks of a job and their messages. Used by one thread at a time. An error in MPI ends all
 /// ranks.
 class Ranks {
  public:

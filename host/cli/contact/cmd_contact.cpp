@@ -1,3 +1,5 @@
+/// @file cmd_contact.cpp
+/// The subcommand contact.
 #include <fmt/format.h>
 
 #include <cmath>

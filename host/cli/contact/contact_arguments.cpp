@@ -1,3 +1,5 @@
+/// @file contact_arguments.cpp
+/// The options of tetwarp contact.
 #include "host/cli/contact/contact_arguments.hpp"
 
 #include <cstdint>

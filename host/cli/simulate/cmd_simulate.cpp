@@ -1,3 +1,5 @@
+/// @file cmd_simulate.cpp
+/// The subcommand simulate.
 #include <fmt/format.h>
 
 #include <cstdio>

@@ -1,3 +1,5 @@
+/// @file obstacle_surface.cpp
+/// Surfaces of obstacles, moved along their paths.
 #include "host/cli/simulate/obstacle_surface.hpp"
 
 #include <algorithm>

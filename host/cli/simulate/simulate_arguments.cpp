@@ -1,3 +1,5 @@
+/// @file simulate_arguments.cpp
+/// The options of tetwarp simulate, and the checks of their combinations.
 #include "host/cli/simulate/simulate_arguments.hpp"
 
 #include <algorithm>
@@ -5,7 +7,7 @@
 
 #include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
-#include "host/cli/warp/warp_arguments.hpp"
+#include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -92,24 +94,12 @@ void declare_running(CLI::App& app, SimulateArguments& arguments) {
       ->type_name("FILE");
   add_quiet(app, arguments.quiet);
 }
-}  // namespace
 
-void declare_simulate_options(CLI::App& app, SimulateArguments& arguments) {
-  declare_scene(app, arguments);
-  declare_running(app, arguments);
-  declare_pictures(app, arguments);
-  declare_warping(app, arguments);
+[[noreturn]] void refuse(const std::string& option, const std::string& problem) {
+  throw CLI::ValidationError(option, problem);
 }
 
-void check_complete(const SimulateArguments& arguments) {
-  const auto refuse = [](const std::string& option, const std::string& problem) {
-    throw CLI::ValidationError(option, problem);
-  };
-  if (arguments.scene_name == "list") return;
-  if (arguments.scene_file.empty() == arguments.scene_name.empty()) {
-    refuse("SCENE", "expected a scene file or --scene NAME, one of them");
-  }
-  if (arguments.print) return;
+void check_file_options(const SimulateArguments& arguments) {
   if (arguments.folder.empty()) refuse("-o FOLDER", "a folder for the results is needed");
   if (arguments.checkpoint_every > 0 && arguments.checkpoint.empty()) {
     refuse("--checkpoint-every", "needs --checkpoint FILE");
@@ -120,18 +110,36 @@ void check_complete(const SimulateArguments& arguments) {
   if (!arguments.contacts.empty() && !arguments.contacts.ends_with(".vtkhdf")) {
     refuse("--contacts", "the name of a file of contacts ends in .vtkhdf");
   }
-  if (arguments.camera && !arguments.draws && arguments.film.empty()) {
-    refuse("--camera", "needs --picture or --film");
+}
+
+void check_camera(const SimulateArguments& arguments) {
+  if (!arguments.camera) return;
+  if (!arguments.draws && arguments.film.empty()) refuse("--camera", "needs --picture or --film");
+  const std::array<double, 6>& camera = *arguments.camera;
+  if (!std::ranges::all_of(camera, [](double number) { return std::isfinite(number); })) {
+    refuse("--camera", "a number is not finite");
   }
-  if (arguments.camera) {
-    for (const double number : *arguments.camera) {
-      if (!std::isfinite(number)) refuse("--camera", "a number is not finite");
-    }
-    if (std::equal(arguments.camera->begin(), arguments.camera->begin() + 3,
-                   arguments.camera->begin() + 3)) {
-      refuse("--camera", "the eye and what it looks at are the same point");
-    }
+  if (std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3)) {
+    refuse("--camera", "the eye and what it looks at are the same point");
   }
+}
+}  // namespace
+
+void declare_simulate_options(CLI::App& app, SimulateArguments& arguments) {
+  declare_scene(app, arguments);
+  declare_running(app, arguments);
+  declare_pictures(app, arguments);
+  declare_warping(app, arguments);
+}
+
+void check_complete(const SimulateArguments& arguments) {
+  if (arguments.scene_name == "list") return;
+  if (arguments.scene_file.empty() == arguments.scene_name.empty()) {
+    refuse("SCENE", "expected a scene file or --scene NAME, one of them");
+  }
+  if (arguments.print) return;
+  check_file_options(arguments);
+  check_camera(arguments);
   check_sampling(arguments.warp);
 }
 

@@ -10,7 +10,7 @@
 #include <tetwarp/simulate.hpp>
 #include <tetwarp/warp.hpp>
 
-#include "host/cli/warp/output_grid.hpp"
+#include "host/cli/job/output_grid.hpp"
 
 namespace tetwarp::cli {
 
@@ -18,7 +18,7 @@ namespace tetwarp::cli {
 struct SimulateArguments {
   std::string scene_file;
   std::string scene_name;  ///< of a scene that ships with the command, or "list"
-  bool print = false;      ///< print the scene's text and do nothing else
+  bool print = false;      ///< only print the scene's text
   std::string folder;      ///< for the results
   std::optional<std::int64_t> steps;
   SimulateOptions simulate;

@@ -1,3 +1,5 @@
+/// @file simulate_bodies.cpp
+/// Which arrays a file of a body has, and their values.
 #include "host/cli/simulate/simulate_bodies.hpp"
 
 #include <algorithm>

@@ -13,21 +13,21 @@
 
 namespace tetwarp::cli {
 
-/// Bodies with tetrahedra have these in NAME.vtkhdf and their triangles in NAME.surface.vtkhdf.
-/// Others have triangles in NAME.vtkhdf, to which NAME.surface.vtkhdf is a link. Bodies without
-/// geometry have no file.
+/// A body with tetrahedra has them in NAME.vtkhdf and its triangles in NAME.surface.vtkhdf. A body
+/// without has its triangles in NAME.vtkhdf, to which NAME.surface.vtkhdf is a link. A body without
+/// geometry has no file.
 class BodyFiles {
  public:
-  /// @param kept_steps  opens the files of an earlier run to append behind this number of steps,
+  /// @param kept_steps  number of steps to keep of the files of an earlier run, which are opened
   /// and
-  ///                    changes nothing before drop_later(); negative: creates files
+  ///                    not changed before drop_later(); negative: files are created
   BodyFiles(Simulator& simulator, const std::string& folder, std::int64_t kept_steps);
 
   /// Removes the steps of an earlier run that are not kept.
   void drop_later();
 
-  /// Appends the state of the simulator to all files. It is kept for flush() to write, up to 64 MiB
-  /// in all.
+  /// Appends the state of the simulator to all files. The values stay in memory until flush(),
+  /// which is called when they take more than 64 MiB.
   void append();
   void flush();
 
@@ -53,7 +53,7 @@ class BodyFiles {
   std::vector<File> files_;
   std::vector<std::string> paths_;
   std::size_t kept_bytes_ = 0;
-  std::vector<ContactFields> contacts_;  ///< of the state that append() writes
+  std::vector<ContactFields> contacts_;  ///< of the last append()
 };
 
 }  // namespace tetwarp::cli

@@ -1,3 +1,5 @@
+/// @file simulate_contacts.cpp
+/// Sums of contacts on the points of surfaces, and the file of contacts.
 #include "host/cli/simulate/simulate_contacts.hpp"
 
 #include <algorithm>

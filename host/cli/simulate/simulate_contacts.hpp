@@ -16,13 +16,13 @@ namespace tetwarp::cli {
 struct ContactFields {
   std::vector<double> impulse;    ///< [points][3], on the body over the last step [N s]
   std::vector<double> intensity;  ///< largest of the point's contacts; 0 without
-  std::vector<double> gap;        ///< smallest of the point's contacts; without one, and at most,
-                                  ///< 100 thickness [m]
+  std::vector<double> gap;        ///< smallest of the point's contacts, at most 100 times the
+                                  ///< thickness, which is also the value without contacts [m]
 };
 
-/// The fields of all bodies after the last step. A contact belongs to the points of the surface
-/// that its place is a mean of, which share its impulse by their weights. Where it has no such
-/// points, as on rigid bodies, it belongs to the nearest point.
+/// The fields of all bodies after the last step. The place of a contact is a weighted mean of
+/// points of the surface; each of these gets the impulse times its weight. Where a place has no
+/// such points, as on rigid bodies, the nearest point gets all of it.
 std::vector<ContactFields> contact_fields(const Simulator& simulator);
 
 /// The file of --contacts: the contacts at every frame as points with normal, impulse, intensity,
@@ -40,7 +40,7 @@ class ContactFile {
   void close() { writer_.close(); }
 
  private:
-  bool is_opened_;  ///< not created
+  bool is_opened_;  ///< of an earlier run; false: created
   StepPointsWriter writer_;
 };
 

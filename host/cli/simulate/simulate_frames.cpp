@@ -1,3 +1,5 @@
+/// @file simulate_frames.cpp
+/// Numbers of frames and steps, and names that are unique.
 #include "host/cli/simulate/simulate_frames.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 /// @file simulate_frames.hpp
-/// The steps of a simulation that are written, and names in its files.
+/// Which steps of a simulation are written, and names in its files.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -1,3 +1,5 @@
+/// @file simulate_pictures.cpp
+/// The camera, and what a picture shows.
 #include "host/cli/simulate/simulate_pictures.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +49,7 @@ struct Box {
   double size() const { return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]); }
 };
 
-/// Whether a body is likely to move down far: cloth, and what nothing holds.
+/// Whether a body is likely to fall far: cloth, and bodies without fixed or driven parts.
 bool may_fall(const Body& body) {
   if (body.kind == BodyKind::scripted) return false;
   return body.kind == BodyKind::cloth || (body.fixed.empty() && body.driven.empty());
@@ -64,7 +66,7 @@ std::array<Point3, 8> corners_of(const Box& box) {
   return corners;
 }
 
-/// Adds the corners of a box after a free fall, by the size of the box at most.
+/// Adds the corners of a box after a free fall of a time, at most as far as the box is large.
 void add_fall(const Box& box, const Point3& gravity, double seconds, std::vector<Point3>& points) {
   const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
   if (!(size > 0)) return;
@@ -75,7 +77,7 @@ void add_fall(const Box& box, const Point3& gravity, double seconds, std::vector
   }
 }
 
-/// Adds the feet of a box's corners on planes that are nearer than the size of the box.
+/// Adds the projections of a box's corners onto planes nearer than the size of the box.
 void add_feet(const Box& box, const std::vector<DrawnPlane>& planes, std::vector<Point3>& points) {
   for (const DrawnPlane& plane : planes) {
     const Point3& n = plane.normal;

@@ -1,11 +1,11 @@
 /// @file simulate_report.cpp
-/// The report of a simulation.
-#include <cmath>
+/// The report as JSON.
+#include "host/cli/simulate/simulate_report.hpp"
+
 #include <nlohmann/json.hpp>
 #include <tetwarp/version.hpp>
 
 #include "host/base/parallel.hpp"
-#include "host/cli/simulate/simulate_run.hpp"
 
 namespace tetwarp::cli {
 namespace {

@@ -1,3 +1,5 @@
+/// @file simulate_run.cpp
+/// Reads a scene, takes its steps and writes the results.
 #include "host/cli/simulate/simulate_run.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +22,9 @@
 namespace tetwarp::cli {
 namespace fs = std::filesystem;
 namespace {
-constexpr double flush_interval = 0.5;      // seconds between writes of results, at least
-constexpr double most_flush_share = 0.05;   // of the time of a run
-constexpr double last_picture_seconds = 1;  // for which a film shows its last picture
+constexpr double flush_interval = 0.5;      // least time between writes of results [s]
+constexpr double most_flush_share = 0.05;   // share of the time of a run for such writes
+constexpr double last_picture_seconds = 1;  // time for which a film shows its last picture [s]
 
 Scene load(const SimulateArguments& arguments) {
   if (!arguments.scene_name.empty()) {
@@ -167,8 +169,8 @@ void SimulateRun::write_row() {
   has_unwritten_ = true;
 }
 
-/// Results are kept for a while: to open and close all files for every frame would take as long as
-/// the steps between.
+/// Results stay in memory for a while: opening and closing all files for every frame would take as
+/// long as the steps between frames.
 void SimulateRun::flush_if_due() {
   const double interval = std::max(flush_interval, flush_seconds_ / most_flush_share);
   if (since_flush_.seconds() >= interval) flush();
@@ -184,7 +186,7 @@ void SimulateRun::flush() {
   since_flush_ = {};
   flush_seconds_ = writing.seconds();
   result_.write_seconds += flush_seconds_;
-  // Where a signal has come meanwhile, finish() follows, which must not be cut short.
+  // After a signal the process is not to end here: finish() follows and completes the files.
   if (!is_interrupted()) until_complete_.reset();
 }
 
@@ -202,13 +204,13 @@ void SimulateRun::write_frame(std::int64_t frame) {
     if (contacts_) contacts_->append(*simulator_);
   }
   result_.write_seconds += writing.seconds();
-  flush_if_due();  // what follows may take long
+  flush_if_due();  // warps and pictures may take long
   if (warps_) warps_->write_frame(frame);
   if (pictures_) pictures_->draw_frame(frame, frame_seconds(frame));
   ++result_.frames;
 }
 
-/// Not before all results up to it, with which a later run goes on.
+/// Results are flushed first: a run that continues from the checkpoint appends to them.
 void SimulateRun::write_checkpoint() {
   flush();
   const Stopwatch writing;

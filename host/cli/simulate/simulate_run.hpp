@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include <tetwarp/simulate.hpp>
 
@@ -17,25 +15,12 @@
 #include "host/cli/simulate/simulate_contacts.hpp"
 #include "host/cli/simulate/simulate_frames.hpp"
 #include "host/cli/simulate/simulate_pictures.hpp"
+#include "host/cli/simulate/simulate_report.hpp"
 #include "host/cli/simulate/simulate_series.hpp"
 #include "host/cli/simulate/simulate_warp.hpp"
-#include "host/cli/warp/warnings.hpp"
 #include "io/vtkhdf/simulation_series.hpp"
 
 namespace tetwarp::cli {
-
-/// What a run did.
-struct SimulateResult {
-  std::int64_t first_step = 0;         ///< of the run: 0, or that of the checkpoint
-  std::int64_t steps_done = 0;         ///< of the scene
-  std::int64_t frames = 0;             ///< written by this run
-  std::int64_t unconverged_steps = 0;  ///< above their tolerance
-  bool is_interrupted = false;
-  double read_seconds = 0, setup_seconds = 0, step_seconds = 0, write_seconds = 0, warp_seconds = 0,
-         draw_seconds = 0, total_seconds = 0;
-  std::vector<std::string> outputs;
-  Warnings warnings;
-};
 
 /// Steps a scene and writes its frames, series, pictures and warped volumes.
 ///
@@ -79,11 +64,5 @@ class SimulateRun {
   double flush_seconds_ = 0;                  ///< of the last flush()
   std::optional<SignalHold> until_complete_;  ///< while files are changed
 };
-
-/// The report as JSON.
-std::string report_json(const SimulateArguments& arguments,
-                        const Simulator& simulator,
-                        const StepSeries& series,
-                        const SimulateResult& result);
 
 }  // namespace tetwarp::cli

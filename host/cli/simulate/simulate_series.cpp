@@ -1,3 +1,5 @@
+/// @file simulate_series.cpp
+/// The list of columns and how each is filled.
 #include "host/cli/simulate/simulate_series.hpp"
 
 #include <algorithm>

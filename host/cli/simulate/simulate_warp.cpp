@@ -1,3 +1,5 @@
+/// @file simulate_warp.cpp
+/// Warps of the volumes that bodies are made of.
 #include "host/cli/simulate/simulate_warp.hpp"
 
 #include <fmt/format.h>

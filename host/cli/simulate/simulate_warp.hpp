@@ -13,8 +13,8 @@
 
 namespace tetwarp::cli {
 
-/// Warps the volumes of bodies by the positions of their nodes, which stay where the simulator has
-/// them, and writes NAME.warped_0000.vtkhdf and so on.
+/// Warps the volumes of bodies by the positions of their nodes and writes NAME.warped_0000.vtkhdf
+/// and so on. Positions are read in the memory of the simulator, host or device.
 class BodyWarps {
  public:
   /// Checks the options by preparing the first warp of each volume.
@@ -39,7 +39,8 @@ class BodyWarps {
     std::optional<Warper> warper;
   };
 
-  /// Makes the Warper of the grid that suits the positions of the body, unless it is there.
+  /// Makes a Warper if the output grid for the positions of the body differs from that of the last
+  /// one.
   void prepare(Follower& follower) const;
   WarpOptions options_of(const Follower& follower) const;
 

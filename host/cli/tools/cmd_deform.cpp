@@ -1,3 +1,5 @@
+/// @file cmd_deform.cpp
+/// The subcommand deform.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,3 +1,5 @@
+/// @file cmd_demo.cpp
+/// The subcommand demo.
 #include <fmt/format.h>
 
 #include <array>

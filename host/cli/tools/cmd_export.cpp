@@ -1,3 +1,5 @@
+/// @file cmd_export.cpp
+/// The subcommand export.
 #include <fmt/format.h>
 
 #include <memory>
@@ -10,9 +12,9 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/job/output_writer.hpp"
+#include "host/cli/job/warnings.hpp"
 #include "host/cli/tools/read_array.hpp"
-#include "host/cli/warp/output_writer.hpp"
-#include "host/cli/warp/warnings.hpp"
 
 namespace tetwarp::cli {
 namespace {

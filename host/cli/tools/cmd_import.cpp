@@ -1,3 +1,5 @@
+/// @file cmd_import.cpp
+/// The subcommand import.
 #include <fmt/format.h>
 
 #include <algorithm>

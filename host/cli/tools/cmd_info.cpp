@@ -1,3 +1,5 @@
+/// @file cmd_info.cpp
+/// The subcommand info.
 #include <fmt/format.h>
 
 #include <algorithm>

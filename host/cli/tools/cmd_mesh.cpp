@@ -1,3 +1,5 @@
+/// @file cmd_mesh.cpp
+/// The subcommand mesh.
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -120,6 +122,47 @@ void check_options(const MeshArguments& arguments) {
     throw CLI::ValidationError("--surface-triangles", "needs --surface and --threshold");
   }
 }
+
+void declare_options(CLI::App& command, MeshArguments& arguments) {
+  command.add_option("VOLUME", arguments.volume, "volume, VTKHDF or NIfTI")->type_name("");
+  command
+      .add_option("--from-surface", arguments.from_surface,
+                  "instead of a volume: tetrahedra that this closed surface of triangles touches "
+                  "or contains")
+      ->type_name("FILE");
+  command.add_option("-o,--output", arguments.output, "mesh to write")
+      ->required()
+      ->type_name("MESH");
+  command.add_option("--cells", arguments.lattice.cells, "cubes along the longest side [8]")
+      ->check(between(1, 1000))
+      ->type_name("N");
+  command
+      .add_option("--threshold", arguments.lattice.threshold,
+                  "voxels above this value are foreground [every voxel]")
+      ->check(finite_number())
+      ->type_name("V");
+  command.add_flag("--hexahedra", arguments.lattice.hexahedra,
+                   "keep the cubes as trilinear hexahedra, instead of five tetrahedra each");
+  command
+      .add_option("--array", arguments.array,
+                  "array to compare with the threshold [active scalars]")
+      ->type_name("NAME");
+  command.add_option("--step", arguments.step, "step of a volume file with several steps [0]")
+      ->check(at_least(0))
+      ->type_name("N");
+  add_quiet(command, arguments.quiet);
+  command
+      .add_option("--surface", arguments.surface,
+                  "also write triangles, whose points have the arrays nodes and weights of the "
+                  "tetrahedra they are bound to: the isosurface at the threshold, without one the "
+                  "boundary of the mesh")
+      ->type_name("FILE");
+  command
+      .add_option("--surface-triangles", arguments.surface_triangles,
+                  "about how many triangles of the isosurface [as many as there are]")
+      ->check(between(4, 100'000'000))
+      ->type_name("N");
+}
 }  // namespace
 
 void add_mesh_command(CLI::App& app, Run& run) {
@@ -130,44 +173,7 @@ void add_mesh_command(CLI::App& app, Run& run) {
       "  tetwarp mesh ct.nii.gz -o mesh.vtkhdf --cells 8 --threshold -500\n"
       "  tetwarp mesh ct.nii.gz -o mesh.vtkhdf --threshold -500 --surface skin.vtkhdf\n"
       "  tetwarp mesh --from-surface skin.vtkhdf -o mesh.vtkhdf --cells 12\n");
-  command->add_option("VOLUME", arguments->volume, "volume, VTKHDF or NIfTI")->type_name("");
-  command
-      ->add_option("--from-surface", arguments->from_surface,
-                   "instead of a volume: tetrahedra that this closed surface of triangles touches "
-                   "or contains")
-      ->type_name("FILE");
-  command->add_option("-o,--output", arguments->output, "mesh to write")
-      ->required()
-      ->type_name("MESH");
-  command->add_option("--cells", arguments->lattice.cells, "cubes along the longest side [8]")
-      ->check(between(1, 1000))
-      ->type_name("N");
-  command
-      ->add_option("--threshold", arguments->lattice.threshold,
-                   "voxels above this value are foreground [every voxel]")
-      ->check(finite_number())
-      ->type_name("V");
-  command->add_flag("--hexahedra", arguments->lattice.hexahedra,
-                    "keep the cubes as trilinear hexahedra, instead of five tetrahedra each");
-  command
-      ->add_option("--array", arguments->array,
-                   "array to compare with the threshold [active scalars]")
-      ->type_name("NAME");
-  command->add_option("--step", arguments->step, "step of a volume file with several steps [0]")
-      ->check(at_least(0))
-      ->type_name("N");
-  add_quiet(*command, arguments->quiet);
-  command
-      ->add_option("--surface", arguments->surface,
-                   "also write triangles, whose points have the arrays nodes and weights of the "
-                   "tetrahedra they are bound to: the isosurface at the threshold, without one the "
-                   "boundary of the mesh")
-      ->type_name("FILE");
-  command
-      ->add_option("--surface-triangles", arguments->surface_triangles,
-                   "about how many triangles of the isosurface [as many as there are]")
-      ->check(between(4, 100'000'000))
-      ->type_name("N");
+  declare_options(*command, *arguments);
   command->callback([arguments, &run] {
     check_options(*arguments);
     run = [arguments] {

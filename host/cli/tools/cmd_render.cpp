@@ -1,3 +1,5 @@
+/// @file cmd_render.cpp
+/// The subcommand render.
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,3 +1,5 @@
+/// @file displacement.cpp
+/// Writes the steps of a procedural displacement.
 #include "host/cli/tools/displacement.hpp"
 
 #include <cstddef>

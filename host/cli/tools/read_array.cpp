@@ -1,3 +1,5 @@
+/// @file read_array.cpp
+/// Reads an array, and says which one if none is named.
 #include "host/cli/tools/read_array.hpp"
 
 #include <fmt/format.h>

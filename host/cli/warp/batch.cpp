@@ -1,3 +1,5 @@
+/// @file batch.cpp
+/// Runs the jobs of a batch one after the other and reports each.
 #include "host/cli/warp/batch.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +13,8 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
-#include "host/cli/warp/job_plan.hpp"
+#include "host/cli/job/job_plan.hpp"
+#include "host/cli/warp/batch_file.hpp"
 #include "host/cli/warp/warp_job.hpp"
 #include "io/files/finished_file.hpp"
 

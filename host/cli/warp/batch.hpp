@@ -1,30 +1,11 @@
 /// @file batch.hpp
-/// `tetwarp warp --batch jobs.json`: {"jobs": [{"volume": ..., "mesh": ..., "output": ..., any long
-/// option without its dashes}, ...]}.
+/// `tetwarp warp --batch jobs.json`: several warps in one run.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <string>
-#include <vector>
 
-#include "host/cli/warp/warp_arguments.hpp"
+#include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
-
-/// One job of a batch file: its arguments, or an error.
-struct BatchJob {
-  std::vector<std::string>
-      volumes;         ///< as located from the batch file; also of a job with an error
-  std::string mesh;    ///< empty: the job names none
-  std::string output;  ///< empty: the job names none
-  WarpArguments arguments;
-  std::string error;  ///< empty: the arguments are valid
-};
-
-/// Reads a batch file. Relative paths in it start at its folder.
-/// @param defaults  options as given on the command line, for jobs that do not set them
-/// @throws IoError  when the file is not JSON or holds no list of jobs; an error inside a job is
-///                  stored in that job
-std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaults);
 
 /// Runs the jobs one after the other; a job that fails is reported and the next one runs. Writes
 /// the report of the batch after each job. Throws IoError before anything is written when the file

@@ -1,5 +1,7 @@
 /// @file batch_file.cpp
 /// Reads a batch file: each job becomes the words of a command line, parsed like one.
+#include "host/cli/warp/batch_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include <utility>
 
 #include "host/cli/common/declare.hpp"
-#include "host/cli/warp/batch.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -62,6 +63,7 @@ Words file_names(const std::string& key, const Json& value) {
   return value_texts(key, value);
 }
 
+/// Turns a job into the words of a command line, which are parsed like one.
 class JobReader {
  public:
   JobReader(fs::path folder, const CLI::App& defaults)

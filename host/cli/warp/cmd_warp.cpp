@@ -1,3 +1,5 @@
+/// @file cmd_warp.cpp
+/// The subcommand warp.
 #include <fmt/format.h>
 
 #include <memory>

@@ -1,3 +1,5 @@
+/// @file job_share.cpp
+/// Divides the outputs of a job among ranks and gathers their results.
 #include "host/cli/warp/job_share.hpp"
 
 #include <algorithm>
@@ -6,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "host/cli/warp/memory_plan.hpp"
+#include "host/cli/job/memory_plan.hpp"
 #include "host/cli/warp/report_exchange.hpp"
 #include "host/cli/warp/volume_run.hpp"
 

@@ -5,8 +5,9 @@
 
 #include "host/cli/common/progress_bar.hpp"
 #include "host/cli/common/ranks.hpp"
-#include "host/cli/warp/job_plan.hpp"
-#include "host/cli/warp/warp_job.hpp"
+#include "host/cli/job/job_plan.hpp"
+#include "host/cli/job/job_result.hpp"
+#include "host/cli/job/warp_arguments.hpp"
 
 namespace tetwarp::cli {
 

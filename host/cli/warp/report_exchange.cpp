@@ -1,3 +1,5 @@
+/// @file report_exchange.cpp
+/// Reports to JSON and back.
 #include "host/cli/warp/report_exchange.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 
 #include <tetwarp/report.hpp>
 
-#include "host/cli/warp/warp_job.hpp"
+#include "host/cli/job/job_result.hpp"
 
 namespace tetwarp::cli {
 

@@ -1,3 +1,5 @@
+/// @file warp_job.cpp
+/// Runs a job from its plan to its report.
 #include "host/cli/warp/warp_job.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +15,7 @@
 #include "host/base/stopwatch.hpp"
 #include "host/cli/common/interrupt.hpp"
 #include "host/cli/common/progress_bar.hpp"
-#include "host/cli/warp/job_plan.hpp"
+#include "host/cli/job/job_plan.hpp"
 #include "host/cli/warp/job_share.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/memory.hpp"

@@ -14,7 +14,7 @@
 
 namespace tetwarp {
 
-/// A list that a stage appends to. Memory is kept.
+/// A list that a stage appends to. Memory is kept when it is cleared.
 template <class T>
 class HostList {
  public:
@@ -61,18 +61,18 @@ class CpuDetectExec {
   void put(const T* host, std::int64_t size, std::vector<T>& values) const {
     values.assign(host, host + size);
   }
-  /// Host memory for stages to read: in place; `own` is memory of executors that need a copy.
+  /// Host memory for stages to read: used in place. Other executors copy it to `own`.
   template <class T>
   View<const T> input(const T* host, std::int64_t size, std::vector<T>&) const {
     return {host, size};
   }
-  /// Memory of the executor, or of the host as input(), as it is now: in place, where the caller
-  /// keeps it; `own` is memory of executors that need a copy.
+  /// Values that stages read later: used in place, since the caller of the detector keeps them
+  /// unchanged. Other executors copy them to `own`.
   template <class T>
   View<const T> keep(View<const T> values, std::vector<T>&) const {
     return values;
   }
-  /// What stages wrote, for the host to read: in place.
+  /// What stages wrote, for the host to read: used in place. Other executors copy it.
   template <class T>
   View<const T> on_host(View<const T> values, std::vector<T>&) const {
     return values;

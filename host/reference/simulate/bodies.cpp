@@ -9,8 +9,8 @@
 #include "host/reference/simulate/energy.hpp"
 #include "host/reference/simulate/forces.hpp"
 #include "host/reference/simulate/make_system.hpp"
-#include "host/reference/simulate/named.hpp"
 #include "host/reference/simulate/step_system.hpp"
+#include "host/reference/simulate/system.hpp"
 
 namespace tetwarp::reference {
 namespace {

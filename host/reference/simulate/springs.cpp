@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "host/reference/simulate/make_system.hpp"
-#include "host/reference/simulate/named.hpp"
 #include "host/reference/simulate/nearest_material.hpp"
 #include "host/reference/simulate/shares.hpp"
+#include "host/reference/simulate/system.hpp"
 
 namespace tetwarp::reference {
 namespace {

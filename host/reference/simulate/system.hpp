@@ -2,8 +2,12 @@
 /// A scene as unknowns, masses and springs of the reference. Blocks of three unknowns: the
 /// velocities of all nodes, then the linear and the angular velocity of each rigid frame.
 #pragma once
+#include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include <tetwarp/scene.hpp>
 
 #include "host/reference/simulate/cloth_body.hpp"
 #include "host/reference/simulate/fem_body.hpp"
@@ -91,5 +95,12 @@ struct Overrides {
     return result;
   }
 };
+
+/// Indices by name. @throws std::invalid_argument if there is none
+int body_named(const Scene& scene, const std::string& name);
+std::size_t handle_named(const Scene& scene, const std::string& name);
+
+/// Of Overrides::bodies.
+std::size_t script_named(const Scene& scene, const std::string& name);
 
 }  // namespace tetwarp::reference

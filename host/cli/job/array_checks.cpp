@@ -1,0 +1,49 @@
+/// @file array_checks.cpp
+/// The checks of the arrays of a volume.
+#include "host/cli/job/array_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "host/warp/transform_checks.hpp"
+
+namespace tetwarp::cli {
+namespace {
+void check_named(const std::string& path,
+                 const std::vector<ArrayHeader>& arrays,
+                 const std::string& name,
+                 Quantity quantity) {
+  const auto is_named = [&](const ArrayHeader& array) { return array.name == name; };
+  if (std::ranges::any_of(arrays, is_named)) return;
+  throw IoError(path, name,
+                fmt::format("{}: no such array among those to warp; tetwarp info lists all arrays",
+                            quantity < Quantity::tensor ? "--vectors" : "--tensors"));
+}
+}  // namespace
+
+void check_arrays(const std::string& path,
+                  const Grid& grid,
+                  const std::vector<ArrayHeader>& arrays,
+                  const WarpArguments& arguments) {
+  for (const auto& [name, quantity] : arguments.quantities) {
+    check_named(path, arrays, name, quantity);
+  }
+  for (const ArrayHeader& array : arrays) {
+    try {
+      check_source_transform({grid, array.type, array.components, nullptr, Memory::host},
+                             arguments.quantity_of(array.name), arguments.warp);
+    } catch (const std::invalid_argument& error) {
+      throw IoError(path, array.name,
+                    fmt::format("{} (--array chooses other arrays)", error.what()));
+    }
+    for (const std::size_t e : arguments.extra) {
+      if (array.name == extra_outputs[e].array()) {
+        throw IoError(path, array.name, "an extra output has this name; leave out one of them");
+      }
+    }
+  }
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,45 @@
+/// @file output_grid.hpp
+/// The output grid, from the options --grid, --dims, --origin, --spacing and --direction.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/warp.hpp>
+
+namespace tetwarp::cli {
+
+/// The options as they were given.
+struct GridChoice {
+  std::string base = "same";  ///< "same", "bounds", or a volume file whose grid is taken
+  std::optional<std::array<std::int64_t, 3>> dims;
+  std::optional<Point3> origin;
+  std::optional<Point3> spacing;
+  std::optional<std::array<double, 9>> direction;
+};
+
+/// The base grid with those parts replaced that are given. Of dims and spacing, one that is given
+/// alone determines the other: the box of the base grid's voxels is kept. Where voxels of that
+/// spacing do not fill the box, they protrude equally on both sides. A given origin or direction
+/// keeps the origin where it is when the size of the voxels changes.
+/// Throws std::invalid_argument when the result is no valid grid.
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const MeshReader& mesh,
+                  const std::vector<std::int64_t>& steps);
+
+/// The same for one set of positions of the nodes of a mesh.
+/// @param positions  returns them; called if the choice depends on them
+Grid resolve_grid(const GridChoice& choice,
+                  const Grid& source,
+                  const Mesh& mesh,
+                  const std::function<std::vector<Point3>()>& positions);
+
+/// Reads "i0:i1,j0:j1,k0:k1". Throws std::invalid_argument.
+Region parse_region(const std::string& text);
+
+}  // namespace tetwarp::cli

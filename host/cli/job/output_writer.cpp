@@ -1,0 +1,89 @@
+/// @file output_writer.cpp
+/// Names of output files, and one writer for each.
+#include "host/cli/job/output_writer.hpp"
+
+#include <filesystem>
+
+namespace tetwarp::cli {
+namespace {
+bool is_displacement(const ArrayHeader& array) {
+  return array.name == "tetwarp_displacement" || array.name == "tetwarp_forward";
+}
+}  // namespace
+
+ArrayHeader nifti_array(ArrayHeader array, const std::optional<Axes>& axes) {
+  NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
+  const bool is_field = is_displacement(array);
+  facts.component_axes = axes.value_or(is_field ? Axes::lps : facts.component_axes);
+  // ITK turns displacements of this intent from RAS to LPS when it reads them.
+  if (is_field && facts.component_axes == Axes::ras) {
+    facts.intent_code = nifti_displacement_intent;
+  }
+  array.nifti = facts;
+  return array;
+}
+
+SplitName split_name(const std::string& path) {
+  const std::string whole = ".nii.gz";
+  const std::string extension =
+      path.ends_with(whole) ? whole : std::filesystem::path(path).extension().string();
+  return {path.substr(0, path.size() - extension.size()), extension};
+}
+
+std::vector<std::string> files_of_output(const std::string& output,
+                                         const std::vector<ArrayHeader>& arrays) {
+  std::vector<std::string> files = {output};
+  if (!has_nifti_name(output)) return files;
+  const SplitName name = split_name(output);
+  for (std::size_t a = 1; a < arrays.size(); ++a) {
+    const std::string prefix = "tetwarp_";
+    const std::string& array = arrays[a].name;
+    files.push_back(name.stem + "_" +
+                    (array.starts_with(prefix) ? array.substr(prefix.size()) : array) +
+                    name.extension);
+  }
+  return files;
+}
+
+OutputWriter::OutputWriter(const std::string& output,
+                           const Grid& grid,
+                           const std::vector<ArrayHeader>& arrays,
+                           const VolumeWriteOptions& options,
+                           bool is_temporal,
+                           ChunkShape chunks) {
+  if (!has_nifti_name(output)) {
+    files_.emplace_back(output, grid, arrays, options, is_temporal, chunks);
+    return;
+  }
+  const std::vector<std::string> files = files_of_output(output, arrays);
+  for (std::size_t a = 0; a < arrays.size(); ++a) {
+    const std::vector<ArrayHeader> array = {nifti_array(arrays[a])};
+    files_.emplace_back(files[a], grid, array, options, is_temporal, chunks);
+  }
+}
+
+void OutputWriter::begin_step(double time) {
+  for (BlockVolumeWriter& file : files_) file.begin_step(time);
+}
+
+void OutputWriter::repeat_step(double time) {
+  for (BlockVolumeWriter& file : files_) file.repeat_step(time);
+}
+
+void OutputWriter::write(std::size_t array, const Region& region, const void* samples) {
+  files_.size() == 1 ? files_.front().write(array, region, samples)
+                     : files_[array].write(0, region, samples);
+}
+
+WrittenFile OutputWriter::finish() {
+  WrittenFile all;
+  for (BlockVolumeWriter& file : files_) {
+    const WrittenFile written = file.finish();
+    all.bytes += written.bytes;
+    all.chunks += written.chunks;
+    all.chunks_background += written.chunks_background;
+  }
+  return all;
+}
+
+}  // namespace tetwarp::cli

@@ -1,0 +1,179 @@
+/// @file warnings.cpp
+/// The texts of warnings and when they are given.
+#include "host/cli/job/warnings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <type_traits>
+
+#include "host/base/pixel_dispatch.hpp"
+#include "host/cli/common/declare.hpp"
+
+namespace tetwarp::cli {
+namespace {
+/// The value that a sample of this type gets; integers are rounded half to even and saturate.
+/// @pre  of integers: the value is finite
+double stored_value(PixelType type, double value) {
+  double stored = 0;
+  with_pixel_type(type, [&]<class T>(T) {
+    if constexpr (std::is_integral_v<T>) {
+      using Limits = std::numeric_limits<T>;
+      stored = std::clamp(std::nearbyint(value), static_cast<double>(Limits::min()),
+                          static_cast<double>(Limits::max()));
+    } else {
+      stored = static_cast<double>(static_cast<T>(value));
+    }
+  });
+  return stored;
+}
+
+/// True when a type can hold a value: integers exactly, floating-point numbers rounded.
+bool fits(PixelType type, double value) {
+  const double stored = stored_value(type, value);
+  return is_integer(type) ? stored == value : std::isfinite(stored) == std::isfinite(value);
+}
+
+/// Steps by number; several volumes give a step several times.
+using Steps = std::map<std::int64_t, const Counts*>;
+
+/// "step 3", "step 3 and 2 more".
+std::string steps_text(const Steps& steps) {
+  std::string text = fmt::format("step {}", steps.begin()->first);
+  if (steps.size() > 1) text += fmt::format(" and {} more", steps.size() - 1);
+  return text;
+}
+
+/// Times that are not equally spaced, of a NIfTI series; empty when they are.
+std::string uneven_times(const std::string& output, const std::vector<double>& times) {
+  const auto last = static_cast<double>(times.size()) - 1;
+  if (last < 2) return {};
+  const double mean = (times.back() - times.front()) / last;
+  for (std::size_t step = 1; step < times.size(); ++step) {
+    const double expected = times.front() + mean * static_cast<double>(step);
+    if (std::abs(times[step] - expected) <= 1e-3 * std::abs(mean)) continue;
+    return fmt::format(
+        "{}: the times of the steps are not equally spaced, NIfTI keeps the mean interval {:g}; "
+        "write VTKHDF to keep the times",
+        output, mean);
+  }
+  return {};
+}
+
+/// Times that do not increase; empty when they do.
+std::string unordered_times(const std::string& output, const std::vector<double>& times) {
+  for (std::size_t step = 1; step < times.size(); ++step) {
+    if (times[step] > times[step - 1]) continue;
+    return fmt::format(
+        "{}: the times of the steps do not increase: {:g} is followed by {:g}; programs that show "
+        "the file leave out steps or order them by time; correct the times of the mesh",
+        output, times[step - 1], times[step]);
+  }
+  return {};
+}
+}  // namespace
+
+Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments) {
+  if (mesh.has_displacement || mesh.has_moving_points || arguments.mesh.rest_file) return {};
+  return {arguments.mesh_file() +
+          ": the mesh has no point array 'displacement', no points that move and no --rest: "
+          "nothing is deformed"};
+}
+
+Warnings volume_warnings(const std::string& path,
+                         const VolumeHeader& volume,
+                         const MeshHeader& mesh,
+                         const WarpArguments& arguments) {
+  Warnings warnings;
+  if (!arguments.pair && !arguments.source_step && volume.times.size() > 1 &&
+      mesh.times.size() > 1) {
+    warnings.push_back(
+        fmt::format("{}: all steps of the mesh warp step 0 of the {} steps of the volume; --pair "
+                    "takes step n for step n, --source-step another one",
+                    path, volume.times.size()));
+  }
+  if (!arguments.arrays.empty()) return warnings;
+  std::string changes;
+  if (!volume.not_read.empty()) changes = "not warped: " + listed(volume.not_read);
+  if (!volume.widened.empty()) {
+    changes += changes.empty() ? "" : "; ";
+    changes += "float16 becomes float32: " + listed(volume.widened);
+  }
+  if (!changes.empty()) {
+    warnings.push_back(path + ": " + changes + "; --array names what to warp");
+  }
+  return warnings;
+}
+
+Warnings array_warnings(const std::string& volume,
+                        const std::vector<ArrayHeader>& arrays,
+                        const WarpArguments& arguments) {
+  Warnings warnings;
+  const WarpOptions& warp = arguments.warp;
+  for (const ArrayHeader& array : arrays) {
+    const auto warn = [&](const std::string& problem) {
+      warnings.push_back(fmt::format("{}: {}: {}", volume, array.name, problem));
+    };
+    const char* type = name_of(array.type);
+    if (warp.outside == Outside::background && !fits(array.type, warp.background)) {
+      warn(fmt::format("--background {} does not fit {}, {} is stored", warp.background, type,
+                       stored_value(array.type, warp.background)));
+    }
+    if (warp.intensity != Intensity::value && is_integer(array.type)) {
+      warn(
+          fmt::format("--intensity {} rounds to whole numbers of {} and cuts values beyond its "
+                      "range: totals change; use a volume of floating-point samples",
+                      name_of(warp.intensity), type));
+    }
+  }
+  return warnings;
+}
+
+Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps) {
+  Steps inverted, uncovered;
+  for (const StepReport& step : steps) {
+    const Counts& counts = step.counts;
+    if (counts.inverted > 0) inverted.emplace(step.step, &counts);
+    if (counts.voxels > 0 && counts.covered == 0) uncovered.emplace(step.step, &counts);
+  }
+  Warnings warnings;
+  if (!inverted.empty()) {
+    const Counts& first = *inverted.begin()->second;
+    warnings.push_back(
+        fmt::format("{}: {} of {} tetrahedra are inverted at {}: their voxels show "
+                    "the source mirrored",
+                    mesh, first.inverted, first.tetrahedra, steps_text(inverted)));
+  }
+  if (!uncovered.empty()) {
+    warnings.push_back(
+        fmt::format("{}: the mesh covers no voxel of an output at {}; check that "
+                    "mesh and volume share axes and units, or use --grid bounds",
+                    mesh, steps_text(uncovered)));
+  }
+  return warnings;
+}
+
+std::string times_warning(const std::string& output, const std::vector<double>& times) {
+  return has_nifti_name(output) ? uneven_times(output, times) : unordered_times(output, times);
+}
+
+void refuse_warnings(const Warnings& warnings) {
+  if (!warnings.empty()) {
+    throw std::runtime_error(warnings.front() + " (an error because of --strict)");
+  }
+}
+
+void print_warnings(const Warnings& warnings, const std::string& job) {
+  for (const std::string& warning : warnings) {
+    fmt::print(stderr, "tetwarp: {}{}warning: {}\n", job, job.empty() ? "" : ": ",
+               one_line(warning));
+  }
+}
+
+}  // namespace tetwarp::cli

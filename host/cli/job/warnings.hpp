@@ -1,0 +1,48 @@
+/// @file warnings.hpp
+/// Warnings of a warp: inputs and results that are valid but rarely intended. One line each.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/report.hpp>
+
+#include "host/cli/job/warp_arguments.hpp"
+
+namespace tetwarp::cli {
+
+using Warnings = std::vector<std::string>;
+
+/// A mesh without a deformation.
+Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments);
+
+/// A volume of several steps of which one is warped by all steps of the mesh. Unless --array names
+/// arrays: those that are not read, and those of float16, which become float32.
+Warnings volume_warnings(const std::string& path,
+                         const VolumeHeader& volume,
+                         const MeshHeader& mesh,
+                         const WarpArguments& arguments);
+
+/// A background that the type of an array cannot hold; densities and totals that its integers
+/// round.
+/// @param arrays  those that are warped
+Warnings array_warnings(const std::string& volume,
+                        const std::vector<ArrayHeader>& arrays,
+                        const WarpArguments& arguments);
+
+/// Results of steps: inverted cells, and meshes that cover no voxel. Steps that were not computed
+/// have no warnings.
+Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps);
+
+/// Times of the steps of a series that its format or its readers do not keep: in NIfTI those that
+/// are not equally spaced, in VTKHDF those that do not increase. Empty when there are none.
+std::string times_warning(const std::string& output, const std::vector<double>& times);
+
+/// For --strict: throws std::runtime_error with the first warning, if there is one.
+void refuse_warnings(const Warnings& warnings);
+
+/// Prints each as one line to standard error. @param job  empty, or a name such as "job 3"
+void print_warnings(const Warnings& warnings, const std::string& job);
+
+}  // namespace tetwarp::cli

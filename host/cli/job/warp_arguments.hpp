@@ -1,0 +1,77 @@
+/// @file warp_arguments.hpp
+/// The arguments of `tetwarp warp`, declared once for command line and batch files.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tetwarp/io.hpp>
+#include <tetwarp/warp.hpp>
+
+#include "host/cli/job/extra_outputs.hpp"
+#include "host/cli/job/output_grid.hpp"
+#include "host/cli/job/step_selection.hpp"
+
+namespace tetwarp::cli {
+
+/// Their syntax is checked; files are not read.
+struct WarpArguments {
+  std::vector<std::string> files;           ///< volumes, then the mesh
+  std::string output;                       ///< file, or folder for several volumes
+  std::vector<std::string> arrays;          ///< empty: every array
+  std::optional<std::int64_t> source_step;  ///< of volume files with several steps; none: 0
+  bool pair = false;                        ///< step n of the mesh warps step n of the volume
+  StepSelection steps;
+  MeshReadOptions mesh;      ///< without the axes of `import`
+  std::optional<Axes> axes;  ///< of files that are not VTKHDF
+  GridChoice grid;
+  std::map<std::string, Quantity> quantities;  ///< of arrays, by name; others are components
+  WarpOptions warp;  ///< without output_grid and quantities, which need the files
+  ExtraChoice extra;
+  int compress = 0;
+  bool temporal = false;
+  bool resume = false;
+  bool strict = false;   ///< warnings are errors
+  double memory = 0;     ///< limit of the process [byte]; 0: the available memory
+  bool dry_run = false;  ///< plan only
+  bool quiet = false;
+  std::string report;
+  std::string batch;
+  bool makes_folder = false;  ///< the output's folder is made if it is missing: for jobs of a batch
+
+  std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
+  const std::string& mesh_file() const { return files.back(); }
+  /// The step of the volume that a step of the mesh warps.
+  std::int64_t source_step_of(std::int64_t step) const {
+    return pair ? step : source_step.value_or(0);
+  }
+  Quantity quantity_of(const std::string& array) const {
+    const auto found = quantities.find(array);
+    return found == quantities.end() ? Quantity::components : found->second;
+  }
+};
+
+/// Declares every option and binds it to `arguments`, which must outlive `app`.
+void declare_warp_options(CLI::App& app, WarpArguments& arguments);
+
+/// Declare parts of these options, which `tetwarp simulate` has, too: --grid, --dims, --origin,
+/// --spacing and --direction; --filter, --overshoot, --antialias and --intensity; --outside and
+/// --background.
+void declare_grid_options(CLI::App& app, GridChoice& grid);
+void declare_sampling_options(CLI::App& app, WarpOptions& warp);
+void declare_outside_options(CLI::App& app, WarpOptions& warp);
+
+/// Throws CLI::ValidationError when filter and antialiasing or intensity contradict each other.
+void check_sampling(const WarpOptions& warp);
+
+/// Throws CLI::ValidationError when volumes, mesh or output are missing, are given with --batch, or
+/// when options contradict each other.
+void check_complete(const WarpArguments& arguments);
+
+/// Parses words as those of a command line. Throws CLI::ParseError.
+WarpArguments parse_warp_arguments(std::vector<std::string> words);
+
+}  // namespace tetwarp::cli

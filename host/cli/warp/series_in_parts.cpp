@@ -1,0 +1,89 @@
+/// @file series_in_parts.cpp
+/// Writes the steps of a series to files of their own and joins these.
+#include "host/cli/warp/series_in_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "host/base/stopwatch.hpp"
+#include "host/cli/common/interrupt.hpp"
+#include "host/cli/warp/step_writer.hpp"
+#include "host/cli/warp/volume_run.hpp"
+
+namespace tetwarp::cli {
+namespace {
+namespace fs = std::filesystem;
+
+/// The files of the steps, in a folder beside the output.
+std::vector<std::string> part_names(const fs::path& folder,
+                                    const std::vector<std::int64_t>& steps) {
+  std::vector<std::string> names;
+  names.reserve(steps.size());
+  for (const std::int64_t step : steps) {
+    names.push_back((folder / fmt::format("step_{:04}.vtkhdf", step)).string());
+  }
+  return names;
+}
+
+/// Joins the files of the steps.
+/// @param files  one per step of the job
+/// @returns what was written
+Counts join(const VolumeTask& task,
+            const Fingerprint& fingerprint,
+            const std::vector<std::string>& files) {
+  const WarpArguments& arguments = task.arguments;
+  const std::vector<std::int64_t>& steps = task.job.steps;
+  StepWriter writer(task);
+  writer.begin_series(task.volume.outputs.front(), fingerprint);
+  std::vector<Point3> last;
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    stop_if_interrupted();
+    std::vector<Point3> positions = task.job.mesh.read_step(steps[s]);
+    const double time = task.job.mesh.header().times[static_cast<std::size_t>(steps[s])];
+    const bool is_same_source =
+        s > 0 && arguments.source_step_of(steps[s]) == arguments.source_step_of(steps[s - 1]);
+    if (arguments.warp.skip.unchanged_steps && is_same_source && positions == last) {
+      writer.repeat_step(time);
+    } else {
+      writer.copy_step(time, files[s]);
+    }
+    last = std::move(positions);
+  }
+  stop_if_interrupted();
+  return writer.finish();
+}
+}  // namespace
+
+void write_series_in_parts(const VolumeTask& task,
+                           const Fingerprint& fingerprint,
+                           Ranks& ranks,
+                           ProgressBar& bar,
+                           JobResult& result) {
+  const fs::path folder = task.volume.outputs.front() + ".steps";
+  VolumePlan parts = task.volume;
+  parts.steps = task.job.steps;
+  parts.outputs = parts.files = part_names(folder, task.job.steps);
+  WarpArguments arguments = task.arguments;
+  arguments.temporal = false;
+  arguments.compress = 0;
+  fs::create_directories(folder);
+  const std::int64_t written = result.written, skipped = result.skipped;
+  VolumeRun(arguments, task.job, parts, ranks, bar, result).run();
+  result.written = written + task.volume.files_per_output();
+  result.skipped = skipped;
+  bar.show_phase("writing");
+  const Stopwatch watch;
+  result.report.counts += join(task, fingerprint, parts.outputs);
+  result.report.timings.write += watch.seconds();
+  std::error_code ignored;
+  for (const std::string& part : parts.outputs) fs::remove(part, ignored);
+  fs::remove(folder, ignored);
+}
+
+}  // namespace tetwarp::cli
