@@ -1,7 +1,7 @@
 # ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
 
 # Parts in the order in which they run; each builds into its own folder below build/.
-check_parts=(lint format host tidy small shared cuda release fused asan fuzz docs)
+check_parts=(lint format dead host tidy small shared cuda release fused asan fuzz docs)
 
 # source_files EXTENSION...: the C++ and CUDA sources, from the root
 source_files() {
@@ -86,7 +86,9 @@ register_table() {
 }
 
 check_lint() {
-  lint && python3 "$root/tests/lint/folders.py" --test && python3 "$root/tests/lint/sources.py" --test
+  local script
+  lint
+  for script in folders sources dead; do python3 "$root/tests/lint/$script.py" --test; done
 }
 
 check_format() {
@@ -97,6 +99,19 @@ check_format() {
 # configure_host FOLDER CMAKE-OPTION...: without CUDA and precompiled headers.
 configure_host() {
   configure "$@" -DTETWARP_CUDA=OFF -DTETWARP_BENCH=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
+}
+
+# Functions that only tests reach: those compiled without optimization, so that every call is one, and
+# not in the command (also on the emulated device), the benchmarks and the examples.
+check_dead() {
+  local folder=$root/build/check-dead
+  configure_host "$folder" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= \
+    -DCMAKE_CXX_FLAGS=-ffunction-sections -DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections \
+    -DTETWARP_DEAD_CODE=ON
+  cmake --build "$folder"
+  python3 "$root/tests/lint/dead.py" "$folder" --programs "$folder"/tetwarp \
+    "$folder"/tetwarp_{emulated_command,collision_pairs} "$folder"/tetwarp_example_* \
+    "$folder"/tetwarp_bench{,_collide,_contact,_peers,_simulate}
 }
 
 # Every file compiles alone, so it includes what it needs; warnings are errors.

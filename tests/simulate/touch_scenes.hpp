@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "host/simulate/surfaces/scene_surfaces.hpp"
+#include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/simulate_scenes.hpp"
 
 namespace tetwarp::test {
