@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "host/reference/simulate/forces.hpp"
 #include "host/reference/simulate/make_system.hpp"
 #include "host/reference/simulate/step_system.hpp"
 #include "tests/support/body_scenes.hpp"

@@ -64,8 +64,8 @@ SurfaceMotion motion_of(const TouchScene& touch,
                         double time_step,
                         const std::vector<double>& fraction,
                         int threads = 1) {
-  return motion_of({touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction},
-                   threads);
+  return test::motion_of(
+      {touch.surfaces, touch.model, touch.model.start, velocity, time_step, fraction}, threads);
 }
 
 TEST(SurfaceMotion, EndsWhereTheMovedBodiesAre) {
