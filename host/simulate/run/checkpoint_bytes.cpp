@@ -8,6 +8,13 @@
 
 namespace tetwarp {
 
+void CheckpointWriter::append(const void* data, std::size_t size) {
+  if (size == 0) return;
+  const std::size_t end = bytes_.size();
+  bytes_.resize(end + size);
+  std::memcpy(bytes_.data() + end, data, size);
+}
+
 void CheckpointReader::read(bool& value) {
   std::uint8_t byte = 0;
   read(byte);

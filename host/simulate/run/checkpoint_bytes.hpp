@@ -20,15 +20,13 @@ class CheckpointWriter {
   template <class T>
   void add(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+    append(&value, sizeof(T));
   }
   template <class T>
   void add(const std::vector<T>& list) {
     static_assert(std::is_trivially_copyable_v<T>);
     add(static_cast<std::uint64_t>(list.size()));
-    const auto bytes = std::as_bytes(std::span(list));
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    append(list.data(), list.size() * sizeof(T));
   }
   /// One byte, whether there is a value, and the value.
   template <class T>
@@ -50,6 +48,8 @@ class CheckpointWriter {
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:
+  void append(const void* data, std::size_t size);
+
   std::vector<std::byte> bytes_;
 };
 
