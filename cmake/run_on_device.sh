@@ -90,7 +90,8 @@ if [ "$part" = checks ] || [ "$part" = all ]; then
   fi
 fi
 if [ "$part" = times ] || [ "$part" = all ]; then
-  brief='(W0|W1|W4).*/linear/float32/cuda$|W2_rotated_(256|384)/linear/(uint8|int16|float32)/cuda$'
+  # Names of rows end in /iterations:1/manual_time.
+  brief='(W0|W1|W4).*/linear/float32/cuda/iterations|W2_rotated_(256|384)/linear/(uint8|int16|float32)/cuda/iterations'
   run bench-resident 120 "$here/tetwarp_bench" --benchmark_filter='^resident/' \
     --benchmark_out="$results/resident.json"
   run bench-warp 150 "$here/tetwarp_bench" \
@@ -98,7 +99,7 @@ if [ "$part" = times ] || [ "$part" = all ]; then
     --benchmark_out="$results/warp.json"
   run bench-contact 90 "$here/tetwarp_bench_contact" --benchmark_filter='/cuda/' \
     --benchmark_out="$results/contact.json"
-  run bench-simulate 90 "$here/tetwarp_bench_simulate" --benchmark_filter='/cuda$' \
+  run bench-simulate 90 "$here/tetwarp_bench_simulate" --benchmark_filter='/cuda/iterations' \
     --benchmark_out="$results/simulate.json"
   [ -z "$peers" ] || run gpu-peers 90 python3 "$peers"
 fi

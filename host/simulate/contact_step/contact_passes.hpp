@@ -26,7 +26,7 @@ struct PassParts {
 };
 
 /// A pass is a detection along the motion and a solve of all contacts found so far, which makes
-/// another motion. Passes end when a detection finds nothing new, or at SolverSettings::max_passes.
+/// another motion. Passes end when a detection finds nothing new, or at SceneSolver::max_passes.
 class ContactPasses {
  public:
   ContactPasses(const PassParts& parts, const ContactStepOptions& options);

@@ -11,7 +11,7 @@
 
 namespace tetwarp {
 
-/// A step has a power of two of equal parts, up to SolverSettings::max_substeps: so many that no
+/// A step has a power of two of equal parts, up to SceneSolver::max_substeps: so many that no
 /// rigid body turns too far in one, and twice as many where an attempt was not good.
 class StepDivision {
  public:
