@@ -211,7 +211,7 @@ if(NOT BUILD_SHARED_LIBS)
   # A separate program, because the emulation defines CUDA's names.
   tetwarp_add_tests(tetwarp_simt_tests SOURCES
     tests/emulated/test_affine_simt.cpp tests/emulated/test_anderson_simt.cpp
-    tests/emulated/test_cell_interior_simt.cpp tests/emulated/test_cell_raster_simt.cpp
+    tests/emulated/test_cell_group_simt.cpp tests/emulated/test_cell_raster_simt.cpp
     tests/emulated/test_contact_grid_simt.cpp tests/emulated/test_contact_simt.cpp
     tests/emulated/test_grouped_scan_simt.cpp tests/emulated/test_simt.cpp)
   tetwarp_discover(tetwarp_simt_tests simt)

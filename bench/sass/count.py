@@ -4,12 +4,9 @@
 Compiles bench/sass/kernels.cu for one architecture, reads `cuobjdump -sass` and prints a table:
 registers, stack, spills, resident blocks, and the instructions on the longest path through
 
-* the innermost loop that computes and stores voxels ("stored"), per store to global memory; in the
-  kernel of tested cells the loop over cells, with one test, per voxel,
+* the innermost loop that computes and stores voxels ("stored"), per store to global memory,
 * the innermost loop that stores nothing ("tested"), per test of a voxel in a tetrahedron: a turn
-  tests the four voxels of a thread,
-* the loop over pairs of a cell and a tetrahedron ("pair") in the kernel that makes their records,
-  per pair: all instructions of a turn, float64 included, of a warp, which takes eight pairs,
+  tests four voxels of a thread, or two rows of eight,
 * the kernel from its first to its last instruction, every loop taken once ("whole").
 
 Paths that an instruction of AVOID lies on are left out: float64 and calls serve rare voxels only.
@@ -26,10 +23,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 REGISTERS, WARPS, BLOCKS = 65536, 64, 32  # of a multiprocessor of sm_90
-VOXELS_TESTED = 4  # of a thread, per turn of the loop over tetrahedra: raster_depth
-PAIRS = 8  # of a warp, per turn of the loop over pairs
 AVOID = re.compile(r"^(D(ADD|MUL|FMA|SETP)|CALL)\b")
-CALL = re.compile(r"^CALL\b")
 FLOOR = re.compile(r"^(FRND|F2I|FADD\.RM)")  # of a position: in the loop over voxels
 INSTRUCTION = re.compile(r"^\s*/\*([0-9a-f]{4,})\*/\s+(?:@(!?U?P\w+)\s+)?([A-Z][\w.]*)([^;]*);")
 
@@ -41,12 +35,9 @@ class Kernel:
         self.name = name
         self.code = []
 
-    def loops_over_cells(self):
-        """Whether a turn of the loop handles the voxels that a thread has of a cell."""
-        return "cell_tested_kernel" in self.name
-
-    def loops_over_pairs(self):
-        return "cell_class_kernel" in self.name
+    def voxels_tested(self):
+        """Of a thread, per turn of the loop over tetrahedra: two rows of eight, or raster_depth."""
+        return 16 if "cell_group_kernel" in self.name else 4
 
     def stores_one(self):
         """Whether a turn of the loop handles one voxel, whatever else it may store."""
@@ -161,31 +152,25 @@ def samples(code):
 
 
 def counts_of(kernel):
-    """Instructions per stored voxel, per test, per pair and of the whole kernel, or None."""
+    """Instructions per stored voxel, per test and of the whole kernel, or None."""
     blocks, successors = kernel.blocks()
-    stored = tested = pair = None
+    stored = tested = None
     everything = set(range(len(blocks)))
     for head, body, latches in loops_of(successors):
         code = [kernel.code[n] for b in body for n in blocks[b]]
-        if kernel.loops_over_pairs():
-            if any(line[2].startswith("SHFL") for line in code):
-                plain = [b for b in body if not any(CALL.match(kernel.code[n][2]) for n in blocks[b])]
-                pair = sum(len(blocks[b]) for b in plain) / PAIRS
-        elif any(line[2].startswith("STG") for line in code):
-            copies = any(line[2].startswith("LDGSTS") for line in code)  # those of the next cell
-            if not samples(code) or kernel.loops_over_cells() != copies:
+        if any(line[2].startswith("STG") for line in code):
+            if not samples(code):
                 continue
             path = longest(kernel, blocks, successors, head, body, latches, True)
             if stored is None and path and path[1]:
-                voxels = 1 if kernel.stores_one() else path[1]
-                stored = path[0] / (VOXELS_TESTED if copies else voxels)
+                stored = path[0] / (1 if kernel.stores_one() else path[1])
         elif sum(line[2].startswith("FFMA") for line in code) >= 12:
             path = longest(kernel, blocks, successors, head, body, latches, False)
             if tested is None and path:
-                tested = path[0] / VOXELS_TESTED
+                tested = path[0] / kernel.voxels_tested()
     exits = {b for b, block in enumerate(blocks) if kernel.code[block[-1]][2].startswith("EXIT")}
     whole = longest(kernel, blocks, successors, 0, everything, exits, True)
-    return stored, tested, pair, whole
+    return stored, tested, whole
 
 
 def kernels_of(sass):
@@ -251,17 +236,16 @@ def main():
                   f"-I{given.include}", "-o", cubin, "bench/sass/kernels.cu")
         kernels = kernels_of(run(given.cuobjdump, "-sass", cubin))
     resources = resources_of(log)
-    print(f"{'stored':>7} {'tested':>7} {'pair':>5} {'whole':>6} {'stores':>6} {'regs':>5} {'stack':>6} "
+    print(f"{'stored':>7} {'tested':>7} {'whole':>6} {'stores':>6} {'regs':>5} {'stack':>6} "
           f"{'spill':>6} {'blocks':>7} {'warps':>6}  kernel")
     for kernel in sorted(kernels, key=lambda k: k.name):
         if kernel.name not in resources:
             continue
         registers, stack, spilled = resources[kernel.name]
-        stored, tested, pair, whole = counts_of(kernel)
+        stored, tested, whole = counts_of(kernel)
         name = run("c++filt", kernel.name).strip()
         blocks = resident_blocks(registers, 128)
         print(f"{f'{stored:.1f}' if stored else '-':>7} {f'{tested:.1f}' if tested else '-':>7} "
-              f"{f'{pair:.1f}' if pair else '-':>5} "
               f"{whole[0] if whole else '-':>6} {whole[1] if whole else '-':>6} {registers:>5} "
               f"{stack:>6} {spilled:>6} {blocks:>7} {blocks * 4 * 100 // WARPS:>5}%  {short(name)}")
 

@@ -239,12 +239,12 @@ WarpBlock BlockPlanner::State::make_block(const VoxelBox& box,
   block.host_bytes = 2 * samples + around + (pair_bytes + mask_bytes) * pairs;
 
   // A device keeps two lists of pairs and three arrays for sorting, with room for a quarter more
-  // pairs; and lists of cells by class.
+  // pairs; and a list of cells.
   constexpr double device_pair_bytes = 36, list_room = 1.25, least_room = 1024;
   const double cell_count = output_voxels / (cell_edge * cell_edge * cell_edge);
   const double room = list_room * pairs + least_room;
   block.device_bytes = samples + around + (device_pair_bytes + mask_bytes) * room +
-                       (options.skip.interior_cells ? class_list_bytes(cell_count, room) : 0.0);
+                       (options.skip.interior_cells ? class_list_bytes(cell_count) : 0.0);
   return block;
 }
 

@@ -22,7 +22,7 @@ class DevicePairs : public PairState<Exec> {
   DevicePairs(Exec& exec, const WarpPlan& plan, const WarpGeometry& geometry)
       : PairState<Exec>(exec, plan, geometry) {
     const std::int64_t tets = this->tet_count(), cells = this->cell_count();
-    reserve(candidate_sums_, tets);
+    reserve(candidate_sums_, tets, sum_shift - 2);
     reserve(cell_sums_, cells);
     cell_counts_.reserve(cells);
     for (List& list : lists_) list.ranges.reserve(cells + 1);
@@ -81,12 +81,13 @@ class DevicePairs : public PairState<Exec> {
   struct Sums {
     Buffer<std::int64_t> within, groups;
   };
-  static void reserve(Sums& sums, std::int64_t count) {
+  static void reserve(Sums& sums, std::int64_t count, int shift = sum_shift) {
     sums.within.reserve(count + 1);
-    sums.groups.reserve(group_count(count) + 1);
+    sums.groups.reserve(group_count(count, shift) + 1);
   }
-  static GroupedSums view(const Sums& sums, std::int64_t count) {
-    return {sums.within.view(count + 1), sums.groups.view(group_count(count) + 1), count + 1};
+  static GroupedSums view(const Sums& sums, std::int64_t count, int shift = sum_shift) {
+    return {sums.within.view(count + 1), sums.groups.view(group_count(count, shift) + 1), count + 1,
+            shift};
   }
 
   /// Nodes, and zeros to count from.
@@ -108,27 +109,32 @@ class DevicePairs : public PairState<Exec> {
   /// Setup of the tetrahedra, and the sums of their candidate pairs.
   void count(bool has_before) {
     const std::int64_t tets = this->tet_count();
-    const GroupedSums sums = view(candidate_sums_, tets);
-    const auto run = [&]<bool widens>(std::bool_constant<widens>) {
-      exec_.grouped_scan(
-          "warp/setup", tets,
-          TetCountBody<widens>{Base::setup_body(sums.within),
-                               node_moved_.const_view(has_before ? mesh_.node_count() : 0),
-                               moved_.view(tets),
-                               is_update_,
-                               {this->counters()->spread.moved, SpreadCounts::places},
-                               {&this->counters()->work.candidates, 1}},
-          sums);
+    const GroupedSums sums = candidate_sums();
+    const auto body = [&]<bool widens>(std::bool_constant<widens>) {
+      return TetCountBody<widens>{Base::setup_body(sums.within),
+                                  node_moved_.const_view(has_before ? mesh_.node_count() : 0),
+                                  moved_.view(tets),
+                                  is_update_,
+                                  {this->counters()->spread.moved, SpreadCounts::places},
+                                  {&this->counters()->work.candidates, 1}};
     };
     if (this->keeps_totals()) {
-      run(std::true_type{});
+      exec_.grouped_scan("warp/setup", tets, body(std::true_type{}), sums);
+    } else if (mesh_.hexes.nodes.size > 0) {
+      exec_.grouped_scan("warp/setup", tets, body(std::false_type{}), sums);
     } else {
-      run(std::false_type{});
+      exec_.grouped_scan("warp/setup", tets, TetLanesBody{body(std::false_type{})}, sums);
     }
   }
 
+  /// The sums of the candidate pairs of the tetrahedra, in groups for the lanes of their setup.
+  GroupedSums candidate_sums() const {
+    const bool shares = !this->keeps_totals() && mesh_.hexes.nodes.size == 0;
+    return view(candidate_sums_, this->tet_count(), shares ? sum_shift - 2 : sum_shift);
+  }
+
   void make_list() {
-    const std::int64_t tets = this->tet_count(), cells = this->cell_count();
+    const std::int64_t cells = this->cell_count();
     List& now = lists_[now_];
     now.size = pair_capacity_;
     const CullSwitches switches{options_.skip.rejected_cells && !this->keeps_totals(),
@@ -140,7 +146,7 @@ class DevicePairs : public PairState<Exec> {
     const StayingPairs staying = {is_update_ ? this->list_before() : PairList{}, this->moved(),
                                   staying_.view(is_update_ ? cells : 0)};
     const auto list_by = [&]<class Verdict>(const Verdict& verdict) {
-      cell_list(exec_, view(candidate_sums_, tets),
+      cell_list(exec_, candidate_sums(),
                 CellCullBody<Verdict>{this->setups(), verdict, switches, geometry_.frame, {}},
                 {candidates_.view(now.size), places_.view(now.size), cell_counts_.view(cells),
                  view(cell_sums_, cells), placed_.view(now.size)},
@@ -156,7 +162,7 @@ class DevicePairs : public PairState<Exec> {
                 {&this->counters()->work.merged_pairs, 1});
     };
     if (this->uses_masks(switches)) {
-      list_by(masks_.run(this->setups(), view(candidate_sums_, tets)));
+      list_by(masks_.run(this->setups(), candidate_sums()));
     } else {
       list_by(PlaneVerdict{});
     }

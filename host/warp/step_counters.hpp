@@ -74,6 +74,9 @@ TETWARP_HD std::int64_t counter_word(const CounterMemory& memory, std::int64_t k
       (is_single ? (k - first) * SpreadCounts::places
                  : single_words * SpreadCounts::places + (k - first - single_words));
   const std::int64_t step = is_single ? 1 : raster_words;
+#if defined(__CUDA_ARCH__)
+#pragma unroll 32  // so many loads at a time
+#endif
   for (std::int64_t p = 0; p < SpreadCounts::places; ++p) sum += from[p * step];
   return sum;
 }

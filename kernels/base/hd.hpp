@@ -53,6 +53,15 @@ TETWARP_HD float smaller_of(float a, float b) {
 #endif
 }
 
+/// The larger of two numbers; if one of them is NaN, the other.
+TETWARP_HD float larger_of(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fmaxf(a, b);
+#else
+  return b > a || a != a ? b : a;
+#endif
+}
+
 template <class T>
 TETWARP_HD T max_of(T a, T b) {
   return a < b ? b : a;

@@ -32,23 +32,46 @@ struct ZeroBody {
   TETWARP_HD void operator()(std::int64_t i) const { bytes[i] = 0; }
 };
 
-/// Calls body(segment, index in the segment, item), the segment found by bisection of `offsets`.
+/// The last index in [0, size - 1) whose offset is not above `item`, for the item of each lane:
+/// those of a warp are successive. The lanes first search for the first item together, so that few
+/// loads wait for others.
+/// @pre offsets[0] <= item < offsets[size - 1]; all lanes of the warp call it
+template <class Offsets>
+__device__ __forceinline__ std::int64_t segment_of(const Offsets& offsets, std::int64_t item) {
+  const int lane = static_cast<int>(threadIdx.x) % 32;
+  const std::int64_t first = __shfl_sync(~0u, item, 0);
+  std::int64_t low = 0, high = offsets.size - 1;
+  while (low + 1 < high) {
+    const std::int64_t step = (high - low + 31) / 32, probe = low + step * (lane + 1);
+    const bool is_before = probe < high && offsets[min_of(probe, high)] <= first;
+    low += step * __popc(__ballot_sync(~0u, is_before));
+    high = min_of(low + step, high);
+  }
+  const std::int64_t last = offsets.size - 2;
+  std::int64_t found = low;
+  for (bool is_open = true;; low += 31) {
+    const std::int64_t start = offsets[min_of(low + lane, last)];
+    int before = 0;  // of the 32 segments from low on, the last that begins at or before the item
+    for (int step = 16; step > 0; step /= 2) {
+      const std::int64_t other = __shfl_sync(~0u, start, before + step);
+      if (other <= item) before += step;
+    }
+    if (is_open) found = min_of(low + before, last);
+    is_open = is_open && before == 31 && low + 31 < last;
+    if (!__any_sync(~0u, is_open)) return found;
+  }
+}
+
+/// Calls body(segment, index in the segment, item).
 /// @tparam Offsets  View<const std::int64_t> or GroupedSums
 template <class Offsets, class Body>
 __global__ void __launch_bounds__(each_threads, resident_blocks<Body>)
     each_item_kernel(Offsets offsets, std::int64_t capacity, Body body) {
   const std::int64_t item = std::int64_t{blockIdx.x} * each_threads + threadIdx.x;
-  std::int64_t low = 0, high = offsets.size - 1;
-  if (item >= min_of(offsets[high], capacity)) return;
-  while (low + 1 < high) {
-    const std::int64_t middle = (low + high) / 2;
-    if (offsets[middle] <= item) {
-      low = middle;
-    } else {
-      high = middle;
-    }
-  }
-  body(low, item - offsets[low], item);
+  const std::int64_t count = min_of(offsets[offsets.size - 1], capacity);
+  if (item - threadIdx.x % 32 >= count) return;  // all lanes of the warp
+  const std::int64_t segment = segment_of(offsets, min_of(item, count - 1));
+  if (item < count) body(segment, item - offsets[segment], item);
 }
 
 }  // namespace tetwarp

@@ -145,15 +145,16 @@ class CudaExec : public DeviceQueue {
             capacity, body);
   }
   /// Sums body(i) for i in [0, count), and calls body.finish(total, k) for k in [0, sum_group).
-  /// @pre sums has room for `count` counts
+  /// A body with a constant `lanes` is called by so many lanes together.
+  /// @pre sums has room for `count` counts, in groups of sum_group / lanes
   template <class Body>
   void grouped_scan(const char* label,
                     std::int64_t count,
                     const Body& body,
                     const GroupedSums& sums) {
     unsigned* const own_ticket = ticket();
-    enqueue(label, grouped_scan_kernel<Body>, blocks_for(count + 1), sum_group, 0, count, body,
-            sums, own_ticket);
+    const dim3 blocks(static_cast<unsigned>(group_count(count, sums.shift)));
+    enqueue(label, grouped_scan_kernel<Body>, blocks, sum_group, 0, count, body, sums, own_ticket);
   }
   void exclusive_scan(const char* label, View<std::int64_t> values) {
     timed(label, [&] { cuda_exclusive_scan(stream(), scratch_, values); });

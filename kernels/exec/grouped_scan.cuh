@@ -6,6 +6,7 @@
 
 #include "kernels/base/grouped_sums.hpp"
 #include "kernels/exec/each_kernel.cuh"
+#include "kernels/exec/four_lanes.cuh"
 
 namespace tetwarp {
 
@@ -39,20 +40,53 @@ __device__ __forceinline__ std::int64_t sum_before(std::int64_t mine,
   return before;
 }
 
-/// Sums body(i) for i in [0, count), then calls body.finish(total, k) for k in [0, sum_group).
+/// Replaces the sums of the groups by the sums of those before each, and stores their total after
+/// the last. Each thread takes successive groups. Called by all threads of one block.
+/// @param of_warp  scratch, as in sum_before()
+/// @returns the total
+__device__ __forceinline__ std::int64_t sum_groups(std::int64_t* groups,
+                                                   std::int64_t count,
+                                                   std::int64_t* of_warp) {
+  const int thread = static_cast<int>(threadIdx.x);
+  const std::int64_t each = (count + sum_group - 1) / sum_group;
+  const std::int64_t first = thread * each, past = min_of(first + each, count);
+  std::int64_t own = 0, total = 0;
+  for (std::int64_t g = first; g < past; ++g) own += read_shared_by_blocks(&groups[g]);
+  std::int64_t before = sum_before(own, of_warp, total);
+  for (std::int64_t g = first; g < past; ++g) {
+    const std::int64_t sum = read_shared_by_blocks(&groups[g]);
+    groups[g] = before;
+    before += sum;
+  }
+  if (thread == 0) groups[count] = total;
+  return total;
+}
+
+/// Sums body(i) for i in [0, count), then calls body.finish(total, k) for k in [0, sum_group). A
+/// body with a constant `lanes` is called by four lanes as body(i, FourLanes).
 ///
-/// Blocks: group_count(count). Threads: sum_group. No block waits for another.
+/// Blocks: one per group. Threads: sum_group. No block waits for another.
+/// @param sums    of sum_group / lanes counts per group
 /// @param ticket  zero; number of blocks that have ended, zero again afterwards
 template <class Body>
 __global__ void __launch_bounds__(sum_group, resident_blocks<Body>)
     grouped_scan_kernel(std::int64_t count, Body body, GroupedSums sums, unsigned* ticket) {
+  constexpr int lanes = lanes_of<Body>;
   __shared__ std::int64_t of_warp[sum_group / 32];
   __shared__ bool is_last;
   const int thread = static_cast<int>(threadIdx.x);
-  const std::int64_t i = std::int64_t{blockIdx.x} * sum_group + thread;
+  const std::int64_t i = std::int64_t{blockIdx.x} * (sum_group / lanes) + thread / lanes;
+  std::int64_t mine = 0;
+  if constexpr (lanes == 1) {
+    if (i < count) mine = body(i);
+  } else {
+    const FourLanes four = four_lanes();
+    const std::int64_t value = i < count ? body(i, four) : 0;
+    if (four.lane == 0) mine = value;
+  }
   std::int64_t total = 0;
-  const std::int64_t before = sum_before(i < count ? body(i) : 0, of_warp, total);
-  if (i <= count) sums.within[i] = before;
+  const std::int64_t before = sum_before(mine, of_warp, total);
+  if (i <= count && thread % lanes == 0) sums.within[i] = before;
   __threadfence();  // what the block wrote is visible before its ticket
   __syncthreads();
   if (thread == 0) {
@@ -63,20 +97,9 @@ __global__ void __launch_bounds__(sum_group, resident_blocks<Body>)
   __syncthreads();
   if (!is_last) return;
   __threadfence();
-  const std::int64_t groups = std::int64_t{gridDim.x};
-  std::int64_t all = 0;
-  for (std::int64_t first = 0; first < groups; first += sum_group) {
-    const std::int64_t g = first + thread;
-    const std::int64_t own = g < groups ? read_shared_by_blocks(&sums.groups[g]) : 0;
-    const std::int64_t sum = sum_before(own, of_warp, total);
-    if (g < groups) sums.groups[g] = all + sum;
-    all += total;
-  }
-  if (thread == 0) {
-    sums.groups[groups] = all;
-    *ticket = 0;
-  }
-  body.finish(all, thread);
+  total = sum_groups(sums.groups.data, std::int64_t{gridDim.x}, of_warp);
+  if (thread == 0) *ticket = 0;
+  body.finish(total, thread);
 }
 
 }  // namespace tetwarp

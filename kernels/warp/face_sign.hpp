@@ -36,11 +36,11 @@ struct ExactPlane {
   std::int64_t on[3];
 };
 
+/// The plane through three points.
 template <class Integer = Int128>
-TETWARP_HD ExactPlane<Integer> exact_plane(const TetNodes& tet, int face) {
-  const std::int64_t* o = tet.x[face == 0 ? 1 : 0];
-  const std::int64_t* p = tet.x[face <= 1 ? 2 : 1];
-  const std::int64_t* q = tet.x[face == 3 ? 2 : 3];
+TETWARP_HD ExactPlane<Integer> plane_through(const std::int64_t* o,
+                                             const std::int64_t* p,
+                                             const std::int64_t* q) {
   std::int64_t u[3], v[3];
   ExactPlane<Integer> plane;
   for (int axis = 0; axis < 3; ++axis) {
@@ -54,6 +54,17 @@ TETWARP_HD ExactPlane<Integer> exact_plane(const TetNodes& tet, int face) {
     plane.normal[axis] = Integer{u[b]} * v[c] - Integer{u[c]} * v[b];
   }
   return plane;
+}
+
+/// The nodes of a face in the order in which its plane is computed, n 0 to 2.
+TETWARP_HD int face_node(int face, int n) {
+  return n < face ? n : n + 1;
+}
+
+template <class Integer = Int128>
+TETWARP_HD ExactPlane<Integer> exact_plane(const TetNodes& tet, int face) {
+  return plane_through<Integer>(tet.x[face_node(face, 0)], tet.x[face_node(face, 1)],
+                                tet.x[face_node(face, 2)]);
 }
 
 /// Plane value at a point in quanta: positive on the side the normal points to.

@@ -77,6 +77,36 @@ TETWARP_HD InteriorTap interior_tap(const float* x) {
   return tap;
 }
 
+/// A tap that may lie at or beyond the border of the source.
+struct RimTap {
+  InteriorTap tap;
+  bool is_defined;  ///< the source is defined there; else the tap is that of its first voxel
+  bool blends[3];   ///< there are two neighbors along the axis
+};
+
+/// The tap at local position x, with the fractions of tap_of().
+/// @param whole  the map's first voxel, below 2^22
+/// @param dims   of the source
+TETWARP_HD RimTap rim_tap(const float* whole, const int* dims, const float* x) {
+  RimTap rim;
+  rim.is_defined = true;
+  float last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    last[axis] = static_cast<float>(dims[axis] - 1) - whole[axis];
+    const float low = -0.5f - whole[axis] - rim_slack, high = last[axis] + 0.5f + rim_slack;
+    rim.is_defined = rim.is_defined && x[axis] >= low && x[axis] <= high;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const float first = -whole[axis], lower = floor(x[axis]);
+    rim.blends[axis] = rim.is_defined && lower >= first && lower < last[axis];
+    rim.tap.fraction[axis] = rim.blends[axis] ? x[axis] - lower : 0.0f;
+    const float at = larger_of(smaller_of(lower, last[axis]), first);
+    float voxel;
+    rim.tap.bits[axis] = floor_bits(rim.is_defined ? at : 0.0f, voxel);
+  }
+  return rim;
+}
+
 /// The eight samples around a tap, [z][y][x].
 template <class T>
 struct SampleCube {
@@ -110,6 +140,21 @@ struct SourceSteps {
         const T* const line = at + (y * row + z * slice);
         cube.at[z][y][0] = line[0];
         cube.at[z][y][1] = line[1];
+      }
+    }
+    return cube;
+  }
+
+  /// The same, where some axes have one neighbor.
+  template <class T>
+  TETWARP_HD SampleCube<T> cube(const T* at, const RimTap& rim) const {
+    const int step[3] = {rim.blends[0] ? 1 : 0, rim.blends[1] ? row : 0, rim.blends[2] ? slice : 0};
+    SampleCube<T> cube;
+    for (int z = 0; z < 2; ++z) {
+      for (int y = 0; y < 2; ++y) {
+        const T* const line = at + (y * step[1] + z * step[2]);
+        cube.at[z][y][0] = line[0];
+        cube.at[z][y][1] = line[step[0]];
       }
     }
     return cube;

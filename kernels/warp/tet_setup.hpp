@@ -60,25 +60,56 @@ TETWARP_HD std::int64_t box_cells(const TetSetup& tet) {
   return cells;
 }
 
-/// Box in whole voxels, clipped to the frame, and the anchor.
+/// The box of a tetrahedron along one axis.
+struct BoxSide {
+  std::int64_t anchor;  ///< as in TetSetup
+  std::int64_t extent;  ///< [quantum]
+  int begin, end;       ///< as in TetSetup
+};
+
+/// Box in whole voxels along an axis, clipped to the frame, and the anchor.
+/// @param tet  its nodes in any order
+TETWARP_HD BoxSide box_along(const TetNodes& tet, const OutputFrame& frame, int axis) {
+  std::int64_t low = tet.x[0][axis], high = low;
+  for (int a = 1; a < 4; ++a) {
+    low = min_of(low, tet.x[a][axis]);
+    high = max_of(high, tet.x[a][axis]);
+  }
+  const std::int64_t first = (low + quanta_per_voxel - 1) >> quantum_bits;
+  const std::int64_t past = (high >> quantum_bits) + 1;
+  const std::int64_t frame_begin = frame.begin[axis], frame_end = frame.end[axis];
+  return {low >> quantum_bits,  // floor
+          high - low, static_cast<int>(min_of(max_of(first, frame_begin), frame_end)),
+          static_cast<int>(max_of(min_of(past, frame_end), frame_begin))};
+}
+
+/// Sets anchor and box.
 /// @returns the extent along the longest axis [quantum]
 TETWARP_HD std::int64_t set_box(const TetNodes& tet, const OutputFrame& frame, TetSetup& setup) {
   std::int64_t extent = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    std::int64_t low = tet.x[0][axis], high = low;
-    for (int a = 1; a < 4; ++a) {
-      low = min_of(low, tet.x[a][axis]);
-      high = max_of(high, tet.x[a][axis]);
-    }
-    extent = max_of(extent, high - low);
-    setup.anchor[axis] = low >> quantum_bits;  // floor
-    const std::int64_t first = (low + quanta_per_voxel - 1) >> quantum_bits;
-    const std::int64_t past = (high >> quantum_bits) + 1;
-    const std::int64_t frame_begin = frame.begin[axis], frame_end = frame.end[axis];
-    setup.begin[axis] = static_cast<int>(min_of(max_of(first, frame_begin), frame_end));
-    setup.end[axis] = static_cast<int>(max_of(min_of(past, frame_end), frame_begin));
+    const BoxSide side = box_along(tet, frame, axis);
+    extent = max_of(extent, side.extent);
+    setup.anchor[axis] = side.anchor;
+    setup.begin[axis] = side.begin;
+    setup.end[axis] = side.end;
   }
   return extent;
+}
+
+/// Whether four nodes move along an axis by the same whole voxels to within a quantum.
+/// @param output, source  their coordinates along it
+/// @param shift           out, from output to source [voxel]
+TETWARP_HD bool is_whole_along(const std::int64_t* output,
+                               const std::int64_t* source,
+                               std::int64_t& shift) {
+  shift = (source[0] - output[0] + quanta_per_voxel / 2) >> quantum_bits;
+  bool whole = true;
+  for (int a = 0; a < 4; ++a) {
+    const std::int64_t rest = source[a] - output[a] - shift * quanta_per_voxel;
+    whole = whole && rest >= -1 && rest <= 1;
+  }
+  return whole;
 }
 
 /// Whether every node moves by the same whole-voxel shift to within a quantum.
@@ -88,12 +119,12 @@ TETWARP_HD bool is_whole_shift(const TetNodes& output,
                                std::int64_t* shift) {
   bool whole = true;
   for (int axis = 0; axis < 3; ++axis) {
-    shift[axis] = (source.x[0][axis] - output.x[0][axis] + quanta_per_voxel / 2) >> quantum_bits;
+    std::int64_t from[4], to[4];
     for (int a = 0; a < 4; ++a) {
-      const std::int64_t rest =
-          source.x[a][axis] - output.x[a][axis] - shift[axis] * quanta_per_voxel;
-      whole = whole && rest >= -1 && rest <= 1;
+      from[a] = output.x[a][axis];
+      to[a] = source.x[a][axis];
     }
+    whole = is_whole_along(from, to, shift[axis]) && whole;
   }
   return whole;
 }
@@ -119,60 +150,105 @@ TETWARP_HD int orientation(const TetNodes& tet) {
   return (value > 0) - (value < 0);
 }
 
-/// Computes the planes of the four faces, from exact integers: no cancellation in thin tetrahedra.
-/// @param gradient   out, gradients of the barycentric coordinates [1/voxel]
-/// @param at_anchor  out, barycentric coordinates of the anchor
-/// @returns orientation(); 0, and nothing is set, if the tetrahedron is flat
+/// Barycentric coordinate of a node.
+struct Barycentric {
+  double gradient[3];  ///< [1/voxel]
+  double at_anchor;
+};
+
+/// Six times the volume of a tetrahedron that is not flat [quantum^3].
+struct TetVolume {
+  int sign;  ///< orientation()
+  double size, per_size;
+
+  TETWARP_HD explicit TetVolume(Int128 value)
+      : sign(value > 0 ? 1 : -1), size(fabs(as_double(value))), per_size(1.0 / size) {}
+};
+
+/// The plane of a face and the barycentric coordinate of the node opposite to it, from exact
+/// integers.
+/// @param exact  of the face
+/// @param from   the anchor
+/// @param setup  out, plane and height of the face
 template <class Integer>
-TETWARP_HD int set_planes(const TetNodes& tet,
-                          TetSetup& setup,
-                          double (*gradient)[3],
-                          double* at_anchor) {
-  const Int128 signed_volume6 = plane_value(exact_plane<Integer>(tet, 0), tet.x[0]);
-  if (signed_volume6 == 0) return 0;
-  const int sign = signed_volume6 > 0 ? 1 : -1;
-  const double volume6 = fabs(as_double(signed_volume6)), per_volume = 1.0 / volume6;
+TETWARP_HD Barycentric set_plane(const ExactPlane<Integer>& exact,
+                                 int face,
+                                 const TetVolume& volume,
+                                 const std::int64_t* from,
+                                 TetSetup& setup) {
   std::int64_t anchor[3];
-  for (int axis = 0; axis < 3; ++axis) anchor[axis] = setup.anchor[axis] * quanta_per_voxel;
-  for (int face = 0; face < 4; ++face) {
-    const auto exact = exact_plane<Integer>(tet, face);
-    const double inward = face % 2 == 0 ? sign : -sign;  // the normals of exact_plane() alternate
-    const double value = inward * as_double(plane_value(exact, anchor));
-    double normal[3], square = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      normal[axis] = inward * as_double(exact.normal[axis]);
-      square += normal[axis] * normal[axis];
-      gradient[face][axis] = normal[axis] * (static_cast<double>(quanta_per_voxel) * per_volume);
-    }
-    at_anchor[face] = value * per_volume;
-    const double per_length = 1.0 / sqrt(square);
-    const double per_voxel = per_length * (1.0 / static_cast<double>(quanta_per_voxel));
-    for (int axis = 0; axis < 3; ++axis) setup.plane[axis][face] = normal[axis] * per_length;
-    setup.plane[3][face] = value * per_voxel;
-    setup.height[face] = volume6 * per_voxel;
+  for (int axis = 0; axis < 3; ++axis) anchor[axis] = from[axis] * quanta_per_voxel;
+  const double inward =
+      face % 2 == 0 ? volume.sign : -volume.sign;  // the normals of exact_plane() alternate
+  const double value = inward * as_double(plane_value(exact, anchor));
+  Barycentric of_node;
+  double normal[3], square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    normal[axis] = inward * as_double(exact.normal[axis]);
+    square += normal[axis] * normal[axis];
+    of_node.gradient[axis] =
+        normal[axis] * (static_cast<double>(quanta_per_voxel) * volume.per_size);
   }
-  return sign;
+  of_node.at_anchor = value * volume.per_size;
+  const double per_length = 1.0 / sqrt(square);
+  const double per_voxel = per_length * (1.0 / static_cast<double>(quanta_per_voxel));
+  for (int axis = 0; axis < 3; ++axis) setup.plane[axis][face] = normal[axis] * per_length;
+  setup.plane[3][face] = value * per_voxel;
+  setup.height[face] = volume.size * per_voxel;
+  return of_node;
 }
 
-/// Sets the map from the deformed to the rest tetrahedron, R_f the rest position of node f and b_f
-/// its barycentric coordinate: x0 = R0 + sum_f (R_f - R0) b_f(x).
-TETWARP_HD void set_map(const TetNodes& source,
-                        const double (*gradient)[3],
-                        const double* at_anchor,
-                        TetSetup& setup) {
+/// Computes the planes of the four faces: no cancellation in thin tetrahedra.
+/// @param setup     its anchor is set; out, planes and heights
+/// @param of_nodes  out
+/// @returns orientation(); 0, and nothing is set, if the tetrahedron is flat
+template <class Integer>
+TETWARP_HD int set_planes(const TetNodes& tet, TetSetup& setup, Barycentric* of_nodes) {
+  const Int128 signed_volume = plane_value(exact_plane<Integer>(tet, 0), tet.x[0]);
+  if (signed_volume == 0) return 0;
+  const TetVolume volume(signed_volume);
+  for (int face = 0; face < 4; ++face) {
+    of_nodes[face] = set_plane(exact_plane<Integer>(tet, face), face, volume, setup.anchor, setup);
+  }
+  return volume.sign;
+}
+
+/// Sets one row of the map from the deformed to the rest tetrahedron, R_f the rest position of node
+/// f and b_f its barycentric coordinate: x0 = R0 + sum_f (R_f - R0) b_f(x).
+/// @param source  the nodes' coordinates in the source along the row
+/// @returns the largest entry that multiplies a position
+TETWARP_HD double set_map_row(const std::int64_t* source,
+                              const Barycentric* of_nodes,
+                              int row,
+                              TetSetup& setup) {
   const double voxel = 1.0 / static_cast<double>(quanta_per_voxel);
+  double entry[4] = {0, 0, 0, static_cast<double>(source[0]) * voxel}, steepest = 0;
+  for (int f = 1; f < 4; ++f) {
+    const double edge = static_cast<double>(source[f] - source[0]) * voxel;
+    for (int axis = 0; axis < 3; ++axis) entry[axis] += edge * of_nodes[f].gradient[axis];
+    entry[3] += edge * of_nodes[f].at_anchor;
+  }
+  for (int axis = 0; axis < 4; ++axis) setup.map[axis][row] = entry[axis];
+  for (int axis = 0; axis < 3; ++axis) steepest = max_of(steepest, fabs(entry[axis]));
+  return steepest;
+}
+
+/// Sets the map.
+TETWARP_HD void set_map(const TetNodes& source, const Barycentric* of_nodes, TetSetup& setup) {
   double steepest = 0;
   for (int row = 0; row < 3; ++row) {
-    double entry[4] = {0, 0, 0, static_cast<double>(source.x[0][row]) * voxel};
-    for (int f = 1; f < 4; ++f) {
-      const double edge = static_cast<double>(source.x[f][row] - source.x[0][row]) * voxel;
-      for (int axis = 0; axis < 3; ++axis) entry[axis] += edge * gradient[f][axis];
-      entry[3] += edge * at_anchor[f];
-    }
-    for (int axis = 0; axis < 4; ++axis) setup.map[axis][row] = entry[axis];
-    for (int axis = 0; axis < 3; ++axis) steepest = max_of(steepest, fabs(entry[axis]));
+    const std::int64_t along[4] = {source.x[0][row], source.x[1][row], source.x[2][row],
+                                   source.x[3][row]};
+    steepest = max_of(steepest, set_map_row(along, of_nodes, row, setup));
   }
   setup.kind = steepest > steep_threshold ? MapKind::steep : MapKind::affine;
+}
+
+/// Sets one row of a map that shifts by whole voxels.
+/// @param to  where it takes the anchor
+TETWARP_HD void set_shift_row(std::int64_t to, int row, TetSetup& setup) {
+  for (int axis = 0; axis < 3; ++axis) setup.map[axis][row] = row == axis ? 1.0 : 0.0;
+  setup.map[3][row] = static_cast<double>(to);
 }
 
 /// One index = one tetrahedron; reads its nodes, writes its setup and sizes; any order.
@@ -201,23 +277,19 @@ struct TetSetupBody {
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
     const std::int64_t extent = set_box(output, frame, setup);
     if (extent > longest_extent) return TetClass::too_large;
-    double gradient[4][3], at_anchor[4];
-    const int turned = extent <= short_extent
-                           ? set_planes<std::int64_t>(output, setup, gradient, at_anchor)
-                           : set_planes<Int128>(output, setup, gradient, at_anchor);
+    Barycentric of_nodes[4];
+    const int turned = extent <= short_extent ? set_planes<std::int64_t>(output, setup, of_nodes)
+                                              : set_planes<Int128>(output, setup, of_nodes);
     if (turned == 0) return TetClass::flat;
     std::int64_t shift[3];
     for (auto& column : setup.map) column[3] = 0;
     const std::int32_t* const hex = hexes.has(t) ? hexes.nodes_of(t) : nullptr;
     if (is_whole_shift(output, source, shift) &&
         (hex == nullptr || has_whole_shift(hex, deformed, rest, shift))) {
-      for (int row = 0; row < 3; ++row) {
-        for (int axis = 0; axis < 3; ++axis) setup.map[axis][row] = row == axis ? 1.0 : 0.0;
-        setup.map[3][row] = static_cast<double>(setup.anchor[row] + shift[row]);
-      }
+      for (int row = 0; row < 3; ++row) set_shift_row(setup.anchor[row] + shift[row], row, setup);
       setup.kind = MapKind::copy;
     } else {
-      set_map(source, gradient, at_anchor, setup);
+      set_map(source, of_nodes, setup);
       if (hex != nullptr && !maps_all(setup.map, setup.anchor, hex, deformed, rest))
         setup.kind = MapKind::trilinear;
     }

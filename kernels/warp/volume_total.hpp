@@ -68,9 +68,9 @@ void volume_total(Exec& exec,
 /// Planes and box of a tetrahedron at rest in the grid of the source; an empty box if it is flat.
 TETWARP_HD TetSetup rest_setup(const TetNodes& tet, const OutputFrame& frame) {
   TetSetup setup = {};
-  double gradient[4][3], at_anchor[4];
+  Barycentric of_nodes[4];
   set_box(tet, frame, setup);
-  if (set_planes<Int128>(tet, setup, gradient, at_anchor) == 0) return {};
+  if (set_planes<Int128>(tet, setup, of_nodes) == 0) return {};
   widen_box(tet, frame, setup);
   return setup;
 }

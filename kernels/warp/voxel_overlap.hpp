@@ -34,9 +34,9 @@ struct TetWidenBody {
     // A shift that is exact only to within a quantum would not keep the total exactly.
     const TetNodes source = tet_nodes(rest, tets.data + 4 * t);
     if (setup.kind == MapKind::copy && !is_exact_shift(output, source)) {
-      double gradient[4][3], at_anchor[4];
-      set_planes<Int128>(output, setup, gradient, at_anchor);
-      set_map(source, gradient, at_anchor, setup);
+      Barycentric of_nodes[4];
+      set_planes<Int128>(output, setup, of_nodes);
+      set_map(source, of_nodes, setup);
     }
     pair_counts[t] = box_cells(setup);
   }

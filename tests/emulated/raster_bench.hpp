@@ -14,10 +14,8 @@
 #include "kernels/warp/volume_prefilter.hpp"
 #include "tests/support/stages.hpp"
 
-#include "kernels/warp/cuda/cell_class.cuh"
-#include "kernels/warp/cuda/cell_interior.cuh"
+#include "kernels/warp/cuda/cell_group.cuh"
 #include "kernels/warp/cuda/cell_raster.cuh"
-#include "kernels/warp/cuda/cell_tested.cuh"
 
 namespace tetwarp::test {
 
@@ -93,32 +91,28 @@ class RasterBench {
     });
   }
 
-  /// Interior cells by their own kernel, the others by blocks.
-  Rastered<T> by_classes() {
-    const std::int64_t cells = input_.frame.cell_count();
-    std::vector<InteriorCell> interior(static_cast<std::size_t>(cells));
-    std::vector<RecordRange> tested(static_cast<std::size_t>(cells));
-    std::vector<std::uint32_t> general(static_cast<std::size_t>(cells));
-    std::vector<RecordUnit> units(static_cast<std::size_t>(most_units(cells, job_.pairs.size)));
+  /// Cells in groups of four, those left over by blocks of one cell.
+  /// @param capacity  pairs of a block that have room
+  Rastered<T> by_groups(int capacity = 300) {
+    const OutputFrame& frame = input_.frame;
+    std::vector<std::uint32_t> general(static_cast<std::size_t>(frame.cell_count()));
     CellListCounts counts = {};
-    const CellLists lists{interior.data(), tested.data(), units.data(), general.data(), &counts};
     return filled([&](RasterJob<T> job) {
-      if (!has_interior_cells(job)) throw std::logic_error("the job has no interior cells");
-      const auto blocks = static_cast<unsigned>(cells + class_cells - 1) / class_cells;
+      if (!has_plain_cells(job)) throw std::logic_error("the job has no plain cells");
+      const dim3 groups(static_cast<unsigned>((frame.cells[0] + group_cells - 1) / group_cells),
+                        static_cast<unsigned>(frame.cells[1]),
+                        static_cast<unsigned>(frame.cells[2]));
       counts = {};
-      const CellWorkBody<T> work{job, {}, {}, {}, {}};
-      launch(nullptr, cell_class_kernel<T>, dim3(blocks), class_threads, 0, work, lists);
-      launch(nullptr, cell_interior_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
-             &counts);
-      launch(nullptr, cell_owner_kernel<T>, dim3(3), interior_threads, 0, job, interior.data(),
-             &counts);
-      launch(nullptr, cell_tested_kernel<T>, dim3(3), raster_threads, 0, job, lists, true);
-      interior_cells = counts.interior;
-      tested_cells = counts.tested;
+      launch(nullptr, cell_group_kernel<T>, groups, group_threads, group_bytes(capacity), job,
+             capacity, general.data(), &counts.general);
+      job.listed = general.data();
+      job.listed_count = &counts.general;
+      launch(nullptr, raster_kernel(job), dim3(3), raster_threads, 0, job);
       general_cells = counts.general;
     });
   }
-  int interior_cells = 0, tested_cells = 0, general_cells = 0;  ///< of the last by_classes()
+  int general_cells = 0;  ///< of the last by_groups()
+  std::int64_t cell_count() const { return input_.frame.cell_count(); }
 
   Rastered<T> by_blocks() {
     return filled([](const RasterJob<T>& job) {

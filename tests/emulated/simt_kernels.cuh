@@ -1,7 +1,6 @@
 /// @file simt_kernels.cuh
 /// Small kernels for the tests of the emulation: correct ones, and ones with one error each.
 #pragma once
-#include "kernels/exec/async_copy.cuh"
 #include "kernels/exec/launch.hpp"
 
 namespace tetwarp {
@@ -83,19 +82,6 @@ __global__ void half_warp_kernel(int* out) {
     for (int i = 0; i < 3; ++i) value = __shfl_xor_sync(0x0000ffffu, value, 1);
   }
   out[lane] = __shfl_xor_sync(all_lanes, value, 16);
-}
-
-/// Reverses groups of four numbers, which each thread copies to shared memory. Without its wait the
-/// copies may not have been made.
-template <bool has_wait>
-__global__ void __launch_bounds__(64) reverse_kernel(const int* in, int* out) {
-  alignas(16) __shared__ int tile[256];
-  const int thread = static_cast<int>(threadIdx.x);
-  tile[4 * thread] = tile[4 * thread + 1] = tile[4 * thread + 2] = tile[4 * thread + 3] = -1;
-  begin_copy(tile + 4 * thread, in + 4 * thread);
-  if (has_wait) wait_for_copies();
-  __syncthreads();
-  for (int k = 0; k < 4; ++k) out[4 * thread + k] = tile[4 * (63 - thread) + k];
 }
 
 __global__ void extremes_kernel(const int* values, int* low, int* high) {

@@ -118,24 +118,6 @@ TEST(Simt, AtomicsKeepExtremes) {
   EXPECT_EQ(high, *std::max_element(values.begin(), values.end()));
 }
 
-template <bool has_wait>
-std::vector<int> reversed_groups(const std::vector<int>& in) {
-  std::vector<int> out(in.size());
-  launch(nullptr, reverse_kernel<has_wait>, 1, 64, 0, in.data(), out.data());
-  return out;
-}
-
-TEST(Simt, AsynchronousCopiesAreMadeWhenTheirThreadWaits) {
-  const std::vector<int> in = numbers(256);
-  std::vector<int> expected(256);
-  for (std::size_t i = 0; i < 256; ++i) expected[i] = in[4 * (63 - i / 4) + i % 4];
-
-  simt::for_each_schedule([&](const simt::Schedule&) {
-    EXPECT_EQ(reversed_groups<true>(in), expected);
-    EXPECT_EQ(reversed_groups<false>(in), std::vector<int>(256, -1));
-  });
-}
-
 TEST(Simt, MissingBlockBarrierIsWrongInSomeOrder) {
   const std::vector<int> values = numbers(10001);
   const int expected = std::accumulate(values.begin(), values.end(), 0);

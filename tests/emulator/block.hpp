@@ -79,7 +79,6 @@ class Block {
     fault_ = nullptr;
     for (unsigned t = 0; t < thread_count; ++t) {
       threads_[t]->state = State::ready;
-      threads_[t]->copies.clear();
       threads_[t]->fiber.start([this, t, &kernel] { run_thread(t, kernel); });
     }
   }
@@ -113,16 +112,6 @@ class Block {
   /// Lane of the running thread.
   unsigned lane() const { return running_ % warp_size; }
 
-  /// Copies to shared memory, begun by the running thread, which are made when it waits for them:
-  /// on a GPU at any time until then.
-  void begin_copy(void* to, const void* from, std::size_t bytes) {
-    threads_[running_]->copies.push_back([=] { std::memcpy(to, from, bytes); });
-  }
-  void finish_copies() {
-    for (const auto& copy : threads_[running_]->copies) copy();
-    threads_[running_]->copies.clear();
-  }
-
   /// Waits for the lanes of `mask`. @returns those of them whose predicate is true
   unsigned ballot(unsigned mask, bool predicate, int line) {
     Thread& self = *threads_[running_];
@@ -146,7 +135,7 @@ class Block {
 
  private:
   enum class State { ready, at_barrier, at_grid, at_exchange, done };
-  using Value = std::array<std::byte, 16>;
+  using Value = std::array<std::byte, 32>;
 
   struct Thread {
     Fiber fiber;
@@ -158,7 +147,6 @@ class Block {
     Value sent{};
     unsigned ballot = 0;  ///< results of the exchange
     Value received{};
-    std::vector<std::function<void()>> copies;  ///< begun
   };
 
   void run_thread(unsigned t, const std::function<void()>& kernel) {

@@ -2,7 +2,7 @@
 /// Runs unchanged CUDA kernels on the CPU, to test them without a GPU.
 ///
 /// Defines for a C++ compiler the CUDA names that kernels here use: indices, shared memory,
-/// barriers, shuffles, votes, asynchronous copies and integer atomics. Detects results that depend
+/// barriers, shuffles, votes and integer atomics. Detects results that depend
 /// on the order of threads, barriers that not all threads reach, warp operations that miss a lane
 /// and, with the address sanitizer, accesses out of bounds, also in shared memory. Kernels must not
 /// spin on other threads.
@@ -102,18 +102,6 @@ T __shfl_xor_sync(unsigned mask, T value, int bits, int width = 32, int line = _
   const unsigned last = block.lane() | (static_cast<unsigned>(width) - 1);
   const unsigned lane = block.lane() ^ static_cast<unsigned>(bits);
   return block.shuffle(mask, value, lane <= last ? lane : block.lane(), line);
-}
-
-inline void __pipeline_memcpy_async(void* to, const void* from, std::size_t bytes) {
-  tetwarp::simt::Block::current().begin_copy(to, from, bytes);
-}
-
-inline void __pipeline_commit() {}
-
-/// @param batches  zero: the only number that kernels here use
-inline void __pipeline_wait_prior(std::size_t batches) {
-  if (batches != 0) throw tetwarp::simt::Fault("copies of the last batches are not told apart");
-  tetwarp::simt::Block::current().finish_copies();
 }
 
 inline int __popc(unsigned bits) {

@@ -214,14 +214,13 @@ TEST(SetPlanes, HaveTheSameBitsWithShortAndLongIntegers) {
     TetSetup shorter = {}, longer = {};
     ASSERT_LE(set_box(tet, frame, shorter), short_extent);
     set_box(tet, frame, longer);
-    double gradient[2][4][3] = {}, at_anchor[2][4] = {};
+    Barycentric of_nodes[2][4] = {};
 
-    const int turned = set_planes<std::int64_t>(tet, shorter, gradient[0], at_anchor[0]);
+    const int turned = set_planes<std::int64_t>(tet, shorter, of_nodes[0]);
 
-    ASSERT_EQ(set_planes<Int128>(tet, longer, gradient[1], at_anchor[1]), turned);
+    ASSERT_EQ(set_planes<Int128>(tet, longer, of_nodes[1]), turned);
     EXPECT_EQ(std::memcmp(&shorter, &longer, sizeof(TetSetup)), 0) << n;
-    EXPECT_EQ(std::memcmp(gradient[0], gradient[1], sizeof(gradient[0])), 0) << n;
-    EXPECT_EQ(std::memcmp(at_anchor[0], at_anchor[1], sizeof(at_anchor[0])), 0) << n;
+    EXPECT_EQ(std::memcmp(of_nodes[0], of_nodes[1], sizeof(of_nodes[0])), 0) << n;
   }
 }
 }  // namespace

@@ -143,21 +143,23 @@ __device__ __forceinline__ void raster_cell(const RasterJob<T>& job,
 
 /// All cells of a job, or those that it lists.
 ///
-/// Blocks: one per cell of the job; where the job lists cells, those after the list end at once.
-/// Threads: raster_threads. Shared: one RasterChunk and four counters, about
-/// 2.2 KiB with float32, 3.0 KiB with float64 arithmetic.
+/// Blocks: one per cell of the job; any number where it lists cells. Threads: raster_threads.
+/// Shared: one RasterChunk and four counters, about 2.2 KiB with float32, 3.0 KiB with float64
+/// arithmetic.
 template <class T, bool is_general>
 __global__ void __launch_bounds__(raster_threads, raster_blocks<T, is_general>())
     cell_raster_kernel(RasterJob<T> job) {
   __shared__ RasterChunk<ArithmeticOf<T>> chunk;
   __shared__ int block_counts[4];
 
-  std::int64_t cell = static_cast<std::int64_t>(blockIdx.x);
-  if (job.listed != nullptr) {
-    if (cell >= *job.listed_count) return;
-    cell = job.listed[cell];
+  if (job.listed == nullptr) {
+    raster_cell<is_general>(job, static_cast<std::int64_t>(blockIdx.x), chunk, block_counts);
+    return;
   }
-  raster_cell<is_general>(job, cell, chunk, block_counts);
+  const int count = *job.listed_count;
+  for (int at = static_cast<int>(blockIdx.x); at < count; at += static_cast<int>(gridDim.x)) {
+    raster_cell<is_general>(job, job.listed[at], chunk, block_counts);
+  }
 }
 
 /// The kernel for a job. Jobs with wide filters, transforms or hexahedra use the general kernel,
