@@ -1,7 +1,6 @@
 /// @file contact_history.hpp
 /// ContactHistory: what contacts keep from one part of a step to the next.
 #pragma once
-#include <span>
 #include <vector>
 
 #include <tetwarp/contact_tracker.hpp>

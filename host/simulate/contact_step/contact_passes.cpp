@@ -2,6 +2,7 @@
 /// Passes of detection and solution until no pair is newly hit.
 #include "host/simulate/contact_step/contact_passes.hpp"
 
+#include <functional>
 #include <utility>
 
 #include "host/base/index_of.hpp"

@@ -2,6 +2,8 @@
 /// DividedStep: makes a step, in parts where an attempt as a whole is not good. Start at make(),
 /// which lists what a step does.
 #pragma once
+#include <string>
+
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/run/last_step.hpp"
 #include "host/simulate/run/moving_bodies.hpp"
