@@ -112,7 +112,7 @@ struct TouchKeyBody {
 /// orders and marks all touches of that feature. Touches of edges are all kept. Of a vertex, the
 /// nearest touch with each other body is kept: touches that are near at the start by distance, then
 /// those hit on the way by time. Its touches with other parts of that body are also kept where
-/// these face elsewhere, see StepTouches. Where a pair is near in one detection and hit in a later
+/// these face elsewhere, see TouchChoice. Where a pair is near in one detection and hit in a later
 /// one, the later touch replaces the earlier one.
 struct TouchChoiceBody {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
