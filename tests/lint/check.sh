@@ -1,7 +1,7 @@
 # ---- ./dev check: sourced by ./dev, whose functions and variables it uses --------------------
 
 # Parts in the order in which they run; each builds into its own folder below build/.
-check_parts=(lint format dead host tidy small shared cuda release fused asan fuzz docs)
+check_parts=(lint format host tidy small shared cuda release fused asan fuzz docs)
 
 # source_files EXTENSION...: the C++ and CUDA sources, from the root
 source_files() {
@@ -101,23 +101,18 @@ configure_host() {
   configure "$@" -DTETWARP_CUDA=OFF -DTETWARP_BENCH=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON
 }
 
-# Functions that only tests reach: those compiled without optimization, so that every call is one, and
-# not in the command (also on the emulated device), the benchmarks and the examples.
-check_dead() {
-  local folder=$root/build/check-dead
+# Every file compiles alone, so it includes what it needs; warnings are errors. Then functions that
+# only tests reach: those compiled, without optimization so that every call is one, and not in the
+# command (also on the emulated device), the benchmarks and the examples.
+check_host() {
+  local folder=$root/build/check-host
   configure_host "$folder" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG= \
-    -DCMAKE_CXX_FLAGS=-ffunction-sections -DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections \
-    -DTETWARP_DEAD_CODE=ON
+    -DCMAKE_CXX_FLAGS='-Werror -ffunction-sections' -DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections \
+    -DTETWARP_DEAD_CODE=ON -DTETWARP_UNITY=OFF
   cmake --build "$folder"
   python3 "$root/tests/lint/dead.py" "$folder" --programs "$folder"/tetwarp \
     "$folder"/tetwarp_{emulated_command,collision_pairs} "$folder"/tetwarp_example_* \
     "$folder"/tetwarp_bench{,_collide,_contact,_peers,_simulate}
-}
-
-# Every file compiles alone, so it includes what it needs; warnings are errors.
-check_host() {
-  configure_host "$root/build/check-host" -DCMAKE_CXX_FLAGS=-Werror -DTETWARP_UNITY=OFF
-  cmake --build "$root/build/check-host"
 }
 
 # All files that a build without CUDA compiles, except docs_blocks.cpp, which is written during the
