@@ -93,9 +93,13 @@ void make_fem(const std::string& place, BodyParts& parts, const Body& body) {
   take_volume(place, parts, body);
   BodyGeometry& geometry = parts.geometry;
   const bool is_default = std::holds_alternative<std::monostate>(body.surface);
-  geometry.surface = is_default && !std::holds_alternative<ImageGeometry>(body.geometry)
-                         ? surface_of(geometry.nodes, boundary_triangles(geometry.tets))
-                         : own_surface(place, body);
+  if (!is_default || std::holds_alternative<ImageGeometry>(body.geometry)) {
+    geometry.surface = own_surface(place, body);
+    return;
+  }
+  auto triangles = boundary_triangles(geometry.tets);
+  geometry.surface_node = nodes_of(triangles);
+  geometry.surface = surface_of(geometry.nodes, std::move(triangles));
 }
 
 /// Nodes and triangles of cloth, which are its surface as well.

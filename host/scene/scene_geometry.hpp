@@ -27,6 +27,8 @@ struct BodyGeometry {
   Surface surface;  ///< points in the geometry's frame; cloth: its nodes; may be empty for scripted
   std::array<double, 3> cells_across{0, 0, 0};  ///< extent over mean edge length of cells
 
+  std::vector<std::int32_t> surface_node;  ///< the node that each point of `surface` is, where it
+                                           ///< is the boundary of `tets`; empty: it is not
   std::vector<std::int32_t> fixed;  ///< sorted, unique
   std::vector<DrivenGroup> driven;  ///< of disjoint nodes, disjoint from `fixed`
 };

@@ -37,8 +37,9 @@ MeshArray array_of(const char* name, PixelType type, const void* data, std::size
 }
 
 /// Writes triangles with the nodes and weights that their points are bound to.
-void write_bound_surface(const MeshArguments& arguments, const Mesh& mesh, const Surface& surface) {
-  const BoundPoints bound = bind_points(mesh, surface.points);
+void write_bound_surface(const MeshArguments& arguments,
+                         const Surface& surface,
+                         const BoundPoints& bound) {
   const std::size_t points = surface.points.size();
   write_surface(arguments.surface, surface,
                 {array_of("nodes", PixelType::int32, bound.nodes.data(), points * 16),
@@ -73,7 +74,9 @@ int run_mesh_of_surface(const MeshArguments& arguments) {
   }
   write_mesh(arguments.output, mesh);
   report_mesh(arguments, mesh);
-  if (!arguments.surface.empty()) write_bound_surface(arguments, mesh, surface);
+  if (!arguments.surface.empty()) {
+    write_bound_surface(arguments, surface, bind_points(mesh, surface.points));
+  }
   return 0;
 }
 
@@ -98,7 +101,11 @@ int run_mesh(const MeshArguments& arguments) {
   }
   write_mesh(arguments.output, mesh);
   report_mesh(arguments, mesh);
-  if (!arguments.surface.empty()) write_bound_surface(arguments, mesh, surface);
+  if (!arguments.surface.empty()) {
+    write_bound_surface(
+        arguments, surface,
+        arguments.lattice.threshold ? bind_points(mesh, surface.points) : bind_boundary(mesh));
+  }
   return 0;
 }
 

@@ -13,6 +13,7 @@
 #include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/torn_mesh.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -70,6 +71,29 @@ Scene all_kinds() {
                      {"bar", CapsuleObstacle{{0, 0, -7}, {1, 0, -7}, 0.2}, {}, {}},
                      {"tile", tile, {}, {}}};
   return scene;
+}
+
+/// Where parts meet with nodes of their own, each vertex moves with its own node.
+TEST(SceneSurfaces, VerticesOfBoundariesAreTheirNodes) {
+  const Mesh whole = make_lattice_mesh(make_shape_surface(BoxShape{{1, 1, 1}}, 12), 2);
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    Body body = elastic_box("torn", {1, 1, 1}, {1, 1, 1});
+    body.geometry = test::torn(whole, seed);
+    body.lattice.reset();
+    const TouchScene touch(scene_of({body}, 0.01));
+    const BodyGeometry& of = touch.geometry.bodies[0];
+    const BoundPoints bound = bind_boundary({of.nodes, of.tets, {}});
+
+    ASSERT_EQ(touch.surfaces.vertex_point.size(), bound.nodes.size());
+    for (std::size_t v = 0; v < bound.nodes.size(); ++v) {
+      const ModelPoint& point = touch.surfaces.vertex_point[v];
+      const auto one = std::find(bound.weights[v].begin(), bound.weights[v].end(), 1);
+      EXPECT_EQ(point.node[0],
+                bound.nodes[v][static_cast<std::size_t>(one - bound.weights[v].begin())]);
+      EXPECT_EQ(point.node[1], -1);
+      EXPECT_EQ(point.weight[0], 1);
+    }
+  }
 }
 
 TEST(SceneSurfaces, HoldThePartsOfEveryKind) {
