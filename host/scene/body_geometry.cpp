@@ -61,6 +61,7 @@ void take_volume(const std::string& place, BodyParts& parts, const Body& body) {
   } else if (const auto* image = std::get_if<ImageGeometry>(&body.geometry)) {
     ImageLattice lattice = make_image_lattice(place, *image, *body.lattice);
     take_tets(parts.geometry, std::move(lattice.mesh), lattice.cells_across);
+    parts.geometry.shares_voxels = lattice.has_small_cells;
   } else {
     take_mesh(key_of(place, "mesh"), parts, std::get<Mesh>(body.geometry));
   }

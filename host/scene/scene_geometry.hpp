@@ -22,6 +22,8 @@ struct BodyGeometry {
   std::vector<std::array<std::int32_t, 4>> tets;  ///< positive volume, none without a node
   std::vector<double> tet_fraction;  ///< volume of each tetrahedron inside a shape over its own
                                      ///< volume, (0, 1]; empty: 1
+  bool shares_voxels = false;  ///< of an image: cells are small, so that tetrahedra share the boxes
+                               ///< of voxels; false: each voxel is its owner's
   std::array<std::int64_t, 2> sheet_cells{0, 0};  ///< of a sheet: nodes are [v][u], u fastest
   std::vector<std::array<std::int32_t, 3>> cloth_triangles;  ///< cloth: of its nodes
   Surface surface;  ///< points in the geometry's frame; cloth: its nodes; may be empty for scripted

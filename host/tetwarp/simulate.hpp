@@ -132,6 +132,8 @@ struct StepRecord {
 struct BodyMesh {
   BodyKind kind = BodyKind::fem;
   double mass = 0;                       ///< [kg]; scripted: 0
+  double foreground_volume = 0;          ///< fem, of an image: voxels from the threshold on [m^3]
+  double uncovered_volume = 0;           ///< the part of it in no tetrahedron, without mass [m^3]
   std::array<double, 3> cells_across{};  ///< extent over mean cell size; not for rigid
   Mesh mesh;                             ///< fem; nodes in the frame of the geometry
   Surface surface;                       ///< points in the frame of the geometry
