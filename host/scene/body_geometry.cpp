@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "host/base/repeated_cells.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/image_lattice.hpp"
 #include "host/scene/isosurface.hpp"
@@ -41,7 +42,23 @@ void take_tets(BodyGeometry& geometry, TetMesh mesh, const Point3& cells_across)
   geometry.cells_across = cells_across;
 }
 
+/// @param name  of several cells
+template <std::size_t nodes_per_cell>
+void check_repeats(const std::string& place,
+                   const std::vector<Point3>& points,
+                   const std::vector<std::array<std::int32_t, nodes_per_cell>>& cells,
+                   SameCells same,
+                   const std::string& name) {
+  const std::vector<std::size_t> firsts = first_copies(points, cells, same);
+  for (std::size_t c = 0; c < firsts.size(); ++c) {
+    if (firsts[c] == c) continue;
+    fail_at(place, name + " " + std::to_string(firsts[c]) + " and " + std::to_string(c) +
+                       " are the same and would count twice, remove one of them");
+  }
+}
+
 void take_mesh(const std::string& place, BodyParts& parts, const Mesh& mesh) {
+  check_repeats(place, mesh.rest_positions, mesh.tets, SameCells::places, "tetrahedra");
   TetMesh tets{mesh.rest_positions, mesh.tets};
   orient_tets(place, tets);
   parts.node_number = keep_tets(tets, std::vector<std::uint8_t>(tets.tets.size(), 1));
@@ -142,6 +159,8 @@ BodyParts make_body_parts(const std::string& place, const Body& body) {
       break;
     case BodyKind::cloth:
       take_cloth(place, parts, body);
+      check_repeats(key_of(place, "mesh"), parts.geometry.surface.points,
+                    parts.geometry.surface.triangles, SameCells::nodes, "triangles");
       parts.geometry.cloth_triangles = parts.geometry.surface.triangles;
       break;
     case BodyKind::scripted:

@@ -102,6 +102,17 @@ TEST(SceneGeometry, OfAMeshHasPositiveVolumesAndItsNodesRenumbered) {
   EXPECT_EQ(error_of(scene_of({body})), "bodies[0].fixed: node 0 belongs to no cell of the mesh");
 }
 
+TEST(SceneGeometry, RefusesTetrahedraThatAreThereTwice) {
+  Body body;
+  body.name = "mesh";
+  body.geometry =
+      Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 2, 3}, {4, 0, 2, 3}}};
+
+  EXPECT_EQ(error_of(scene_of({body})),
+            "bodies[0].mesh: tetrahedra 0 and 1 are the same and would count twice, remove one of "
+            "them");
+}
+
 TEST(SceneGeometry, SelectsByThePositionsAfterThePose) {
   Body body = box_body(BodyKind::fem);
   const double half_turn = std::sqrt(0.5);

@@ -15,6 +15,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/job/warnings.hpp"
 #include "host/cli/tools/read_array.hpp"
 
 namespace tetwarp::cli {
@@ -65,7 +66,9 @@ void check_outputs(const MeshArguments& arguments, const std::string& input) {
 
 int run_mesh_of_surface(const MeshArguments& arguments) {
   check_outputs(arguments, arguments.from_surface);
-  const Surface surface = read_surface(arguments.from_surface);
+  std::string merged;
+  const Surface surface = read_surface(arguments.from_surface, &merged);
+  if (!merged.empty()) print_warnings({arguments.from_surface + ": " + merged}, "");
   Mesh mesh;
   try {
     mesh = make_lattice_mesh(surface, arguments.lattice.cells);
