@@ -18,9 +18,6 @@
 
 namespace tetwarp {
 namespace {
-/// Triangles of the surface of a shape where the scene does not say how many.
-constexpr std::int64_t default_triangles = 1280;
-
 /// Extents over the mean length of the edges of tetrahedra.
 std::array<double, 3> edges_across(const TetMesh& mesh) {
   double sum = 0;
@@ -85,14 +82,15 @@ void take_volume(const std::string& place, BodyParts& parts, const Body& body) {
 }
 
 /// The surface that the scene gives, else that of the shape, image or triangles of the body.
-Surface own_surface(const std::string& place, const Body& body) {
+Surface own_surface(const std::string& place, const Body& body, Faces faces = Faces::divided) {
   if (const auto* given = std::get_if<Surface>(&body.surface)) {
     check_areas(key_of(place, "surface.mesh"), *given);
     return *given;
   }
   const auto* count = std::get_if<std::int64_t>(&body.surface);
   if (const auto* shape = std::get_if<Shape>(&body.geometry)) {
-    return make_shape_surface(*shape, count ? *count : default_triangles);
+    return count ? make_shape_surface(*shape, *count)
+                 : make_shape_surface(*shape, default_triangles, faces);
   }
   if (const auto* image = std::get_if<ImageGeometry>(&body.geometry)) {
     const std::string volume = key_of(place, "volume");
@@ -135,30 +133,33 @@ void take_triangles(BodyParts& parts, const Surface& given) {
   parts.geometry.nodes = parts.geometry.surface.points;
 }
 
-void take_cloth(const std::string& place, BodyParts& parts, const Body& body) {
+void take_cloth(const std::string& place, BodyParts& parts, const Body& body, Faces faces) {
   if (const auto* sheet = std::get_if<Sheet>(&body.geometry)) {
     take_triangles(parts, make_sheet(key_of(place, "sheet"), *sheet));
     parts.geometry.sheet_cells = sheet->cells;
   } else {
-    take_triangles(parts, own_surface(place, body));
+    take_triangles(parts, own_surface(place, body, faces));
   }
 }
 }  // namespace
 
-BodyParts make_body_parts(const std::string& place, const Body& body) {
+BodyParts make_body_parts(const std::string& place, const Body& body, Faces faces) {
   BodyParts parts;
+  parts.geometry.has_whole_faces = faces == Faces::whole && body.kind != BodyKind::fem &&
+                                   !body.lattice && std::holds_alternative<Shape>(body.geometry) &&
+                                   std::holds_alternative<std::monostate>(body.surface);
   switch (body.kind) {
     case BodyKind::fem:
       make_fem(place, parts, body);
       break;
     case BodyKind::rigid:
-      parts.geometry.surface = own_surface(place, body);
+      parts.geometry.surface = own_surface(place, body, faces);
       check_closed(
           key_of(place, std::holds_alternative<Surface>(body.surface) ? "surface.mesh" : "mesh"),
           parts.geometry.surface);
       break;
     case BodyKind::cloth:
-      take_cloth(place, parts, body);
+      take_cloth(place, parts, body, faces);
       check_repeats(key_of(place, "mesh"), parts.geometry.surface.points,
                     parts.geometry.surface.triangles, SameCells::nodes, "triangles");
       parts.geometry.cloth_triangles = parts.geometry.surface.triangles;
@@ -167,7 +168,7 @@ BodyParts make_body_parts(const std::string& place, const Body& body) {
       if (body.lattice || std::holds_alternative<Mesh>(body.geometry)) {
         make_fem(place, parts, body);
       } else if (!std::holds_alternative<std::monostate>(body.geometry)) {
-        take_cloth(place, parts, body);
+        take_cloth(place, parts, body, faces);
       }
       break;
   }

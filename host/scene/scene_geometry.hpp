@@ -27,10 +27,11 @@ struct BodyGeometry {
   std::array<std::int64_t, 2> sheet_cells{0, 0};  ///< of a sheet: nodes are [v][u], u fastest
   std::vector<std::array<std::int32_t, 3>> cloth_triangles;  ///< cloth: of its nodes
   Surface surface;  ///< points in the geometry's frame; cloth: its nodes; may be empty for scripted
-  std::array<double, 3> cells_across{0, 0, 0};  ///< extent over mean edge length of cells
-
   std::vector<std::int32_t> surface_node;  ///< the node that each point of `surface` is, where it
                                            ///< is the boundary of `tets`; empty: it is not
+  bool has_whole_faces = false;  ///< `surface` is that of a shape whose flat faces are not divided
+  std::array<double, 3> cells_across{0, 0, 0};  ///< extent over mean edge length of cells
+
   std::vector<std::int32_t> fixed;  ///< sorted, unique
   std::vector<DrivenGroup> driven;  ///< of disjoint nodes, disjoint from `fixed`
 };

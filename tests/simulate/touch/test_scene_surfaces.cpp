@@ -298,6 +298,21 @@ TEST(ContactThickness, IsAThousandthOfTheMedianEdge) {
   EXPECT_EQ(TouchScene(scene).surfaces.surfaces.thickness, 1e-3);
 }
 
+/// Whether flat faces are divided has no effect on it.
+TEST(ContactThickness, OfWholeFacesIsThatOfDividedOnes) {
+  Scene scene = scene_of(
+      {rigid_box("box", {0.1, 0.2, 0.3}, {4, 5, 6}), sheet_body("sheet", {0.3, 0.2}, {9, 8})},
+      0.01);
+  const TouchScene whole(scene);
+  scene.bodies[0].surface = std::int64_t{1280};
+  const TouchScene divided(scene);
+
+  EXPECT_EQ(triangles_of(whole.body(0)), 12);
+  EXPECT_GT(triangles_of(divided.body(0)), 1000);
+  const double thickness = divided.surfaces.surfaces.thickness;
+  EXPECT_NEAR(whole.surfaces.surfaces.thickness, thickness, 1e-12 * thickness);
+}
+
 TEST(ContactThickness, ThatCannotBeResolvedIsAnError) {
   Scene scene = scene_of({sheet_body("sheet", {1, 1}, {1, 1})}, 0.01);
   scene.thickness = 1e-11;
