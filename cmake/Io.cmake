@@ -19,7 +19,8 @@ tetwarp_sources(tetwarp_io io/files
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_read.cpp h5_rows.cpp h5_write.cpp value_names.cpp)
 tetwarp_sources(tetwarp_io io/import
-  child_process.cpp mesh_${tetwarp_gmsh}.cpp mesh_${tetwarp_vtk}.cpp mesh_child.cpp mesh_import.cpp)
+  child_process.cpp merge_cells.cpp mesh_${tetwarp_gmsh}.cpp mesh_${tetwarp_vtk}.cpp mesh_child.cpp
+  mesh_import.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)

@@ -7,7 +7,8 @@ else()
 endif()
 add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
-  backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp report.cpp volume.cpp)
+  backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp repeated_cells.cpp report.cpp
+  volume.cpp)
 tetwarp_sources(tetwarp host/collide
   body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
@@ -52,7 +53,8 @@ tetwarp_sources(tetwarp host/reference/warp
 tetwarp_sources(tetwarp host/scene
   body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
   marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp
-  shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp)
+  shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp
+  voxel_shares.cpp)
 tetwarp_sources(tetwarp host/scene/checks
   check_body.cpp check_geometry.cpp check_motion.cpp check_scene.cpp scene_checks.cpp)
 tetwarp_sources(tetwarp host/simulate/contact_step

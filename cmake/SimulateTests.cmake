@@ -3,6 +3,7 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_scene_tests       # files, shapes, lattices, surfaces, selections
     tests/scene/test_cage.cpp
     tests/scene/test_image_lattice.cpp
+    tests/scene/test_voxel_shares.cpp
     tests/scene/test_isosurface.cpp
     tests/scene/test_scene_geometry.cpp
     tests/scene/test_shape.cpp

@@ -122,6 +122,7 @@ if(NOT BUILD_SHARED_LIBS)
   tetwarp_add_tests(tetwarp_tests UNITY 3 LIBRARIES nlohmann_json::nlohmann_json SOURCES
     ${tetwarp_stage_units}
     tests/base/test_parallel.cpp
+    tests/base/test_repeated_cells.cpp
     tests/base/test_report.cpp
     tests/make/test_deform_mesh.cpp
     tests/make/test_lattice_mesh.cpp

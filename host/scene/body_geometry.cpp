@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "host/base/repeated_cells.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/image_lattice.hpp"
 #include "host/scene/isosurface.hpp"
@@ -17,9 +18,6 @@
 
 namespace tetwarp {
 namespace {
-/// Triangles of the surface of a shape where the scene does not say how many.
-constexpr std::int64_t default_triangles = 1280;
-
 /// Extents over the mean length of the edges of tetrahedra.
 std::array<double, 3> edges_across(const TetMesh& mesh) {
   double sum = 0;
@@ -41,7 +39,23 @@ void take_tets(BodyGeometry& geometry, TetMesh mesh, const Point3& cells_across)
   geometry.cells_across = cells_across;
 }
 
+/// @param name  of several cells
+template <std::size_t nodes_per_cell>
+void check_repeats(const std::string& place,
+                   const std::vector<Point3>& points,
+                   const std::vector<std::array<std::int32_t, nodes_per_cell>>& cells,
+                   SameCells same,
+                   const std::string& name) {
+  const std::vector<std::size_t> firsts = first_copies(points, cells, same);
+  for (std::size_t c = 0; c < firsts.size(); ++c) {
+    if (firsts[c] == c) continue;
+    fail_at(place, name + " " + std::to_string(firsts[c]) + " and " + std::to_string(c) +
+                       " are the same and would count twice, remove one of them");
+  }
+}
+
 void take_mesh(const std::string& place, BodyParts& parts, const Mesh& mesh) {
+  check_repeats(place, mesh.rest_positions, mesh.tets, SameCells::places, "tetrahedra");
   TetMesh tets{mesh.rest_positions, mesh.tets};
   orient_tets(place, tets);
   parts.node_number = keep_tets(tets, std::vector<std::uint8_t>(tets.tets.size(), 1));
@@ -61,20 +75,22 @@ void take_volume(const std::string& place, BodyParts& parts, const Body& body) {
   } else if (const auto* image = std::get_if<ImageGeometry>(&body.geometry)) {
     ImageLattice lattice = make_image_lattice(place, *image, *body.lattice);
     take_tets(parts.geometry, std::move(lattice.mesh), lattice.cells_across);
+    parts.geometry.shares_voxels = lattice.has_small_cells;
   } else {
     take_mesh(key_of(place, "mesh"), parts, std::get<Mesh>(body.geometry));
   }
 }
 
 /// The surface that the scene gives, else that of the shape, image or triangles of the body.
-Surface own_surface(const std::string& place, const Body& body) {
+Surface own_surface(const std::string& place, const Body& body, Faces faces = Faces::divided) {
   if (const auto* given = std::get_if<Surface>(&body.surface)) {
     check_areas(key_of(place, "surface.mesh"), *given);
     return *given;
   }
   const auto* count = std::get_if<std::int64_t>(&body.surface);
   if (const auto* shape = std::get_if<Shape>(&body.geometry)) {
-    return make_shape_surface(*shape, count ? *count : default_triangles);
+    return count ? make_shape_surface(*shape, *count)
+                 : make_shape_surface(*shape, default_triangles, faces);
   }
   if (const auto* image = std::get_if<ImageGeometry>(&body.geometry)) {
     const std::string volume = key_of(place, "volume");
@@ -93,9 +109,13 @@ void make_fem(const std::string& place, BodyParts& parts, const Body& body) {
   take_volume(place, parts, body);
   BodyGeometry& geometry = parts.geometry;
   const bool is_default = std::holds_alternative<std::monostate>(body.surface);
-  geometry.surface = is_default && !std::holds_alternative<ImageGeometry>(body.geometry)
-                         ? surface_of(geometry.nodes, boundary_triangles(geometry.tets))
-                         : own_surface(place, body);
+  if (!is_default || std::holds_alternative<ImageGeometry>(body.geometry)) {
+    geometry.surface = own_surface(place, body);
+    return;
+  }
+  auto triangles = boundary_triangles(geometry.tets);
+  geometry.surface_node = nodes_of(triangles);
+  geometry.surface = surface_of(geometry.nodes, std::move(triangles));
 }
 
 /// Nodes and triangles of cloth, which are its surface as well.
@@ -113,37 +133,42 @@ void take_triangles(BodyParts& parts, const Surface& given) {
   parts.geometry.nodes = parts.geometry.surface.points;
 }
 
-void take_cloth(const std::string& place, BodyParts& parts, const Body& body) {
+void take_cloth(const std::string& place, BodyParts& parts, const Body& body, Faces faces) {
   if (const auto* sheet = std::get_if<Sheet>(&body.geometry)) {
     take_triangles(parts, make_sheet(key_of(place, "sheet"), *sheet));
     parts.geometry.sheet_cells = sheet->cells;
   } else {
-    take_triangles(parts, own_surface(place, body));
+    take_triangles(parts, own_surface(place, body, faces));
   }
 }
 }  // namespace
 
-BodyParts make_body_parts(const std::string& place, const Body& body) {
+BodyParts make_body_parts(const std::string& place, const Body& body, Faces faces) {
   BodyParts parts;
+  parts.geometry.has_whole_faces = faces == Faces::whole && body.kind != BodyKind::fem &&
+                                   !body.lattice && std::holds_alternative<Shape>(body.geometry) &&
+                                   std::holds_alternative<std::monostate>(body.surface);
   switch (body.kind) {
     case BodyKind::fem:
       make_fem(place, parts, body);
       break;
     case BodyKind::rigid:
-      parts.geometry.surface = own_surface(place, body);
+      parts.geometry.surface = own_surface(place, body, faces);
       check_closed(
           key_of(place, std::holds_alternative<Surface>(body.surface) ? "surface.mesh" : "mesh"),
           parts.geometry.surface);
       break;
     case BodyKind::cloth:
-      take_cloth(place, parts, body);
+      take_cloth(place, parts, body, faces);
+      check_repeats(key_of(place, "mesh"), parts.geometry.surface.points,
+                    parts.geometry.surface.triangles, SameCells::nodes, "triangles");
       parts.geometry.cloth_triangles = parts.geometry.surface.triangles;
       break;
     case BodyKind::scripted:
       if (body.lattice || std::holds_alternative<Mesh>(body.geometry)) {
         make_fem(place, parts, body);
       } else if (!std::holds_alternative<std::monostate>(body.geometry)) {
-        take_cloth(place, parts, body);
+        take_cloth(place, parts, body, faces);
       }
       break;
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
+#include "host/scene/surface_pattern.hpp"
 
 namespace tetwarp {
 
@@ -18,7 +19,8 @@ struct BodyParts {
 };
 
 /// @param place  of the body, such as bodies[2], for messages
+/// @param faces  of the surface of a shape without tetrahedra for which the scene gives no surface
 /// @throws std::invalid_argument  as make_scene_geometry()
-BodyParts make_body_parts(const std::string& place, const Body& body);
+BodyParts make_body_parts(const std::string& place, const Body& body, Faces faces);
 
 }  // namespace tetwarp

@@ -11,9 +11,14 @@
 #include "host/scene/lattice_search.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
+#include "host/scene/voxel_shares.hpp"
 
 namespace tetwarp {
 namespace {
+/// Shorter edges of cells are small. The number of voxels' centres in a tetrahedron of larger ones
+/// differs from its volume by a fifth at most.
+constexpr double least_edge = 16;  // [voxel]
+
 /// Length of one step along a grid axis [world].
 double step_length(const Grid& grid, std::size_t axis) {
   const auto& d = grid.direction;
@@ -36,6 +41,11 @@ std::vector<std::uint8_t> foreground_of(const ImageGeometry& image, const Region
   return flags;
 }
 
+bool has_small_cells(const LatticeFrame& frame) {
+  const double edge = *std::min_element(frame.edge.begin(), frame.edge.end());
+  return edge < least_edge * (1 - 1e-9);
+}
+
 /// Places tetrahedra around the foreground and drops those outside it. Positions of frames are
 /// index positions of the image.
 class ForegroundLattice {
@@ -47,7 +57,7 @@ class ForegroundLattice {
     TetMesh mesh = make_lattice(frame);
     const std::vector<Point3> index_nodes = mesh.nodes;
     map_nodes(mesh, [&](const Point3& x) { return image_.volume.grid.world_of(x); });
-    keep_tets(mesh, is_kept(mesh, index_nodes));
+    keep_tets(mesh, has_small_cells(frame) ? shares_any(mesh, index_nodes) : owns_any(mesh));
     return mesh;
   }
 
@@ -58,37 +68,35 @@ class ForegroundLattice {
   }
 
  private:
-  std::vector<std::uint8_t> is_kept(const TetMesh& mesh,
-                                    const std::vector<Point3>& index_nodes) const {
-    std::vector<std::uint8_t> owns_any(mesh.tets.size()), kept(mesh.tets.size());
+  /// Per tetrahedron whether it owns a voxel of the foreground.
+  std::vector<std::uint8_t> owns_any(const TetMesh& mesh) const {
+    std::vector<std::uint8_t> owns(mesh.tets.size());
     const std::vector<std::int32_t> owners = voxel_owners(image_.volume, box_, mesh);
     for (std::size_t v = 0; v < owners.size(); ++v) {
-      if (owners[v] < 0) continue;
-      const auto owner = static_cast<std::size_t>(owners[v]);
-      owns_any[owner] = 1;
-      if (foreground_[v]) kept[owner] = 1;
+      if (owners[v] >= 0 && foreground_[v]) owns[static_cast<std::size_t>(owners[v])] = 1;
     }
-    for (std::size_t t = 0; t < kept.size(); ++t) {
-      if (!owns_any[t]) kept[t] = is_foreground_at(centroid_of(index_nodes, mesh.tets[t]));
-    }
-    return kept;
+    return owns;
   }
 
-  static Point3 centroid_of(const std::vector<Point3>& nodes,
-                            const std::array<std::int32_t, 4>& tet) {
-    Point3 sum{0, 0, 0};
-    for (const std::int32_t node : tet) sum = plus(sum, at(nodes, node));
-    return times(0.25, sum);
+  /// Per tetrahedron whether it has a share in a voxel of the foreground.
+  std::vector<std::uint8_t> shares_any(const TetMesh& mesh,
+                                       const std::vector<Point3>& index_nodes) const {
+    std::vector<std::uint8_t> shares;
+    shares.reserve(mesh.tets.size());
+    for (const auto& [a, b, c, d] : mesh.tets) {
+      shares.push_back(has_share(
+          {at(index_nodes, a), at(index_nodes, b), at(index_nodes, c), at(index_nodes, d)}, box_,
+          [this](const VoxelIndex& voxel) { return is_foreground(voxel); }));
+    }
+    return shares;
   }
 
-  bool is_foreground_at(const Point3& index) const {
-    std::int64_t voxel = 0;
+  bool is_foreground(const VoxelIndex& voxel) const {
+    std::int64_t place = 0;
     for (std::size_t d = 3; d-- > 0;) {
-      const auto nearest = static_cast<std::int64_t>(std::floor(index[d] + 0.5));
-      if (nearest < box_.begin[d] || nearest >= box_.end[d]) return false;
-      voxel = voxel * (box_.end[d] - box_.begin[d]) + nearest - box_.begin[d];
+      place = place * (box_.end[d] - box_.begin[d]) + voxel[d] - box_.begin[d];
     }
-    return foreground_[static_cast<std::size_t>(voxel)] != 0;
+    return foreground_[static_cast<std::size_t>(place)] != 0;
   }
 
   const ImageGeometry& image_;
@@ -146,7 +154,7 @@ ImageLattice make_image_lattice(const std::string& body_place,
   ChosenLattice chosen = choose_lattice(
       key_of(body_place, "lattice"), choice, bounds, length, foreground.volume(step), frame_of_edge,
       [&](const LatticeFrame& frame) { return foreground.mesh_of(frame); });
-  ImageLattice lattice{std::move(chosen.mesh), {}};
+  ImageLattice lattice{std::move(chosen.mesh), {}, has_small_cells(chosen.frame)};
   for (std::size_t d = 0; d < 3; ++d) {
     lattice.cells_across[d] = (bounds.high[d] - bounds.low[d]) / chosen.frame.edge[d];
   }

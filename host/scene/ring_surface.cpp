@@ -53,11 +53,14 @@ double triangle_count(const Rings& rings) {
   return 2.0 * rings.around * static_cast<double>(rings.ring.size());
 }
 
-/// The rings of `around` points whose count of triangles is nearest to the wanted one.
-Surface nearest_rings(std::int64_t triangles, const std::function<Rings(int around)>& rings_of) {
-  const int around =
-      nearest_pattern(3, triangles, [&](int n) { return triangle_count(rings_of(n)); });
-  return ring_surface(rings_of(around));
+/// The rings of `around` points whose count of triangles is nearest to the wanted one where faces
+/// are divided.
+Surface nearest_rings(std::int64_t triangles,
+                      Faces faces,
+                      const std::function<Rings(int around, Faces faces)>& rings_of) {
+  const int around = nearest_pattern(
+      3, triangles, [&](int n) { return triangle_count(rings_of(n, Faces::divided)); });
+  return ring_surface(rings_of(around, faces));
 }
 
 /// A circle around the z axis.
@@ -67,9 +70,10 @@ std::function<Point3(double)> circle(double radius, double z) {
   };
 }
 
-Rings cylinder_rings(const CylinderShape& shape, int around) {
+Rings cylinder_rings(const CylinderShape& shape, int around, Faces faces) {
   const double spacing = 2 * pi * shape.radius / around;
-  const int along = count_along(shape.length, spacing), out = count_along(shape.radius, spacing);
+  const int along = count_along(shape.length, spacing, faces);
+  const int out = count_along(shape.radius, spacing, faces);
   Rings rings{around, {}, false, {0, 0, -shape.length / 2}, {0, 0, shape.length / 2}};
   for (int r = 1; r < out; ++r) {
     rings.ring.push_back(circle(shape.radius * r / out, -shape.length / 2));
@@ -83,10 +87,10 @@ Rings cylinder_rings(const CylinderShape& shape, int around) {
   return rings;
 }
 
-Rings capsule_rings(const CapsuleShape& shape, int around) {
+Rings capsule_rings(const CapsuleShape& shape, int around, Faces faces) {
   const double spacing = 2 * pi * shape.radius / around, end = shape.length / 2;
   // Without a straight part the caps share a ring.
-  const int along = shape.length > 0 ? count_along(shape.length, spacing) : 0;
+  const int along = shape.length > 0 ? count_along(shape.length, spacing, faces) : 0;
   const int out = std::max(2, count_along(pi / 2 * shape.radius, spacing));
   Rings rings{around, {}, false, {0, 0, -end - shape.radius}, {0, 0, end + shape.radius}};
   const auto cap_ring = [&](int r, double side) {
@@ -150,20 +154,24 @@ Rings arc_rings(const ArcShape& shape, int around) {
 }
 }  // namespace
 
-Surface make_ring_surface(const CylinderShape& shape, std::int64_t triangles) {
-  return nearest_rings(triangles, [&](int around) { return cylinder_rings(shape, around); });
+Surface make_ring_surface(const CylinderShape& shape, std::int64_t triangles, Faces faces) {
+  return nearest_rings(triangles, faces,
+                       [&](int around, Faces of) { return cylinder_rings(shape, around, of); });
 }
 
-Surface make_ring_surface(const CapsuleShape& shape, std::int64_t triangles) {
-  return nearest_rings(triangles, [&](int around) { return capsule_rings(shape, around); });
+Surface make_ring_surface(const CapsuleShape& shape, std::int64_t triangles, Faces faces) {
+  return nearest_rings(triangles, faces,
+                       [&](int around, Faces of) { return capsule_rings(shape, around, of); });
 }
 
 Surface make_ring_surface(const TorusShape& shape, std::int64_t triangles) {
-  return nearest_rings(triangles, [&](int around) { return torus_rings(shape, around); });
+  return nearest_rings(triangles, Faces::divided,
+                       [&](int around, Faces) { return torus_rings(shape, around); });
 }
 
 Surface make_ring_surface(const ArcShape& shape, std::int64_t triangles) {
-  return nearest_rings(triangles, [&](int around) { return arc_rings(shape, around); });
+  return nearest_rings(triangles, Faces::divided,
+                       [&](int around, Faces) { return arc_rings(shape, around); });
 }
 
 }  // namespace tetwarp

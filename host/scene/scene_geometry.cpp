@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "host/scene/body_geometry.hpp"
 #include "host/scene/checks/scene_checks.hpp"
@@ -25,6 +26,27 @@ void refuse_overlap(const std::string& place,
   fail_at(place, "selects " + std::to_string(both.size()) +
                      " nodes that are already fixed or driven, the first is node " +
                      std::to_string(both.front()) + "; keep the selections apart");
+}
+
+/// Whether the points within a body's faces are needed: the scene may select them, a wave bends
+/// them, and the area of adhesion is told by the points that touch.
+Faces faces_of(const Scene& scene, const Body& body) {
+  const auto any = [](const auto& list, const auto& test) {
+    return std::any_of(list.begin(), list.end(), test);
+  };
+  const SurfaceContact contact = body.contact.value_or(scene.contact.material);
+  const bool adheres =
+      contact.adhesion.has_value() ||
+      any(scene.contact.pairs, [&](const ContactPairMaterial& pair) {
+        return pair.adhesion.has_value() && (pair.a == body.name || pair.b == body.name);
+      });
+  const bool selects =
+      any(scene.couplings,
+          [&](const Coupling& of) { return of.a == body.name && of.points.empty(); }) ||
+      any(scene.handles, [&](const Handle& of) { return of.body == body.name; }) ||
+      any(scene.loads, [&](const Load& of) { return of.body == body.name; });
+  return adheres || selects || std::holds_alternative<Wave>(body.motion) ? Faces::divided
+                                                                         : Faces::whole;
 }
 
 void select_supports(const std::string& place, const Body& body, BodyParts& parts) {
@@ -54,7 +76,7 @@ SceneGeometry make_scene_geometry(const Scene& scene) {
   std::map<std::string, std::size_t> index;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string place = item_of("bodies", b);
-    parts.push_back(make_body_parts(place, scene.bodies[b]));
+    parts.push_back(make_body_parts(place, scene.bodies[b], faces_of(scene, scene.bodies[b])));
     select_supports(place, scene.bodies[b], parts.back());
     index.emplace(scene.bodies[b].name, b);
   }

@@ -22,9 +22,14 @@ struct BodyGeometry {
   std::vector<std::array<std::int32_t, 4>> tets;  ///< positive volume, none without a node
   std::vector<double> tet_fraction;  ///< volume of each tetrahedron inside a shape over its own
                                      ///< volume, (0, 1]; empty: 1
+  bool shares_voxels = false;  ///< of an image: cells are small, so that tetrahedra share the boxes
+                               ///< of voxels; false: each voxel is its owner's
   std::array<std::int64_t, 2> sheet_cells{0, 0};  ///< of a sheet: nodes are [v][u], u fastest
   std::vector<std::array<std::int32_t, 3>> cloth_triangles;  ///< cloth: of its nodes
   Surface surface;  ///< points in the geometry's frame; cloth: its nodes; may be empty for scripted
+  std::vector<std::int32_t> surface_node;  ///< the node that each point of `surface` is, where it
+                                           ///< is the boundary of `tets`; empty: it is not
+  bool has_whole_faces = false;  ///< `surface` is that of a shape whose flat faces are not divided
   std::array<double, 3> cells_across{0, 0, 0};  ///< extent over mean edge length of cells
 
   std::vector<std::int32_t> fixed;  ///< sorted, unique

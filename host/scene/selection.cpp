@@ -69,7 +69,7 @@ class Marks {
               "a label selects nodes of tetrahedra, which are not there; select by box, sphere or "
               "nodes");
     }
-    for (const std::int32_t tet : owners_of_value(image->volume, geometry, label.value)) {
+    for (const std::int32_t tet : tets_of_value(image->volume, geometry, label.value)) {
       for (const std::int32_t node : at(geometry.tets, tet)) {
         marks_[static_cast<std::size_t>(node)] = 1;
       }

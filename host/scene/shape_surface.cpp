@@ -82,19 +82,26 @@ Surface ellipsoid_surface(const EllipsoidShape& shape, std::int64_t triangles) {
 }
 
 // ---- box: squares on six faces ----------------------------------------------------------
-std::array<int, 3> box_cells(const Point3& length, int along_longest) {
+using BoxCells = std::array<int, 3>;
+
+BoxCells box_cells(const Point3& length, int along_longest) {
   const double spacing = *std::max_element(length.begin(), length.end()) / along_longest;
   return {count_along(length[0], spacing), count_along(length[1], spacing),
           count_along(length[2], spacing)};
 }
 
-Surface box_surface(const Bounds& bounds, std::int64_t triangles) {
+/// The squares of about the wanted number of triangles.
+BoxCells nearest_cells(const Bounds& bounds, std::int64_t triangles) {
   const Point3 length = minus(bounds.high, bounds.low);
-  const auto cells = box_cells(
+  return box_cells(
       length, nearest_pattern(1, triangles, [&](int n) {
         const auto c = box_cells(length, n);
         return 4.0 * (double{1} * c[0] * c[1] + double{1} * c[1] * c[2] + double{1} * c[2] * c[0]);
       }));
+}
+
+Surface box_surface(const Bounds& bounds, const BoxCells& cells) {
+  const Point3 length = minus(bounds.high, bounds.low);
   Surface surface;
   std::map<std::array<int, 3>, std::int32_t> number;
   const auto point_of = [&](const std::array<int, 3>& at) {
@@ -132,18 +139,26 @@ Surface box_surface(const Bounds& bounds, std::int64_t triangles) {
 }
 }  // namespace
 
-Surface make_shape_surface(const Shape& shape, std::int64_t triangles) {
+Surface make_shape_surface(const Shape& shape, std::int64_t triangles, Faces faces) {
   if (const auto* s = std::get_if<EllipsoidShape>(&shape)) return ellipsoid_surface(*s, triangles);
-  if (const auto* s = std::get_if<CylinderShape>(&shape)) return make_ring_surface(*s, triangles);
-  if (const auto* s = std::get_if<CapsuleShape>(&shape)) return make_ring_surface(*s, triangles);
+  if (const auto* s = std::get_if<CylinderShape>(&shape)) {
+    return make_ring_surface(*s, triangles, faces);
+  }
+  if (const auto* s = std::get_if<CapsuleShape>(&shape)) {
+    return make_ring_surface(*s, triangles, faces);
+  }
   if (const auto* s = std::get_if<TorusShape>(&shape)) return make_ring_surface(*s, triangles);
   if (const auto* s = std::get_if<ArcShape>(&shape)) return make_ring_surface(*s, triangles);
   if (const auto* s = std::get_if<BentStripShape>(&shape)) {
-    Surface surface = box_surface(straight_bounds(*s), triangles);
+    BoxCells cells = nearest_cells(straight_bounds(*s), triangles);
+    if (faces == Faces::whole) cells = {cells[0], 1, 1};
+    Surface surface = box_surface(straight_bounds(*s), cells);
     for (Point3& x : surface.points) x[2] += rise_of(*s, x[0]);
     return surface;
   }
-  return box_surface(bounds_of(shape), triangles);
+  const Bounds bounds = bounds_of(shape);
+  return box_surface(bounds,
+                     faces == Faces::whole ? BoxCells{1, 1, 1} : nearest_cells(bounds, triangles));
 }
 
 }  // namespace tetwarp

@@ -77,16 +77,23 @@ std::vector<Triangle> boundary_triangles(const std::vector<std::array<std::int32
   return triangles;
 }
 
+std::vector<std::int32_t> nodes_of(const std::vector<Triangle>& triangles) {
+  std::vector<std::int32_t> nodes;
+  nodes.reserve(3 * triangles.size());
+  for (const Triangle& triangle : triangles) {
+    nodes.insert(nodes.end(), triangle.begin(), triangle.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
 Surface surface_of(const std::vector<Point3>& nodes, std::vector<Triangle> triangles) {
   std::vector<std::int32_t> number(nodes.size(), -1);
-  for (const Triangle& triangle : triangles) {
-    for (const std::int32_t node : triangle) number[static_cast<std::size_t>(node)] = 0;
-  }
   Surface surface;
-  for (std::size_t node = 0; node < nodes.size(); ++node) {
-    if (number[node] < 0) continue;
-    number[node] = static_cast<std::int32_t>(surface.points.size());
-    surface.points.push_back(nodes[node]);
+  for (const std::int32_t node : nodes_of(triangles)) {
+    number[static_cast<std::size_t>(node)] = static_cast<std::int32_t>(surface.points.size());
+    surface.points.push_back(at(nodes, node));
   }
   for (Triangle& triangle : triangles) {
     for (std::int32_t& node : triangle) node = at(number, node);

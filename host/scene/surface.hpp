@@ -17,7 +17,10 @@ namespace tetwarp {
 std::vector<std::array<std::int32_t, 3>> boundary_triangles(
     const std::vector<std::array<std::int32_t, 4>>& tets);
 
-/// The triangles as a surface of the nodes that they use, in order.
+/// The nodes that triangles use, ascending.
+std::vector<std::int32_t> nodes_of(const std::vector<std::array<std::int32_t, 3>>& triangles);
+
+/// The triangles as a surface whose points are nodes_of(triangles).
 Surface surface_of(const std::vector<Point3>& nodes,
                    std::vector<std::array<std::int32_t, 3>> triangles);
 

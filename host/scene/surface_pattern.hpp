@@ -10,6 +10,10 @@
 
 namespace tetwarp {
 
+/// Whether triangles of a surface are of about one size, or flat faces and straight parts are
+/// divided no more than their outline needs.
+enum class Faces { divided, whole };
+
 inline std::int32_t add_point(Surface& surface, const Point3& x) {
   surface.points.push_back(x);
   return static_cast<std::int32_t>(surface.points.size() - 1);
@@ -27,6 +31,10 @@ inline int nearest_pattern(int first,
 
 inline int count_along(double length, double spacing) {
   return std::max(1, static_cast<int>(std::lround(length / spacing)));
+}
+/// Of a straight part.
+inline int count_along(double length, double spacing, Faces faces) {
+  return faces == Faces::whole ? 1 : count_along(length, spacing);
 }
 
 }  // namespace tetwarp

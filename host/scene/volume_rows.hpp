@@ -1,6 +1,7 @@
 /// @file volume_rows.hpp
-/// Rows of voxels of a volume as float64.
+/// Rows of voxels of a volume, and single ones, as float64.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,5 +31,16 @@ class VolumeRows {
   const Volume& volume_;
   std::vector<double> row_;
 };
+
+/// The sample of a voxel i, j, k. @pre as VolumeRows
+inline double sample_of(const Volume& volume, const std::array<std::int64_t, 3>& voxel) {
+  const auto& dims = volume.grid.dims;
+  const std::int64_t place = (voxel[2] * dims[1] + voxel[1]) * dims[0] + voxel[0];
+  double value = 0;
+  with_pixel_type(volume.type, [&]<class T>(T) {
+    value = static_cast<double>(volume.samples<T>()[static_cast<std::size_t>(place)]);
+  });
+  return value;
+}
 
 }  // namespace tetwarp

@@ -7,6 +7,7 @@
 #include <tetwarp/warp.hpp>
 
 #include "host/scene/volume_rows.hpp"
+#include "host/scene/voxel_shares.hpp"
 
 namespace tetwarp {
 
@@ -28,10 +29,24 @@ std::vector<std::int32_t> voxel_owners(const Volume& volume,
   return owners;
 }
 
-std::vector<std::int32_t> owners_of_value(const Volume& volume,
-                                          const BodyGeometry& geometry,
-                                          double value) {
+std::vector<std::int32_t> tets_of_value(const Volume& volume,
+                                        const BodyGeometry& geometry,
+                                        double value) {
   const Region whole{{0, 0, 0}, volume.grid.dims};
+  std::vector<std::int32_t> tets;
+  if (geometry.shares_voxels) {
+    const std::vector<Point3> nodes = index_positions(volume.grid, geometry.nodes);
+    for (std::size_t t = 0; t < geometry.tets.size(); ++t) {
+      const auto& [a, b, c, d] = geometry.tets[t];
+      const auto has_value = [&](const VoxelIndex& voxel) {
+        return sample_of(volume, voxel) == value;
+      };
+      if (has_share({at(nodes, a), at(nodes, b), at(nodes, c), at(nodes, d)}, whole, has_value)) {
+        tets.push_back(static_cast<std::int32_t>(t));
+      }
+    }
+    return tets;
+  }
   const auto owners = voxel_owners(volume, whole, {geometry.nodes, geometry.tets});
   std::vector<std::uint8_t> owns(geometry.tets.size());
   VolumeRows rows(volume);
@@ -44,7 +59,6 @@ std::vector<std::int32_t> owners_of_value(const Volume& volume,
       }
     }
   }
-  std::vector<std::int32_t> tets;
   for (std::size_t t = 0; t < owns.size(); ++t) {
     if (owns[t]) tets.push_back(static_cast<std::int32_t>(t));
   }

@@ -16,9 +16,10 @@ std::vector<std::int32_t> voxel_owners(const Volume& volume,
                                        const Region& region,
                                        const TetMesh& mesh);
 
-/// The tetrahedra of a body that own a voxel whose sample equals `value`, in ascending order.
-std::vector<std::int32_t> owners_of_value(const Volume& volume,
-                                          const BodyGeometry& geometry,
-                                          double value);
+/// The tetrahedra of a body that own a voxel whose sample equals `value`, or share one where cells
+/// are small, in ascending order.
+std::vector<std::int32_t> tets_of_value(const Volume& volume,
+                                        const BodyGeometry& geometry,
+                                        double value);
 
 }  // namespace tetwarp

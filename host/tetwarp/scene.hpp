@@ -124,6 +124,8 @@ struct Scene {
   SceneContact contact = {};
   SceneSolver solver = {};
   SceneOutput output = {};
+  /// What reading its files has merged, a line for each file; of no effect.
+  std::vector<std::string> notes = {};
 
   /// round(duration / time_step)
   TETWARP_EXPORT std::int64_t step_count() const;

@@ -82,10 +82,11 @@ struct BodyRecord {
   Point3 angular_velocity{};                   ///< rigid [rad/s]
 };
 
-/// Where a contact is on a body: a weighted mean of points of BodyMesh::surface.
+/// Where a contact is on a body: a weighted mean of points of BodyMesh::surface, or of the points
+/// of an obstacle's mesh.
 struct ContactPlace {
-  std::array<std::int32_t, 3> point{-1, -1, -1};  ///< -1: not used; of rigid bodies and obstacles
-                                                  ///< all three
+  std::array<std::int32_t, 3> point{-1, -1, -1};  ///< -1: not used; all three where a rigid body or
+                                                  ///< obstacle does not touch with a vertex
   std::array<double, 3> weight{0, 0, 0};          ///< of the points, sum 1
 };
 
@@ -131,6 +132,8 @@ struct StepRecord {
 struct BodyMesh {
   BodyKind kind = BodyKind::fem;
   double mass = 0;                       ///< [kg]; scripted: 0
+  double foreground_volume = 0;          ///< fem, of an image: voxels from the threshold on [m^3]
+  double uncovered_volume = 0;           ///< the part of it in no tetrahedron, without mass [m^3]
   std::array<double, 3> cells_across{};  ///< extent over mean cell size; not for rigid
   Mesh mesh;                             ///< fem; nodes in the frame of the geometry
   Surface surface;                       ///< points in the frame of the geometry

@@ -37,6 +37,12 @@ struct BoundPoints {
   double largest_distance = 0;  ///< from a point to the mean of its nodes [world]; 0: all inside
 };
 
+/// The points of boundary_surface() as the nodes that they are: each has the weight 1 of its node,
+/// in the first tetrahedron with it. Where parts of a mesh meet with nodes of their own, as at
+/// cracks and between partitions, places do not tell these nodes apart.
+/// @throws std::invalid_argument  as boundary_surface()
+TETWARP_EXPORT BoundPoints bind_boundary(const Mesh& mesh);
+
 /// @throws std::invalid_argument  no tetrahedron, points that are not finite, as check_mesh()
 TETWARP_EXPORT BoundPoints bind_points(const Mesh& mesh, const std::vector<Point3>& points);
 

@@ -36,7 +36,7 @@ void exchange_members(Message& message, Value& value) {
 template <class Message>
 void exchange_members(Message& message, ImportedMesh& value) {
   // All members: a new one does not compile.
-  auto& [mesh, displacements, times, skipped, arrays, left_out, triangles] = value;
+  auto& [mesh, displacements, times, skipped, arrays, left_out, merged, triangles] = value;
   auto& [rest_positions, tets, hexes] = mesh;
   message(rest_positions);
   message(tets);
@@ -46,6 +46,7 @@ void exchange_members(Message& message, ImportedMesh& value) {
   message(skipped);
   message(arrays);
   message(left_out);
+  message(merged);
   message(triangles);
 }
 

@@ -14,6 +14,7 @@
 #include <tetwarp/volume.hpp>
 
 #include "io/files/memory.hpp"
+#include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
 
 namespace tetwarp {
@@ -110,6 +111,7 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
   ImportedMesh mesh = read_mesh_in_child(path, limits_for(path, options),
                                          [&] { return read_mesh_here(path, options); });
   check_imported(path, mesh, options.needs_solids);
+  merge_cells(mesh);
   if (options.axes == Axes::lps) {
     turn(mesh.mesh.rest_positions);
     for (std::vector<Point3>& displacement : mesh.displacements) turn(displacement);

@@ -127,6 +127,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   SceneFiles files(folder);
   Scene scene = read_keys(SceneValue(json, name, ""), files);
   files.read_all();
+  scene.notes = files.notes();
   try {
     check_scene(scene);
   } catch (const std::invalid_argument& error) {

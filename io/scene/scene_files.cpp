@@ -2,8 +2,11 @@
 /// Reads the files that a scene names, equal volumes once.
 #include "io/scene/scene_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <tetwarp/error.hpp>
+#include <tetwarp/io.hpp>
+#include <tetwarp/scene_io.hpp>
 #include <utility>
 
 namespace tetwarp {
@@ -37,6 +40,24 @@ void SceneFiles::add_volume(const SceneValue& value,
 
 void SceneFiles::read_all() {
   for (const std::function<void()>& read : reads_) read();
+}
+
+Mesh SceneFiles::read_mesh(const std::string& path) {
+  const MeshReader reader(path);
+  note(path, reader.header().merged);
+  return reader.mesh();
+}
+
+Surface SceneFiles::read_triangles(const std::string& path) {
+  std::string merged;
+  Surface surface = read_surface(path, &merged);
+  note(path, merged);
+  return surface;
+}
+
+void SceneFiles::note(const std::string& path, const std::string& merged) {
+  const std::string line = path + ": " + merged;
+  if (!merged.empty() && std::ranges::count(notes_, line) == 0) notes_.push_back(line);
 }
 
 }  // namespace tetwarp

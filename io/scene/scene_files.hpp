@@ -34,10 +34,18 @@ class SceneFiles {
 
   void read_all();
 
+  /// Meshes and triangles; what was merged in them is noted.
+  Mesh read_mesh(const std::string& path);
+  Surface read_triangles(const std::string& path);
+  const std::vector<std::string>& notes() const { return notes_; }
+
  private:
+  void note(const std::string& path, const std::string& merged);
+
   std::string folder_;
   std::vector<std::function<void()>> reads_;
   std::map<std::string, const Volume*> volumes_;  // by content
+  std::vector<std::string> notes_;                // a line for each file
 };
 
 }  // namespace tetwarp

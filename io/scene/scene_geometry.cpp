@@ -124,12 +124,12 @@ void read_volume_key(const SceneValue& value, SceneFiles& files, Body& into) {
 
 // ---- meshes -------------------------------------------------------------------
 /// A mesh of tetrahedra or else of triangles.
-Geometry read_either(const std::string& path) {
+Geometry read_either(const std::string& path, SceneFiles& files) {
   try {
-    return MeshReader(path).mesh();
+    return files.read_mesh(path);
   } catch (const IoError&) {
     try {
-      return read_surface(path);
+      return files.read_triangles(path);
     } catch (const IoError&) {
     }
     throw;
@@ -147,13 +147,13 @@ void read_mesh_key(const SceneValue& value, SceneFiles& files, Body& into) {
   } else {
     into.geometry = Surface{};
   }
-  files.add(file, [path, &into] {
+  files.add(file, [path, &files, &into] {
     if (into.kind == BodyKind::fem) {
-      into.geometry = MeshReader(path).mesh();
+      into.geometry = files.read_mesh(path);
     } else if (into.kind == BodyKind::scripted) {
-      into.geometry = read_either(path);
+      into.geometry = read_either(path, files);
     } else {
-      into.geometry = read_surface(path);
+      into.geometry = files.read_triangles(path);
     }
   });
 }
@@ -219,7 +219,7 @@ void read_surface_file(const SceneValue& value,
                        SceneFiles& files,
                        std::function<void(Surface)> store) {
   const std::string path = files.path_of(value);
-  files.add(value, [path, store = std::move(store)] { store(read_surface(path)); });
+  files.add(value, [path, &files, store = std::move(store)] { store(files.read_triangles(path)); });
 }
 
 void read_surface_choice(SceneObject& object, SceneFiles& files, Body& into) {

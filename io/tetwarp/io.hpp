@@ -114,6 +114,7 @@ struct MeshHeader {
   std::int64_t node_count = 0;
   std::int64_t tet_count = 0;
   std::int64_t hex_count = 0;
+  std::string merged = {};         ///< how many cells are there twice, as a text; empty: none
   std::vector<double> times;       ///< one per step; a static file has one step at time 0
   bool has_displacement = false;   ///< deformed = rest + displacement; false: the step's points
   bool has_moving_points = false;  ///< steps have points of their own, which may differ
@@ -132,7 +133,8 @@ struct MeshReadOptions {
 /// A mesh of tetrahedra and hexahedra with its deformation: a VTKHDF UnstructuredGrid, or what
 /// import_mesh() reads. Deformed positions are the points plus the point array `displacement`, or,
 /// without that array, the points of the step. Rest positions are the points of `rest_step` or
-/// those of `rest_file`. Partitions are concatenated.
+/// those of `rest_file`. Partitions are concatenated. Of cells that are there twice, with nodes at
+/// the same places, the first is kept.
 ///
 /// Of a VTKHDF file steps are read when they are asked for; files of Gmsh and VTK are kept in
 /// memory with all steps.

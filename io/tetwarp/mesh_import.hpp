@@ -41,6 +41,7 @@ struct ImportedMesh {
   /// of nodes, `group` the physical group of each cell (0: none) and the names of groups.
   std::vector<MeshArray> arrays = {};
   std::vector<std::string> left_out = {};  ///< other content of the file, by kind and name
+  std::string merged = {};  ///< how many cells are there twice, as a text; empty: none
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions
 };
 

@@ -34,8 +34,10 @@ TETWARP_IO_EXPORT std::string scene_text(const std::string& name);
 
 /// Reads triangles: a VTKHDF UnstructuredGrid of triangles at its first step, or the triangles of a
 /// file that import_mesh() reads, whose other cells of fewer than three dimensions are left out.
-/// Points that no triangle has are left out.
-TETWARP_IO_EXPORT Surface read_surface(const std::string& path);
+/// Points that no triangle has are left out, and triangles that are there twice: with the same
+/// places of their points in the same direction around.
+/// @param merged  out, how many triangles are there twice, as a text; empty: none
+TETWARP_IO_EXPORT Surface read_surface(const std::string& path, std::string* merged = nullptr);
 
 /// Writes triangles as a VTKHDF UnstructuredGrid without steps, which read_surface() reads.
 /// @param arrays  of points and cells; see MeshArray

@@ -25,6 +25,10 @@ void add_numbers(const std::string& name,
   into.arrays.push_back(std::move(array));
 }
 
+std::string group_name(std::size_t index) {
+  return index == 0 ? "group" : "group_" + std::to_string(index + 1);
+}
+
 bool is_free_name(const std::string& name) {
   return !name.empty() && name.find_first_of("/.") == std::string::npos && name != "displacement" &&
          name != "original_cell" && name != "original_node";

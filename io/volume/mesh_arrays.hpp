@@ -1,6 +1,7 @@
 /// @file mesh_arrays.hpp
 /// Arrays and numbers that imported meshes keep.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,10 @@ void add_numbers(const std::string& name,
                  bool is_of_cells,
                  const std::vector<std::int64_t>& numbers,
                  ImportedMesh& into);
+
+/// "group", "group_2", "group_3" ... for 0, 1, 2 ...: the arrays of the first, second ... group of
+/// each cell.
+std::string group_name(std::size_t index);
 
 /// True unless a VTKHDF file cannot hold the name, or import writes another array of that name.
 bool is_free_name(const std::string& name);

@@ -4,6 +4,7 @@
 #include <tetwarp/io.hpp>
 #include <utility>
 
+#include "host/base/repeated_cells.hpp"
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
 namespace tetwarp {
@@ -22,6 +23,8 @@ struct MeshReader::State {
   MeshHeader header;
   Mesh mesh;
   std::vector<MeshPart> parts;  ///< that `mesh` was read from
+  std::vector<std::size_t> tet_firsts,
+      hex_firsts;  ///< of the cells of the file; see first_copies()
 
   void open_vtkhdf(const MeshReadOptions& options);
   void import(const MeshReadOptions& options);
@@ -68,6 +71,13 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   mesh.tets = std::move(cells.tets);
   mesh.hexes = std::move(cells.hexes);
   mesh.rest_positions = file->read_points(options.rest_step);
+  tet_firsts = first_copies(mesh.rest_positions, mesh.tets, SameCells::places);
+  hex_firsts = first_copies(mesh.rest_positions, mesh.hexes, SameCells::places);
+  header.merged =
+      merged_text(copy_count(tet_firsts) + copy_count(hex_firsts), mesh.cell_count(), "cells");
+  keep_firsts(tet_firsts, mesh.tets);
+  keep_firsts(hex_firsts, mesh.hexes);
+  if (header.merged.empty()) tet_firsts = hex_firsts = {};
   header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
   header.has_displacement = file->has_displacement();
   header.group_names = file->group_names();
@@ -86,6 +96,7 @@ void MeshReader::State::import(const MeshReadOptions& options) {
   mesh = std::move(whole.mesh);
   imported.displacements = std::move(whole.displacements);
   header.has_displacement = !imported.displacements.empty();
+  header.merged = whole.merged;
   for (MeshArray& array : whole.arrays) {
     if (array.is_of_cells && array.name == "group") {
       header.group_names = std::move(array.value_names);
@@ -106,7 +117,9 @@ std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
   }
   file->file().check_step(step);
   if (!is_same_topology(parts, file->parts_of(step))) {
-    const MeshCells cells = file->read_cells(step);
+    MeshCells cells = file->read_cells(step);
+    if (cells.tets.size() == tet_firsts.size()) keep_firsts(tet_firsts, cells.tets);
+    if (cells.hexes.size() == hex_firsts.size()) keep_firsts(hex_firsts, cells.hexes);
     if (cells.tets != mesh.tets || cells.hexes != mesh.hexes) {
       throw IoError(path, "",
                     "step " + std::to_string(step) + " has other cells than the rest step");

@@ -4,6 +4,7 @@
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 
+#include "host/base/repeated_cells.hpp"
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
 namespace tetwarp {
@@ -28,15 +29,23 @@ Surface compacted(std::vector<Point3> points, std::vector<std::array<std::int32_
 }
 }  // namespace
 
-Surface read_surface(const std::string& path) {
+Surface read_surface(const std::string& path, std::string* merged) {
   const h5::Silence silence;
+  std::vector<Point3> points;
+  std::vector<std::array<std::int32_t, 3>> triangles;
   if (has_mesh_extension(path) && kind_of(path) == FileKind::unknown) {
     ImportedMesh imported = import_mesh(path, {.needs_solids = false});
-    return compacted(std::move(imported.mesh.rest_positions), std::move(imported.triangles));
+    points = std::move(imported.mesh.rest_positions);
+    triangles = std::move(imported.triangles);
+  } else {
+    const MeshFile file(path);
+    triangles = file.read_cells(0, CellChoice::triangles).triangles;
+    points = file.read_points(0);
   }
-  const MeshFile file(path);
-  MeshCells cells = file.read_cells(0, CellChoice::triangles);
-  return compacted(file.read_points(0), std::move(cells.triangles));
+  const auto firsts = first_copies(points, triangles, SameCells::turned_places);
+  if (merged != nullptr) *merged = merged_text(copy_count(firsts), triangles.size(), "triangles");
+  keep_firsts(firsts, triangles);
+  return compacted(std::move(points), std::move(triangles));
 }
 
 }  // namespace tetwarp

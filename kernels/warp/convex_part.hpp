@@ -145,13 +145,14 @@ TETWARP_HD_RARE bool clip_part(const ConvexPart& from,
   return true;
 }
 
-/// Volume [voxel^3]: the sum, over edges, of tetrahedra of the edge, the body's first corner and
-/// one corner of the edge's face.
-TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
+/// Calls visit(six times the volume, corner, corner, corner) for tetrahedra that fill a body: of
+/// every edge, the body's first corner and one corner of the edge's face. Those of rounding may be
+/// negative.
+template <class Visit>
+TETWARP_HD void for_pieces(const ConvexPart& part, Visit&& visit) {
   const double* const apex = part.corner[0];
   int base[max_faces];
   for (int face = 0; face < max_faces; ++face) base[face] = -1;
-  double volume6 = 0;
   for (int e = 0; e < part.edge_count; ++e) {
     int& first = base[part.edge[e][2]];
     if (first < 0) first = part.edge[e][0];
@@ -161,10 +162,17 @@ TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
       side[1][axis] = part.corner[part.edge[e][0]][axis] - apex[axis];
       side[2][axis] = part.corner[part.edge[e][1]][axis] - apex[axis];
     }
-    volume6 += side[0][0] * (side[1][1] * side[2][2] - side[1][2] * side[2][1]) +
-               side[0][1] * (side[1][2] * side[2][0] - side[1][0] * side[2][2]) +
-               side[0][2] * (side[1][0] * side[2][1] - side[1][1] * side[2][0]);
+    visit(side[0][0] * (side[1][1] * side[2][2] - side[1][2] * side[2][1]) +
+              side[0][1] * (side[1][2] * side[2][0] - side[1][0] * side[2][2]) +
+              side[0][2] * (side[1][0] * side[2][1] - side[1][1] * side[2][0]),
+          first, part.edge[e][0], part.edge[e][1]);
   }
+}
+
+/// Volume [voxel^3].
+TETWARP_HD_RARE double volume_of(const ConvexPart& part) {
+  double volume6 = 0;
+  for_pieces(part, [&](double piece6, int, int, int) { volume6 += piece6; });
   return volume6 / 6;
 }
 

@@ -55,6 +55,25 @@ TEST(Simulate, WritesOneMeshPerBodyAndASeries) {
   EXPECT_NEAR(report["bodies"]["beam"]["mass"].get<double>(), 4, 1e-9);
 }
 
+TEST(Simulate, CountsCellsThatAreThereTwiceOnceAndSaysSo) {
+  const SimulateScene scene;
+  write_mesh(scene / "twice.vtkhdf",
+             {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}, {1, 0, 3, 2}}});
+  write_text(scene / "twice.json", R"({"tetwarp_scene": 1, "time_step": 0.01, "duration": 0.01,
+    "bodies": [{"name": "b", "kind": "fem", "mesh": {"file": "twice.vtkhdf"},
+                "material": {"E": 1e6, "nu": 0.3, "density": 6000}}]})");
+
+  const CommandResult result = run_command(scene, {"simulate", "twice.json", "-o", "out"});
+
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("twice.vtkhdf: 1 of 2 cells are there twice and were merged"),
+            std::string::npos)
+      << result.err;
+  const auto report = nlohmann::json::parse(text_of(scene.in("out", "report.json")));
+  EXPECT_NEAR(report["bodies"]["b"]["mass"].get<double>(), 1000, 1e-9);
+  EXPECT_EQ(report["warnings"].size(), 1u);
+}
+
 TEST(Simulate, WritesMeshesThatWarpReads) {
   const SimulateScene scene;
   ASSERT_EQ(scene.simulate({"-o", "out"}).exit_code, 0);

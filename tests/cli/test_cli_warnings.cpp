@@ -60,6 +60,22 @@ TEST_F(CliWarnings, AreNoneForAnOrdinaryWarp) {
   EXPECT_EQ(warnings_of("report.json"), Names{});
 }
 
+/// A warp that keeps totals counts them once: the output is that of the mesh without the copies.
+TEST_F(CliWarnings, NameCellsThatAreThereTwice) {
+  const Names conservative{"--steps", "3", "--intensity", "conservative"};
+  Names once{"-o", "once.vtkhdf", "--quiet"};
+  once.insert(once.end(), conservative.begin(), conservative.end());
+  ASSERT_EQ(scene.warp(once).exit_code, 0);
+  Mesh mesh = box_mesh();
+  mesh.tets.insert(mesh.tets.begin() + 1, {6, 5, 3, 0});
+  mesh.tets.push_back(mesh.tets[2]);
+  write_mesh(scene / "mesh.vtkhdf", mesh, shifts({0, 1, 1, 3}), {0, 0.5, 1, 1.5});
+
+  expect_warning(conservative, "mesh.vtkhdf: 2 of 7 cells are there twice and were merged");
+
+  EXPECT_EQ(read_volume(scene / "out.vtkhdf").data, read_volume(scene / "once.vtkhdf").data);
+}
+
 TEST_F(CliWarnings, NameInvertedCells) {
   std::vector<Point3> mirrored;
   for (const Point3& x : box_mesh().rest_positions) mirrored.push_back({32 - 2 * x[0], 0, 0});

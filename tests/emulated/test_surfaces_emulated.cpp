@@ -95,7 +95,7 @@ TEST(SurfacesEmulated, OnlyChangedVelocitiesAreSent) {
   EXPECT_EQ(take_copied().to_device, (3 + 7) * sizeof(double));
 }
 
-/// Four rows of four bricks, at distances of `gap` above each other.
+/// Four rows of four bricks of many vertices, at distances of `gap` above each other.
 Scene brick_wall(double gap) {
   std::vector<Body> bricks;
   for (int k = 0; k < 16; ++k) {
@@ -103,6 +103,7 @@ Scene brick_wall(double gap) {
     bricks.push_back(
         rigid_box("brick" + std::to_string(k), {0.03, 0.02, 0.015},
                   {0.061 * (k % 4) + 0.03 * (row % 2), 0, 0.015 + gap + (0.03 + gap) * row}));
+    bricks.back().surface = std::int64_t{1280};
   }
   Scene scene = scene_of(bricks, 0.004);
   scene.obstacles = {plane_at(0)};

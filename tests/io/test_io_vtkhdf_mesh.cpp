@@ -65,6 +65,56 @@ void write_parts(const std::string& path) {
       .dataset<std::uint8_t>("VTKHDF/Types", {2}, {10, 10});
 }
 
+/// A tetrahedron, and in the second part its ghost copy before another.
+void write_ghost_parts(const std::string& path) {
+  Hdf5Editor(path, Mode::create)
+      .group("VTKHDF")
+      .text("VTKHDF", "Type", "UnstructuredGrid")
+      .dataset<std::int64_t>("VTKHDF/NumberOfPoints", {2}, {4, 5})
+      .dataset<std::int64_t>("VTKHDF/NumberOfCells", {2}, {1, 2})
+      .dataset<std::int64_t>("VTKHDF/NumberOfConnectivityIds", {2}, {4, 8})
+      .dataset<double>("VTKHDF/Points", {9, 3}, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1,
+                                                 1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 0})
+      .dataset<std::int64_t>("VTKHDF/Connectivity", {12}, {0, 1, 2, 3, 1, 2, 3, 4, 0, 1, 2, 3})
+      .dataset<std::int64_t>("VTKHDF/Offsets", {5}, {0, 4, 0, 4, 8})
+      .dataset<std::uint8_t>("VTKHDF/Types", {3}, {10, 10, 10});
+}
+
+TEST(VtkhdfMesh, CellsThatAreThereTwiceAreReadOnce) {
+  const ScratchFolder folder;
+  write_ghost_parts(folder / "m.vtkhdf");
+
+  const MeshReader reader(folder / "m.vtkhdf");
+
+  using Tets = std::vector<std::array<std::int32_t, 4>>;
+  EXPECT_EQ(reader.mesh().tets, (Tets{{0, 1, 2, 3}, {4, 5, 6, 7}}));
+  EXPECT_EQ(reader.header().tet_count, 2);
+  EXPECT_EQ(reader.header().merged, "1 of 3 cells are there twice and were merged");
+  EXPECT_EQ(reader.read_step(0).size(), 9u);
+}
+
+/// Steps whose cells are stored anew are compared with those of the rest step as stored.
+TEST(VtkhdfMesh, CellsThatAreThereTwiceMayMove) {
+  const ScratchFolder folder;
+  write_moving(folder / "m.vtkhdf", {0, 2});
+  Hdf5Editor(folder / "m.vtkhdf")
+      .dataset<std::int32_t>("VTKHDF/Connectivity", {16},
+                             {0, 1, 2, 3, 3, 2, 1, 0, 0, 1, 2, 3, 3, 2, 1, 0})
+      .dataset<std::int32_t>("VTKHDF/Offsets", {6}, {0, 4, 8, 0, 4, 8})
+      .dataset<std::uint8_t>("VTKHDF/Types", {4}, {10, 10, 10, 10})
+      .dataset<std::int64_t>("VTKHDF/NumberOfPoints", {2}, {5, 5})
+      .dataset<std::int64_t>("VTKHDF/NumberOfCells", {2}, {2, 2})
+      .dataset<std::int64_t>("VTKHDF/NumberOfConnectivityIds", {2}, {8, 8})
+      .dataset<std::int64_t>("VTKHDF/Steps/PartOffsets", {2}, {0, 1})
+      .dataset<std::int64_t>("VTKHDF/Steps/CellOffsets", {2, 1}, {0, 2})
+      .dataset<std::int64_t>("VTKHDF/Steps/ConnectivityIdOffsets", {2}, {0, 8});
+
+  const MeshReader reader(folder / "m.vtkhdf");
+
+  EXPECT_EQ(reader.mesh().tets.size(), 1u);
+  EXPECT_EQ(reader.read_step(1)[0], (Point3{2, 0, 0}));
+}
+
 TEST(VtkhdfMesh, RoundTripsAStaticMesh) {
   const ScratchFolder folder;
   write_mesh(folder / "m.vtkhdf", two_tets());

@@ -2,6 +2,7 @@
 /// Meshes of other programs. In a build without the library the error is checked and tests skip.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -12,6 +13,8 @@
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/warp.hpp>
 
+#include "io/import/merge_cells.hpp"
+#include "io/volume/mesh_arrays.hpp"
 #include "tests/support/io_files.hpp"
 
 namespace tetwarp::test {
@@ -147,6 +150,54 @@ TEST_F(MeshImport, ReadsGmshFilesOfBothVersionsWithSteps) {
     EXPECT_EQ(mesh->skipped.size(), 2U);
     for (const auto& [kind, count] : mesh->skipped) EXPECT_EQ(count, 1) << kind;
   }
+}
+
+/// In MSH 2 a cell of two physical groups is there twice.
+TEST_F(MeshImport, MergesCellsOfTwoGroupsOfGmsh) {
+  const auto mesh = imported(
+      "a.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 2 1 1 2 3 4\n$EndElements\n");
+  if (!mesh) GTEST_SKIP() << error;
+
+  EXPECT_EQ(mesh->mesh.tets.size(), 1u);
+  EXPECT_EQ(mesh->merged, "1 of 2 cells are there twice and were merged");
+  for (const MeshArray& array : mesh->arrays) {
+    if (array.is_of_cells) {
+      EXPECT_EQ(array.data.size(), sizeof(std::int64_t)) << array.name;
+    }
+  }
+}
+
+std::vector<std::int64_t> numbers_of(const MeshArray& array) {
+  std::vector<std::int64_t> numbers(array.data.size() / sizeof(std::int64_t));
+  std::memcpy(numbers.data(), array.data.data(), array.data.size());
+  return numbers;
+}
+
+/// The first of several has its own rows, and the groups of all.
+TEST(MergeCells, KeepsTheFirstAndTheGroupsOfAll) {
+  ImportedMesh mesh;
+  mesh.mesh.rest_positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  mesh.mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}, {3, 2, 1, 0}, {0, 2, 1, 3}};
+  mesh.mesh.hexes = {{0, 1, 2, 3, 4, 1, 2, 3}};
+  add_numbers("group", true, {7, 8, 9, 7, 5}, mesh);
+  mesh.arrays[0].value_names = {{7, "seven"}, {9, "nine"}};
+  add_numbers("original_cell", true, {10, 11, 12, 13, 14}, mesh);
+  add_numbers("original_node", false, {0, 1, 2, 3, 4}, mesh);
+
+  merge_cells(mesh);
+
+  EXPECT_EQ(mesh.mesh.tets.size(), 2u);
+  EXPECT_EQ(mesh.mesh.hexes.size(), 1u);
+  EXPECT_EQ(mesh.merged, "2 of 5 cells are there twice and were merged");
+  ASSERT_EQ(mesh.arrays.size(), 4u);
+  EXPECT_EQ(numbers_of(mesh.arrays[0]), (std::vector<std::int64_t>{7, 8, 5}));
+  EXPECT_EQ(numbers_of(mesh.arrays[1]), (std::vector<std::int64_t>{10, 11, 14}));
+  EXPECT_EQ(numbers_of(mesh.arrays[2]), (std::vector<std::int64_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(mesh.arrays[3].name, "group_2");
+  EXPECT_EQ(numbers_of(mesh.arrays[3]), (std::vector<std::int64_t>{9, 0, 0}));
+  EXPECT_EQ(mesh.arrays[3].value_names, mesh.arrays[0].value_names);
 }
 
 /// Half a turn about z; cells keep their orientation.

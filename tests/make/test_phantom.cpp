@@ -14,9 +14,9 @@ namespace {
 using make_checks::lattice_of;
 using make_checks::smallest_volume;
 
-constexpr std::array<Deformation, 6> all_kinds{Deformation::twist,  Deformation::bend,
-                                               Deformation::swim,   Deformation::random,
-                                               Deformation::rotate, Deformation::translate};
+constexpr std::array<Deformation, 6> all_deformations{Deformation::twist,  Deformation::bend,
+                                                      Deformation::swim,   Deformation::random,
+                                                      Deformation::rotate, Deformation::translate};
 
 const Volume& phantom() {
   static const Volume volume = make_phantom();
@@ -112,7 +112,7 @@ TEST(Phantom, IsTheSameEveryTimeAndForEveryResolutionTheSameBody) {
 TEST(Phantom, EveryDeformationKeepsItsLatticeRightSideOut) {
   for (const int cells : {6, 8, 10}) {
     for (const Mesh& mesh : {lattice_of(phantom(), cells), lattice_of(phantom(), cells, 0.02)}) {
-      for (const Deformation kind : all_kinds) {
+      for (const Deformation kind : all_deformations) {
         for (int axis = 0; axis < 3; ++axis) {
           for (const double time : {0.25, 0.5, 1.0}) {
             const auto positions = deform_positions(mesh, {.kind = kind, .axis = axis}, time);

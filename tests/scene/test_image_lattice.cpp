@@ -40,9 +40,9 @@ std::vector<std::int64_t> owned_voxels(const ImageGeometry& image, const TetMesh
 }
 
 TEST(ImageLattice, OwnsEveryVoxelOfTheForegroundAndNothingElse) {
-  const ImageGeometry image = ball_image({20, 18, 22}, 7.3);
+  const ImageGeometry image = ball_image({70, 68, 72}, 31.3);
   for (const Lattice& choice :
-       {cells_of(4, 3, 5), cells_of(1, 1, 1), Lattice{.edge = 3.1}, Lattice{.tets = 160}}) {
+       {cells_of(3, 2, 3), cells_of(1, 1, 1), Lattice{.edge = 16.5}, Lattice{.tets = 160}}) {
     const ImageLattice lattice = make_image_lattice("bodies[0]", image, choice);
 
     const auto owned = owned_voxels(image, lattice.mesh);
@@ -54,20 +54,19 @@ TEST(ImageLattice, OwnsEveryVoxelOfTheForegroundAndNothingElse) {
   }
 }
 
-/// Tetrahedra smaller than voxels own few of them; those inside the foreground stay.
-TEST(ImageLattice, KeepsTetrahedraSmallerThanVoxels) {
+/// Small cells keep what shares a box of the foreground, and drop what only touches one.
+TEST(ImageLattice, OfSmallCellsCoversTheBoxesOfTheForegroundAndNothingElse) {
   const ImageGeometry image = ball_image({9, 9, 9}, 2.6);
-
-  const ImageLattice lattice = make_image_lattice("bodies[0]", image, cells_of(20, 20, 20));
-
-  const auto owned = owned_voxels(image, lattice.mesh);
-  EXPECT_EQ(owned.back(), 0);
   const auto samples = image.volume.samples<float>();
-  const double voxels =
-      static_cast<double>(std::count_if(samples.begin(), samples.end(), [&](float sample) {
-        return sample >= static_cast<float>(image.threshold);
-      }));
-  EXPECT_NEAR(sum_of(volumes_of(lattice.mesh.nodes, lattice.mesh.tets)) / voxels, 1, 0.1);
+  const auto voxels =
+      static_cast<double>(std::ranges::count_if(samples, [](float sample) { return sample >= 0; }));
+
+  for (const std::int64_t cells : {5, 10, 20}) {  // whole parts of a voxel
+    const ImageLattice lattice =
+        make_image_lattice("bodies[0]", image, cells_of(cells, cells, cells));
+    EXPECT_TRUE(lattice.has_small_cells);
+    EXPECT_NEAR(sum_of(volumes_of(lattice.mesh.nodes, lattice.mesh.tets)) / voxels, 1, 1e-12);
+  }
 }
 
 TEST(ImageLattice, FollowsTheAxesOfTheGridAlsoMirrored) {

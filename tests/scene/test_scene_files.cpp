@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <fstream>
 #include <tetwarp/io.hpp>
+#include <tetwarp/simulate.hpp>
 #include <variant>
 
 #include "tests/scene/scene_texts.hpp"
 #include "tests/support/foreign_meshes.hpp"
 #include "tests/support/io_files.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -97,6 +99,39 @@ TEST(SceneFiles, MeshesOfTetrahedraAndTriangles) {
   EXPECT_NE(message.find("expected triangles (5, VTK_TRIANGLE) only"), std::string::npos)
       << message;
   EXPECT_NE(io_error([&] { body_of(solid_keys, "triangles.vtkhdf"); }), "");
+}
+
+/// Cells that are there twice are read once, and noted; a back of a cloth's triangle is refused.
+TEST(SceneFiles, CellsThatAreThereTwiceCountOnce) {
+  const ScratchFolder folder;
+  Mesh mesh = two_tets();
+  mesh.tets.push_back({3, 2, 0, 1});
+  write_mesh(folder / "tets.vtkhdf", mesh);
+  const Surface triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
+  Surface turned = triangle, back = triangle;
+  turned.triangles.push_back({2, 0, 1});
+  back.triangles.push_back({1, 0, 2});
+  write_surface(folder / "turned.vtkhdf", turned);
+  write_surface(folder / "back.vtkhdf", back);
+  const auto scene_of = [&](const std::string& keys, const std::string& name) {
+    return read_scene(write_scene(folder, keys + R"(, "mesh": {"file": ")" + name + "\"}"));
+  };
+  const std::string cloth = R"("kind": "cloth", "areal_density": 1, "stretch": 10)";
+
+  const Scene solid = scene_of(solid_keys, "tets.vtkhdf"), sheet = scene_of(cloth, "turned.vtkhdf");
+
+  EXPECT_EQ(std::get<Mesh>(solid.bodies[0].geometry).tets, two_tets().tets);
+  EXPECT_EQ(solid.notes,
+            std::vector<std::string>{(folder / "tets.vtkhdf") +
+                                     ": 1 of 3 cells are there twice and were merged"});
+  EXPECT_EQ(std::get<Surface>(sheet.bodies[0].geometry).triangles, triangle.triangles);
+  EXPECT_EQ(sheet.notes.size(), 1u);
+  const Scene both = scene_of(cloth, "back.vtkhdf");
+  EXPECT_TRUE(both.notes.empty());
+  const std::string message = message_of([&] { Simulator simulator(both); });
+  EXPECT_EQ(message,
+            "bodies[0].mesh: triangles 0 and 2 are the same and would count twice, remove one of "
+            "them");
 }
 
 TEST(SceneFiles, SurfacesAndObstaclesAreTriangles) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "host/scene/scene_geometry.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/scene/surface.hpp"
 #include "tests/scene/image_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
@@ -100,6 +101,44 @@ TEST(SceneGeometry, OfAMeshHasPositiveVolumesAndItsNodesRenumbered) {
   EXPECT_EQ(mesh.fixed, (std::vector<std::int32_t>{0, 3}));
   body.fixed = {NodeSelection{{0}}};
   EXPECT_EQ(error_of(scene_of({body})), "bodies[0].fixed: node 0 belongs to no cell of the mesh");
+}
+
+TEST(SceneGeometry, RefusesTetrahedraThatAreThereTwice) {
+  Body body;
+  body.name = "mesh";
+  body.geometry =
+      Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, {{0, 1, 2, 3}, {4, 0, 2, 3}}};
+
+  EXPECT_EQ(error_of(scene_of({body})),
+            "bodies[0].mesh: tetrahedra 0 and 1 are the same and would count twice, remove one of "
+            "them");
+}
+
+/// 12 triangles of a box, unless the scene needs points within its faces or asks for them.
+TEST(SceneGeometry, FlatFacesAreDividedWhereThatIsNeeded) {
+  const auto count = [](const Scene& scene) {
+    return make_scene_geometry(scene).bodies[0].surface.triangles.size();
+  };
+  Body box = box_body(BodyKind::rigid);
+  const std::size_t divided =
+      make_shape_surface(std::get<Shape>(box.geometry), 1280).triangles.size();
+  EXPECT_EQ(count(scene_of({box})), 12u);
+  Scene scripted = scene_of({box});
+  scripted.bodies[0].kind = BodyKind::scripted;
+  EXPECT_EQ(count(scripted), 12u);
+  scripted.bodies[0].motion = Wave{};
+  EXPECT_EQ(count(scripted), divided);
+  Scene asked = scene_of({box});
+  asked.bodies[0].surface = std::int64_t{100};
+  EXPECT_EQ(count(asked), make_shape_surface(std::get<Shape>(box.geometry), 100).triangles.size());
+  Scene pulled = scene_of({box});
+  pulled.handles.resize(1);
+  pulled.handles[0].body = box.name;
+  pulled.handles[0].select = {AllSelection{}};
+  EXPECT_EQ(count(pulled), divided);
+  Scene sticky = scene_of({box});
+  sticky.contact.material.adhesion = AdhesionMaterial{};
+  EXPECT_EQ(count(sticky), divided);
 }
 
 TEST(SceneGeometry, SelectsByThePositionsAfterThePose) {

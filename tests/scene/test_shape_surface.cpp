@@ -42,6 +42,28 @@ TEST(ShapeSurface, HasAboutAsManyTrianglesAsAsked) {
   }
 }
 
+/// Flat faces and straight parts that are not divided bound the same solid.
+TEST(ShapeSurface, OfWholeFacesEnclosesTheSameSolid) {
+  for (const auto& [name, shape] : named_shapes()) {
+    const Surface divided = make_shape_surface(shape, 1280);
+    const Surface whole = make_shape_surface(shape, 1280, Faces::whole);
+
+    EXPECT_TRUE(is_manifold(whole)) << name;
+    EXPECT_NEAR(volume_of(whole) / volume_of(divided), 1, 1e-12) << name;
+    const bool is_flat = name == "box" || name == "plate";
+    const bool bends_everywhere = name == "sphere" || name == "ellipsoid" ||
+                                  name == "round capsule" || name == "torus" ||
+                                  name.find("arc") != std::string::npos;
+    if (is_flat) {
+      EXPECT_EQ(whole.triangles.size(), 12u) << name;
+    } else if (bends_everywhere) {
+      EXPECT_EQ(whole.triangles, divided.triangles) << name;
+    } else {
+      EXPECT_LT(whole.triangles.size(), divided.triangles.size()) << name;
+    }
+  }
+}
+
 TEST(ShapeSurface, HasItsPointsOnTheShape) {
   for (const auto& [name, shape] : named_shapes()) {
     const auto level = make_level(shape);

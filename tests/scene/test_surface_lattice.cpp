@@ -17,6 +17,7 @@
 #include "tests/scene/shape_samples.hpp"
 #include "tests/scene/surface_checks.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/torn_mesh.hpp"
 
 namespace tetwarp {
 namespace {
@@ -89,6 +90,28 @@ TEST(SurfaceLattice, BindsPointsToTheirPlaces) {
       x = plus(x, times(bound.weights[p][n], at(mesh.rest_positions, bound.nodes[p][n])));
     }
     ASSERT_LT(norm(minus(x, surface.points[p])), 1e-12);
+  }
+}
+
+/// Nodes at one place are told apart: each point of the boundary is bound to a node of its own.
+TEST(SurfaceLattice, BindsTheBoundaryToItsNodes) {
+  const Mesh whole = make_lattice_mesh(make_shape_surface(BoxShape{{1, 1, 1}}, 12), 2);
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    const Mesh mesh = test::torn(whole, seed);
+    const Surface surface = boundary_surface(mesh);
+
+    const BoundPoints bound = bind_boundary(mesh);
+
+    ASSERT_EQ(bound.nodes.size(), surface.points.size());
+    std::vector<std::int32_t> nodes;
+    for (std::size_t p = 0; p < surface.points.size(); ++p) {
+      const auto one = std::find(bound.weights[p].begin(), bound.weights[p].end(), 1);
+      ASSERT_EQ(std::count(bound.weights[p].begin(), bound.weights[p].end(), 0), 3);
+      nodes.push_back(bound.nodes[p][static_cast<std::size_t>(one - bound.weights[p].begin())]);
+      EXPECT_EQ(at(mesh.rest_positions, nodes.back()), surface.points[p]);
+    }
+    EXPECT_TRUE(std::is_sorted(nodes.begin(), nodes.end()));
+    EXPECT_EQ(std::adjacent_find(nodes.begin(), nodes.end()), nodes.end());
   }
 }
 

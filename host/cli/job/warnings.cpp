@@ -80,10 +80,14 @@ std::string unordered_times(const std::string& output, const std::vector<double>
 }  // namespace
 
 Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments) {
-  if (mesh.has_displacement || mesh.has_moving_points || arguments.mesh.rest_file) return {};
-  return {arguments.mesh_file() +
-          ": the mesh has no point array 'displacement', no points that move and no --rest: "
-          "nothing is deformed"};
+  Warnings warnings;
+  if (!mesh.merged.empty()) warnings.push_back(arguments.mesh_file() + ": " + mesh.merged);
+  if (!mesh.has_displacement && !mesh.has_moving_points && !arguments.mesh.rest_file) {
+    warnings.push_back(arguments.mesh_file() +
+                       ": the mesh has no point array 'displacement', no points that move and no "
+                       "--rest: nothing is deformed");
+  }
+  return warnings;
 }
 
 Warnings volume_warnings(const std::string& path,

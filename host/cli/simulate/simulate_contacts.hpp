@@ -22,7 +22,8 @@ struct ContactFields {
 
 /// The fields of all bodies after the last step. The place of a contact is a weighted mean of
 /// points of the surface; each of these gets the impulse times its weight. Where a place has no
-/// such points, as on rigid bodies, the nearest point gets all of it.
+/// such points, as where a rigid body does not touch with a vertex, the nearest point gets all of
+/// it.
 std::vector<ContactFields> contact_fields(const Simulator& simulator);
 
 /// The file of --contacts: the contacts at every frame as points with normal, impulse, intensity,

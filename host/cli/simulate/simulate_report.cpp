@@ -23,6 +23,9 @@ Json json_of_bodies(const Simulator& simulator) {
         {"nodes", has_nodes ? body.mesh.rest_positions.size() : simulator.node_positions(b).size()},
         {"triangles", body.surface.triangles.size()},
         {"cells_across", body.cells_across}};
+    if (body.foreground_volume == 0) continue;
+    bodies[scene_bodies[b].name]["foreground_volume"] = body.foreground_volume;
+    bodies[scene_bodies[b].name]["uncovered_volume"] = body.uncovered_volume;
   }
   return bodies;
 }

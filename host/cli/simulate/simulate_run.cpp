@@ -275,6 +275,7 @@ void SimulateRun::finish() {
     result_.warp_seconds = warps_->warp_seconds();
     result_.write_seconds += warps_->write_seconds();
   }
+  result_.warnings = simulator_->scene().notes;
   if (result_.unconverged_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: {} of {} steps ended above their tolerance (series.h5: converged)", arguments_.scene(),

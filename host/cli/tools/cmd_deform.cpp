@@ -17,6 +17,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/job/warnings.hpp"
 #include "host/cli/tools/displacement.hpp"
 
 namespace tetwarp::cli {
@@ -40,6 +41,8 @@ int run_deform(const DeformArguments& arguments) {
   options.import.axes = axes_of_mesh(arguments.input, arguments.axes);
   const MeshReader reader(arguments.input, options);
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
+  const std::string& merged = reader.header().merged;
+  if (!merged.empty()) print_warnings({arguments.input + ": " + merged}, "");
   if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
              reader.mesh().cell_count(), arguments.steps, name_of(arguments.deform.kind),

@@ -13,6 +13,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/job/warnings.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -66,6 +67,7 @@ void run_mesh_import(const ImportArguments& arguments) {
   options.axes = arguments.axes.value_or(Axes::ras);
   const ImportedMesh mesh = import_mesh(arguments.input, options);
   write_mesh(arguments.output, mesh.mesh, mesh.displacements, mesh.times, mesh.arrays);
+  if (!mesh.merged.empty()) print_warnings({arguments.input + ": " + mesh.merged}, "");
   if (!mesh.left_out.empty()) {
     fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
                one_line(listed(mesh.left_out)));

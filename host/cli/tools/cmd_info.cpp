@@ -89,6 +89,7 @@ Json mesh_json(const InfoArguments& arguments) {
   const MeshHeader& header = reader.header();
   Json json{{"kind", "mesh"}, {"nodes", header.node_count}, {"tetrahedra", header.tet_count}};
   if (header.hex_count > 0) json["hexahedra"] = header.hex_count;
+  if (!header.merged.empty()) json["merged"] = header.merged;
   json.update(times_json(header.times));
   json["deformation"] = header.has_displacement    ? "array displacement"
                         : header.has_moving_points ? "points that move"

@@ -15,6 +15,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/job/warnings.hpp"
 #include "host/cli/tools/read_array.hpp"
 
 namespace tetwarp::cli {
@@ -37,8 +38,9 @@ MeshArray array_of(const char* name, PixelType type, const void* data, std::size
 }
 
 /// Writes triangles with the nodes and weights that their points are bound to.
-void write_bound_surface(const MeshArguments& arguments, const Mesh& mesh, const Surface& surface) {
-  const BoundPoints bound = bind_points(mesh, surface.points);
+void write_bound_surface(const MeshArguments& arguments,
+                         const Surface& surface,
+                         const BoundPoints& bound) {
   const std::size_t points = surface.points.size();
   write_surface(arguments.surface, surface,
                 {array_of("nodes", PixelType::int32, bound.nodes.data(), points * 16),
@@ -64,7 +66,9 @@ void check_outputs(const MeshArguments& arguments, const std::string& input) {
 
 int run_mesh_of_surface(const MeshArguments& arguments) {
   check_outputs(arguments, arguments.from_surface);
-  const Surface surface = read_surface(arguments.from_surface);
+  std::string merged;
+  const Surface surface = read_surface(arguments.from_surface, &merged);
+  if (!merged.empty()) print_warnings({arguments.from_surface + ": " + merged}, "");
   Mesh mesh;
   try {
     mesh = make_lattice_mesh(surface, arguments.lattice.cells);
@@ -73,7 +77,9 @@ int run_mesh_of_surface(const MeshArguments& arguments) {
   }
   write_mesh(arguments.output, mesh);
   report_mesh(arguments, mesh);
-  if (!arguments.surface.empty()) write_bound_surface(arguments, mesh, surface);
+  if (!arguments.surface.empty()) {
+    write_bound_surface(arguments, surface, bind_points(mesh, surface.points));
+  }
   return 0;
 }
 
@@ -98,7 +104,11 @@ int run_mesh(const MeshArguments& arguments) {
   }
   write_mesh(arguments.output, mesh);
   report_mesh(arguments, mesh);
-  if (!arguments.surface.empty()) write_bound_surface(arguments, mesh, surface);
+  if (!arguments.surface.empty()) {
+    write_bound_surface(
+        arguments, surface,
+        arguments.lattice.threshold ? bind_points(mesh, surface.points) : bind_boundary(mesh));
+  }
   return 0;
 }
 

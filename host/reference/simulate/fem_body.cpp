@@ -1,5 +1,5 @@
 /// @file fem_body.cpp
-/// Fills elements uniformly, or by the voxels that they own.
+/// Fills elements uniformly, or by the voxels that they own or share.
 #include "host/reference/simulate/fem_body.hpp"
 
 #include <algorithm>
@@ -31,12 +31,12 @@ class ModulusMean {
  public:
   explicit ModulusMean(MaterialMean kind) : kind_(kind) {}
 
-  void add(const Material& material) {
+  void add(const Material& material, double share) {
     const auto [lambda, mu] = lame_of(material.youngs_modulus, material.poissons_ratio);
     const double bulk = lambda + 2 * mu / 3;
-    count_ += 1;
-    first_ += kind_ == MaterialMean::harmonic ? 1 / bulk : lambda;
-    second_ += kind_ == MaterialMean::harmonic ? 1 / mu : mu;
+    count_ += share;
+    first_ += share * (kind_ == MaterialMean::harmonic ? 1 / bulk : lambda);
+    second_ += share * (kind_ == MaterialMean::harmonic ? 1 / mu : mu);
   }
   double count() const { return count_; }
   /// lambda, mu; at least one material was added.
@@ -52,19 +52,16 @@ class ModulusMean {
 };
 
 ElementMass fill_by_voxels(const Body& body,
-                           const std::vector<OwnedVoxel>& voxels,
+                           const std::vector<HeldVoxel>& voxels,
                            double voxel_volume,
-                           const Vector3d& first_node,
                            Element& element) {
   ElementMass mass = ElementMass::Zero();
   ModulusMean moduli(body.mean);
-  for (const OwnedVoxel& voxel : voxels) {
+  for (const HeldVoxel& voxel : voxels) {
     const auto material = material_at(body, voxel.value);
     if (!material) continue;
-    Eigen::Vector4d shape = element.gradients.transpose() * (voxel.centre - first_node);
-    shape(0) += 1;
-    mass += material->density * voxel_volume * shape * shape.transpose();
-    if (material->youngs_modulus > 0) moduli.add(*material);
+    mass += material->density * voxel_volume * voxel.products;
+    if (material->youngs_modulus > 0) moduli.add(*material, voxel.share);
   }
   if (moduli.count() > 0) {
     const double coverage = moduli.count() * voxel_volume / element.volume;
@@ -80,10 +77,11 @@ ElementMass fill_by_voxels(const Body& body,
 FemBody fem_body(const Body& body, const BodyGeometry& geometry) {
   const auto node_count = static_cast<Eigen::Index>(geometry.nodes.size());
   const auto* image = std::get_if<ImageGeometry>(&body.geometry);
-  std::vector<std::vector<OwnedVoxel>> voxels;
+  std::vector<std::vector<HeldVoxel>> voxels;
   double voxel_volume = 0;
   if (image != nullptr) {
-    voxels = owned_voxels(*image, geometry.nodes, geometry.tets);
+    voxels = geometry.shares_voxels ? shared_voxels(*image, geometry.nodes, geometry.tets)
+                                    : owned_voxels(*image, geometry.nodes, geometry.tets);
     const Grid& grid = image->volume.grid;
     const Eigen::Map<const Matrix3d> direction(grid.direction.data());
     voxel_volume =
@@ -102,11 +100,8 @@ FemBody fem_body(const Body& body, const BodyGeometry& geometry) {
     if (image == nullptr) {
       const double fraction = geometry.tet_fraction.empty() ? 1 : geometry.tet_fraction[t];
       mass = fill_uniformly(body.material, fraction, element);
-    } else if (!voxels[t].empty()) {
-      mass = fill_by_voxels(body, voxels[t], voxel_volume, rest.col(0), element);
     } else {
-      const auto material = material_at(body, value_at(image->volume, rest.rowwise().mean()));
-      mass = fill_uniformly(material.value_or(Material{0, 0, 0}), 1, element);
+      mass = fill_by_voxels(body, voxels[t], voxel_volume, element);
     }
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {

@@ -14,8 +14,8 @@ struct FemBody {
 };
 
 /// Consistent masses m_ab: rho V (1 + delta_ab)/20 of an element scaled by its fraction inside a
-/// shape, or the sum of rho dv N_a N_b over the voxels that it owns. lambda and mu are the means
-/// over an element's voxels times the part of its volume that they cover, at least 0.02.
+/// shape, or the sum of rho N_a N_b over the voxels that it owns or shares. lambda and mu are the
+/// means over an element's voxels times the part of its volume that they cover, at least 0.02.
 FemBody fem_body(const Body& body, const BodyGeometry& geometry);
 
 }  // namespace tetwarp::reference

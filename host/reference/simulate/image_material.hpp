@@ -1,5 +1,5 @@
 /// @file image_material.hpp
-/// The voxels of an image that tetrahedra own, and the materials of their values.
+/// The voxels of an image that tetrahedra own or share, and the materials of their values.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,22 +9,28 @@
 
 namespace tetwarp::reference {
 
-/// A voxel of the foreground.
-struct OwnedVoxel {
-  Vector3d centre;  ///< frame of the image
+/// A voxel of the foreground in a tetrahedron.
+struct HeldVoxel {
   double value = 0;
+  double share = 0;          ///< of the voxel in the tetrahedron, 0 to 1
+  Eigen::Matrix4d products;  ///< integrals of N_a N_b over this share, over the voxel's volume
 };
 
 /// Voxels of the foreground by the tetrahedron that owns them: the lowest-indexed one whose closed
 /// shape contains the centre. Nodes are rounded to multiples of 2^-20 voxel and the decision is
-/// made in integers of it, so that a centre on a common face has one owner.
-std::vector<std::vector<OwnedVoxel>> owned_voxels(
+/// made in integers of it, so that a centre on a common face has one owner. Products are those at
+/// the centre.
+std::vector<std::vector<HeldVoxel>> owned_voxels(
     const ImageGeometry& image,
     const std::vector<Point3>& nodes,
     const std::vector<std::array<std::int32_t, 4>>& tets);
 
-/// The value of the voxel that contains a point; outside the image that of the nearest voxel.
-double value_at(const Volume& volume, const Vector3d& point);
+/// Voxels of the foreground by all tetrahedra that share their boxes: tetrahedra are cut at the
+/// planes between voxels into smaller ones.
+std::vector<std::vector<HeldVoxel>> shared_voxels(
+    const ImageGeometry& image,
+    const std::vector<Point3>& nodes,
+    const std::vector<std::array<std::int32_t, 4>>& tets);
 
 /// What a body is made of where its image has a value; nothing where it is void.
 std::optional<Material> material_at(const Body& body, double value);

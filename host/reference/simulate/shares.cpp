@@ -48,10 +48,14 @@ void bind_surfaces(System& system) {
     const BodyGeometry& geometry = system.geometry.bodies[b];
     std::vector<MaterialPoint> points;
     for (std::size_t i = 0; i < geometry.surface.points.size(); ++i) {
-      const Vector3d x = vector_of(geometry.surface.points[i]);
-      points.push_back(geometry.tets.empty()
-                           ? selected_point(system, static_cast<int>(b), static_cast<int>(i))
-                           : nearest_material(system.scene.bodies[b].name, x, rest, system).point);
+      if (!geometry.surface_node.empty()) {
+        points.push_back(selected_point(system, static_cast<int>(b), geometry.surface_node[i]));
+      } else if (geometry.tets.empty()) {
+        points.push_back(selected_point(system, static_cast<int>(b), static_cast<int>(i)));
+      } else {
+        const Vector3d x = vector_of(geometry.surface.points[i]);
+        points.push_back(nearest_material(system.scene.bodies[b].name, x, rest, system).point);
+      }
     }
     system.surfaces.push_back(points);
   }

@@ -32,10 +32,19 @@ Point3 displacement_of(const Point3& start_world,
 
 }  // namespace
 
-ContactPlace ContactPoints::place_of(std::size_t body, const MaterialPoint& point) const {
+ContactPlace ContactPoints::place_of(std::size_t body,
+                                     std::int32_t feature,
+                                     const MaterialPoint& point) const {
   ContactPlace place;
-  if (point.is_rigid()) return place;
-  const std::int32_t first = surfaces_.surfaces.bodies[body].first_vertex;
+  const CollisionBody& of = surfaces_.surfaces.bodies[body];
+  const std::int32_t first = of.first_vertex;
+  if (point.is_rigid()) {
+    const bool is_own_vertex = feature >= first && feature < of.vertex_end;
+    if (is_own_vertex && at(surfaces_.surface_point, feature) >= 0) {
+      place = {{at(surfaces_.surface_point, feature), -1, -1}, {1, 0, 0}};
+    }
+    return place;
+  }
   for (std::size_t c = 0; c < 3 && point.vertex[c] >= 0; ++c) {
     place.point[c] = at(surfaces_.surface_point, first + point.vertex[c]);
     place.weight[c] = point.weight[c];
@@ -68,8 +77,8 @@ void ContactPoints::make(const ContactHistory& history,
     point.impulse = world_impulse(contact, solution.impulse.data() + 3 * c);
     point.gap = contact.gap[0] + dot(point.normal, minus(moved_a, moved_b));
     point.area = history.tracker().records()[c].area;
-    point.place_a = place_of(a, contact.material_a);
-    point.place_b = place_of(b, contact.material_b);
+    point.place_a = place_of(a, contact.key.feature_a, contact.material_a);
+    point.place_b = place_of(b, contact.key.feature_b, contact.material_b);
   });
 }
 

@@ -42,7 +42,8 @@ class ContactPoints {
   void swap(std::vector<ContactPoint>& points) { points.swap(all_); }
 
  private:
-  ContactPlace place_of(std::size_t body, const MaterialPoint& point) const;
+  /// @param feature  of the contact's key
+  ContactPlace place_of(std::size_t body, std::int32_t feature, const MaterialPoint& point) const;
 
   const SceneSurfaces& surfaces_;
   int threads_;

@@ -82,9 +82,11 @@ std::vector<ModelPoint> bound_surface(const Model& model,
   const BodyGeometry& of = geometry.bodies[index_of(body)];
   std::vector<ModelPoint> points;
   points.reserve(of.surface.points.size());
-  if (of.tets.empty()) {
+  if (of.tets.empty() || !of.surface_node.empty()) {
     for (std::size_t p = 0; p < of.surface.points.size(); ++p) {
-      points.push_back(selected_point(model, geometry, body, static_cast<std::int32_t>(p)));
+      const std::int32_t index =
+          of.surface_node.empty() ? static_cast<std::int32_t>(p) : of.surface_node[p];
+      points.push_back(selected_point(model, geometry, body, index));
     }
     return points;
   }

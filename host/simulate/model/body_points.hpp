@@ -24,8 +24,9 @@ ModelPoint selected_point(const Model& model,
 std::vector<double> shares_of(const BodyGeometry& geometry,
                               const std::vector<std::int32_t>& selected);
 
-/// All points of a body's surface as material points: nodes of cloth, weights in the nearest
-/// tetrahedron of elastic and scripted bodies, fixed in the frame of others.
+/// All points of a body's surface as material points: nodes of cloth and of the boundary of
+/// tetrahedra, weights in the nearest tetrahedron where a body with tetrahedra has another surface,
+/// fixed in the frame of others.
 std::vector<ModelPoint> bound_surface(const Model& model,
                                       const SceneGeometry& geometry,
                                       std::int32_t body);

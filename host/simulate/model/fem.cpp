@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "host/base/point3.hpp"
 #include "host/simulate/model/body_part.hpp"
@@ -119,9 +120,15 @@ void add_masses(const BodyPart& part,
 void add_fem(const BodyPart& part, Model& model) {
   const std::size_t first_tet = model.tets.nodes.size();
   add_elements(part, model);
-  TetMaterials materials = std::holds_alternative<ImageGeometry>(part.body.geometry)
-                               ? image_materials(part, model.tets, first_tet)
-                               : uniform_materials(part, model.tets, first_tet);
+  TetMaterials materials;
+  if (std::holds_alternative<ImageGeometry>(part.body.geometry)) {
+    ImageMaterials image = image_materials(part, model.tets, first_tet);
+    materials = std::move(image.tets);
+    model.body_foreground[static_cast<std::size_t>(part.index)] = image.foreground;
+    model.body_covered[static_cast<std::size_t>(part.index)] = image.covered;
+  } else {
+    materials = uniform_materials(part, model.tets, first_tet);
+  }
   model.tets.lambda.insert(model.tets.lambda.end(), materials.lambda.begin(),
                            materials.lambda.end());
   model.tets.mu.insert(model.tets.mu.end(), materials.mu.begin(), materials.mu.end());

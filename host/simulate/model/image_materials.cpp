@@ -1,5 +1,5 @@
 /// @file image_materials.cpp
-/// Sums density and moduli over the voxels that tetrahedra own.
+/// Sums density and moduli over the voxels that tetrahedra own or share.
 #include "host/simulate/model/image_materials.hpp"
 
 #include <algorithm>
@@ -7,10 +7,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "host/base/index_space.hpp"
+#include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
+#include "host/scene/voxel_shares.hpp"
 #include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/tet_materials.hpp"
 
@@ -18,19 +19,6 @@ namespace tetwarp {
 namespace {
 
 constexpr double least_coverage = 0.02;
-
-/// Sample of the voxel whose centre is nearest to a point.
-double nearest_sample(const Grid& grid, VolumeRows& samples, const Point3& point) {
-  const IndexFromWorld map = index_from_world(grid);
-  std::array<std::int64_t, 3> ijk{};
-  for (std::size_t d = 0; d < 3; ++d) {
-    double index = 0;
-    for (std::size_t e = 0; e < 3; ++e) index += map.linear[d][e] * (point[e] - map.origin[e]);
-    const double last = static_cast<double>(grid.dims[d] - 1);
-    ijk[d] = static_cast<std::int64_t>(std::clamp(std::nearbyint(index), 0.0, last));
-  }
-  return samples.row(ijk[1], ijk[2])[static_cast<std::size_t>(ijk[0])];
-}
 
 double voxel_volume_of(const Grid& grid) {
   const std::array<double, 9>& m = grid.direction;
@@ -69,26 +57,30 @@ class Transfer {
 
 /// Sums over the voxels of a tetrahedron that are not void.
 struct VoxelSums {
-  bool has_voxel = false;
   TetMass mass{};
-  double count = 0;  ///< voxels that have a stiffness
+  double covered = 0;  ///< shares in voxels of the foreground, void or not [voxel]
+  double count = 0;    ///< shares in voxels that have a stiffness [voxel]
   /// Sums of lambda and mu; for the harmonic mean of 1 / bulk modulus and 1 / mu.
   double first = 0, second = 0;
 
-  void add_moduli(const Material& material, MaterialMean mean) {
+  /// @param share  in the voxel, 0 to 1
+  void add_moduli(const Material& material, MaterialMean mean, double share) {
     if (!(material.youngs_modulus > 0)) return;
     const double e = material.youngs_modulus, nu = material.poissons_ratio;
     const double mu = e / (2 * (1 + nu));
-    count += 1;
-    first +=
-        mean == MaterialMean::harmonic ? 3 * (1 - 2 * nu) / e : e * nu / ((1 + nu) * (1 - 2 * nu));
-    second += mean == MaterialMean::harmonic ? 1 / mu : mu;
+    count += share;
+    first += share * (mean == MaterialMean::harmonic ? 3 * (1 - 2 * nu) / e
+                                                     : e * nu / ((1 + nu) * (1 - 2 * nu)));
+    second += share * (mean == MaterialMean::harmonic ? 1 / mu : mu);
   }
   void add_mass(double mass_of_voxel, const std::array<double, 4>& weight) {
     std::size_t k = 0;
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = a; b < 4; ++b) mass[k++] += mass_of_voxel * weight[a] * weight[b];
     }
+  }
+  void add_mass(double mass_of_voxel, const VoxelShare& share) {
+    for (std::size_t k = 0; k < mass.size(); ++k) mass[k] += mass_of_voxel * share.product[k];
   }
   /// lambda, mu: the mean over the voxels times the part of the volume that they cover.
   std::array<double, 2> moduli(MaterialMean mean, double coverage) const {
@@ -114,60 +106,124 @@ std::array<double, 4> weights_at(const Point3& x,
   return weight;
 }
 
+/// The sums of all tetrahedra of a body.
+class ImageSums {
+ public:
+  explicit ImageSums(const BodyPart& part)
+      : part_(part),
+        image_(std::get<ImageGeometry>(part.body.geometry)),
+        voxel_volume_(voxel_volume_of(image_.volume.grid)),
+        transfer_(part.body),
+        sums_(part.geometry.tets.size()) {}
+
+  /// Each voxel of the foreground counts at its centre, for its owner.
+  void add_owned(const ModelTets& tets, std::size_t first_tet) {
+    const Grid& grid = image_.volume.grid;
+    const std::vector<std::int32_t> owner = voxel_owners(
+        image_.volume, {{0, 0, 0}, grid.dims}, {part_.geometry.nodes, part_.geometry.tets});
+    VolumeRows samples(image_.volume);
+    std::size_t v = 0;
+    for (std::int64_t k = 0; k < grid.dims[2]; ++k) {
+      for (std::int64_t j = 0; j < grid.dims[1]; ++j) {
+        const std::vector<double>& row = samples.row(j, k);
+        for (std::int64_t i = 0; i < grid.dims[0]; ++i, ++v) {
+          const double value = row[static_cast<std::size_t>(i)];
+          if (owner[v] < 0 || !(value >= image_.threshold)) continue;
+          const auto t = static_cast<std::size_t>(owner[v]);
+          sums_[t].covered += 1;
+          const std::optional<Material> material = transfer_.at(value);
+          if (!material) continue;
+          const Point3 centre = grid.world_of(
+              {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
+          sums_[t].add_moduli(*material, part_.body.mean, 1);
+          sums_[t].add_mass(material->density * voxel_volume_,
+                            weights_at(centre, node_of(t, 0), tets.gradient[first_tet + t]));
+        }
+      }
+    }
+  }
+
+  /// Each voxel of the foreground counts for all tetrahedra that share its box.
+  void add_shares() {
+    const std::vector<Point3> nodes = index_positions(image_.volume.grid, part_.geometry.nodes);
+    const auto count = static_cast<std::int64_t>(sums_.size());
+    parallel_for(threads_for(thread_count(0), count), count, [&](std::int64_t t) {
+      const auto& [a, b, c, d] = part_.geometry.tets[static_cast<std::size_t>(t)];
+      add_shares_of({at(nodes, a), at(nodes, b), at(nodes, c), at(nodes, d)},
+                    sums_[static_cast<std::size_t>(t)]);
+    });
+  }
+
+  TetMaterials materials(const ModelTets& tets, std::size_t first_tet) const {
+    TetMaterials materials;
+    for (std::size_t t = 0; t < sums_.size(); ++t) {
+      const double coverage = sums_[t].count * voxel_volume_ / tets.volume[first_tet + t];
+      const auto [lambda, mu] = sums_[t].moduli(part_.body.mean, coverage);
+      materials.lambda.push_back(lambda);
+      materials.mu.push_back(mu);
+      materials.mass.push_back(sums_[t].mass);
+    }
+    return materials;
+  }
+
+  double covered_volume() const {
+    double sum = 0;
+    for (const VoxelSums& of : sums_) sum += of.covered;
+    return sum * voxel_volume_;
+  }
+  /// Of all voxels of the foreground.
+  double whole_volume() const {
+    double count = 0;
+    VolumeRows samples(image_.volume);
+    const auto& dims = image_.volume.grid.dims;
+    for (std::int64_t k = 0; k < dims[2]; ++k) {
+      for (std::int64_t j = 0; j < dims[1]; ++j) {
+        for (const double value : samples.row(j, k)) count += value >= image_.threshold ? 1 : 0;
+      }
+    }
+    return count * voxel_volume_;
+  }
+
+ private:
+  const Point3& node_of(std::size_t t, std::size_t a) const {
+    return at(part_.geometry.nodes, part_.geometry.tets[t][a]);
+  }
+
+  /// @param corners  of the tetrahedron [voxel]
+  void add_shares_of(const std::array<Point3, 4>& corners, VoxelSums& sums) const {
+    double value = 0;
+    const auto is_foreground = [&](const VoxelIndex& voxel) {
+      value = sample_of(image_.volume, voxel);
+      return value >= image_.threshold;
+    };
+    for_shares(corners, {{0, 0, 0}, image_.volume.grid.dims}, is_foreground,
+               [&](const VoxelIndex&, const VoxelShare& share) {
+                 sums.covered += share.volume;
+                 if (const auto material = transfer_.at(value)) {
+                   sums.add_moduli(*material, part_.body.mean, share.volume);
+                   sums.add_mass(material->density * voxel_volume_, share);
+                 }
+                 return true;
+               });
+  }
+
+  const BodyPart& part_;
+  const ImageGeometry& image_;
+  double voxel_volume_;
+  Transfer transfer_;
+  std::vector<VoxelSums> sums_;
+};
+
 }  // namespace
 
-TetMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet) {
-  const auto& image = std::get<ImageGeometry>(part.body.geometry);
-  const Grid& grid = image.volume.grid;
-  const double voxel_volume = voxel_volume_of(grid);
-  VolumeRows samples(image.volume);
-  const Transfer transfer(part.body);
-  const auto node_of = [&](std::size_t t, std::size_t a) {
-    return at(part.geometry.nodes, part.geometry.tets[t][a]);
-  };
-  std::vector<VoxelSums> sums(part.geometry.tets.size());
-  const std::vector<std::int32_t> owner =
-      voxel_owners(image.volume, {{0, 0, 0}, grid.dims}, {part.geometry.nodes, part.geometry.tets});
-  std::size_t v = 0;
-  for (std::int64_t k = 0; k < grid.dims[2]; ++k) {
-    for (std::int64_t j = 0; j < grid.dims[1]; ++j) {
-      const std::vector<double>& row = samples.row(j, k);
-      for (std::int64_t i = 0; i < grid.dims[0]; ++i, ++v) {
-        const double value = row[static_cast<std::size_t>(i)];
-        if (owner[v] < 0 || !(value >= image.threshold)) continue;
-        const auto t = static_cast<std::size_t>(owner[v]);
-        sums[t].has_voxel = true;
-        const std::optional<Material> material = transfer.at(value);
-        if (!material) continue;
-        const Point3 centre =
-            grid.world_of({static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
-        sums[t].add_moduli(*material, part.body.mean);
-        sums[t].add_mass(material->density * voxel_volume,
-                         weights_at(centre, node_of(t, 0), tets.gradient[first_tet + t]));
-      }
-    }
+ImageMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet) {
+  ImageSums sums(part);
+  if (part.geometry.shares_voxels) {
+    sums.add_shares();
+  } else {
+    sums.add_owned(tets, first_tet);
   }
-
-  TetMaterials materials;
-  for (std::size_t t = 0; t < sums.size(); ++t) {
-    const double volume = tets.volume[first_tet + t];
-    double coverage = sums[t].count * voxel_volume / volume;
-    if (!sums[t].has_voxel) {
-      // Tetrahedra smaller than a voxel may own none: the sample at the centroid stands for them.
-      Point3 centroid{0, 0, 0};
-      for (std::size_t a = 0; a < 4; ++a) centroid = plus(centroid, times(0.25, node_of(t, a)));
-      if (const auto material = transfer.at(nearest_sample(grid, samples, centroid))) {
-        sums[t].add_moduli(*material, part.body.mean);
-        sums[t].mass = uniform_mass(material->density * volume);
-      }
-      coverage = 1;
-    }
-    const auto [lambda, mu] = sums[t].moduli(part.body.mean, coverage);
-    materials.lambda.push_back(lambda);
-    materials.mu.push_back(mu);
-    materials.mass.push_back(sums[t].mass);
-  }
-  return materials;
+  return {sums.materials(tets, first_tet), sums.whole_volume(), sums.covered_volume()};
 }
 
 }  // namespace tetwarp

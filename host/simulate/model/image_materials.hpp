@@ -7,9 +7,17 @@
 
 namespace tetwarp {
 
-/// Every foreground voxel counts once, for the tetrahedron that owns it: masses are sums of
-/// density x volume x N_a N_b, moduli the means over voxels times the covered part of the volume,
-/// which is taken as 0.02 at least.
-TetMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet);
+struct ImageMaterials {
+  TetMaterials tets;
+  double foreground = 0;  ///< volume of the voxels at or above the threshold [m^3]
+  double covered = 0;     ///< volume of their parts in tetrahedra [m^3]
+};
+
+/// Every voxel of the foreground counts once. Where cells are small, each tetrahedron has its exact
+/// share of the voxel's box: masses are sums of the integrals of density N_a N_b over these parts.
+/// Otherwise the voxel belongs to the tetrahedron that owns it: masses are sums of density x volume
+/// x N_a N_b at the centre. Moduli are the means over the parts times the covered part of the
+/// tetrahedron's volume, which is taken as 0.02 at least.
+ImageMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet);
 
 }  // namespace tetwarp

@@ -132,6 +132,8 @@ Model make_model(const Scene& scene, const SceneGeometry& geometry) {
   }
   model.node_mass.assign(static_cast<std::size_t>(model.node_count), 0);
   model.body_rigid.assign(scene.bodies.size(), -1);
+  model.body_foreground.assign(scene.bodies.size(), 0);
+  model.body_covered.assign(scene.bodies.size(), 0);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyPart part{scene.bodies[b], geometry.bodies[b], static_cast<std::int32_t>(b),
                         model.body_node[b]};

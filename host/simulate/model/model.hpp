@@ -85,6 +85,9 @@ struct Model {
   std::vector<std::int32_t> body_rigid;  ///< [bodies] rigid body of each body, or -1
   std::vector<std::uint8_t> prescribed;  ///< [block_count] velocity is given, no unknown
   std::vector<double> node_mass;         ///< row sums of the mass [kg]
+  std::vector<double> body_foreground;   ///< [bodies] of elastic ones of an image the volume of the
+                                         ///< voxels at or above the threshold [m^3], else 0
+  std::vector<double> body_covered;      ///< [bodies] the part of it in tetrahedra [m^3]
   ModelTets tets;
   ModelEdges edges;
   ModelSprings springs;

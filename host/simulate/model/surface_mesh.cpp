@@ -28,12 +28,37 @@ Surface make_isosurface(const Volume& volume, double value, std::optional<std::i
   return triangles ? make_isosurface(place, image, *triangles) : make_isosurface(place, image);
 }
 
-Surface boundary_surface(const Mesh& mesh) {
+namespace {
+/// The tetrahedra of a mesh, of positive volume. @param call  for messages
+TetMesh oriented_tets(const std::string& call, const Mesh& mesh) {
   check_mesh(mesh);
-  if (!mesh.hexes.empty()) fail_at("boundary_surface: mesh", "has hexahedra, expected tetrahedra");
+  if (!mesh.hexes.empty()) fail_at(call + ": mesh", "has hexahedra, expected tetrahedra");
   TetMesh tets{mesh.rest_positions, mesh.tets};
-  orient_tets("boundary_surface: mesh", tets);
+  orient_tets(call + ": mesh", tets);
+  return tets;
+}
+}  // namespace
+
+Surface boundary_surface(const Mesh& mesh) {
+  const TetMesh tets = oriented_tets("boundary_surface", mesh);
   return surface_of(tets.nodes, boundary_triangles(tets.tets));
+}
+
+BoundPoints bind_boundary(const Mesh& mesh) {
+  const TetMesh tets = oriented_tets("bind_boundary", mesh);
+  std::vector<std::size_t> corner(mesh.rest_positions.size());  // 4 tetrahedron + corner, the first
+  for (std::size_t t = mesh.tets.size(); t-- > 0;) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      corner[static_cast<std::size_t>(mesh.tets[t][a])] = 4 * t + a;
+    }
+  }
+  BoundPoints bound;
+  for (const std::int32_t node : nodes_of(boundary_triangles(tets.tets))) {
+    const std::size_t first = at(corner, node);
+    bound.nodes.push_back(mesh.tets[first / 4]);
+    bound.weights.emplace_back()[first % 4] = 1;
+  }
+  return bound;
 }
 
 BoundPoints bind_points(const Mesh& mesh, const std::vector<Point3>& points) {

@@ -2,6 +2,7 @@
 /// Places and meshes of bodies from the state after the last step.
 #include "host/simulate/run/body_places.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -29,6 +30,8 @@ BodyMesh mesh_of(const SimulatedScene& scene, std::size_t body) {
   mesh.kind = scene.scene.bodies[body].kind;
   mesh.mass = mass_of(model, body);
   mesh.cells_across = of.cells_across;
+  mesh.foreground_volume = model.body_foreground[body];
+  mesh.uncovered_volume = std::max(0.0, model.body_foreground[body] - model.body_covered[body]);
   mesh.mesh = {of.nodes, of.tets};
   mesh.surface = of.surface;
   for (std::size_t t = 0; t < model.tets.nodes.size(); ++t) {

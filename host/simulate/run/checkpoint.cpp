@@ -61,10 +61,12 @@ void check_contacts(const ContactMemory& memory, const SceneSurfaces& scene) {
 void check_points(const std::vector<ContactPoint>& points, const SimulatedScene& scene) {
   const auto check_side = [&](std::size_t body, const ContactPlace& place) {
     if (body >= scene.surfaces.surfaces.bodies.size()) refuse_contact();
-    const bool is_body = body < scene.geometry.bodies.size();
-    const std::int64_t count = is_body ? std::ssize(scene.geometry.bodies[body].surface.points) : 0;
+    const CollisionBody& of = scene.surfaces.surfaces.bodies[body];
+    const bool has_vertices = of.vertex_end > of.first_vertex;
+    const std::int32_t last =
+        has_vertices ? at(scene.surfaces.surface_point, of.vertex_end - 1) : -1;
     for (const std::int32_t point : place.point) {
-      if (point >= count) refuse_contact();
+      if (point > last) refuse_contact();
     }
   };
   for (const ContactPoint& point : points) {

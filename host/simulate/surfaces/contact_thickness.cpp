@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <variant>
 
 #include "host/base/point3.hpp"
 #include "host/scene/checks/scene_checks.hpp"
+#include "host/scene/shape_surface.hpp"
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
 
@@ -18,10 +20,32 @@ constexpr double default_fraction = 1e-3;
 constexpr double least_of_feature = 1e-10;     // of the largest edge or radius
 constexpr double least_of_coordinate = 1e-12;  // 4500 times the rounding of the coordinate
 
-double default_thickness(const CollisionSurfaces& surfaces, const std::vector<double>& lengths) {
+/// Appends the lengths of the edges of a shape's surface whose faces are divided.
+void add_divided_edges(const Shape& shape, std::vector<double>& lengths) {
+  const Surface surface = make_shape_surface(shape, default_triangles);
+  for (const auto& triangle : surface.triangles) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::int32_t a = triangle[c], b = triangle[(c + 1) % 3];  // the other side has b, a
+      if (a < b) lengths.push_back(norm(minus(at(surface.points, a), at(surface.points, b))));
+    }
+  }
+}
+
+double default_thickness(const Scene& scene,
+                         const SceneGeometry& geometry,
+                         const CollisionSurfaces& surfaces,
+                         const std::vector<double>& lengths) {
   std::vector<double> edges;
-  for (std::size_t e = 0; e < lengths.size(); ++e) {
-    if (surfaces.edge_radius[e] == 0) edges.push_back(lengths[e]);
+  for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
+    const CollisionBody& body = surfaces.bodies[b];
+    const bool has_whole_faces = b < geometry.bodies.size() && geometry.bodies[b].has_whole_faces;
+    if (has_whole_faces && body.triangle_end > body.first_triangle) {
+      add_divided_edges(std::get<Shape>(scene.bodies[b].geometry), edges);
+      continue;
+    }
+    for (std::int32_t e = body.first_edge; e < body.edge_end; ++e) {
+      if (at(surfaces.edge_radius, e) == 0) edges.push_back(at(lengths, e));
+    }
   }
   if (!edges.empty()) {
     const auto middle = edges.begin() + static_cast<std::ptrdiff_t>(edges.size() / 2);
@@ -66,7 +90,10 @@ void check_resolution(const Scene& scene,
 
 }  // namespace
 
-double contact_thickness(const Scene& scene, const Model& model, const SceneSurfaces& surfaces) {
+double contact_thickness(const Scene& scene,
+                         const SceneGeometry& geometry,
+                         const Model& model,
+                         const SceneSurfaces& surfaces) {
   std::vector<Point3> places;
   places.reserve(surfaces.vertex_point.size());
   for (const ModelPoint& point : surfaces.vertex_point) {
@@ -77,8 +104,9 @@ double contact_thickness(const Scene& scene, const Model& model, const SceneSurf
   for (const auto& [a, b] : surfaces.surfaces.edges) {
     lengths.push_back(norm(minus(at(places, a), at(places, b))));
   }
-  const double thickness =
-      scene.thickness ? *scene.thickness : default_thickness(surfaces.surfaces, lengths);
+  const double thickness = scene.thickness
+                               ? *scene.thickness
+                               : default_thickness(scene, geometry, surfaces.surfaces, lengths);
   check_resolution(scene, surfaces.surfaces, places, lengths, thickness);
   return thickness;
 }

@@ -291,7 +291,7 @@ SceneSurfaces make_scene_surfaces(const Scene& scene,
   const auto obstacles = static_cast<std::int32_t>(scene.obstacles.size());
   for (std::int32_t b = 0; b < bodies; ++b) parts.add_body(b);
   for (std::int32_t o = 0; o < obstacles; ++o) parts.add_obstacle(bodies + o);
-  result.surfaces.thickness = contact_thickness(scene, model, result);
+  result.surfaces.thickness = contact_thickness(scene, geometry, model, result);
   mark_flat_faces(result);
   return result;
 }

@@ -57,7 +57,7 @@ struct ImageMoments {
   Matrix3d inertia = Matrix3d::Zero();
 };
 
-/// Sums over the voxels as points, without any mesh.
+/// Sums over the voxels as boxes, without any mesh.
 ImageMoments moments_of(const Volume& volume) {
   ImageMoments moments;
   const auto& dims = volume.grid.dims;
@@ -81,9 +81,15 @@ ImageMoments moments_of(const Volume& volume) {
     moments.centre += mass * x;
   });
   moments.centre /= moments.mass;
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(
+      volume.grid.direction.data());
+  const Matrix3d box = axes *
+                       (Vector3d(4e-3, 4e-3, 5e-3).array().square() / 12).matrix().asDiagonal() *
+                       axes.transpose();
   each([&](double mass, const Vector3d& x) {
     const Vector3d arm = x - moments.centre;
-    moments.inertia += mass * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
+    const Matrix3d second = arm * arm.transpose() + box;
+    moments.inertia += mass * (second.trace() * Matrix3d::Identity() - second);
   });
   return moments;
 }

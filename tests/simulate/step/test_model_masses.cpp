@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "tests/simulate/simulate_scenes.hpp"
 
@@ -58,7 +59,7 @@ Volume blob(const std::array<std::int64_t, 3>& dims) {
 Body image_body() {
   Body body;
   body.name = "blob";
-  body.geometry = ImageGeometry{blob({22, 19, 17}), 0.1};
+  body.geometry = ImageGeometry{blob({22, 22, 23}), 0.1};
   body.lattice = Lattice{.cells = std::array<std::int64_t, 3>{4, 3, 3}};
   body.transfer = {{0.1, {1e4, 0.3, 800}}, {0.6, {1e5, 0.4, 1100}}, {1.0, {2e5, 0.2, 900}}};
   return body;
@@ -70,13 +71,12 @@ double density_of(double value) {
   return 1100 - 200 * (value - 0.6) / 0.4;
 }
 
-/// Mass, centre and second moments are those of the image's voxels, taken as points.
-TEST(ImageMass, EqualsTheIntegralOfTheImage) {
-  const Body body = image_body();
-  const auto& volume = std::get<ImageGeometry>(body.geometry).volume;
+/// Mass, centre and second moments of an image's foreground.
+/// @param has_extent  voxels are boxes, not points
+Moments moments_of(const Volume& volume, bool has_extent) {
   Moments image;
-  const double voxel = 0.01 * 0.012 * 0.009;
-  const auto& dims = volume.grid.dims;
+  const auto& [dims, origin, spacing, direction] = volume.grid;
+  const double voxel = spacing[0] * spacing[1] * spacing[2];
   std::size_t v = 0;
   for (std::int64_t k = 0; k < dims[2]; ++k) {
     for (std::int64_t j = 0; j < dims[1]; ++j) {
@@ -88,17 +88,101 @@ TEST(ImageMass, EqualsTheIntegralOfTheImage) {
             {static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)});
         image.mass += mass;
         image.first = plus(image.first, times(mass, x));
-        for (std::size_t e = 0; e < 9; ++e) image.second[e] += mass * x[e / 3] * x[e % 3];
+        for (std::size_t e = 0; e < 9; ++e) {
+          image.second[e] += mass * x[e / 3] * x[e % 3];
+          for (std::size_t axis = 0; axis < 3 && has_extent; ++axis) {
+            image.second[e] += mass / 12 * spacing[axis] * spacing[axis] *
+                               direction[e / 3 * 3 + axis] * direction[e % 3 * 3 + axis];
+          }
+        }
       }
     }
   }
+  return image;
+}
 
-  const Moments model = moments_of(model_of(scene_of({body}, 0.01)));
+/// Of coarse lattices those of the voxels as points, of fine ones, also far below the size of a
+/// voxel, those of the voxels as boxes.
+TEST(ImageMass, EqualsTheIntegralOfTheImage) {
+  Body body = image_body();
+  for (const std::array<std::int64_t, 3>& cells :
+       {std::array<std::int64_t, 3>{1, 1, 1}, {1, 9, 2}, {4, 3, 3}, {17, 11, 13}, {23, 22, 21}}) {
+    body.lattice->cells = cells;
+    const bool has_extent = cells != std::array<std::int64_t, 3>{1, 1, 1};
+    const Moments image = moments_of(std::get<ImageGeometry>(body.geometry).volume, has_extent);
 
-  EXPECT_NEAR(model.mass / image.mass, 1, 1e-12);
-  EXPECT_LT(norm(minus(model.first, image.first)), 1e-12 * image.mass);
-  for (std::size_t e = 0; e < 9; ++e) {
-    EXPECT_NEAR(model.second[e], image.second[e], 1e-12 * image.mass);
+    const Moments model = moments_of(model_of(scene_of({body}, 0.01)));
+
+    EXPECT_NEAR(model.mass / image.mass, 1, 1e-9);
+    EXPECT_LT(norm(minus(model.first, image.first)), 1e-9 * image.mass);
+    for (std::size_t e = 0; e < 9; ++e) {
+      EXPECT_NEAR(model.second[e], image.second[e], 1e-9 * image.mass);
+    }
+  }
+}
+
+/// The mass is density times volume of the voxels from the threshold on, whatever the lattice is.
+TEST(ImageMass, CountsEveryVoxelOnceForAnyLattice) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> number(1, 6), sample(0, 3);
+  for (int trial = 0; trial < 30; ++trial) {
+    Grid grid;
+    grid.dims = {number(random), number(random), number(random)};
+    grid.spacing = {0.1 * number(random), 0.1 * number(random), 0.1 * number(random)};
+    grid.origin = {-3, 5, 0.7 * number(random)};
+    grid.direction = {0, -0.6, 0.8, 1, 0, 0, 0, 0.8, 0.6};
+    Volume volume = make_volume(grid, PixelType::uint8);
+    for (std::uint8_t& value : volume.samples<std::uint8_t>()) {
+      value = static_cast<std::uint8_t>(sample(random));
+    }
+    volume.samples<std::uint8_t>()[0] = 3;
+    double mass = 0;
+    for (const std::uint8_t value : volume.samples<std::uint8_t>()) mass += value > 1 ? value : 0;
+    mass *= 1000 * grid.spacing[0] * grid.spacing[1] * grid.spacing[2];
+    Body body;
+    body.name = "noise";
+    body.geometry = ImageGeometry{volume, 2};
+    body.transfer = {{0, {1e4, 0.3, 0}}, {3, {1e4, 0.3, 3000}}};
+    body.lattice = Lattice{};
+    switch (trial % 3) {
+      case 0:
+        body.lattice->cells = {number(random), number(random), number(random)};
+        break;
+      case 1:
+        body.lattice->edge = 0.25 * number(random);
+        break;
+      default:
+        body.lattice->tets = 30 * number(random);
+    }
+    const Simulator simulator(scene_of({body}, 0.01));
+
+    EXPECT_NEAR(simulator.body(0).mass / mass, 1, 1e-9) << trial;
+    EXPECT_LE(simulator.body(0).uncovered_volume, 1e-9 * simulator.body(0).foreground_volume);
+  }
+}
+
+/// A block of one material in any lattice has the masses and moduli of a box in this lattice.
+TEST(ImageMass, OfAUniformBlockIsThatOfABox) {
+  Body image;
+  image.name = "block";
+  const Grid grid{.dims = {4, 3, 5}, .origin = {-0.15, -0.2, -0.2}, .spacing = {0.1, 0.2, 0.1}};
+  image.geometry = ImageGeometry{make_volume(grid, PixelType::uint8), 0};
+  for (const std::array<std::int64_t, 3>& cells :
+       {std::array<std::int64_t, 3>{1, 1, 1}, {2, 2, 2}, {3, 5, 1}, {7, 4, 9}}) {
+    Body box = elastic_box("box", {0.2, 0.3, 0.25}, cells);
+    image.lattice = box.lattice;
+    image.material = box.material;
+    const Model exact = model_of(scene_of({box}, 0.01)), model = model_of(scene_of({image}, 0.01));
+
+    ASSERT_EQ(model.scalar_blocks.nodes, exact.scalar_blocks.nodes);
+    const double largest = *std::ranges::max_element(exact.scalar_blocks.mass);
+    for (std::size_t k = 0; k < exact.scalar_blocks.mass.size(); ++k) {
+      EXPECT_NEAR(model.scalar_blocks.mass[k], exact.scalar_blocks.mass[k], 1e-12 * largest);
+    }
+    for (std::size_t t = 0; t < exact.tets.mu.size(); ++t) {
+      EXPECT_NEAR(model.tets.mu[t] / exact.tets.mu[t], 1, 1e-12);
+      EXPECT_NEAR(model.tets.lambda[t] / exact.tets.lambda[t], 1, 1e-12);
+    }
   }
 }
 

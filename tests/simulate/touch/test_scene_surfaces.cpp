@@ -13,6 +13,7 @@
 #include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/simulate/touch_scenes.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/torn_mesh.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -70,6 +71,29 @@ Scene all_kinds() {
                      {"bar", CapsuleObstacle{{0, 0, -7}, {1, 0, -7}, 0.2}, {}, {}},
                      {"tile", tile, {}, {}}};
   return scene;
+}
+
+/// Where parts meet with nodes of their own, each vertex moves with its own node.
+TEST(SceneSurfaces, VerticesOfBoundariesAreTheirNodes) {
+  const Mesh whole = make_lattice_mesh(make_shape_surface(BoxShape{{1, 1, 1}}, 12), 2);
+  for (const std::uint32_t seed : {1, 2, 3}) {
+    Body body = elastic_box("torn", {1, 1, 1}, {1, 1, 1});
+    body.geometry = test::torn(whole, seed);
+    body.lattice.reset();
+    const TouchScene touch(scene_of({body}, 0.01));
+    const BodyGeometry& of = touch.geometry.bodies[0];
+    const BoundPoints bound = bind_boundary({of.nodes, of.tets, {}});
+
+    ASSERT_EQ(touch.surfaces.vertex_point.size(), bound.nodes.size());
+    for (std::size_t v = 0; v < bound.nodes.size(); ++v) {
+      const ModelPoint& point = touch.surfaces.vertex_point[v];
+      const auto one = std::find(bound.weights[v].begin(), bound.weights[v].end(), 1);
+      EXPECT_EQ(point.node[0],
+                bound.nodes[v][static_cast<std::size_t>(one - bound.weights[v].begin())]);
+      EXPECT_EQ(point.node[1], -1);
+      EXPECT_EQ(point.weight[0], 1);
+    }
+  }
 }
 
 TEST(SceneSurfaces, HoldThePartsOfEveryKind) {
@@ -272,6 +296,21 @@ TEST(ContactThickness, IsAThousandthOfTheMedianEdge) {
   for (Body& body : scene.bodies) body.collide = false;
   scene.thickness.reset();
   EXPECT_EQ(TouchScene(scene).surfaces.surfaces.thickness, 1e-3);
+}
+
+/// Whether flat faces are divided has no effect on it.
+TEST(ContactThickness, OfWholeFacesIsThatOfDividedOnes) {
+  Scene scene = scene_of(
+      {rigid_box("box", {0.1, 0.2, 0.3}, {4, 5, 6}), sheet_body("sheet", {0.3, 0.2}, {9, 8})},
+      0.01);
+  const TouchScene whole(scene);
+  scene.bodies[0].surface = std::int64_t{1280};
+  const TouchScene divided(scene);
+
+  EXPECT_EQ(triangles_of(whole.body(0)), 12);
+  EXPECT_GT(triangles_of(divided.body(0)), 1000);
+  const double thickness = divided.surfaces.surfaces.thickness;
+  EXPECT_NEAR(whole.surfaces.surfaces.thickness, thickness, 1e-12 * thickness);
 }
 
 TEST(ContactThickness, ThatCannotBeResolvedIsAnError) {

@@ -1,5 +1,9 @@
 /// Bodies that fall, rest and collide.
+#include <tetwarp/surface.hpp>
+
+#include "host/scene/shape_surface.hpp"
 #include "tests/simulate/touch_run.hpp"
+#include "tests/support/torn_mesh.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -58,6 +62,21 @@ TEST(Falling, RigidBoxRestsAtTheThickness) {
   EXPECT_LE(norm(record.bodies[0].angular_velocity), 1e-3);
 }
 
+/// Contacts name the vertices of rigid bodies that touch: here those of the lower face.
+TEST(Falling, ContactsOfARigidBoxAreItsVertices) {
+  Simulator simulator(falling(rigid_box("box", {0.05, 0.04, 0.03}, {}), 0.0302));
+  run(simulator, 3);
+  const std::vector<Point3> points = simulator.surface_positions(0);
+
+  ASSERT_GE(simulator.contacts().size(), 3u);
+  for (const ContactPoint& contact : simulator.contacts()) {
+    const ContactPlace& place = contact.body_a == 0 ? contact.place_a : contact.place_b;
+    ASSERT_GE(place.point[0], 0);
+    EXPECT_EQ(place.weight[0], 1);
+    EXPECT_LT(norm(minus(at(points, place.point[0]), contact.position)), 1e-4);
+  }
+}
+
 TEST(Falling, ElasticBoxRestsAtTheThickness) {
   Simulator simulator(falling(elastic_box("box", {0.05, 0.05, 0.05}, {2, 2, 2}), 0.06));
   run(simulator, 300);
@@ -67,6 +86,21 @@ TEST(Falling, ElasticBoxRestsAtTheThickness) {
   EXPECT_NEAR(record.bodies[0].contact_force[2], 9.81 * simulator.body(0).mass,
               1e-2 * 9.81 * simulator.body(0).mass);
   EXPECT_TRUE(record.converged);
+}
+
+/// A mesh whose parts meet with nodes of their own falls apart, but not through the floor.
+TEST(Falling, EveryNodeOfATornMeshStaysAboveTheFloor) {
+  const Mesh whole = make_lattice_mesh(make_shape_surface(BoxShape{{0.05, 0.05, 0.05}}, 12), 1);
+  for (const std::uint32_t seed : {1, 2}) {
+    Body body = elastic_box("torn", {1, 1, 1}, {1, 1, 1});
+    body.geometry = torn(whole, seed);
+    body.lattice.reset();
+    Simulator simulator(falling(body, 0.055));
+    for (int n = 0; n < 60; ++n) {
+      simulator.step();
+      EXPECT_GT(lowest(simulator.node_positions(0)), 1e-5) << "seed " << seed << ", step " << n;
+    }
+  }
 }
 
 TEST(Falling, ClothRestsOnAPlane) {
