@@ -28,14 +28,29 @@ Surface compacted(std::vector<Point3> points, std::vector<std::array<std::int32_
 }
 }  // namespace
 
-Surface read_surface(const std::string& path) {
+Surface read_surface(const std::string& path, std::vector<std::string>* left_out) {
   const h5::Silence silence;
-  if (has_mesh_extension(path) && kind_of(path) == FileKind::unknown) {
+  const auto note = [&](std::vector<std::string> names,
+                        const std::map<std::string, std::int64_t>& skipped) {
+    if (left_out == nullptr) return;
+    *left_out = std::move(names);
+    for (const auto& [kind, count] : skipped) {
+      left_out->push_back(std::to_string(count) + " " + kind);
+    }
+  };
+  if ((has_mesh_extension(path) || has_surface_extension(path)) &&
+      kind_of(path) == FileKind::unknown) {
     ImportedMesh imported = import_mesh(path, {.needs_solids = false});
+    for (const MeshArray& array : imported.arrays) {
+      imported.left_out.push_back((array.is_of_cells ? "cell array '" : "point array '") +
+                                  array.name + "'");
+    }
+    note(std::move(imported.left_out), imported.skipped);
     return compacted(std::move(imported.mesh.rest_positions), std::move(imported.triangles));
   }
   const MeshFile file(path);
   MeshCells cells = file.read_cells(0, CellChoice::triangles);
+  note(file.not_read(), cells.skipped);
   return compacted(file.read_points(0), std::move(cells.triangles));
 }
 
