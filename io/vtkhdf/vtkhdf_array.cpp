@@ -51,12 +51,12 @@ std::vector<hsize_t> file_shape(const std::array<std::int64_t, 3>& xyz,
 }
 }  // namespace
 
-std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims) {
+std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims, bool is_temporal) {
   std::vector<std::size_t> axes;
   for (std::size_t axis = 3; axis-- > 0;) {
     if (dims[axis] > 1) axes.push_back(axis);
   }
-  if (axes.empty()) axes.push_back(0);
+  if (axes.empty() && !is_temporal) axes.push_back(0);
   return axes;
 }
 
@@ -114,7 +114,7 @@ ArrayWriter::ArrayWriter(const VtkhdfOutput& output,
                          bool is_temporal)
     : output_(&output),
       dims_(dims),
-      axes_(axes_in_file(dims)),
+      axes_(axes_in_file(dims, is_temporal)),
       type_(header.type),
       components_(header.components),
       is_temporal_(is_temporal),
@@ -201,17 +201,19 @@ void ArrayWriter::write_chunk(const Region& chunk,
                               const Region& region,
                               const void* samples,
                               std::int64_t row) const {
+  // In memory there is an axis at least.
+  const std::vector<std::size_t> axes = axes_.empty() ? std::vector<std::size_t>{0} : axes_;
   std::array<std::int64_t, 3> edges, extent, start;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     edges[axis] = chunk.end[axis] - chunk.begin[axis];
     extent[axis] = region.end[axis] - region.begin[axis];
     start[axis] = chunk.begin[axis] - region.begin[axis];
   }
-  const std::vector<hsize_t> whole = file_shape(extent, axes_, components_, false, 0);
-  std::vector<hsize_t> memory_start = file_shape(start, axes_, components_, false, 0);
+  const std::vector<hsize_t> whole = file_shape(extent, axes, components_, false, 0);
+  std::vector<hsize_t> memory_start = file_shape(start, axes, components_, false, 0);
   std::vector<hsize_t> file_start = file_shape(chunk.begin, axes_, components_, is_temporal_, row);
   if (components_ > 1) memory_start.back() = file_start.back() = 0;
-  const std::vector<hsize_t> memory_count = file_shape(edges, axes_, components_, false, 0);
+  const std::vector<hsize_t> memory_count = file_shape(edges, axes, components_, false, 0);
   const std::vector<hsize_t> file_count = file_shape(edges, axes_, components_, is_temporal_, 1);
 
   const h5::Handle memory(H5Screate_simple(static_cast<int>(whole.size()), whole.data(), nullptr),

@@ -26,8 +26,8 @@ std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
                                         std::int64_t voxel_bytes);
 
 /// Axes of a dataset of samples, the slowest first: VTK's readers expect none of a single sample,
-/// but one axis of a single voxel.
-std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims);
+/// but one axis of a single voxel in a static file.
+std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims, bool is_temporal);
 
 /// The bytes of one sample: `value` rounded half to even and saturated to the type; NaN is 0 in
 /// integers.

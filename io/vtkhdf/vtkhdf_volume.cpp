@@ -76,7 +76,8 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
   std::vector<std::int64_t> found = array.dataset.dims, shape = shape_of(array.axes);
   const std::vector<std::int64_t> whole = shape;
   // Axes of one sample are left out: by VTK 9.3 all of them, before z alone.
-  std::vector<std::vector<std::size_t>> choices{array.axes, axes_in_file(grid.dims)};
+  std::vector<std::vector<std::size_t>> choices{array.axes,
+                                                axes_in_file(grid.dims, file.is_temporal())};
   if (grid.dims[2] == 1) choices.push_back({1, 0});
   for (const std::vector<std::size_t>& axes : choices) {
     const std::vector<std::int64_t> own = shape_of(axes);
