@@ -12,8 +12,8 @@ foreach(library gif gmsh mpi vtk)
 endforeach()
 add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
 tetwarp_sources(tetwarp_io io/fclib
-  contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_matrix.cpp fclib_numbers.cpp
-  fclib_rows.cpp fclib_write.cpp)
+  contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
+  fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
   extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
 tetwarp_sources(tetwarp_io io/h5

@@ -3,6 +3,7 @@
 #include "io/files/extension.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace tetwarp {
 

@@ -2,6 +2,7 @@
 /// Meshes and node data in Gmsh's MSH 2 and 4.1, read by Gmsh.
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -177,6 +178,17 @@ void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMes
   }
 }
 
+/// Counts nodes that Gmsh does not keep: of MSH 2 those of no cell.
+/// @param counts  the line after "$Nodes": the number of nodes, of MSH 4 after that of their groups
+void add_lost_nodes(const std::string& counts, ImportedMesh& into) {
+  long long first = 0, second = 0, low = 0, high = 0;
+  const int found =
+      std::sscanf(counts.c_str(), "%lld %lld %lld %lld", &first, &second, &low, &high);
+  const long long nodes = found == 4 ? second : found == 1 ? first : 0;
+  const long long lost = nodes - std::ssize(into.mesh.rest_positions);
+  if (lost > 0 && lost < nodes) into.left_out.push_back(std::to_string(lost) + " nodes of no cell");
+}
+
 /// Names what the file holds and ImportedMesh does not: groups of surfaces, curves and points,
 /// partitions, and sections that this reader does not ask for.
 void add_left_out(const std::string& path, const GmshLibrary& gmsh, ImportedMesh& into) {
@@ -207,6 +219,7 @@ void add_left_out(const std::string& path, const GmshLibrary& gmsh, ImportedMesh
   std::set<std::string> found;
   for (std::string line; std::getline(file, line);) {
     if (!line.starts_with('$')) continue;
+    if (line.starts_with("$Nodes") && std::getline(file, line)) add_lost_nodes(line, into);
     line.resize(std::min(line.find_last_not_of(" \t\r") + 1, line.size()));
     if (std::ranges::find(unread_sections, line) != std::end(unread_sections)) found.insert(line);
   }

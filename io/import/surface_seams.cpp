@@ -2,6 +2,7 @@
 /// Finds the points on open edges, and gives those at one place the first one's number.
 #include "io/import/surface_seams.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>

@@ -3,6 +3,7 @@
 #include <vtkCellData.h>
 #include <vtkCellTypes.h>
 #include <vtkDataSetReader.h>
+#include <vtkFieldData.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -13,10 +14,12 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
+#include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
+#include <string>
 #include <tetwarp/error.hpp>
 
 #include "io/files/extension.hpp"
@@ -83,7 +86,7 @@ void add_triangles(const std::string& path, vtkPointSet& set, ImportedMesh& into
   }
 }
 
-void add_names(vtkFieldData& data, const std::string& noun, ImportedMesh& into) {
+void add_array_names(vtkFieldData& data, const std::string& noun, ImportedMesh& into) {
   for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
     const char* const name = data.GetArrayName(a);
     into.left_out.push_back(noun + " array '" + (name == nullptr ? "" : name) + "'");
@@ -99,9 +102,9 @@ ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions&)
     set->GetPoint(static_cast<vtkIdType>(p), mesh.mesh.rest_positions[p].data());
   }
   add_triangles(path, *set, mesh);
-  add_names(*set->GetPointData(), "point", mesh);
-  add_names(*set->GetCellData(), "cell", mesh);
-  add_names(*set->GetFieldData(), "field", mesh);
+  add_array_names(*set->GetPointData(), "point", mesh);
+  add_array_names(*set->GetCellData(), "cell", mesh);
+  add_array_names(*set->GetFieldData(), "field", mesh);
   if (vtkPolyData::SafeDownCast(set) != nullptr) {
     join_seams(mesh.mesh.rest_positions, mesh.triangles);
   }

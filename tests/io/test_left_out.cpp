@@ -11,6 +11,8 @@
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/scene_io.hpp>
 
+#include "io/fclib/fclib_left_out.hpp"
+#include "tests/support/contact_files.hpp"
 #include "tests/support/io_files.hpp"
 #include "tests/support/nifti_files.hpp"
 
@@ -211,6 +213,25 @@ TEST(LeftOut, OfNiftiHeadersFieldsAndExtensions) {
       (std::set<std::string>{"qform, which differs from the sform", "dim_info",
                              "times of slices (slice_code, slice_duration, slice_start, slice_end)",
                              "toffset", "aux_file", "extension of code 4, 32 bytes"}));
+}
+
+/// A file with all that is read, and something beside it in each group.
+TEST(LeftOut, OfContactProblemsWhatNoSolverReads) {
+  const ScratchFolder folder;
+  ContactProblem problem = sliding_point();
+  problem.impulse_guess = {1, 0, 0};
+  write_contact_problem(folder / "p.hdf5", problem, "a title", "a description");
+  EXPECT_EQ(fclib_left_out(folder / "p.hdf5"), std::vector<std::string>());
+  Hdf5Editor(folder / "p.hdf5")
+      .dataset<double>("fclib_local/vectors/s", {1}, {0})
+      .dataset<double>("fclib_local/info/author", {1}, {0})
+      .dataset<double>("guesses/1/v", {3}, {0, 0, 0})
+      .group("blocks")
+      .group("certified");
+
+  EXPECT_EQ(set_of(fclib_left_out(folder / "p.hdf5")),
+            (std::set<std::string>{"fclib_local/vectors/s", "fclib_local/info/author",
+                                   "guesses/1/v", "blocks", "certified"}));
 }
 
 /// The range that viewers show and the time of a repetition come back from a VTKHDF file.

@@ -208,6 +208,13 @@ TEST_F(MeshImport, TakesDataOfTheNodesThatCellsHave) {
   lacking.replace(lacking.find("50 0 0 0\n$End"), 9, "");
   const std::string message = complaint("c.msh", lacking);
 
+  std::string old = msh2_file();
+  old.replace(old.find("$EndNodes"), 0, "60 9 9 9\n");
+  old.replace(old.find("$Nodes\n5"), 8, "$Nodes\n6");
+  const auto lost = imported("d.msh", old);
+
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->left_out, std::vector<std::string>{"1 nodes of no cell"});
   for (const auto& mesh : {partial, no_number}) {
     ASSERT_TRUE(mesh);
     ASSERT_EQ(mesh->mesh.rest_positions.size(), 6U);
