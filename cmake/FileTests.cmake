@@ -24,7 +24,9 @@ if(NOT BUILD_SHARED_LIBS)
     tests/io/test_io_fclib_rows.cpp
     tests/io/test_io_fclib_solution.cpp
     tests/io/test_skip_chunks.cpp
-    tests/io/test_mesh_child.cpp)
+    tests/io/test_mesh_child.cpp
+    tests/io/test_left_out.cpp
+    tests/io/test_surface_files.cpp)
   tetwarp_discover(tetwarp_io_tests io)
   include(cmake/ItkTests.cmake)
 endif()
@@ -97,6 +99,7 @@ tetwarp_add_cli_tests(tetwarp_cli_tests
   tests/cli/test_cli_fields.cpp
   tests/cli/test_cli_interrupt.cpp
   tests/cli/test_cli_grid.cpp
+  tests/cli/test_cli_outputs.cpp
   tests/cli/test_cli_pair.cpp
   tests/cli/test_cli_ranks.cpp
   tests/cli/test_cli_resume.cpp

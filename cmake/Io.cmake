@@ -12,15 +12,15 @@ foreach(library gif gmsh mpi vtk)
 endforeach()
 add_library(tetwarp_io ${PROJECT_BINARY_DIR}/shipped_scenes.cpp)
 tetwarp_sources(tetwarp_io io/fclib
-  contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_matrix.cpp fclib_numbers.cpp
-  fclib_rows.cpp fclib_write.cpp)
+  contact_checkpoint.cpp fclib.cpp fclib_contact.cpp fclib_left_out.cpp fclib_matrix.cpp
+  fclib_numbers.cpp fclib_rows.cpp fclib_write.cpp)
 tetwarp_sources(tetwarp_io io/files
-  finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
+  extension.cpp finished_file.cpp leftover_files.cpp memory.cpp names.cpp scratch_file.cpp)
 tetwarp_sources(tetwarp_io io/h5
   h5.cpp h5_attribute.cpp h5_disk.cpp h5_read.cpp h5_rows.cpp h5_write.cpp value_names.cpp)
 tetwarp_sources(tetwarp_io io/import
   child_process.cpp merge_cells.cpp mesh_${tetwarp_gmsh}.cpp mesh_${tetwarp_vtk}.cpp mesh_child.cpp
-  mesh_import.cpp)
+  mesh_import.cpp surface_seams.cpp)
 tetwarp_sources(tetwarp_io io/nifti
   nifti_components.cpp nifti_extension.cpp nifti_facts.cpp nifti_fields.cpp nifti_grid.cpp
   nifti_header.cpp nifti_samples.cpp nifti_volume.cpp nifti_write.cpp)
@@ -30,14 +30,14 @@ tetwarp_sources(tetwarp_io io/scene
   scene_actions.cpp scene_body.cpp scene_contact.cpp scene_file.cpp scene_files.cpp
   scene_geometry.cpp scene_json.cpp scene_motion.cpp)
 tetwarp_sources(tetwarp_io io/volume
-  file_kind.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
+  file_kind.cpp label_source.cpp mesh_arrays.cpp mesh_reader.cpp volume_file.cpp)
 tetwarp_sources(tetwarp_io io/vtkhdf
   simulation_mesh.cpp simulation_points.cpp simulation_series.cpp surface_file.cpp vtkhdf_array.cpp
   vtkhdf_cells.cpp vtkhdf_image.cpp vtkhdf_input.cpp vtkhdf_mesh_file.cpp vtkhdf_output.cpp
   vtkhdf_volume.cpp vtkhdf_write.cpp vtkhdf_write_mesh.cpp)
 if(TETWARP_HAS_VTK)
   tetwarp_sources(tetwarp_io io/import
-    mesh_vtk_arrays.cpp)
+    mesh_vtk_arrays.cpp surface_vtk.cpp)
 endif()
 add_library(tetwarp::io ALIAS tetwarp_io)
 set_target_properties(tetwarp_io PROPERTIES EXPORT_NAME io VERSION ${PROJECT_VERSION} SOVERSION 0

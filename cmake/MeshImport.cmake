@@ -1,4 +1,4 @@
-# Libraries that read meshes of other programs: VTK (.vtu, .vtk) and Gmsh (.msh). Both are optional;
+# Libraries that read meshes of other programs: VTK (.vtu, .vtk, surfaces) and Gmsh (.msh). Both are optional;
 # without one, importing its format fails with an error that names the package. A bundle contains neither.
 foreach(name VTK Gmsh)
   string(TOUPPER ${name} upper)
@@ -12,7 +12,8 @@ add_library(tetwarp_mesh_import INTERFACE)
 
 set(TETWARP_HAS_VTK FALSE)
 if(NOT TETWARP_VTK STREQUAL "OFF")
-  set(tetwarp_vtk_modules IOXML IOLegacy CommonExecutionModel CommonDataModel CommonCore)
+  set(tetwarp_vtk_modules
+    IOXML IOLegacy IOGeometry IOPLY CommonExecutionModel CommonDataModel CommonCore)
   find_package(VTK 9 QUIET COMPONENTS ${tetwarp_vtk_modules})
   set(TETWARP_HAS_VTK ${VTK_FOUND})
   if(TETWARP_VTK STREQUAL "ON" AND NOT VTK_FOUND)

@@ -56,8 +56,10 @@ void check_subcommand(const CLI::App& app, int argument_count, const char* const
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), arguments[1]) == names.end()) {
-    throw CLI::ValidationError(std::string("'") + arguments[1] + "'",
-                               "no such subcommand; there are " + listed(names));
+    const std::string remedy = did_you_mean(arguments[1], names);
+    throw CLI::ValidationError(
+        std::string("'") + arguments[1] + "'",
+        "no such subcommand; there are " + listed(names) + (remedy.empty() ? "" : "; " + remedy));
   }
 }
 

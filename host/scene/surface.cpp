@@ -132,8 +132,8 @@ void check_closed(const std::string& place, const Surface& surface) {
                        " triangles pass the edge from point " + std::to_string(edge.low) +
                        " to point " + std::to_string(edge.high) + " and " +
                        std::to_string(passes[0]) +
-                       " pass it back, expected as many; fill holes and turn all triangles "
-                       "counter-clockwise from outside");
+                       " pass it back, expected as many; fill holes, join points at the same "
+                       "place and turn all triangles counter-clockwise from outside");
   }
   if (!(volume_of(surface) > 0)) {
     fail_at(place,

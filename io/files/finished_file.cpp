@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <tetwarp/error.hpp>
 
@@ -49,6 +50,30 @@ std::string folder_of(const std::string& path) {
   return slash == std::string::npos ? "" : path.substr(0, slash + 1);
 }
 
+/// Makes a folder and those above it. Throws IoError about `path`.
+/// @returns those that were missing, the outermost first
+std::vector<std::string> make_folders(const std::string& folder, const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> missing;
+  std::error_code error;
+  for (fs::path above = folder; !above.empty() && !fs::exists(above, error);
+       above = above.parent_path()) {
+    if (above.has_filename()) missing.insert(missing.begin(), above.string());
+    if (above == above.parent_path()) break;
+  }
+  std::vector<std::string> made;
+  for (const std::string& name : missing) {
+    if (mkdir(name.c_str(), 0777) == 0) {
+      made.push_back(name);
+    } else if (errno != EEXIST) {  // else another process was faster
+      throw IoError(path, "",
+                    "folder '" + name + "' cannot be made: " + std::strerror(errno) +
+                        "; choose a folder that may be written to");
+    }
+  }
+  return made;
+}
+
 std::string reason() {
   return std::strerror(errno);
 }
@@ -77,6 +102,7 @@ FinishedFile::FinishedFile(const std::string& path) : path_(path), final_(link_t
   const std::string folder = folder_of(final_);
   const std::string name = final_.substr(folder.size());
   if (name.empty()) throw IoError(path, "", "is not the name of a file");
+  made_folders_ = make_folders(folder, path);
   remove_leftovers_once(folder);
   int descriptor = -1;
   do {
@@ -98,6 +124,10 @@ FinishedFile::~FinishedFile() {
   if (temporary_.empty()) return;
   unlink(temporary_.c_str());
   unlist_name(slot_);
+  while (!made_folders_.empty()) {  // a folder that holds something stays
+    rmdir(made_folders_.back().c_str());
+    made_folders_.pop_back();
+  }
 }
 
 std::int64_t FinishedFile::finish() {

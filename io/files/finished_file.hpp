@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tetwarp/io_export.hpp>
 
@@ -19,11 +20,12 @@ namespace tetwarp {
 /// files there of processes of this machine that no longer exist.
 class FinishedFile {
  public:
-  /// Throws IoError when the folder cannot be written to or `path` exists and is not a plain file.
+  /// Makes the folder if it is missing. Throws IoError when it cannot be written to or `path`
+  /// exists and is not a plain file.
   explicit FinishedFile(const std::string& path);
   FinishedFile(const FinishedFile&) = delete;
   FinishedFile& operator=(const FinishedFile&) = delete;
-  ~FinishedFile();  ///< without finish(): removes the temporary
+  ~FinishedFile();  ///< without finish(): removes the temporary, and folders that it has made
 
   /// The name as the caller gave it, for messages.
   const std::string& path() const { return path_; }
@@ -39,6 +41,7 @@ class FinishedFile {
   std::string path_;
   std::string final_;  // the file that path_ leads to
   std::string temporary_;
+  std::vector<std::string> made_folders_;  // the outermost first
   int slot_ = -1;  // in the list of remove_unfinished_files(); -1: not listed
 };
 

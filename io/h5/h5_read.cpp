@@ -30,9 +30,10 @@ void check_storage(const Dataset& dataset) {
   const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
   if (!properties) dataset.fail_with_reason("damaged description");
   if (H5Pget_external_count(properties.id()) > 0) return;
-  struct stat status {};
-  if (stat(dataset.file.c_str(), &status) != 0) return;
-  const auto file_bytes = static_cast<hsize_t>(status.st_size);
+  // Of the file that is open: its name may be that of another one, which it will replace.
+  const Handle file(H5Iget_file_id(dataset.id()), H5Fclose);
+  hsize_t file_bytes = 0;
+  if (!file || H5Fget_filesize(file.id(), &file_bytes) < 0) return;
   const H5D_layout_t layout = H5Pget_layout(properties.id());
   check_memory(dataset.file, dataset.name, chunk_bytes(dataset));
   const hsize_t stored = H5Dget_storage_size(dataset.id());

@@ -82,6 +82,8 @@ Object create_growing_file(const std::string& path, Disk& disk) {
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
     throw IoError(path, "", "exists and is not a plain file; choose another folder");
   }
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);  // else creating fails
   return create_file(path, path, disk);
 }
 

@@ -67,18 +67,19 @@ Object create_dataset(
   return dataset;
 }
 
-void write_dataset(const Object& parent,
-                   const std::string& name,
-                   hid_t file_type,
-                   hid_t memory_type,
-                   std::span<const hsize_t> dims,
-                   const void* data) {
+Object write_dataset(const Object& parent,
+                     const std::string& name,
+                     hid_t file_type,
+                     hid_t memory_type,
+                     std::span<const hsize_t> dims,
+                     const void* data) {
   const Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr),
                      H5Sclose);
-  const Object dataset = create_dataset(parent, name, file_type, space.id(), H5P_DEFAULT);
+  Object dataset = create_dataset(parent, name, file_type, space.id(), H5P_DEFAULT);
   if (H5Dwrite(dataset.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
     dataset.fail_with_reason(write_problem);
   }
+  return dataset;
 }
 
 void write_attribute(const Object& object,

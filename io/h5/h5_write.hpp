@@ -21,12 +21,12 @@ Object create_dataset(
     const Object& parent, const std::string& name, hid_t file_type, hid_t space, hid_t properties);
 
 /// Creates a dataset of the given shape and writes all of it.
-void write_dataset(const Object& parent,
-                   const std::string& name,
-                   hid_t file_type,
-                   hid_t memory_type,
-                   std::span<const hsize_t> dims,
-                   const void* data);
+Object write_dataset(const Object& parent,
+                     const std::string& name,
+                     hid_t file_type,
+                     hid_t memory_type,
+                     std::span<const hsize_t> dims,
+                     const void* data);
 void write_attribute(const Object& object, const std::string& name, std::span<const double> values);
 void write_attribute(const Object& object,
                      const std::string& name,

@@ -2,10 +2,13 @@
 /// Meshes and node data in Gmsh's MSH 2 and 4.1, read by Gmsh.
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
+#include <string_view>
 #include <tetwarp/error.hpp>
 #include <unordered_map>
 
@@ -18,6 +21,10 @@ namespace {
 constexpr int gmsh_triangle = 2;     ///< of three nodes
 constexpr int gmsh_tetrahedron = 4;  ///< of four nodes
 constexpr int gmsh_hexahedron = 5;   ///< of eight, in VTK's order
+
+/// Sections of which ImportedMesh keeps nothing.
+constexpr std::string_view unread_sections[] = {
+    "$Comments", "$GhostElements", "$InterpolationScheme", "$Parametrizations", "$Periodic"};
 
 /// From Gmsh's tags of nodes to their indices in the mesh.
 using Places = std::unordered_map<std::size_t, std::size_t>;
@@ -79,6 +86,7 @@ CellKind kind_of_type(const GmshLibrary& gmsh, int type) {
 CellNumbers add_cells(const std::string& path,
                       const GmshLibrary& gmsh,
                       const Places& places,
+                      const MeshImportOptions& options,
                       ImportedMesh& into) {
   CellNumbers numbers;
   GmshArray<int> types(gmsh);
@@ -91,6 +99,11 @@ CellNumbers add_cells(const std::string& path,
     const CellKind kind = kind_of_type(gmsh, types[type]);
     check(path, nodes.sizes[type] >= tags.sizes[type] * static_cast<std::size_t>(kind.kept_nodes),
           "lacks nodes of its cells");
+    if (!options.needs_solids && kind.dimension == 2 && kind.kept_nodes == 0) {
+      throw IoError(path, "",
+                    "holds cells of kind " + kind.name +
+                        ", expected triangles of three nodes; triangulate the surface");
+    }
     for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
       const std::size_t* const tags_of_cell =
           nodes.data[type] + c * static_cast<std::size_t>(kind.kept_nodes);
@@ -102,18 +115,20 @@ CellNumbers add_cells(const std::string& path,
   return numbers;
 }
 
-/// Adds to each cell of an entity the physical group of that entity, unless it has one.
-void add_group(const GmshLibrary& gmsh,
-               int entity,
-               int group,
-               std::unordered_map<std::size_t, std::int64_t>& groups) {
+/// The physical groups of cells by their tags, in the order of the groups.
+using CellGroups = std::unordered_map<std::size_t, std::vector<std::int64_t>>;
+
+/// Adds to each cell of an entity a physical group of that entity.
+void add_group(const GmshLibrary& gmsh, int entity, int group, CellGroups& groups) {
   GmshArray<int> types(gmsh);
   GmshArrays<std::size_t> tags(gmsh), nodes(gmsh);
   gmsh.call<decltype(gmshModelMeshGetElements)>("gmshModelMeshGetElements", &types.data,
                                                 &types.size, &tags.data, &tags.sizes, &tags.size,
                                                 &nodes.data, &nodes.sizes, &nodes.size, 3, entity);
   for (std::size_t type = 0; type < tags.size; ++type) {
-    for (std::size_t c = 0; c < tags.sizes[type]; ++c) groups.emplace(tags.data[type][c], group);
+    for (std::size_t c = 0; c < tags.sizes[type]; ++c) {
+      groups[tags.data[type][c]].push_back(group);
+    }
   }
 }
 
@@ -126,12 +141,20 @@ void add_names(std::map<std::int64_t, std::string> names, ImportedMesh& into) {
   }
 }
 
-/// Adds the array `group`, with the groups' names, where the file has physical groups of volumes.
+std::string name_of_group(const GmshLibrary& gmsh, int dimension, int group) {
+  GmshArray<char> name(gmsh);
+  gmsh.call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", dimension, group,
+                                                &name.data);
+  return name.data == nullptr ? "" : name.data;
+}
+
+/// Adds the array `group`, with the groups' names, where the file has physical groups of volumes;
+/// where cells are in several groups also `group_2` with their second ones, and so on.
 void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMesh& into) {
   GmshArray<int> physical(gmsh);  // pairs of dimension and tag
   gmsh.call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &physical.data,
                                                   &physical.size, 3);
-  std::unordered_map<std::size_t, std::int64_t> groups;
+  CellGroups groups;
   std::map<std::int64_t, std::string> names;
   for (std::size_t at = 0; at + 1 < physical.size; at += 2) {
     const int group = physical[at + 1];
@@ -139,23 +162,71 @@ void add_groups(const GmshLibrary& gmsh, const CellNumbers& numbers, ImportedMes
     gmsh.call<decltype(gmshModelGetEntitiesForPhysicalGroup)>(
         "gmshModelGetEntitiesForPhysicalGroup", 3, group, &entities.data, &entities.size);
     for (std::size_t e = 0; e < entities.size; ++e) add_group(gmsh, entities[e], group, groups);
-    GmshArray<char> name(gmsh);
-    gmsh.call<decltype(gmshModelGetPhysicalName)>("gmshModelGetPhysicalName", 3, group, &name.data);
-    if (name.data != nullptr && *name.data != '\0') {
-      names[group] = name.data;
+    if (const std::string name = name_of_group(gmsh, 3, group); !name.empty()) names[group] = name;
+  }
+  std::size_t most = 0;
+  for (const auto& [cell, own] : groups) most = std::max(most, own.size());
+  for (std::size_t place = 0; place < most; ++place) {
+    std::vector<std::int64_t> rows;
+    for (const std::int64_t number : numbers.all()) {
+      const auto found = groups.find(static_cast<std::size_t>(number));
+      rows.push_back(found != groups.end() && place < found->second.size() ? found->second[place]
+                                                                           : 0);
     }
+    add_numbers(place == 0 ? "group" : "group_" + std::to_string(place + 1), true, rows, into);
+    add_names(names, into);
   }
-  std::vector<std::int64_t> rows;
-  for (const std::int64_t number : numbers.all()) {
-    const auto found = groups.find(static_cast<std::size_t>(number));
-    rows.push_back(found == groups.end() ? 0 : found->second);
-  }
-  if (groups.empty()) return;
-  add_numbers("group", true, rows, into);
-  add_names(std::move(names), into);
 }
 
-/// Adds one step of node data, which every node must have.
+/// Counts nodes that Gmsh does not keep: of MSH 2 those of no cell.
+/// @param counts  the line after "$Nodes": the number of nodes, of MSH 4 after that of their groups
+void add_lost_nodes(const std::string& counts, ImportedMesh& into) {
+  long long first = 0, second = 0, low = 0, high = 0;
+  const int found =
+      std::sscanf(counts.c_str(), "%lld %lld %lld %lld", &first, &second, &low, &high);
+  const long long nodes = found == 4 ? second : found == 1 ? first : 0;
+  const long long lost = nodes - std::ssize(into.mesh.rest_positions);
+  if (lost > 0 && lost < nodes) into.left_out.push_back(std::to_string(lost) + " nodes of no cell");
+}
+
+/// Names what the file holds and ImportedMesh does not: groups of surfaces, curves and points,
+/// partitions, and sections that this reader does not ask for.
+void add_left_out(const std::string& path, const GmshLibrary& gmsh, ImportedMesh& into) {
+  GmshArray<int> physical(gmsh);
+  gmsh.call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &physical.data,
+                                                  &physical.size, -1);
+  for (std::size_t at = 0; at + 1 < physical.size; at += 2) {
+    const int dimension = physical[at], group = physical[at + 1];
+    if (dimension == 3) continue;
+    const std::string name = name_of_group(gmsh, dimension, group);
+    into.left_out.push_back("group " + (name.empty() ? std::to_string(group) : "'" + name + "'") +
+                            " of dimension " + std::to_string(dimension));
+  }
+  GmshArray<int> entities(gmsh);
+  gmsh.call<decltype(gmshModelGetEntities)>("gmshModelGetEntities", &entities.data, &entities.size,
+                                            3);
+  std::set<int> partitions;
+  for (std::size_t at = 0; at + 1 < entities.size; at += 2) {
+    GmshArray<int> own(gmsh);
+    gmsh.call<decltype(gmshModelGetPartitions)>("gmshModelGetPartitions", entities[at],
+                                                entities[at + 1], &own.data, &own.size);
+    for (std::size_t p = 0; p < own.size; ++p) partitions.insert(own[p]);
+  }
+  if (!partitions.empty()) {
+    into.left_out.push_back("numbers of " + std::to_string(partitions.size()) + " partitions");
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::set<std::string> found;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with('$')) continue;
+    if (line.starts_with("$Nodes") && std::getline(file, line)) add_lost_nodes(line, into);
+    line.resize(std::min(line.find_last_not_of(" \t\r") + 1, line.size()));
+    if (std::ranges::find(unread_sections, line) != std::end(unread_sections)) found.insert(line);
+  }
+  for (const std::string& section : found) into.left_out.push_back("section " + section);
+}
+
+/// Adds one step of node data, which every node of a cell must have; the others get 0 without it.
 void add_step(const std::string& path,
               const GmshLibrary& gmsh,
               int view,
@@ -172,15 +243,26 @@ void add_step(const std::string& path,
                                             &tags.data, &tags.size, &data.data, &data.sizes,
                                             &data.size, &time, &components);
   if (kind.data == nullptr || std::strcmp(kind.data, "NodeData") != 0 || components != 3 ||
-      tags.size != places.size() || data.size != tags.size) {
+      data.size != tags.size) {
     throw IoError(path, name,
                   "step " + std::to_string(step) + ": expected three components for every node");
   }
   std::vector<Point3> displacement(places.size());
+  std::vector<bool> lacks_data = nodes_of_cells(into.mesh, into.triangles);
   for (std::size_t n = 0; n < tags.size; ++n) {
     check(path, data.sizes[n] >= 3, "lacks numbers of '" + name + "'");
     const double* const row = data.data[n];
-    displacement[place_of(path, places, tags[n])] = {row[0], row[1], row[2]};
+    const std::size_t place = place_of(path, places, tags[n]);
+    displacement[place] = {row[0], row[1], row[2]};
+    lacks_data[place] = false;
+  }
+  if (const auto lacking = std::ranges::find(lacks_data, true); lacking != lacks_data.end()) {
+    const auto place = static_cast<std::size_t>(lacking - lacks_data.begin());
+    const auto node = std::ranges::find(places, place, &Places::value_type::second);
+    throw IoError(path, name,
+                  "step " + std::to_string(step) + " has no data of node " +
+                      std::to_string(node->first) +
+                      ", which cells have; give all nodes of cells data");
   }
   into.displacements.push_back(std::move(displacement));
   into.times.push_back(time);
@@ -227,10 +309,11 @@ ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& op
   gmsh.call<decltype(gmshOpen)>("gmshOpen", path.c_str());
   ImportedMesh mesh;
   const Places places = add_nodes(path, gmsh, mesh);
-  const CellNumbers numbers = add_cells(path, gmsh, places, mesh);
+  const CellNumbers numbers = add_cells(path, gmsh, places, options, mesh);
   add_numbers("original_cell", true, numbers.all(), mesh);
   add_groups(gmsh, numbers, mesh);
   add_displacement(path, gmsh, places, options, mesh);
+  add_left_out(path, gmsh, mesh);
   return mesh;
 }
 

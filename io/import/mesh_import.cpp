@@ -13,6 +13,7 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/volume.hpp>
 
+#include "io/files/extension.hpp"
 #include "io/files/memory.hpp"
 #include "io/import/merge_cells.hpp"
 #include "io/import/mesh_child.hpp"
@@ -34,8 +35,9 @@ ChildLimits limits_for(const std::string& path, const MeshImportOptions& options
           std::min(memory, available_memory())};
 }
 
-/// Checks what a reader has returned. Throws IoError.
-void check_imported(const std::string& path, const ImportedMesh& imported, bool needs_solids) {
+/// Checks what a reader has returned. Displacements that are not finite become 0 at nodes of no
+/// cell. Throws IoError.
+void check_imported(const std::string& path, ImportedMesh& imported, bool needs_solids) {
   const std::size_t node_count = imported.mesh.rest_positions.size();
   if (needs_solids && imported.mesh.cell_count() == 0) {
     throw IoError(path, "", "holds no tetrahedron or hexahedron: damaged, or a surface mesh");
@@ -59,8 +61,7 @@ void check_imported(const std::string& path, const ImportedMesh& imported, bool 
     throw IoError(path, "", std::string(error.what()) + ": damaged, write it again");
   }
   for (std::size_t node = 0; node < node_count; ++node) {  // those of triangles alone, too
-    const Point3& x = imported.mesh.rest_positions[node];
-    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2])) {
+    if (!is_finite(imported.mesh.rest_positions[node])) {
       throw IoError(path, "",
                     "node " + std::to_string(node) + " is not finite, correct or remove it");
     }
@@ -78,11 +79,10 @@ void check_imported(const std::string& path, const ImportedMesh& imported, bool 
   if (imported.displacements.size() != imported.times.size()) {
     throw IoError(path, "", "has other numbers of times and of steps: damaged, write it again");
   }
+  const std::vector<bool> used = nodes_of_cells(imported.mesh, imported.triangles);
   for (std::size_t step = 0; step < imported.times.size(); ++step) {
-    const std::vector<Point3>& rows = imported.displacements[step];
-    const auto is_finite = [](const Point3& row) {
-      return std::isfinite(row[0]) && std::isfinite(row[1]) && std::isfinite(row[2]);
-    };
+    std::vector<Point3>& rows = imported.displacements[step];
+    if (rows.size() == node_count) clear_unused(used, rows);
     const auto bad = std::ranges::find_if_not(rows, is_finite);
     if (rows.size() == node_count && bad == rows.end() && std::isfinite(imported.times[step])) {
       continue;
@@ -98,12 +98,20 @@ void check_imported(const std::string& path, const ImportedMesh& imported, bool 
 }  // namespace
 
 bool has_mesh_extension(const std::string& path) {
-  return path.ends_with(".msh") || path.ends_with(".vtu") || path.ends_with(".vtk");
+  return has_extension(path, ".msh") || has_extension(path, ".vtu") || has_extension(path, ".vtk");
+}
+
+bool has_surface_extension(const std::string& path) {
+  return has_extension(path, ".stl") || has_extension(path, ".ply") ||
+         has_extension(path, ".obj") || has_extension(path, ".vtp");
 }
 
 ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& options) {
-  if (!has_mesh_extension(path)) {
-    throw IoError(path, "", "the name of a mesh to import must end in .msh, .vtu or .vtk");
+  if (!has_mesh_extension(path) && (options.needs_solids || !has_surface_extension(path))) {
+    throw IoError(path, "",
+                  std::string("the name of a ") + (options.needs_solids ? "mesh" : "surface") +
+                      " to import must end in .msh, .vtu or .vtk" +
+                      (options.needs_solids ? "" : ", .stl, .ply, .obj or .vtp"));
   }
   if (!std::ifstream(path)) {
     throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
@@ -121,7 +129,8 @@ ImportedMesh import_mesh(const std::string& path, const MeshImportOptions& optio
 }
 
 ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options) {
-  return path.ends_with(".msh") ? read_gmsh_mesh(path, options) : read_vtk_mesh(path, options);
+  if (has_extension(path, ".msh")) return read_gmsh_mesh(path, options);
+  return options.needs_solids ? read_vtk_mesh(path, options) : read_vtk_surface(path, options);
 }
 
 void leave_out_cell(const std::string& path,

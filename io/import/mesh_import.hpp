@@ -18,6 +18,10 @@ namespace tetwarp {
 ImportedMesh read_gmsh_mesh(const std::string& path, const MeshImportOptions& options);
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options);
 
+/// Reads triangles by VTK: of surfaces, or of an unstructured grid. Other cells of two dimensions
+/// are divided into triangles.
+ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options);
+
 /// Reads a mesh in this process and leaves most checks to import_mesh(), which calls it in a child.
 ImportedMesh read_mesh_here(const std::string& path, const MeshImportOptions& options);
 

@@ -12,4 +12,8 @@ ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions&) {
                 "convert to .vtkhdf or .msh");
 }
 
+ImportedMesh read_vtk_surface(const std::string& path, const MeshImportOptions& options) {
+  return read_vtk_mesh(path, options);
+}
+
 }  // namespace tetwarp

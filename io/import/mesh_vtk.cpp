@@ -1,13 +1,11 @@
 /// @file mesh_vtk.cpp
 /// Meshes in VTK's XML and legacy formats, read by VTK.
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellTypes.h>
 #include <vtkDataArray.h>
 #include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
-#include <vtkObject.h>
 #include <vtkPointData.h>
 #include <vtkUnsignedCharArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -21,33 +19,13 @@
 #include <map>
 #include <tetwarp/error.hpp>
 
+#include "io/files/extension.hpp"
 #include "io/import/mesh_import.hpp"
 #include "io/import/mesh_vtk_arrays.hpp"
+#include "io/import/vtk_error_notes.hpp"
 
 namespace tetwarp {
 namespace {
-/// Notes the errors that a reader reports, by which it may drop arrays without failing.
-class ErrorNotes {
- public:
-  explicit ErrorNotes(vtkObject& reader) {
-    vtkObject::GlobalWarningDisplayOn();  // else errors are not reported
-    callback_->SetClientData(&has_error_);
-    callback_->SetCallback([](vtkObject*, unsigned long, void* has_error, void*) {
-      *static_cast<bool*>(has_error) = true;
-    });
-    reader.AddObserver(vtkCommand::ErrorEvent, callback_);
-    reader.AddObserver(vtkCommand::WarningEvent, silence_);
-  }
-  ErrorNotes(const ErrorNotes&) = delete;
-  ErrorNotes& operator=(const ErrorNotes&) = delete;
-
-  bool has_error() const { return has_error_; }
-
- private:
-  vtkNew<vtkCallbackCommand> callback_, silence_;
-  bool has_error_ = false;
-};
-
 CellKind kind_of_type(int type) {
   const char* const name = vtkCellTypes::GetClassNameFromTypeId(type);
   const auto cell = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(type));
@@ -117,9 +95,10 @@ void check_grid(const std::string& path, vtkUnstructuredGrid* grid) {
 }
 
 /// Takes the mesh from the first step, and from every step its displacement if there is one.
+/// @param number  of the step, which is its time where the file names none
 void add_step(const std::string& path,
               vtkUnstructuredGrid& grid,
-              double time,
+              int number,
               const MeshImportOptions& options,
               ImportedMesh& into) {
   vtkPointData& data = *grid.GetPointData();
@@ -136,7 +115,7 @@ void add_step(const std::string& path,
     throw IoError(path, *name, "expected three components for every node");
   }
   into.displacements.push_back(rows_of(array));
-  into.times.push_back(time);
+  into.times.push_back(time_of(grid).value_or(number));
 }
 
 /// VTK reads as many numbers as a file before version 5 declares, and beyond them where a cell goes
@@ -161,11 +140,29 @@ void check_declared(const std::string& path, vtkUnstructuredGrid& grid) {
                     " " + std::to_string(numbers) + "': damaged, write it again");
 }
 
+/// Names lookup tables, of which VTK's reader keeps at most one: lines "LOOKUP_TABLE NAME SIZE".
+void add_tables(const std::string& path, ImportedMesh& into) {
+  std::ifstream file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line);) {
+    char name[256] = {};
+    long long size = 0;
+    if (std::sscanf(line.c_str(), "LOOKUP_TABLE %255s %lld", name, &size) == 2) {
+      into.left_out.push_back("lookup table '" + std::string(name) + "'");
+    }
+  }
+}
+
 ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkUnstructuredGridReader> reader;
-  const ErrorNotes notes(*reader);
+  const VtkErrorNotes notes(*reader);
   reader->SetFileName(path.c_str());
+  // Without these only the first array of a kind is read.
+  reader->ReadAllScalarsOn();
+  reader->ReadAllColorScalarsOn();
   reader->ReadAllVectorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllTCoordsOn();
   reader->ReadAllFieldsOn();
   if (reader->IsFileUnstructuredGrid() != 0) reader->Update();
   const bool is_good = reader->GetErrorCode() == 0 && !notes.has_error();
@@ -173,13 +170,15 @@ ImportedMesh read_legacy(const std::string& path, const MeshImportOptions& optio
   check_declared(path, *reader->GetOutput());
   ImportedMesh mesh;
   add_step(path, *reader->GetOutput(), 0, options, mesh);
+  add_tables(path, mesh);
   return mesh;
 }
 
-/// VTK's reader does not pass on the times of steps: times are 0, 1 and so on.
+/// VTK's reader does not pass on the attribute TimeValues: without the field TimeValue times are 0,
+/// 1 and so on.
 ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options) {
   const vtkNew<vtkXMLUnstructuredGridReader> reader;
-  const ErrorNotes notes(*reader);
+  const VtkErrorNotes notes(*reader);
   ImportedMesh mesh;
   if (reader->CanReadFile(path.c_str()) == 0) check_grid(path, nullptr);
   reader->SetFileName(path.c_str());
@@ -192,6 +191,9 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
     check_grid(path, is_good ? reader->GetOutput() : nullptr);
     add_step(path, *reader->GetOutput(), step, options, mesh);
   }
+  if (steps > 1 && !time_of(*reader->GetOutput())) {
+    mesh.left_out.emplace_back("times of the steps, which are numbered from 0");
+  }
   if (steps > 1 && mesh.arrays.size() > 1) {
     mesh.left_out.emplace_back("steps after the first of all arrays but the displacement");
   }
@@ -200,7 +202,7 @@ ImportedMesh read_xml(const std::string& path, const MeshImportOptions& options)
 }  // namespace
 
 ImportedMesh read_vtk_mesh(const std::string& path, const MeshImportOptions& options) {
-  return path.ends_with(".vtu") ? read_xml(path, options) : read_legacy(path, options);
+  return has_extension(path, ".vtu") ? read_xml(path, options) : read_legacy(path, options);
 }
 
 }  // namespace tetwarp

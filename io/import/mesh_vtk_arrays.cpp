@@ -8,6 +8,7 @@
 #include <vtkPointData.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <utility>
@@ -64,15 +65,26 @@ void add_group(vtkFieldData& data,
   for (int a = 0; a < data.GetNumberOfArrays(); ++a) {
     const char* const given = data.GetArrayName(a);
     const std::string name = given == nullptr ? "" : given;
+    const std::string noun = (is_of_cells ? "cell array '" : "point array '") + name + "'";
+    vtkAbstractArray* const array = data.GetAbstractArray(a);
+    if (array->HasAComponentName()) into.left_out.push_back("names of the components of " + noun);
     if (!is_of_cells && name == displacement) continue;
     if (auto kept = rows_of(data.GetArray(a), name, is_of_cells, tuples, rows)) {
       into.arrays.push_back(std::move(*kept));
     } else {
-      into.left_out.push_back((is_of_cells ? "cell array '" : "point array '") + name + "'");
+      into.left_out.push_back(noun);
     }
   }
 }
+constexpr const char* time_field = "TimeValue";
 }  // namespace
+
+std::optional<double> time_of(vtkUnstructuredGrid& grid) {
+  vtkDataArray* const array = grid.GetFieldData()->GetArray(time_field);
+  if (array == nullptr || array->GetNumberOfValues() != 1) return std::nullopt;
+  const double time = array->GetComponent(0, 0);
+  return std::isfinite(time) ? std::optional(time) : std::nullopt;
+}
 
 void add_arrays(vtkUnstructuredGrid& grid,
                 const std::optional<std::string>& displacement,
@@ -86,7 +98,7 @@ void add_arrays(vtkUnstructuredGrid& grid,
   vtkFieldData& fields = *grid.GetFieldData();
   for (int a = 0; a < fields.GetNumberOfArrays(); ++a) {
     const char* const name = fields.GetArrayName(a);
-    if (name != nullptr && std::string(name) == "TimeValue") continue;
+    if (displacement && time_of(grid) && std::string(name) == time_field) continue;
     into.left_out.push_back("field array '" + std::string(name == nullptr ? "" : name) + "'");
   }
 }

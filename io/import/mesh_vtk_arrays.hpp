@@ -18,4 +18,7 @@ void add_arrays(vtkUnstructuredGrid& grid,
                 const CellNumbers& cells,
                 ImportedMesh& into);
 
+/// The time of a step, which VTK and ParaView write as field array `TimeValue`.
+std::optional<double> time_of(vtkUnstructuredGrid& grid);
+
 }  // namespace tetwarp

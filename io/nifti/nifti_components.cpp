@@ -4,20 +4,23 @@
 
 #include <nifti1.h>
 
+#include <cmath>
 #include <cstring>
 #include <tetwarp/error.hpp>
+#include <tetwarp/nifti.hpp>
 
 namespace tetwarp {
 namespace {
 /// NIfTI stores the lower triangle row by row, xx xy yy xz yz zz; VTK's order is xx yy zz xy yz xz.
 constexpr std::array<std::size_t, 9> vtk_place_of_symmatrix = {0, 3, 1, 5, 4, 2, 6, 7, 8};
 
-template <class T>
-void negate(std::span<std::byte> samples) {
+/// Replaces each sample by change(sample).
+template <class T, class Change>
+void change_each(std::span<std::byte> samples, const Change& change) {
   for (std::size_t at = 0; at < samples.size(); at += sizeof(T)) {
     T sample;
     std::memcpy(&sample, samples.data() + at, sizeof sample);
-    sample = T{0} - sample;
+    sample = change(sample);
     std::memcpy(samples.data() + at, &sample, sizeof sample);
   }
 }
@@ -33,7 +36,7 @@ std::array<bool, 9> turned_components(int components) {
 ComponentMap component_map(
     const std::string& path, PixelType type, int components, int intent_code, Axes axes) {
   const bool is_symmetric = intent_code == NIFTI_INTENT_SYMMATRIX && components == 6;
-  ComponentMap map{{0, 1, 2, 3, 4, 5, 6, 7, 8}, {}};
+  ComponentMap map{{0, 1, 2, 3, 4, 5, 6, 7, 8}, {}, components};
   if (is_symmetric) map.place = vtk_place_of_symmatrix;
   if (axes == Axes::ras) return map;
   const bool is_turnable = components == 3 || components == 9 || is_symmetric;
@@ -51,7 +54,38 @@ ComponentMap component_map(
 }
 
 void negate_samples(PixelType type, std::span<std::byte> samples) {
-  type == PixelType::float32 ? negate<float>(samples) : negate<double>(samples);
+  const auto negated = []<class T>(T sample) { return T{0} - sample; };
+  type == PixelType::float32 ? change_each<float>(samples, negated)
+                             : change_each<double>(samples, negated);
+}
+
+void scale_samples(PixelType type, double factor, std::span<std::byte> samples) {
+  const auto scaled = [factor]<class T>(T sample) { return static_cast<T>(factor * sample); };
+  type == PixelType::float32 ? change_each<float>(samples, scaled)
+                             : change_each<double>(samples, scaled);
+}
+
+int itk_components(const Grid& grid) {
+  constexpr double rounding = 1e-6;
+  const bool is_axial_slice = grid.dims[2] == 1 && std::abs(grid.direction[2]) < rounding &&
+                              std::abs(grid.direction[5]) < rounding;
+  return is_axial_slice ? 2 : 3;
+}
+
+ComponentMap itk_field_map(const std::string& path,
+                           PixelType type,
+                           int components,
+                           const Grid& grid,
+                           bool has_form,
+                           double unit) {
+  if (components != 3 || is_integer(type)) {
+    throw IoError(path, "",
+                  "holds " + std::to_string(components) + " components of " + name_of(type) +
+                      "; a displacement field for ITK has three of float32 or float64");
+  }
+  ComponentMap map{{0, 1, 2}, {has_form, has_form}, itk_components(grid)};
+  map.scale = unit;
+  return map;
 }
 
 }  // namespace tetwarp

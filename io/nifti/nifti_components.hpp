@@ -15,6 +15,8 @@ namespace tetwarp {
 struct ComponentMap {
   std::array<std::size_t, 9> place;  ///< in the volume, of each component of the file
   std::array<bool, 9> is_negated;    ///< by component of the file
+  int count = 0;                     ///< components of the file
+  double scale = 1;                  ///< of all components that are written
 };
 
 /// The components of an array whose x and y change their sign between RAS and LPS: of vectors
@@ -27,7 +29,22 @@ std::array<bool, 9> turned_components(int components);
 ComponentMap component_map(
     const std::string& path, PixelType type, int components, int intent_code, Axes axes);
 
+/// The map of a displacement field that ITK reads; see ArrayHeader::is_itk_field. `path` is for
+/// messages.
+/// @param has_form   the header has a sform or a qform
+/// @param unit       millimetres of one unit of the header
+/// @throws IoError unless the field has three components of float32 or float64
+ComponentMap itk_field_map(const std::string& path,
+                           PixelType type,
+                           int components,
+                           const Grid& grid,
+                           bool has_form,
+                           double unit);
+
 /// Negates samples of float32 or float64 in place; zero stays positive.
 void negate_samples(PixelType type, std::span<std::byte> samples);
+
+/// Multiplies samples of float32 or float64 in place.
+void scale_samples(PixelType type, double factor, std::span<std::byte> samples);
 
 }  // namespace tetwarp

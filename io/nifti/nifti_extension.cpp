@@ -6,6 +6,8 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <utility>
 
 namespace tetwarp {
 namespace {
@@ -25,31 +27,42 @@ std::vector<char> fingerprint_extension(const std::string& fingerprint) {
   return bytes;
 }
 
-std::string read_fingerprint_extension(const std::string& path,
-                                       bool is_swapped,
-                                       std::size_t header_bytes,
-                                       std::int64_t data_offset) {
+NiftiExtensions read_extensions(const std::string& path,
+                                bool is_swapped,
+                                std::size_t header_bytes,
+                                std::int64_t end) {
+  NiftiExtensions found;
   NiftiStream stream(path, "rb", true);
   std::array<char, 4> announced{};
   auto at = static_cast<std::int64_t>(header_bytes);
-  // A file of this program has the order of its machine.
-  if (is_swapped || !stream || !stream.seek(at) || !stream.read(announced.data(), 4)) return {};
+  if (!stream || !stream.seek(at) || !stream.read(announced.data(), 4)) return found;
   at += 4;
-  while (announced[0] != 0 && at + 16 <= data_offset) {
-    std::int32_t numbers[2];
-    if (!stream.read(numbers, sizeof numbers)) return {};
-    const std::int32_t size = numbers[0];
-    if (size < 16 || size > data_offset - at) return {};
-    if (numbers[1] == comment_code && size <= largest) {
-      std::string text(static_cast<std::size_t>(size - 8), '\0');
-      if (!stream.read(text.data(), text.size())) return {};
+  while (announced[0] != 0 && at + 16 <= end) {
+    std::array<std::int32_t, 2> numbers{};
+    if (!stream.read(numbers.data(), sizeof numbers)) break;
+    if (is_swapped) {
+      const auto bytes = std::as_writable_bytes(std::span(numbers));
+      std::ranges::reverse(bytes);
+      std::swap(numbers[0], numbers[1]);
+    }
+    const auto [size, code] = numbers;
+    if (size < 16 || size > end - at) break;
+    std::string text;
+    if (code == comment_code && size <= largest) {
+      text.resize(static_cast<std::size_t>(size - 8));
+      if (!stream.read(text.data(), text.size())) break;
       text.resize(std::min(text.find('\0'), text.size()));
-      if (text.starts_with(key)) return text.substr(key.size());
+    }
+    if (text.starts_with(key)) {
+      found.fingerprint = text.substr(key.size());
+    } else {
+      found.others.push_back("extension of code " + std::to_string(code) + ", " +
+                             std::to_string(size) + " bytes");
     }
     at += size;
-    if (!stream.seek(at)) return {};
+    if (!stream.seek(at)) break;
   }
-  return {};
+  return found;
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,7 @@
 
 #include <nifti1.h>
 
+#include <cmath>
 #include <string>
 
 #include "io/h5/h5_attribute.hpp"
@@ -56,6 +57,13 @@ void write_fact_attributes(const h5::Object& dataset, const NiftiFacts& facts) {
   write_text(dataset, "intent_name", facts.intent_name);
   write_text(dataset, "descrip", facts.description);
   write_text(dataset, "component_axes", name_of(facts.component_axes));
+  const NiftiFacts usual;
+  const auto write_number = [&](const char* name, double value, double usual_value) {
+    if (value != usual_value) h5::write_scalar_attribute(dataset, prefix + name, value);
+  };
+  write_number("cal_min", facts.cal_min, usual.cal_min);
+  write_number("cal_max", facts.cal_max, usual.cal_max);
+  write_number("time_step", facts.time_step, usual.time_step);
 }
 
 std::optional<NiftiFacts> read_fact_attributes(const h5::Object& dataset) {
@@ -75,6 +83,14 @@ std::optional<NiftiFacts> read_fact_attributes(const h5::Object& dataset) {
   } catch (const std::invalid_argument& error) {
     dataset.fail("attribute " + prefix + "component_axes: " + error.what());
   }
+  const auto read_number = [&](const char* name, double& value) {
+    if (!h5::has_attribute(dataset, prefix + name)) return;
+    value = h5::read_real_attribute(dataset, prefix + name, 1)[0];
+    if (!std::isfinite(value)) dataset.fail("attribute " + prefix + name + " is not finite");
+  };
+  read_number("cal_min", facts.cal_min);
+  read_number("cal_max", facts.cal_max);
+  read_number("time_step", facts.time_step);
   return facts;
 }
 

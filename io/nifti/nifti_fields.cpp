@@ -70,18 +70,26 @@ void numbers(const Coder& coder, std::size_t at, Numbers& values) {
 /// Passes every field with its place and stored type to a Decoder or an Encoder.
 template <class Coder, class Fields>
 void exchange_1(const Coder& coder, Fields& fields) {
+  coder.template number<std::uint8_t>(39, fields.dim_info);
   numbers<std::int16_t>(coder, 40, fields.dim);
   numbers<float>(coder, 56, fields.intent_p);
   coder.template number<std::int16_t>(68, fields.intent_code);
   coder.template number<std::int16_t>(70, fields.datatype);
   coder.template number<std::int16_t>(72, fields.bitpix);
+  coder.template number<std::int16_t>(74, fields.slice_start);
   numbers<float>(coder, 76, fields.pixdim);
   coder.template number<float>(108, fields.vox_offset);
   coder.template number<float>(112, fields.scl_slope);
   coder.template number<float>(116, fields.scl_inter);
+  coder.template number<std::int16_t>(120, fields.slice_end);
+  coder.template number<std::uint8_t>(122, fields.slice_code);
   coder.template number<std::uint8_t>(123, fields.xyzt_units);
+  coder.template number<float>(124, fields.cal_max);
+  coder.template number<float>(128, fields.cal_min);
+  coder.template number<float>(132, fields.slice_duration);
   coder.template number<float>(136, fields.toffset);
   coder.text(148, 80, fields.descrip);
+  coder.text(228, 24, fields.aux_file);
   coder.template number<std::int16_t>(252, fields.qform_code);
   coder.template number<std::int16_t>(254, fields.sform_code);
   numbers<float>(coder, 256, fields.quatern);
@@ -100,8 +108,14 @@ void exchange_2(const Coder& coder, Fields& fields) {
   coder.template number<std::int64_t>(168, fields.vox_offset);
   coder.template number<double>(176, fields.scl_slope);
   coder.template number<double>(184, fields.scl_inter);
+  coder.template number<double>(192, fields.cal_max);
+  coder.template number<double>(200, fields.cal_min);
+  coder.template number<double>(208, fields.slice_duration);
   coder.template number<double>(216, fields.toffset);
+  coder.template number<std::int64_t>(224, fields.slice_start);
+  coder.template number<std::int64_t>(232, fields.slice_end);
   coder.text(240, 80, fields.descrip);
+  coder.text(320, 24, fields.aux_file);
   coder.template number<std::int32_t>(344, fields.qform_code);
   coder.template number<std::int32_t>(348, fields.sform_code);
   numbers<double>(coder, 352, fields.quatern);
@@ -109,9 +123,11 @@ void exchange_2(const Coder& coder, Fields& fields) {
   for (std::size_t row = 0; row < 3; ++row) {
     numbers<double>(coder, 400 + 32 * row, fields.srow[row]);
   }
+  coder.template number<std::int32_t>(496, fields.slice_code);
   coder.template number<std::int32_t>(500, fields.xyzt_units);
   coder.template number<std::int32_t>(504, fields.intent_code);
   coder.text(508, 16, fields.intent_name);
+  coder.template number<std::uint8_t>(524, fields.dim_info);
 }
 
 template <class Coder, class Fields>
@@ -145,6 +161,8 @@ NiftiStart decode_nifti(const std::vector<char>& bytes) {
     return start;
   }
   exchange(Decoder(bytes, start.is_swapped), fields);
+  const std::size_t announced = fields.header_bytes();
+  start.has_extensions = announced < bytes.size() && bytes[announced] != 0;
   start.fields = fields;
   return start;
 }

@@ -21,12 +21,20 @@ struct NiftiFields {
   double vox_offset = 0;
   double scl_slope = 0;
   double scl_inter = 0;
+  double cal_max = 0;
+  double cal_min = 0;
+  double slice_duration = 0;
+  std::int64_t slice_start = 0;
+  std::int64_t slice_end = 0;
+  std::int64_t slice_code = 0;
+  std::int64_t dim_info = 0;
   double toffset = 0;
   std::int64_t xyzt_units = 0;
   std::int64_t intent_code = 0;
   std::array<double, 3> intent_p{};
   std::string intent_name;
   std::string descrip;
+  std::string aux_file;
   std::int64_t qform_code = 0;
   std::int64_t sform_code = 0;
   std::array<double, 3> quatern{};
@@ -41,10 +49,11 @@ struct NiftiFields {
 struct NiftiStart {
   std::optional<NiftiFields> fields;  ///< nothing: no NIfTI header
   bool is_swapped = false;            ///< the bytes are not in this machine's order
+  bool has_extensions = false;        ///< announced behind the header
   bool is_analyze = false;  ///< a header of Analyze 7.5, which has the size of NIfTI-1 alone
 };
 
-/// Decodes the first bytes of a file. @param bytes  540, or fewer where the file is shorter
+/// Decodes the first bytes of a file. @param bytes  544, or fewer where the file is shorter
 NiftiStart decode_nifti(const std::vector<char>& bytes);
 
 /// The header as bytes, and four more, the first of which is 1 if extensions follow.

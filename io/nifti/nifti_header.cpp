@@ -11,8 +11,10 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <tetwarp/error.hpp>
 
+#include "io/files/extension.hpp"
 #include "io/files/memory.hpp"
 #include "io/nifti/nifti_extension.hpp"
 #include "io/nifti/nifti_grid.hpp"
@@ -43,12 +45,12 @@ bool is_gzip(const std::string& path) {
 /// NAME.img or NAME.img.gz for NAME.hdr or NAME.hdr.gz.
 std::string sample_path(const std::string& header) {
   for (const std::string end : {".hdr", ".hdr.gz"}) {
-    if (!header.ends_with(end)) continue;
-    const std::string samples = header.substr(0, header.size() - end.size()) + ".img";
-    for (const std::string& name : {samples, samples + ".gz"}) {
-      if (std::filesystem::is_regular_file(name)) return name;
+    if (!has_extension(header, end)) continue;
+    const std::string stem = header.substr(0, header.size() - end.size());
+    for (const char* const other : {".img", ".img.gz", ".IMG", ".IMG.GZ"}) {
+      if (std::filesystem::is_regular_file(stem + other)) return stem + other;
     }
-    throw IoError(header, "", "has no file of samples beside it; copy '" + samples + "', too");
+    throw IoError(header, "", "has no file of samples beside it; copy '" + stem + ".img', too");
   }
   throw IoError(header, "", "is half of a pair, whose name ends in .hdr; rename it");
 }
@@ -152,18 +154,48 @@ NiftiFacts facts_of(const NiftiFields& fields, const Grid& grid) {
   facts.intent_p = fields.intent_p;
   facts.intent_name = fields.intent_name;
   facts.description = fields.descrip;
+  if (std::isfinite(fields.cal_min)) facts.cal_min = fields.cal_min;
+  if (std::isfinite(fields.cal_max)) facts.cal_max = fields.cal_max;
+  if (std::isfinite(fields.pixdim[4]) && fields.pixdim[4] > 0) facts.time_step = fields.pixdim[4];
   return facts;
 }
 
-/// Checks that the file of samples can hold them. @param least  offset of its first sample
-void check_size(const std::string& path, const NiftiHeader& header, double offset, double least) {
+/// Names what the header says and NiftiHeader does not hold.
+std::vector<std::string> left_out_of(const NiftiFields& fields, const NiftiFacts& facts) {
+  std::vector<std::string> names;
+  if (fields.qform_code > 0 && facts.qform_code == 0) {
+    names.emplace_back("qform, which differs from the sform");
+  }
+  if (fields.dim_info != 0) names.emplace_back("dim_info");
+  if (fields.slice_code != 0 || fields.slice_duration != 0 || fields.slice_end != 0) {
+    names.emplace_back("times of slices (slice_code, slice_duration, slice_start, slice_end)");
+  }
+  if (fields.dim[4] == 1 && fields.toffset != 0) names.emplace_back("toffset");
+  if (!fields.aux_file.empty()) names.emplace_back("aux_file");
+  return names;
+}
+
+/// The first sample of a single file [byte]. Some programs leave vox_offset 0.
+double offset_of(const std::string& path, const NiftiFields& fields, bool has_extensions) {
+  const auto least = static_cast<double>(fields.header_bytes() + 4);
+  if (fields.is_pair || fields.vox_offset >= least) return fields.vox_offset;
+  if (fields.vox_offset == 0 && !has_extensions) return least;
+  throw IoError(path, "vox_offset",
+                "is " + std::to_string(fields.vox_offset) + ", expected at least " +
+                    std::to_string(fields.header_bytes() + 4) +
+                    (fields.vox_offset == 0 ? " and the end of the extensions" : "") +
+                    "; correct the header");
+}
+
+/// Checks that the file of samples can hold them. @param offset  of the first one
+void check_size(const std::string& path, const NiftiHeader& header, double offset) {
   const double bytes = static_cast<double>(header.grid.voxel_count()) * header.components *
                        static_cast<double>(header.steps) *
                        static_cast<double>(size_of(header.type));
   const auto file_bytes = static_cast<double>(status_of(header.samples).st_size);
   // Deflate cannot shrink data to less than 1/1032.
   const double most = header.is_gzip ? 1032 * file_bytes : file_bytes;
-  if (offset >= least && offset + bytes <= most) return;
+  if (offset >= 0 && offset + bytes <= most) return;
   throw IoError(path, "",
                 "the header declares " + bytes_text(bytes) + " of samples from byte " +
                     std::to_string(offset) + " on, but " +
@@ -176,17 +208,17 @@ NiftiStart read_nifti_start(const std::string& path) {
   status_of(path);
   NiftiStream stream(path, "rb", true);  // plain files pass through unchanged
   if (!stream) throw IoError(path, "", std::string("cannot be opened: ") + std::strerror(errno));
-  std::vector<char> bytes(540);
+  std::vector<char> bytes(544);
   bytes.resize(stream.read_some(bytes.data(), bytes.size()));
   return decode_nifti(bytes);
 }
 
 std::string nifti_header_path(const std::string& path) {
   for (const std::string end : {".img", ".img.gz"}) {
-    if (!path.ends_with(end)) continue;
-    const std::string header = path.substr(0, path.size() - end.size()) + ".hdr";
-    for (const std::string& name : {header, header + ".gz"}) {
-      if (std::filesystem::is_regular_file(name)) return name;
+    if (!has_extension(path, end)) continue;
+    const std::string stem = path.substr(0, path.size() - end.size());
+    for (const char* const other : {".hdr", ".hdr.gz", ".HDR", ".HDR.GZ"}) {
+      if (std::filesystem::is_regular_file(stem + other)) return stem + other;
     }
   }
   return path;
@@ -222,14 +254,16 @@ NiftiHeader read_nifti_header(const std::string& path) {
   }
   header.samples = fields.is_pair ? sample_path(header_path) : path;
   header.is_gzip = is_gzip(header.samples);
-  const auto header_bytes = static_cast<double>(fields.header_bytes());
-  check_size(path, header, fields.vox_offset, fields.is_pair ? 0 : header_bytes + 4);
+  const double offset = offset_of(path, fields, start.has_extensions);
+  check_size(path, header, offset);
   header.times = times_of(path, fields);
-  header.data_offset = static_cast<std::int64_t>(fields.vox_offset);
-  if (!fields.is_pair) {
-    header.fingerprint = read_fingerprint_extension(path, start.is_swapped, fields.header_bytes(),
-                                                    header.data_offset);
-  }
+  header.data_offset = static_cast<std::int64_t>(offset);
+  const NiftiExtensions extensions = read_extensions(
+      header_path, start.is_swapped, fields.header_bytes(),
+      fields.is_pair ? std::numeric_limits<std::int64_t>::max() : header.data_offset);
+  if (!fields.is_pair) header.fingerprint = extensions.fingerprint;
+  header.left_out = left_out_of(fields, header.facts);
+  header.left_out.insert(header.left_out.end(), extensions.others.begin(), extensions.others.end());
   return header;
 }
 
@@ -237,6 +271,17 @@ int nifti_datatype_of(PixelType type) {
   const auto found =
       std::ranges::find(datatypes, type, [](const auto& entry) { return entry.second; });
   return found->first;
+}
+
+double nifti_length_unit(std::int64_t xyzt_units) {
+  switch (XYZT_TO_SPACE(xyzt_units)) {
+    case NIFTI_UNITS_METER:
+      return 1e3;
+    case NIFTI_UNITS_MICRON:
+      return 1e-3;
+    default:
+      return 1;
+  }
 }
 
 double nifti_time_unit(std::int64_t xyzt_units) {

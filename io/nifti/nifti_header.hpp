@@ -59,10 +59,11 @@ struct NiftiHeader {
   bool is_swapped = false;    ///< samples are in the byte order that is not this machine's
   double slope = 1;           ///< value = slope * sample + intercept
   double intercept = 0;
-  std::string samples;             ///< the file that holds them
-  bool is_gzip = false;            ///< that file
-  std::int64_t data_offset = 352;  ///< first sample [byte], uncompressed
-  std::string fingerprint;         ///< of the warp that wrote the file; empty: none
+  std::string samples;                ///< the file that holds them
+  bool is_gzip = false;               ///< that file
+  std::int64_t data_offset = 352;     ///< first sample [byte], uncompressed
+  std::string fingerprint;            ///< of the warp that wrote the file; empty: none
+  std::vector<std::string> left_out;  ///< of what the header says is in no other member, by name
   NiftiFacts facts{};
 
   bool is_scaled() const { return slope != 1 || intercept != 0; }
@@ -86,5 +87,8 @@ int nifti_datatype_of(PixelType type);
 
 /// Seconds of one unit of the time axis; 1 where `xyzt_units` names none.
 double nifti_time_unit(std::int64_t xyzt_units);
+
+/// Millimetres of one unit of length, as ITK takes it; 1 where `xyzt_units` names none.
+double nifti_length_unit(std::int64_t xyzt_units);
 
 }  // namespace tetwarp

@@ -44,6 +44,7 @@ VolumeHeader read_nifti_volume_header(const std::string& path, const VolumeReadO
   volume.arrays = {array_of(header, options.axes)};
   volume.active = array_name;
   volume.times = header.times;
+  volume.left_out = header.left_out;
   return volume;
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
 #include "io/files/scratch_file.hpp"
 #include "io/files/volume_sink.hpp"
@@ -33,9 +34,11 @@ std::string disk_problem() {
          "; check the free space of the disk";
 }
 
-/// Facts of the file: those of the array or the defaults.
+/// Facts of the file: those of the array or the defaults. ITK turns displacements of the intent
+/// DISPVECT from RAS to LPS, whatever the header says.
 NiftiFacts facts_of(const ArrayHeader& array) {
   NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
+  if (array.is_itk_field) facts.intent_code = NIFTI_INTENT_VECTOR;
   if (facts.component_axes == Axes::lps && facts.intent_code == nifti_displacement_intent) {
     facts.intent_code = NIFTI_INTENT_VECTOR;
   }
@@ -58,8 +61,7 @@ class NiftiSink : public VolumeSink {
         facts_(facts_of(array)),
         options_(options),
         is_temporal_(is_temporal),
-        map_(component_map(
-            path, array.type, array.components, facts_.intent_code, facts_.component_axes)),
+        map_(make_map()),
         file_(path) {}
 
   void begin_step(double time) override {
@@ -111,28 +113,32 @@ class NiftiSink : public VolumeSink {
   }
 
  private:
-  std::size_t components() const { return static_cast<std::size_t>(array_.components); }
+  ComponentMap make_map() const {
+    if (!array_.is_itk_field) {
+      return component_map(path_, array_.type, array_.components, facts_.intent_code,
+                           facts_.component_axes);
+    }
+    NiftiFields fields;
+    set_grid(fields, grid_, facts_);
+    return itk_field_map(path_, array_.type, array_.components, grid_,
+                         fields.sform_code > 0 || fields.qform_code > 0,
+                         nifti_length_unit(facts_.xyzt_units));
+  }
+
+  std::size_t components() const { return static_cast<std::size_t>(map_.count); }
   std::int64_t step_count() const { return is_temporal_ ? std::ssize(rows_) : 1; }
   std::int64_t plane_bytes() const {
     return grid_.voxel_count() * static_cast<std::int64_t>(size_of(array_.type));
   }
   /// Of a component at a row of the steps, in the temporary file.
   std::int64_t plane_offset(std::int64_t row, std::size_t component) const {
-    return (row * array_.components + static_cast<std::int64_t>(component)) * plane_bytes();
+    return (row * map_.count + static_cast<std::int64_t>(component)) * plane_bytes();
   }
 
   NiftiFields make_fields() const {
     NiftiFields fields;
-    fields.dim = {array_.components > 1 ? 5
-                  : step_count() > 1    ? 4
-                                        : 3,
-                  1,
-                  1,
-                  1,
-                  step_count(),
-                  array_.components,
-                  1,
-                  1};
+    fields.dim = {
+        map_.count > 1 ? 5 : step_count() > 1 ? 4 : 3, 1, 1, 1, step_count(), map_.count, 1, 1};
     set_grid(fields, grid_, facts_);
     if (*std::ranges::max_element(fields.dim) > largest_dim_1) fields.version = 2;
     fields.datatype = nifti_datatype_of(array_.type);
@@ -142,7 +148,10 @@ class NiftiSink : public VolumeSink {
     fields.intent_p = facts_.intent_p;
     fields.intent_name = facts_.intent_name;
     fields.descrip = facts_.description;
-    fields.pixdim[4] = fields.pixdim[5] = 1;
+    fields.cal_min = facts_.cal_min;
+    fields.cal_max = facts_.cal_max;
+    fields.pixdim[4] = facts_.time_step;
+    fields.pixdim[5] = 1;
     const double unit = nifti_time_unit(facts_.xyzt_units);
     if (is_temporal_) fields.toffset = times_.front() / unit;
     if (step_count() > 1) {
@@ -157,7 +166,7 @@ class NiftiSink : public VolumeSink {
     const std::vector<char> extension = fingerprint_extension(options_.fingerprint);
     const std::size_t offset = fields.header_bytes() + 4 + extension.size();
     fields.vox_offset = static_cast<double>(offset);
-    const bool is_compressed = path_.ends_with(".gz");
+    const bool is_compressed = has_extension(path_, ".gz");
     const std::string mode =
         "wb" + (is_compressed && options_.compress > 0 ? std::to_string(options_.compress) : "");
     stream_.emplace(file_.temporary(), mode.c_str(), is_compressed);
@@ -173,12 +182,14 @@ class NiftiSink : public VolumeSink {
   template <class Put>
   void write_component(const Region& region, std::size_t c, const std::byte* samples, Put put) {
     const std::size_t size = size_of(array_.type);
+    const auto stride = static_cast<std::size_t>(array_.components);
     const auto write_run = [&](std::int64_t in_grid, std::int64_t in_region, std::int64_t count) {
       part_.resize(static_cast<std::size_t>(count) * size);
       const std::byte* const in =
-          samples + (static_cast<std::size_t>(in_region) * components() + map_.place[c]) * size;
-      copy_strided(in, components(), part_.data(), 1, size, static_cast<std::size_t>(count));
+          samples + (static_cast<std::size_t>(in_region) * stride + map_.place[c]) * size;
+      copy_strided(in, stride, part_.data(), 1, size, static_cast<std::size_t>(count));
       if (map_.is_negated[c]) negate_samples(array_.type, part_);
+      if (map_.scale != 1) scale_samples(array_.type, map_.scale, part_);
       return put(in_grid * static_cast<std::int64_t>(size), std::span<const std::byte>(part_));
     };
     const auto most = static_cast<std::int64_t>(nifti_part_bytes / size);
@@ -226,7 +237,7 @@ class NiftiSink : public VolumeSink {
 }  // namespace
 
 bool has_nifti_name(const std::string& path) {
-  return path.ends_with(".nii") || path.ends_with(".nii.gz");
+  return has_extension(path, ".nii") || has_extension(path, ".nii.gz");
 }
 
 std::unique_ptr<VolumeSink> make_nifti_sink(const std::string& path,

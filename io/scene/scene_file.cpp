@@ -122,12 +122,16 @@ Scene read_keys(const SceneValue& value, SceneFiles& files) {
 }
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& name, const std::string& folder) {
+Scene parse_scene(const std::string& text,
+                  const std::string& name,
+                  const std::string& folder,
+                  std::vector<std::string>* names) {
   const SceneJson json = parse_json(text, name);
   SceneFiles files(folder);
   Scene scene = read_keys(SceneValue(json, name, ""), files);
   files.read_all();
   scene.notes = files.notes();
+  if (names != nullptr) *names = files.names();
   try {
     check_scene(scene);
   } catch (const std::invalid_argument& error) {
@@ -138,14 +142,14 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::s
   return scene;
 }
 
-Scene read_scene(const std::string& file) {
+Scene read_scene(const std::string& file, std::vector<std::string>* files) {
   const std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
   if (!stream || text.bad()) {
     throw IoError(file, "", "cannot be read; check the name of the scene file");
   }
-  return parse_scene(text.str(), file, fs::path(file).parent_path().string());
+  return parse_scene(text.str(), file, fs::path(file).parent_path().string(), files);
 }
 
 }  // namespace tetwarp

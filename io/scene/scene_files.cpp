@@ -11,10 +11,11 @@
 
 namespace tetwarp {
 
-std::string SceneFiles::path_of(const SceneValue& value) const {
+std::string SceneFiles::path_of(const SceneValue& value) {
   const std::string name = value.text();
   if (name.empty()) value.fail("is empty, expected the name of a file");
-  return (fs::path(folder_) / name).string();
+  names_.push_back((fs::path(folder_) / name).string());
+  return names_.back();
 }
 
 void SceneFiles::add(const SceneValue& value, std::function<void()> read) {
@@ -50,7 +51,7 @@ Mesh SceneFiles::read_mesh(const std::string& path) {
 
 Surface SceneFiles::read_triangles(const std::string& path) {
   std::string merged;
-  Surface surface = read_surface(path, &merged);
+  Surface surface = read_surface(path, nullptr, &merged);
   note(path, merged);
   return surface;
 }

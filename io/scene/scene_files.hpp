@@ -20,7 +20,10 @@ class SceneFiles {
   explicit SceneFiles(std::string folder) : folder_(std::move(folder)) {}
 
   /// The file that a value names, relative to the folder of the scene.
-  std::string path_of(const SceneValue& value) const;
+  std::string path_of(const SceneValue& value);
+
+  /// All results of path_of().
+  const std::vector<std::string>& names() const { return names_; }
 
   /// Has `read` called by read_all(), with its IoErrors put down to `value`.
   void add(const SceneValue& value, std::function<void()> read);
@@ -43,6 +46,7 @@ class SceneFiles {
   void note(const std::string& path, const std::string& merged);
 
   std::string folder_;
+  std::vector<std::string> names_;
   std::vector<std::function<void()>> reads_;
   std::map<std::string, const Volume*> volumes_;  // by content
   std::vector<std::string> notes_;                // a line for each file

@@ -38,9 +38,8 @@ Shape read_shape(const SceneValue& value) {
     if (word == "bent_strip") {
       return BentStripShape{length("width"), length("height"), length("depth"), length("sag")};
     }
-    type.fail(
-        "is no shape, expected box, sphere, ellipsoid, capsule, cylinder, torus, arc, bent_strip "
-        "or plate");
+    type.fail_word("is no shape", {"box", "sphere", "ellipsoid", "capsule", "cylinder", "torus",
+                                   "arc", "bent_strip", "plate"});
   };
   const Shape shape = shape_of(type.text());
   object.finish();
@@ -80,7 +79,7 @@ void read_phantom(SceneObject& object, const SceneValue& name, SceneFiles& files
   for (const Phantom& phantom : phantoms) {
     if (name.text() == phantom.name) chosen = &phantom;
   }
-  if (chosen == nullptr) name.fail("is no phantom, expected torso, orange or fish");
+  if (chosen == nullptr) name.fail_word("is no phantom", {"torso", "orange", "fish"});
   Grid grid;
   grid.dims = object.get("dims", "the numbers of voxels [i, j, k]").whole_array<3>(1);
   grid.spacing = object.get("spacing", "the distances of voxels [i, j, k] in m").point();

@@ -7,6 +7,7 @@
 #include <set>
 #include <tetwarp/error.hpp>
 
+#include "host/base/nearest_word.hpp"
 #include "host/base/scene_path.hpp"
 
 namespace tetwarp {
@@ -35,22 +36,6 @@ std::string type_text(const SceneJson& json) {
     default:
       return "the number " + json.dump();
   }
-}
-
-/// Number of letters to insert, remove or replace to make `b` of `a`.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 /// "line L, column C" of a byte, from 1.
@@ -110,6 +95,14 @@ std::int64_t SceneValue::whole(std::int64_t low) const {
     fail_type(expected);
   }
   return static_cast<std::int64_t>(value);
+}
+
+void SceneValue::fail_word(const std::string& problem,
+                           const std::vector<std::string>& words) const {
+  std::string listed;
+  for (const std::string& word : words) listed += (listed.empty() ? "" : ", ") + word;
+  const std::string remedy = did_you_mean(text(), words);
+  fail(problem + ", expected " + listed + (remedy.empty() ? "" : "; " + remedy));
 }
 
 bool SceneValue::boolean() const {
@@ -184,14 +177,8 @@ void SceneObject::read(const std::string& key, std::optional<double>& into) {
 void SceneObject::finish() const {
   for (const auto& [key, ignored] : value_.json_->items()) {
     if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
-    const auto nearest = std::min_element(
-        asked_.begin(), asked_.end(), [&k = key](const std::string& a, const std::string& b) {
-          return edit_distance(k.substr(0, 40), a) < edit_distance(k.substr(0, 40), b);
-        });
-    std::string remedy;
-    if (nearest != asked_.end() && edit_distance(key.substr(0, 40), *nearest) <= 2) {
-      remedy = "did you mean '" + *nearest + "'?";
-    } else {
+    std::string remedy = did_you_mean(key, asked_);
+    if (remedy.empty()) {
       const std::set<std::string> keys(asked_.begin(), asked_.end());
       for (const std::string& known : keys) remedy += (remedy.empty() ? "" : ", ") + known;
       remedy = "the keys here are " + remedy;

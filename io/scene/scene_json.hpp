@@ -37,6 +37,10 @@ class SceneValue {
   /// @param expected  e.g. "a number"; the message also says what there is instead
   [[noreturn]] void fail_type(const std::string& expected) const;
 
+  /// @param problem  e.g. "is no shape"; the message also lists the words that are known
+  [[noreturn]] void fail_word(const std::string& problem,
+                              const std::vector<std::string>& words) const;
+
   double number() const;
   /// A whole number from `low` to 2^53.
   std::int64_t whole(std::int64_t low) const;
@@ -49,11 +53,9 @@ class SceneValue {
     for (const EnumName<Enum>& entry : names_of<Enum>()) {
       if (word == entry.name) return entry.value;
     }
-    std::string listed;
-    for (const EnumName<Enum>& entry : names_of<Enum>()) {
-      listed += (listed.empty() ? "" : ", ") + std::string(entry.name);
-    }
-    fail("is no known word, expected one of " + listed);
+    std::vector<std::string> words;
+    for (const EnumName<Enum>& entry : names_of<Enum>()) words.emplace_back(entry.name);
+    fail_word("is no known word", words);
   }
 
   /// The items of a list.

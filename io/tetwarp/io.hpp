@@ -36,6 +36,12 @@ struct ArrayHeader {
   PixelType type = PixelType::float32;
   int components = 1;
   std::optional<NiftiFacts> nifti = {};  ///< of the NIfTI file that the array comes from
+  /// Of three components: a displacement, which a NIfTI file that is written holds as ITK's
+  /// transforms take it: in millimetres and along the axes in which ITK places the image. ITK turns
+  /// the positions of a header from RAS to LPS, unless the header has neither sform nor qform. Of a
+  /// single axial slice, which ITK reads as a 2D image, the two components in the slice are
+  /// written.
+  bool is_itk_field = false;
 
   bool operator==(const ArrayHeader&) const = default;
 };
@@ -52,6 +58,8 @@ struct VolumeHeader {
   /// What is not read, as paths below /VTKHDF: point arrays of other elements than numbers and
   /// booleans, for example complex ones; cell data and field data.
   std::vector<std::string> not_read;
+  /// What the header of a NIfTI file holds beyond grid, samples and NiftiFacts, by its name.
+  std::vector<std::string> left_out = {};
   std::vector<double> times;  ///< one per step; empty: a static file
 };
 
@@ -61,6 +69,9 @@ struct VolumeReadOptions {
   /// A file, which need not exist. In its folder a step of a gzip file is unpacked before regions
   /// of it are read; no name stays there. Empty: in the system's folder for temporary files.
   std::string scratch = {};
+  /// Arrays of floats hold labels: they are read as int32, and a sample that is no whole number is
+  /// an error. For files of every format.
+  bool are_labels = false;
 };
 
 /// Reads the header of a volume file: VTKHDF ImageData or NIfTI, by its content. The array of a
@@ -120,6 +131,9 @@ struct MeshHeader {
   bool has_moving_points = false;  ///< steps have points of their own, which may differ
   /// Names of the values of the cell array `group`; see MeshArray::value_names.
   std::map<std::int64_t, std::string> group_names = {};
+  /// What MeshReader does not read: arrays but the displacement, cells that are neither tetrahedra
+  /// nor hexahedra, and what else import_mesh() names.
+  std::vector<std::string> not_read = {};
 };
 
 /// Choices of MeshReader.
@@ -174,8 +188,8 @@ struct WrittenFile {
   std::int64_t chunks_background = 0;  ///< of these, not stored: they hold only the background
 };
 
-/// Writes a static VTKHDF ImageData file, Version [1,0], of volumes that share a grid. An axis of
-/// one sample is an error, because VTK crashes on such files.
+/// Writes a static VTKHDF ImageData file, Version [1,0], of volumes that share a grid. VTK 9.1
+/// and 9.2 crash on files with an axis of one sample; later versions read them.
 TETWARP_IO_EXPORT WrittenFile write_volumes(const std::string& path,
                                             const std::vector<const Volume*>& volumes,
                                             const VolumeWriteOptions& options = {});

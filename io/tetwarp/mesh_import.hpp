@@ -25,7 +25,9 @@ struct MeshImportOptions {
   Axes axes = Axes::ras;
   /// Time that reading may take [s]. 0: 120 s and 5 s per megabyte of the file.
   double time_limit = 0;
-  /// Whether the file must have tetrahedra or hexahedra; else it must have triangles.
+  /// Whether the file must have tetrahedra or hexahedra; else it must have triangles, and formats
+  /// of surfaces are read, too. Of these, points at the same place are joined where the surface is
+  /// open.
   bool needs_solids = true;
 };
 
@@ -45,8 +47,11 @@ struct ImportedMesh {
   std::vector<std::array<std::int32_t, 3>> triangles = {};  ///< indices into rest_positions
 };
 
-/// True for names that end in .msh, .vtu or .vtk.
+/// True for names that end in .msh, .vtu or .vtk, also in capital letters.
 TETWARP_IO_EXPORT bool has_mesh_extension(const std::string& path);
+
+/// True for names of surfaces alone: .stl, .ply, .obj or .vtp, also in capital letters.
+TETWARP_IO_EXPORT bool has_surface_extension(const std::string& path);
 
 /// Reads a mesh of tetrahedra and hexahedra with all steps of its displacement. The format is
 /// chosen by the end of the name.

@@ -27,6 +27,9 @@ struct NiftiFacts {
   std::string intent_name = {};         ///< at most 15 bytes
   std::string description = {};         ///< `descrip`, at most 79 bytes
   Axes component_axes = Axes::ras;      ///< of vectors and tensors in the file
+  double cal_min = 0;                   ///< values that viewers draw black and white; equal: none
+  double cal_max = 0;
+  double time_step = 1;  ///< `pixdim[4]` of an image of one step, in the header's unit of time
 
   bool operator==(const NiftiFacts&) const = default;
 };
@@ -34,6 +37,10 @@ struct NiftiFacts {
 /// Intent of displacement fields. ITK takes them as RAS and turns them to LPS, which it does with
 /// no other intent.
 inline constexpr int nifti_displacement_intent = 1006;
+
+/// Components of a displacement field for ITK on a grid: 2 of a single slice across the third axis
+/// of the world, which ITK reads as a 2D image, else 3. @see ArrayHeader::is_itk_field
+TETWARP_IO_EXPORT int itk_components(const Grid& grid);
 
 /// Facts for an array without a file: coded as scanner coordinates in mm; six components are a
 /// symmetric tensor, any other number above one is a vector.

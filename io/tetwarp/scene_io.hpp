@@ -16,14 +16,17 @@ namespace tetwarp {
 /// Names of files are relative to the folder of the scene file.
 /// @throws IoError  in one line: the file, the key ("bodies[2].lattice.cells", also in dataset()),
 ///         the problem and the remedy; also for files that the scene names
-TETWARP_IO_EXPORT Scene read_scene(const std::string& file);
+/// @param files  out, may be null: the files that the scene names
+TETWARP_IO_EXPORT Scene read_scene(const std::string& file,
+                                   std::vector<std::string>* files = nullptr);
 
 /// The same for a text.
 /// @param name    in messages in place of the file
 /// @param folder  that names of files in the text are relative to; empty: the current folder
 TETWARP_IO_EXPORT Scene parse_scene(const std::string& text,
                                     const std::string& name,
-                                    const std::string& folder = {});
+                                    const std::string& folder = {},
+                                    std::vector<std::string>* files = nullptr);
 
 /// Names of the scenes that ship with the library.
 TETWARP_IO_EXPORT std::vector<std::string> scene_names();
@@ -35,9 +38,13 @@ TETWARP_IO_EXPORT std::string scene_text(const std::string& name);
 /// Reads triangles: a VTKHDF UnstructuredGrid of triangles at its first step, or the triangles of a
 /// file that import_mesh() reads, whose other cells of fewer than three dimensions are left out.
 /// Points that no triangle has are left out, and triangles that are there twice: with the same
-/// places of their points in the same direction around.
-/// @param merged  out, how many triangles are there twice, as a text; empty: none
-TETWARP_IO_EXPORT Surface read_surface(const std::string& path, std::string* merged = nullptr);
+/// places of their points in the same direction around. Names that has_surface_extension() knows
+/// are read, too.
+/// @param left_out  out, may be null: other content of the file, by kind and name
+/// @param merged    out, may be null: how many triangles are there twice, as a text; empty: none
+TETWARP_IO_EXPORT Surface read_surface(const std::string& path,
+                                       std::vector<std::string>* left_out = nullptr,
+                                       std::string* merged = nullptr);
 
 /// Writes triangles as a VTKHDF UnstructuredGrid without steps, which read_surface() reads.
 /// @param arrays  of points and cells; see MeshArray

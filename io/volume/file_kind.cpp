@@ -3,6 +3,7 @@
 #include <string>
 #include <tetwarp/io.hpp>
 
+#include "io/files/extension.hpp"
 #include "io/h5/h5.hpp"
 #include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_read.hpp"
@@ -30,7 +31,8 @@ FileKind hdf5_kind(const std::string& path) {
 
 /// Analyze has no magic number: its header is recognized by its size and its name.
 bool is_analyze(const std::string& header_path, const NiftiStart& start) {
-  return start.is_analyze && (header_path.ends_with(".hdr") || header_path.ends_with(".hdr.gz"));
+  return start.is_analyze &&
+         (has_extension(header_path, ".hdr") || has_extension(header_path, ".hdr.gz"));
 }
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include "io/volume/mesh_arrays.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -32,6 +33,30 @@ std::string group_name(std::size_t index) {
 bool is_free_name(const std::string& name) {
   return !name.empty() && name.find_first_of("/.") == std::string::npos && name != "displacement" &&
          name != "original_cell" && name != "original_node";
+}
+
+bool is_finite(const Point3& x) {
+  return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
+}
+
+std::vector<bool> nodes_of_cells(const Mesh& mesh,
+                                 const std::vector<std::array<std::int32_t, 3>>& triangles) {
+  std::vector<bool> used(mesh.rest_positions.size());
+  const auto mark = [&](const auto& cells) {
+    for (const auto& cell : cells) {
+      for (const std::int32_t node : cell) used[static_cast<std::size_t>(node)] = true;
+    }
+  };
+  mark(mesh.tets);
+  mark(mesh.hexes);
+  mark(triangles);
+  return used;
+}
+
+void clear_unused(const std::vector<bool>& used, std::vector<Point3>& displacement) {
+  for (std::size_t node = 0; node < displacement.size(); ++node) {
+    if (!used[node] && !is_finite(displacement[node])) displacement[node] = {0, 0, 0};
+  }
 }
 
 void turn_array(MeshArray& array) {

@@ -1,6 +1,7 @@
 /// @file mesh_arrays.hpp
 /// Arrays and numbers that imported meshes keep.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -31,6 +32,15 @@ std::string group_name(std::size_t index);
 
 /// True unless a VTKHDF file cannot hold the name, or import writes another array of that name.
 bool is_free_name(const std::string& name);
+
+bool is_finite(const Point3& x);
+
+/// Which nodes cells and triangles have. @pre  their indices are checked
+std::vector<bool> nodes_of_cells(const Mesh& mesh,
+                                 const std::vector<std::array<std::int32_t, 3>>& triangles = {});
+
+/// Makes displacements that are not finite 0 at nodes of no cell, where they move nothing.
+void clear_unused(const std::vector<bool>& used, std::vector<Point3>& displacement);
 
 /// Turns vectors and tensors of floats between RAS and LPS.
 void turn_array(MeshArray& array);

@@ -5,18 +5,17 @@
 #include <utility>
 
 #include "host/base/repeated_cells.hpp"
+#include "io/volume/mesh_arrays.hpp"
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
 namespace tetwarp {
-namespace {
-/// Steps of a file of Gmsh or VTK, which is read as a whole.
-struct ImportedSteps {
-  std::vector<Point3> points;
-  std::vector<std::vector<Point3>> displacements;  ///< per step; empty: none
-};
-}  // namespace
-
 struct MeshReader::State {
+  /// Steps of a file of Gmsh or VTK, which is read as a whole.
+  struct ImportedSteps {
+    std::vector<Point3> points;
+    std::vector<std::vector<Point3>> displacements;  ///< per step; empty: none
+  };
+
   std::string path;
   std::optional<MeshFile> file;  ///< VTKHDF; else `imported`
   ImportedSteps imported;
@@ -32,6 +31,11 @@ struct MeshReader::State {
 };
 
 namespace {
+void add_skipped(const std::map<std::string, std::int64_t>& skipped,
+                 std::vector<std::string>& not_read) {
+  for (const auto& [kind, count] : skipped) not_read.push_back(std::to_string(count) + " " + kind);
+}
+
 void check_node_count(const std::string& path, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   throw IoError(
@@ -78,6 +82,8 @@ void MeshReader::State::open_vtkhdf(const MeshReadOptions& options) {
   keep_firsts(tet_firsts, mesh.tets);
   keep_firsts(hex_firsts, mesh.hexes);
   if (header.merged.empty()) tet_firsts = hex_firsts = {};
+  header.not_read = file->not_read();
+  add_skipped(cells.skipped, header.not_read);
   header.times = input.is_temporal() ? input.times : std::vector<double>{0.0};
   header.has_displacement = file->has_displacement();
   header.group_names = file->group_names();
@@ -101,7 +107,12 @@ void MeshReader::State::import(const MeshReadOptions& options) {
     if (array.is_of_cells && array.name == "group") {
       header.group_names = std::move(array.value_names);
     }
+    if (array.name.starts_with("original_")) continue;  // numbers that import_mesh() has made
+    header.not_read.push_back((array.is_of_cells ? "cell array '" : "point array '") + array.name +
+                              "'");
   }
+  header.not_read.insert(header.not_read.end(), whole.left_out.begin(), whole.left_out.end());
+  add_skipped(whole.skipped, header.not_read);
   header.times = header.has_displacement ? std::move(whole.times) : std::vector<double>{0.0};
   if (!header.has_displacement) imported.points = mesh.rest_positions;
 }
@@ -125,7 +136,13 @@ std::vector<Point3> MeshReader::State::vectors_of(std::int64_t step) const {
                     "step " + std::to_string(step) + " has other cells than the rest step");
     }
   }
-  return header.has_displacement ? file->read_displacement(step) : file->read_points(step);
+  if (!header.has_displacement) return file->read_points(step);
+  std::vector<Point3> displacement = file->read_displacement(step);
+  if (displacement.size() == mesh.rest_positions.size()) {
+    clear_unused(nodes_of_cells(mesh), displacement);
+  }
+  file->check_displacement(displacement);
+  return displacement;
 }
 
 MeshReader::MeshReader(const std::string& path, const MeshReadOptions& options) {

@@ -29,18 +29,36 @@ Surface compacted(std::vector<Point3> points, std::vector<std::array<std::int32_
 }
 }  // namespace
 
-Surface read_surface(const std::string& path, std::string* merged) {
+Surface read_surface(const std::string& path,
+                     std::vector<std::string>* left_out,
+                     std::string* merged) {
   const h5::Silence silence;
+  const auto note = [&](std::vector<std::string> names,
+                        const std::map<std::string, std::int64_t>& skipped) {
+    if (left_out == nullptr) return;
+    *left_out = std::move(names);
+    for (const auto& [kind, count] : skipped) {
+      left_out->push_back(std::to_string(count) + " " + kind);
+    }
+  };
   std::vector<Point3> points;
   std::vector<std::array<std::int32_t, 3>> triangles;
-  if (has_mesh_extension(path) && kind_of(path) == FileKind::unknown) {
+  if ((has_mesh_extension(path) || has_surface_extension(path)) &&
+      kind_of(path) == FileKind::unknown) {
     ImportedMesh imported = import_mesh(path, {.needs_solids = false});
+    for (const MeshArray& array : imported.arrays) {
+      imported.left_out.push_back((array.is_of_cells ? "cell array '" : "point array '") +
+                                  array.name + "'");
+    }
+    note(std::move(imported.left_out), imported.skipped);
     points = std::move(imported.mesh.rest_positions);
     triangles = std::move(imported.triangles);
   } else {
     const MeshFile file(path);
-    triangles = file.read_cells(0, CellChoice::triangles).triangles;
+    MeshCells cells = file.read_cells(0, CellChoice::triangles);
+    note(file.not_read(), cells.skipped);
     points = file.read_points(0);
+    triangles = std::move(cells.triangles);
   }
   const auto firsts = first_copies(points, triangles, SameCells::turned_places);
   if (merged != nullptr) *merged = merged_text(copy_count(firsts), triangles.size(), "triangles");

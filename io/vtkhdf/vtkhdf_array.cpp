@@ -36,18 +36,29 @@ std::vector<std::byte> integer_bytes(double value) {
   return bytes_of(static_cast<T>(rounded));
 }
 
-/// Edges [z][y][x], then components where there are several, after `row` in temporal files.
+/// Edges along the axes of a dataset, then components where there are several, after `row` in
+/// temporal files.
 std::vector<hsize_t> file_shape(const std::array<std::int64_t, 3>& xyz,
+                                const std::vector<std::size_t>& axes,
                                 int components,
                                 bool is_temporal,
                                 std::int64_t row) {
   std::vector<hsize_t> shape;
   if (is_temporal) shape.push_back(static_cast<hsize_t>(row));
-  for (std::size_t axis = 3; axis-- > 0;) shape.push_back(static_cast<hsize_t>(xyz[axis]));
+  for (const std::size_t axis : axes) shape.push_back(static_cast<hsize_t>(xyz[axis]));
   if (components > 1) shape.push_back(static_cast<hsize_t>(components));
   return shape;
 }
 }  // namespace
+
+std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims, bool is_temporal) {
+  std::vector<std::size_t> axes;
+  for (std::size_t axis = 3; axis-- > 0;) {
+    if (dims[axis] > 1) axes.push_back(axis);
+  }
+  if (axes.empty() && !is_temporal) axes.push_back(0);
+  return axes;
+}
 
 std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,
                                       std::int64_t voxel_bytes) {
@@ -103,14 +114,15 @@ ArrayWriter::ArrayWriter(const VtkhdfOutput& output,
                          bool is_temporal)
     : output_(&output),
       dims_(dims),
+      axes_(axes_in_file(dims, is_temporal)),
       type_(header.type),
       components_(header.components),
       is_temporal_(is_temporal),
       chunk_(chunk),
       background_(sample_bytes(header.type, options.background)),
       skips_background_(options.skip_background_chunks) {
-  const std::vector<hsize_t> shape = file_shape(dims_, components_, is_temporal, 0);
-  const std::vector<hsize_t> edges = file_shape(chunk_, components_, is_temporal, 1);
+  const std::vector<hsize_t> shape = file_shape(dims_, axes_, components_, is_temporal, 0);
+  const std::vector<hsize_t> edges = file_shape(chunk_, axes_, components_, is_temporal, 1);
   std::vector<hsize_t> largest = shape;
   if (is_temporal) largest[0] = H5S_UNLIMITED;
   const int rank = static_cast<int>(shape.size());
@@ -129,8 +141,12 @@ ArrayWriter::ArrayWriter(const VtkhdfOutput& output,
   if (header.nifti) write_fact_attributes(dataset_, *header.nifti);
 }
 
+void ArrayWriter::mark_scalars() const {
+  h5::write_text_attribute(dataset_, "Attribute", "Scalars");
+}
+
 void ArrayWriter::grow(std::int64_t rows) const {
-  const std::vector<hsize_t> shape = file_shape(dims_, components_, true, rows);
+  const std::vector<hsize_t> shape = file_shape(dims_, axes_, components_, true, rows);
   if (H5Dset_extent(dataset_.id(), shape.data()) < 0) dataset_.fail_with_reason("cannot grow");
 }
 
@@ -185,18 +201,20 @@ void ArrayWriter::write_chunk(const Region& chunk,
                               const Region& region,
                               const void* samples,
                               std::int64_t row) const {
+  // In memory there is an axis at least.
+  const std::vector<std::size_t> axes = axes_.empty() ? std::vector<std::size_t>{0} : axes_;
   std::array<std::int64_t, 3> edges, extent, start;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     edges[axis] = chunk.end[axis] - chunk.begin[axis];
     extent[axis] = region.end[axis] - region.begin[axis];
     start[axis] = chunk.begin[axis] - region.begin[axis];
   }
-  const std::vector<hsize_t> whole = file_shape(extent, components_, false, 0);
-  std::vector<hsize_t> memory_start = file_shape(start, components_, false, 0);
-  std::vector<hsize_t> file_start = file_shape(chunk.begin, components_, is_temporal_, row);
+  const std::vector<hsize_t> whole = file_shape(extent, axes, components_, false, 0);
+  std::vector<hsize_t> memory_start = file_shape(start, axes, components_, false, 0);
+  std::vector<hsize_t> file_start = file_shape(chunk.begin, axes_, components_, is_temporal_, row);
   if (components_ > 1) memory_start.back() = file_start.back() = 0;
-  const std::vector<hsize_t> memory_count = file_shape(edges, components_, false, 0);
-  const std::vector<hsize_t> file_count = file_shape(edges, components_, is_temporal_, 1);
+  const std::vector<hsize_t> memory_count = file_shape(edges, axes, components_, false, 0);
+  const std::vector<hsize_t> file_count = file_shape(edges, axes_, components_, is_temporal_, 1);
 
   const h5::Handle memory(H5Screate_simple(static_cast<int>(whole.size()), whole.data(), nullptr),
                           H5Sclose);

@@ -25,6 +25,10 @@ std::array<std::int64_t, 3> row_chunk(const std::array<std::int64_t, 3>& dims,
 std::array<std::int64_t, 3> brick_chunk(const std::array<std::int64_t, 3>& dims,
                                         std::int64_t voxel_bytes);
 
+/// Axes of a dataset of samples, the slowest first: VTK's readers expect none of a single sample,
+/// but one axis of a single voxel in a static file.
+std::vector<std::size_t> axes_in_file(const std::array<std::int64_t, 3>& dims, bool is_temporal);
+
 /// The bytes of one sample: `value` rounded half to even and saturated to the type; NaN is 0 in
 /// integers.
 std::vector<std::byte> sample_bytes(PixelType type, double value);
@@ -42,6 +46,9 @@ class ArrayWriter {
               const std::array<std::int64_t, 3>& chunk,
               const VolumeWriteOptions& options,
               bool is_temporal);
+
+  /// Marks the array as the active scalars, as VTKHDF 2.6 does.
+  void mark_scalars() const;
 
   /// Extends the time axis to this number of rows.
   void grow(std::int64_t rows) const;
@@ -64,6 +71,7 @@ class ArrayWriter {
   const VtkhdfOutput* output_;
   h5::Object dataset_;
   std::array<std::int64_t, 3> dims_;
+  std::vector<std::size_t> axes_;  ///< of the dataset; see axes_in_file()
   PixelType type_;
   int components_;
   bool is_temporal_;

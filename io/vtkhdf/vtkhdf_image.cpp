@@ -32,12 +32,6 @@ std::string checked(const std::string& path,
       refuse(error.what());
     }
     if (array.components < 1 || array.components > 9) refuse("expected 1 to 9 components");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (grid.dims[axis] == 1) {
-        refuse("has one sample on axis " + std::to_string(axis) +
-               ", VTK cannot read such images; repeat the slice or export to NIfTI");
-      }
-    }
   }
   check_compression(path, options);
   return path;
@@ -76,10 +70,12 @@ ImageFile::ImageFile(const std::string& path,
   std::vector<std::string> names;
   names.reserve(arrays.size());
   for (const ArrayHeader& array : arrays) names.push_back(array.name);
-  h5::write_text_attribute(point_data_, "Scalars", active_array(names, options.scalars));
+  const std::string active = active_array(names, options.scalars);
+  h5::write_text_attribute(point_data_, "Scalars", active);
   for (std::size_t a = 0; a < arrays.size(); ++a) {
     arrays_.emplace_back(output_, point_data_, grid.dims, arrays[a], chunks[a], options,
                          is_temporal);
+    if (names[a] == active) arrays_.back().mark_scalars();
   }
 }
 

@@ -22,8 +22,7 @@ class ImageFile : public VolumeSink {
  public:
   /// Creates the file under a temporary name, its arrays empty.
   /// @param chunks  edges of each array's chunks in voxels, x first
-  /// @throws IoError on a name that VTKHDF cannot hold, an axis of one sample (VTK crashes on
-  ///         those), or a file that cannot be created
+  /// @throws IoError on a name that VTKHDF cannot hold, or a file that cannot be created
   ImageFile(const std::string& path,
             const Grid& grid,
             const std::vector<ArrayHeader>& arrays,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "io/h5/h5.hpp"
+#include "io/h5/h5_read.hpp"
 
 namespace tetwarp {
 
@@ -34,6 +35,23 @@ std::vector<std::int64_t> read_step_offsets(const VtkhdfInput& file,
 /// The same from Steps/PointDataOffsets.
 std::vector<std::int64_t> read_point_data_offsets(const VtkhdfInput& file,
                                                   const std::string& array);
+
+/// Names in groups of a file, as paths below /VTKHDF: "CellData/material".
+/// @param is_read  function of such a path: those for which it is true are left out
+template <class IsRead>
+std::vector<std::string> paths_in(const VtkhdfInput& file,
+                                  const std::vector<std::string>& groups,
+                                  const IsRead& is_read) {
+  std::vector<std::string> paths;
+  for (const std::string& group : groups) {
+    if (!h5::is_group(file.root, group)) continue;
+    for (const std::string& name : h5::child_names(h5::open_group(file.root, group))) {
+      const std::string path = group + "/" + name;
+      if (!is_read(path)) paths.push_back(path);
+    }
+  }
+  return paths;
+}
 
 /// The array that stands for a volume.
 /// @param names    of its arrays, not empty, in the order in which they are stored

@@ -2,7 +2,9 @@
 /// Reads rows of points, cells and displacements.
 #include "io/vtkhdf/vtkhdf_mesh_file.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "io/h5/h5_read.hpp"
@@ -22,7 +24,9 @@ std::string cell_type_name(std::int64_t type) {
                                                           {7, "VTK_POLYGON"},
                                                           {8, "VTK_PIXEL"},
                                                           {9, "VTK_QUAD"},
+                                                          {10, "VTK_TETRA"},
                                                           {11, "VTK_VOXEL"},
+                                                          {12, "VTK_HEXAHEDRON"},
                                                           {13, "VTK_WEDGE"},
                                                           {14, "VTK_PYRAMID"},
                                                           {15, "VTK_PENTAGONAL_PRISM"},
@@ -43,6 +47,17 @@ std::string cell_type_name(std::int64_t type) {
   return std::to_string(type);
 }
 
+constexpr std::int64_t skipped_type = 0;  ///< VTK_EMPTY_CELL, which is skipped, too
+
+/// Dimension of a type of cells; 3 of those that are not known.
+int dimension_of(std::int64_t type) {
+  static constexpr std::int64_t flat[] = {0, 1, 2, 3, 4, 21, 35, 68, 75};  // points and curves
+  static constexpr std::int64_t surfaces[] = {5,  6,  7,  8,  9,  22, 23, 28,
+                                              30, 34, 36, 69, 70, 76, 77};
+  if (std::ranges::find(flat, type) != std::end(flat)) return 1;
+  return std::ranges::find(surfaces, type) != std::end(surfaces) ? 2 : 3;
+}
+
 /// Throws unless rows [first, first + count) exist.
 void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t count) {
   if (first >= 0 && count >= 0 && first <= dataset.rows() && count <= dataset.rows() - first)
@@ -50,6 +65,16 @@ void check_rows(const h5::Dataset& dataset, std::int64_t first, std::int64_t cou
   dataset.fail("rows " + std::to_string(first) + " to " + std::to_string(first) + " + " +
                std::to_string(count) + " are needed, there are " + std::to_string(dataset.rows()) +
                "; correct the counts and the offsets under Steps, or the file is truncated");
+}
+
+void check_finite(const h5::Dataset& dataset, const std::vector<Point3>& rows) {
+  for (std::size_t node = 0; node < rows.size(); ++node) {
+    for (const double coordinate : rows[node]) {
+      if (!std::isfinite(coordinate)) {
+        dataset.fail("node " + std::to_string(node) + " is not finite, correct or remove it");
+      }
+    }
+  }
 }
 
 h5::Dataset open_vectors(const h5::Object& parent, const std::string& name) {
@@ -102,6 +127,11 @@ MeshFile::MeshFile(const std::string& path) : file_(open_vtkhdf(path, "Unstructu
   if (h5::has_child(point_data, "displacement")) {
     displacement_ = open_vectors(point_data, "displacement");
   }
+}
+
+std::vector<std::string> MeshFile::not_read() const {
+  return paths_in(file_, {"PointData", "CellData", "FieldData"},
+                  [](const std::string& path) { return path == "PointData/displacement"; });
 }
 
 std::map<std::int64_t, std::string> MeshFile::group_names() const {
@@ -170,18 +200,13 @@ std::vector<Point3> MeshFile::read_rows(const h5::Dataset& dataset,
                    {{part.node_count, 3}}, rows[row].data());
     row += static_cast<std::size_t>(part.node_count);
   }
-  for (std::size_t node = 0; node < rows.size(); ++node) {
-    for (const double coordinate : rows[node]) {
-      if (!std::isfinite(coordinate)) {
-        dataset.fail("node " + std::to_string(node) + " is not finite, correct or remove it");
-      }
-    }
-  }
   return rows;
 }
 
 std::vector<Point3> MeshFile::read_points(std::int64_t step) const {
-  return read_rows(points_, parts_of(step), 0);
+  std::vector<Point3> points = read_rows(points_, parts_of(step), 0);
+  check_finite(points_, points);
+  return points;
 }
 
 std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
@@ -191,6 +216,10 @@ std::vector<Point3> MeshFile::read_displacement(std::int64_t step) const {
           ? 0
           : offset_of(displacement_offsets_, step) - offset_of(point_offsets_, step);
   return read_rows(displacement_, parts_of(step), shift);
+}
+
+void MeshFile::check_displacement(const std::vector<Point3>& displacement) const {
+  check_finite(displacement_, displacement);
 }
 
 MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
@@ -203,11 +232,13 @@ MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
     cell_count += part.cell_count;
     id_count += part.id_count;
   }
-  if (cell_count == 0) {
-    types_.fail(std::string("holds no ") +
-                (choice == CellChoice::solids ? "tetrahedron or hexahedron" : "triangle") +
-                " at step " + std::to_string(step));
-  }
+  const auto fail_without_cells = [&] {
+    const std::string step_text = " at step " + std::to_string(step);
+    types_.fail(choice == CellChoice::solids
+                    ? "holds no tetrahedron or hexahedron" + step_text
+                    : "holds no triangle (5, VTK_TRIANGLE)" + step_text + "; extract the surface");
+  };
+  if (cell_count == 0) fail_without_cells();
   constexpr std::int64_t limit = std::int64_t{1} << 31;
   if (cell_count >= limit || node_count >= limit) types_.fail("2^31 or more nodes or cells");
   constexpr double bytes_per_cell = 2 * sizeof(std::int64_t);
@@ -216,39 +247,45 @@ MeshCells MeshFile::read_cells(std::int64_t step, CellChoice choice) const {
                    bytes_per_cell * static_cast<double>(cell_count) +
                        bytes_per_id * static_cast<double>(id_count));
   MeshCells cells;
-  std::int64_t first_node = 0;
+  std::int64_t first_node = 0, first_cell = 0;
   for (const MeshPart& part : parts) {
-    read_part_cells(part, first_node, choice, cells);
+    read_part_cells(part, first_node, first_cell, choice, cells);
     first_node += part.node_count;
+    first_cell += part.cell_count;
   }
+  if (cells.count() == 0) fail_without_cells();
   return cells;
 }
 
-std::vector<std::int64_t> MeshFile::read_cell_sizes(const MeshPart& part,
-                                                    std::size_t first_cell,
-                                                    CellChoice choice) const {
+std::vector<std::int64_t> MeshFile::read_cell_types(const MeshPart& part,
+                                                    std::int64_t first_cell,
+                                                    CellChoice choice,
+                                                    MeshCells& cells) const {
   const bool is_solid = choice == CellChoice::solids;
-  std::vector<std::int64_t> sizes = read_column(types_, part.first_cell, part.cell_count);
-  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
-    const std::int64_t type = sizes[cell];
-    if (is_solid ? type != vtk_tetra && type != vtk_hexahedron : type != vtk_triangle) {
-      types_.fail("cell " + std::to_string(first_cell + cell) + " has type " +
-                  cell_type_name(type) +
+  std::vector<std::int64_t> types = read_column(types_, part.first_cell, part.cell_count);
+  for (std::size_t cell = 0; cell < types.size(); ++cell) {
+    const std::int64_t type = types[cell];
+    if (is_solid ? type == vtk_tetra || type == vtk_hexahedron : type == vtk_triangle) continue;
+    const int dimension = dimension_of(type);
+    if (is_solid ? dimension == 3 : dimension == 2) {
+      types_.fail("cell " + std::to_string(first_cell + static_cast<std::int64_t>(cell)) +
+                  " has type " + cell_type_name(type) +
                   (is_solid ? ", expected tetrahedra (10, VTK_TETRA) and hexahedra (12, "
                               "VTK_HEXAHEDRON) only; split the cells into tetrahedra"
                             : ", expected triangles (5, VTK_TRIANGLE) only; extract the surface"));
     }
-    sizes[cell] = type == vtk_triangle ? 3 : type == vtk_tetra ? 4 : 8;
+    ++cells.skipped[cell_type_name(type)];
+    types[cell] = skipped_type;
   }
-  return sizes;
+  return types;
 }
 
 void MeshFile::read_part_cells(const MeshPart& part,
                                std::int64_t first_node,
+                               std::int64_t first_cell,
                                CellChoice choice,
                                MeshCells& cells) const {
-  const std::size_t first_cell = cells.count();
-  const std::vector<std::int64_t> sizes = read_cell_sizes(part, first_cell, choice);
+  const std::vector<std::int64_t> types = read_cell_types(part, first_cell, choice, cells);
   const std::string sizes_text = choice == CellChoice::solids
                                      ? "4 for each tetrahedron, 8 for each hexahedron"
                                      : "3 for each triangle";
@@ -261,7 +298,12 @@ void MeshFile::read_part_cells(const MeshPart& part,
                     std::to_string(offsets[cell]) + ", expected " + std::to_string(expected) +
                     " (from 0 in steps of " + sizes_text + ")");
     }
-    if (cell < sizes.size()) expected += sizes[cell];
+    if (cell == types.size()) break;
+    const std::int64_t type = types[cell];
+    expected = type == skipped_type ? std::max(expected, offsets[cell + 1])
+                                    : expected + (type == vtk_triangle ? 3
+                                                  : type == vtk_tetra  ? 4
+                                                                       : 8);
   }
   if (part.id_count != expected) {
     connectivity_.fail("NumberOfConnectivityIds is " + std::to_string(part.id_count) + " for " +
@@ -269,27 +311,24 @@ void MeshFile::read_part_cells(const MeshPart& part,
                        std::to_string(expected) + ", " + sizes_text);
   }
   const std::vector<std::int64_t> ids = read_column(connectivity_, part.first_id, part.id_count);
-  for (std::size_t cell = 0; cell < sizes.size(); ++cell) {
+  for (std::size_t cell = 0; cell < types.size(); ++cell) {
     const auto first = static_cast<std::size_t>(offsets[cell]);
     const auto take = [&](auto& list) {
       auto& nodes = list.emplace_back();
       for (std::size_t corner = 0; corner < nodes.size(); ++corner) {
         const std::int64_t node = ids[first + corner];
         if (node < 0 || node >= part.node_count) {
-          connectivity_.fail("cell " + std::to_string(first_cell + cell) + " refers to node " +
-                             std::to_string(node) + ", expected 0 to " +
+          connectivity_.fail("cell " +
+                             std::to_string(first_cell + static_cast<std::int64_t>(cell)) +
+                             " refers to node " + std::to_string(node) + ", expected 0 to " +
                              std::to_string(part.node_count - 1));
         }
         nodes[corner] = static_cast<std::int32_t>(first_node + node);
       }
     };
-    if (sizes[cell] == 3) {
-      take(cells.triangles);
-    } else if (sizes[cell] == 4) {
-      take(cells.tets);
-    } else {
-      take(cells.hexes);
-    }
+    if (types[cell] == vtk_triangle) take(cells.triangles);
+    if (types[cell] == vtk_tetra) take(cells.tets);
+    if (types[cell] == vtk_hexahedron) take(cells.hexes);
   }
 }
 

@@ -35,7 +35,7 @@ struct MeshPart {
 /// Kinds of cells that a mesh may have.
 enum class CellChoice {
   solids,    ///< tetrahedra and hexahedra
-  triangles  ///< triangles alone
+  triangles  ///< triangles
 };
 
 /// Cells of a step by kind. Node indices continue from part to part.
@@ -43,6 +43,9 @@ struct MeshCells {
   std::vector<std::array<std::int32_t, 4>> tets;
   std::vector<std::array<std::int32_t, 8>> hexes;
   std::vector<std::array<std::int32_t, 3>> triangles;
+  /// Number of cells of fewer than three dimensions beside solids, of all others beside triangles,
+  /// by their kind.
+  std::map<std::string, std::int64_t> skipped;
 
   std::size_t count() const { return tets.size() + hexes.size() + triangles.size(); }
 };
@@ -62,9 +65,17 @@ class MeshFile {
   std::map<std::int64_t, std::string> group_names() const;
 
   std::vector<Point3> read_points(std::int64_t step) const;
+  /// Numbers may not be finite.
   std::vector<Point3> read_displacement(std::int64_t step) const;
+  /// Throws IoError unless all are finite.
+  void check_displacement(const std::vector<Point3>& displacement) const;
 
-  /// Cells of all parts. @throws IoError  also on cells of another kind
+  /// What is not read, as paths below /VTKHDF: arrays but the displacement, field data.
+  std::vector<std::string> not_read() const;
+
+  /// Cells of all parts. @throws IoError  when there is none of the choice; of solids also on cells
+  /// of
+  ///                              three dimensions of another kind
   MeshCells read_cells(std::int64_t step, CellChoice choice = CellChoice::solids) const;
 
  private:
@@ -73,12 +84,14 @@ class MeshFile {
   std::vector<Point3> read_rows(const h5::Dataset& dataset,
                                 const std::vector<MeshPart>& parts,
                                 std::int64_t shift) const;
-  /// Nodes of each cell of a part: 3, 4 or 8.
-  std::vector<std::int64_t> read_cell_sizes(const MeshPart& part,
-                                            std::size_t first_cell,
-                                            CellChoice choice) const;
+  /// The type of each cell of a part, 0 of those that are skipped.
+  std::vector<std::int64_t> read_cell_types(const MeshPart& part,
+                                            std::int64_t first_cell,
+                                            CellChoice choice,
+                                            MeshCells& cells) const;
   void read_part_cells(const MeshPart& part,
                        std::int64_t first_node,
+                       std::int64_t first_cell,
                        CellChoice choice,
                        MeshCells& cells) const;
 

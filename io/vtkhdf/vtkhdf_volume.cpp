@@ -2,6 +2,7 @@
 /// Reading VTKHDF ImageData, static and temporal.
 #include "io/vtkhdf/vtkhdf_volume.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <tetwarp/io.hpp>
@@ -12,6 +13,7 @@
 #include "io/h5/h5_attribute.hpp"
 #include "io/h5/h5_read.hpp"
 #include "io/nifti/nifti_facts.hpp"
+#include "io/vtkhdf/vtkhdf_array.hpp"
 #include "io/vtkhdf/vtkhdf_input.hpp"
 
 namespace tetwarp {
@@ -49,10 +51,11 @@ std::string shape_text(const std::vector<std::int64_t>& dims) {
 }
 
 /// One point array: [z][y][x], if temporal with time as first axis, with components as last axis if
-/// there are several.
+/// there are several. Axes of one sample may be left out.
 struct PointArray {
   h5::Dataset dataset;
   ArrayHeader header;
+  std::vector<std::size_t> axes = {2, 1, 0};  ///< of the dataset
   bool has_component_axis = false;
 };
 
@@ -64,14 +67,26 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
   array.header.type = h5::pixel_type_of(array.dataset);
   array.header.nifti = read_fact_attributes(array.dataset);
 
-  std::vector<std::int64_t> shape = {grid.dims[2], grid.dims[1], grid.dims[0]};
-  if (file.is_temporal()) shape.insert(shape.begin(), array.dataset.rows());
-  std::vector<std::int64_t> found = array.dataset.dims;
-  // VTK drops the z axis of a flat image.
-  const std::size_t rank = shape.size();
-  const std::size_t z = rank - 3;
-  if (shape[z] == 1 && found.size() + 1 >= rank && (found.size() < rank || found[z] != 1)) {
-    shape.erase(shape.begin() + static_cast<std::ptrdiff_t>(z));
+  const auto shape_of = [&](const std::vector<std::size_t>& axes) {
+    std::vector<std::int64_t> shape;
+    if (file.is_temporal()) shape.push_back(array.dataset.rows());
+    for (const std::size_t axis : axes) shape.push_back(grid.dims[axis]);
+    return shape;
+  };
+  std::vector<std::int64_t> found = array.dataset.dims, shape = shape_of(array.axes);
+  const std::vector<std::int64_t> whole = shape;
+  // Axes of one sample are left out: by VTK 9.3 all of them, before z alone.
+  std::vector<std::vector<std::size_t>> choices{array.axes,
+                                                axes_in_file(grid.dims, file.is_temporal())};
+  if (grid.dims[2] == 1) choices.push_back({1, 0});
+  for (const std::vector<std::size_t>& axes : choices) {
+    const std::vector<std::int64_t> own = shape_of(axes);
+    const bool fits = own.size() <= found.size() && found.size() <= own.size() + 1 &&
+                      std::equal(own.begin(), own.end(), found.begin());
+    if (!fits) continue;
+    array.axes = axes;
+    shape = own;
+    break;
   }
   if (found.size() == shape.size() + 1) {
     const std::int64_t components = found.back();
@@ -84,7 +99,7 @@ PointArray open_array(const VtkhdfInput& file, const Grid& grid, const std::stri
   }
   if (found != shape) {
     array.dataset.fail("has shape " + shape_text(array.dataset.dims) + ", expected " +
-                       shape_text(shape) +
+                       shape_text(whole) +
                        (file.is_temporal() ? " ([t][z][y][x])" : " ([z][y][x])") +
                        ", optionally with components; correct WholeExtent or the data");
   }
@@ -113,13 +128,19 @@ std::vector<std::string> not_read(const VtkhdfInput& file,
   std::vector<std::string> paths;
   paths.reserve(point_names.size());
   for (const std::string& name : point_names) paths.push_back("PointData/" + name);
-  for (const std::string group : {"CellData", "FieldData"}) {
-    if (!h5::is_group(file.root, group)) continue;
-    for (const std::string& name : h5::child_names(h5::open_group(file.root, group))) {
-      paths.push_back(group + "/" + name);
-    }
-  }
+  const auto others = paths_in(file, {"CellData", "FieldData"}, [](const auto&) { return false; });
+  paths.insert(paths.end(), others.begin(), others.end());
   return paths;
+}
+
+/// Whether an array is the active scalars, in the way of VTKHDF 2.6.
+bool is_marked(const h5::Dataset& array) {
+  try {
+    return h5::has_attribute(array, "Attribute") &&
+           h5::read_text_attribute(array, "Attribute") == "Scalars";
+  } catch (const IoError&) {
+    return false;
+  }
 }
 
 /// VolumeHeader::active of the numeric arrays of a file. An attribute that is no text names none.
@@ -132,6 +153,10 @@ std::string active_of(const VtkhdfInput& file, const std::vector<std::string>& n
     }
   } catch (const IoError&) {
     scalars.clear();
+  }
+  for (std::size_t n = 0; scalars.empty() && n < names.size(); ++n) {
+    const h5::Dataset array = h5::open_dataset(point_data, names[n]);
+    if (is_marked(array)) scalars = names[n];
   }
   return active_array(names, scalars);
 }
@@ -169,8 +194,7 @@ class VtkhdfSource : public VolumeSource {
       count.push_back(1);
     }
     const bool has_components = source_.has_component_axis;
-    const std::size_t axes = dataset.dims.size() - start.size() - (has_components ? 1 : 0);
-    for (std::size_t axis = axes; axis-- > 0;) {  // without z in flat images
+    for (const std::size_t axis : source_.axes) {
       start.push_back(region.begin[axis]);
       count.push_back(region.end[axis] - region.begin[axis]);
     }

@@ -8,7 +8,6 @@
 #include <tetwarp/scene_io.hpp>
 #include <utility>
 
-#include "io/h5/h5_read.hpp"
 #include "io/h5/h5_write.hpp"
 #include "io/h5/value_names.hpp"
 #include "io/vtkhdf/vtkhdf_cells.hpp"
@@ -103,9 +102,10 @@ void write_displacements(const VtkhdfOutput& output,
 void write_array(const VtkhdfOutput& output, const h5::Object& group, const MeshArray& array) {
   const auto components = static_cast<hsize_t>(array.components);
   const hsize_t dims[2] = {array.data.size() / (components * size_of(array.type)), components};
-  h5::write_dataset(group, array.name, h5::file_type_of(array.type), h5::memory_type_of(array.type),
-                    {dims, components > 1 ? std::size_t{2} : std::size_t{1}}, array.data.data());
-  write_value_names(h5::open_dataset(group, array.name), array.value_names);
+  const h5::Object dataset = h5::write_dataset(
+      group, array.name, h5::file_type_of(array.type), h5::memory_type_of(array.type),
+      {dims, components > 1 ? std::size_t{2} : std::size_t{1}}, array.data.data());
+  write_value_names(dataset, array.value_names);
   output.check_disk(group);
 }
 

@@ -89,7 +89,7 @@ TEST(BadFormats, MeshesThatContradictThemselves) {
            {"n.msh", nodes + "$Elements\n1\n1 6 2 1 1 1 2 3 4 5 6\n$EndElements\n",
             "n.msh: cell 1 is a Prism 6, expected tetrahedra of four nodes and hexahedra of eight"},
            {"o.msh", gmsh + data + "3\n2\n1 0 0 0\n2 0 0 0\n$EndNodeData\n",
-            "o.msh: displacement: step 0: expected three components for every node"},
+            "o.msh: displacement: step 0 has no data of node 3, which cells have"},
            {"p.msh", gmsh + data + "1\n2\n1 0\n2 0\n$EndNodeData\n",
             "p.msh: displacement: step 0: expected three components for every node"}}) {
     write_text(scene / bad.name, bad.text);

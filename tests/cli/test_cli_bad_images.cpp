@@ -70,8 +70,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
       {[](auto& h) { h.datatype = DT_COMPLEX64; }, "datatype: is 32 (COMPLEX64), expected"},
       {[](auto& h) { h.datatype = 0; }, "datatype: is 0 (UNKNOWN), expected integers or floats"},
       {[](auto& h) { h.bitpix = 16; }, "bitpix: is 16, but samples of datatype 16 (float32)"},
-      {[](auto& h) { h.vox_offset = 0; }, "from byte 0.000000 on, but the file is too small"},
-      {[](auto& h) { h.vox_offset = not_a_number; }, "too small: truncated or damaged"},
+      {[](auto& h) { h.vox_offset = not_a_number; }, "vox_offset: is nan, expected at least 352"},
       {[](auto& h) { h.vox_offset = 1e9F; }, "from byte 1000000000.000000 on, but the file"},
       {[](auto& h) { h.scl_slope = 2, h.scl_inter = infinite; },
        "scl_inter: is inf, expected a fi"},
@@ -82,7 +81,7 @@ TEST(BadImages, HeadersThatContradictThemselves) {
        "dim[5]: is 5 components, but intent_code 1005, symmetric matrices, has 6"},
       {[](auto& h) { h.dim[5] = 4, h.intent_code = NIFTI_INTENT_DISPVECT; },
        "dim[5]: is 4 components, but intent_code 1006, displacements, has 3; correct the header"},
-      {[](auto& h) { h.vox_offset = 348; }, "from byte 348.000000 on, but the file is too small"},
+      {[](auto& h) { h.vox_offset = 348; }, "vox_offset: is 348.000000, expected at least 352;"},
       {[](auto& h) { h.dim[0] = 7, h.dim[7] = 2; }, "dim[7]: is 2, expected 1: only volumes"},
       {[](auto& h) { h.datatype = 1536; }, "datatype: is 1536 (FLOAT128), expected integers or"},
       {[](auto& h) { h.datatype = 1; }, "datatype: is 1 (BINARY), expected integers or floats"},
@@ -224,10 +223,6 @@ TEST(BadImages, MeshesThatCannotBe) {
 TEST(BadImages, OutputsThatCannotBe) {
   const Scene scene;
   write_nifti(scene / "head.nii.gz", ramp_volume<float>());
-  Volume slice = make_volume(ramp_volume<float>().grid, PixelType::uint8);
-  slice.grid.dims[2] = 1;
-  slice.data.resize(slice.byte_count());
-  write_nifti(scene / "slice.nii", slice);
   nifti_1_header series = float_header({3, 2, 2}, 1);
   series.dim[4] = 2;
   write_constant(scene / "series.nii", series, {1, 2});
@@ -244,7 +239,6 @@ TEST(BadImages, OutputsThatCannotBe) {
            {warp("head.nii.gz", {"out.mha"}), "out.mha: the name of a volume ends in .vtkhdf, .hd"},
            {warp("head.nii.gz", {"out.gz"}), "out.gz: the name of a volume ends in .vtkhdf, .hdf"},
            {warp("head.nii.gz", {"head.nii.gz", "--steps", "0"}), "head.nii.gz: is also an input"},
-           {warp("head.nii.gz", {"no/out.nii.gz", "--steps", "0"}), "folder 'no' does not exist"},
            {warp("head.nii.gz", {"folder.nii.gz", "--steps", "0"}), "is a folder; name the file"},
            {warp("head.nii.gz",
                  {"out.nii", "--steps", "0", "--outputs", "mask", "--report", "out_mask.nii"}),
@@ -254,9 +248,6 @@ TEST(BadImages, OutputsThatCannotBe) {
            {warp("head.nii.gz", {"out.nii", "--source-step", "5"}), "the volume has 1 (0 to 0)"},
            {warp("series.nii", {"out.nii", "--pair"}),
             "--pair: step 3 of the mesh has no pair, the volume has 2 (0 to 1); choose steps"},
-           {warp("slice.nii", {"out.vtkhdf"}),
-            "single voxel along k, which VTK cannot read; write"},
-           {{"import", "slice.nii", "-o", "out.vtkhdf"}, "repeat the slice or export to NIfTI"},
            {{"export", "head.nii.gz", "-o", "folder.nii.gz"}, "is a folder; name the file to"},
            {{"export", "series.nii", "--step", "2", "-o", "out.nii"},
             "has no step 2, its steps are"},

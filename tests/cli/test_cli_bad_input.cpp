@@ -111,7 +111,6 @@ TEST(BadInput, RefusesAnOutputThatCannotBe) {
   for (const Refused& refused : std::vector<Refused>{
            {warp_to("volume.vtkhdf"), "is also an input"},
            {warp_to("./folder.vtkhdf/../mesh.vtkhdf"), "is also an input"},
-           {warp_to("nowhere/out.vtkhdf"), "folder 'nowhere' does not exist"},
            {warp_to("folder.vtkhdf"), "is a folder"},
            {warp_to("out.nrrd"), ".vtkhdf, .hdf, .h5, .nii or .nii.gz"},
            {{"warp", "volume.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--report",
@@ -170,7 +169,6 @@ TEST(BadInput, ChecksGridAndRegionBeforeAnyWork) {
            {warp_with({"--roi", "0:13,0:10,0:8"}), "not within 0 to 12"},
            {warp_with({"--roi=-1:3,0:10,0:8"}), "--roi: region: -1 to 3 on axis 0"},
            {warp_with({"--roi", "3:3,0:10,0:8"}), "3 to 3 on axis 0"},
-           {warp_with({"--roi", "3:4,0:10,0:8"}), "single voxel along i"},
            {warp_with({"--dims", "0,4,4"}), "output grid"},
            {warp_with({"--dims", "100000,100000,100000"}), "TiB"},
            {warp_with({"--dims", "2000000000,2,2"}), "output grid"},
@@ -196,8 +194,13 @@ TEST(BadInput, ChecksPixelTypesAgainstOptions) {
 
 TEST(BadInput, RefusesLabelsThatAreNone) {
   const Scene scene;
+  Volume halves = ramp_volume<float>();
+  halves.samples<float>()[959] = 0.5F;
+  write_volumes(scene / "volume.vtkhdf", {&halves});
   expect_refused(
-      scene, {warp_with({"--filter", "labels"}), "density: source: float32 holds no labels"}, 1);
+      scene,
+      {warp_with({"--filter", "labels", "--quiet"}), "density: holds 0.500000, which is no label"},
+      1);
 
   Volume colors = make_volume(ramp_volume<float>().grid, PixelType::uint8, 3, "colors");
   write_volumes(scene / "volume.vtkhdf", {&colors});

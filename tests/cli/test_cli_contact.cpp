@@ -2,6 +2,7 @@
 /// `tetwarp contact`: files, text and exit codes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -228,6 +229,60 @@ TEST_F(ContactCommand, PrintsNothingWithQuiet) {
 
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.out + result.err, "");
+}
+
+/// Coulomb's law of random problems with friction far above 1: what is said to be solved keeps it
+/// to 1e-5 of the largest impulse and velocity; else the exit code is 3 and the residual is told.
+TEST_F(ContactCommand, KeepsTheLawOfLargeFrictionOrSaysThatItDoesNot) {
+  std::mt19937 random(46);
+  std::normal_distribution<double> normal;
+  for (const double friction : {1e4, 1e6, 1e8}) {
+    for (int run = 0; run < 4; ++run) {
+      const std::size_t contacts = 2 + random() % 8, rows = 3 * contacts;
+      std::vector<std::vector<double>> jacobian(rows, std::vector<double>(12));
+      for (auto& row : jacobian) {
+        for (double& entry : row) entry = normal(random);
+      }
+      ContactProblem problem;
+      std::vector<std::vector<double>> delassus(rows, std::vector<double>(rows));
+      for (std::size_t i = 0; i < rows; ++i) {
+        for (std::size_t j = 0; j < rows; ++j) {
+          for (std::size_t k = 0; k < 12; ++k) delassus[i][j] += jacobian[i][k] * jacobian[j][k];
+        }
+        double free = 0;
+        for (std::size_t k = 0; k < 12; ++k) free += jacobian[i][k] * (k % 3 == 0 ? -1.0 : 0.5);
+        problem.free_velocity.push_back(free);
+      }
+      problem.delassus = sparse(delassus);
+      problem.friction.assign(contacts, friction);
+      store(problem);
+
+      const CommandResult result = solve();
+
+      if (result.exit_code == 3) {
+        EXPECT_NE(result.out.find("residual"), std::string::npos) << result.out;
+        continue;
+      }
+      ASSERT_EQ(result.exit_code, 0) << result.err;
+      const std::vector<double> r = solved("solution/r");
+      std::vector<double> u = problem.free_velocity;
+      for (std::size_t i = 0; i < rows; ++i) {
+        for (std::size_t j = 0; j < rows; ++j) u[i] += delassus[i][j] * r[j];
+      }
+      const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+      const double r_scale = std::abs(*std::max_element(r.begin(), r.end(), size)) + 1e-300;
+      const double u_scale = std::abs(
+          *std::max_element(problem.free_velocity.begin(), problem.free_velocity.end(), size));
+      for (std::size_t c = 0; c < rows; c += 3) {
+        const double push = r[c] / r_scale, part = u[c] / u_scale;
+        const double drag = std::hypot(r[c + 1], r[c + 2]) / r_scale;
+        const double slip = std::hypot(u[c + 1], u[c + 2]) / u_scale;
+        EXPECT_LE(std::abs(std::min(push, part)), 1e-5) << friction;
+        EXPECT_LE(std::max(drag - friction * push, 0.0), 1e-5) << friction;
+        EXPECT_LE(std::min(slip, std::max(friction * push - drag, 0.0)), 1e-5) << friction;
+      }
+    }
+  }
 }
 
 TEST_F(ContactCommand, IsUnderstoodByInfo) {

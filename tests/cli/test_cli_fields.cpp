@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/cli_scene.hpp"
+#include "tests/support/nifti_files.hpp"
 
 namespace tetwarp::test {
 namespace {
@@ -58,6 +59,46 @@ TEST(CliFields, WritesFieldsOfTheDeformationAndExportsDisplacementsForItk) {
     words.insert(words.end(), axes.begin(), axes.end());
     EXPECT_EQ(run_command(scene, words).exit_code, 0);
     EXPECT_EQ(read_nifti(scene / "field.nii").samples<float>()[3 * 5], x);
+  }
+}
+
+/// ITK's world: millimetres, turned from RAS to LPS, but as it is where the header has no form; an
+/// image of one slice is 2D. The box moves by (6, 0, 0) units of the header.
+TEST(CliFields, OfNiftiImagesAreInTheWorldThatItkGivesThem) {
+  const struct {
+    int units;
+    bool has_form, is_slice;
+    std::vector<float> displacement;
+  } cases[] = {{2, true, false, {6, 0, 0}},       {3, true, false, {6e-3F, 0, 0}},
+               {1, true, false, {6e3F, 0, 0}},    {0, true, false, {6, 0, 0}},
+               {3, false, false, {-6e-3F, 0, 0}}, {2, true, true, {6, 0}},
+               {1, false, true, {-6e3F, 0}}};
+  for (const auto& expected : cases) {
+    const Scene scene;
+    Volume volume = ramp_volume<float>("values");
+    if (expected.is_slice) volume.grid.dims[2] = 1;
+    volume.grid.origin = {0, 0, 0};
+    volume.data.resize(volume.byte_count());
+    NiftiFacts facts;
+    facts.xyzt_units = expected.units;
+    facts.sform_code = facts.qform_code = expected.has_form ? 1 : 0;
+    write_nifti(scene / "image.nii", volume, Axes::ras, facts);
+    Mesh mesh = box_mesh();
+    for (Point3& x : mesh.rest_positions) x = {x[0] - 5, x[1] + 3, x[2] - 100};
+    write_mesh(scene / "mesh.vtkhdf", mesh, shifts({3}));
+
+    const CommandResult result = run_command(
+        scene, {"warp", "image.nii", "mesh.vtkhdf", "-o", "out.nii", "--outputs", "displacement"});
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::string told = "has the two components in the slice";
+    EXPECT_EQ(result.err.find(told) != std::string::npos, expected.is_slice) << result.err;
+    EXPECT_EQ(header_in(scene / "out_displacement.nii").intent_code, NIFTI_INTENT_VECTOR);
+    const std::vector<float> found = components_in(scene / "out_displacement.nii", 5);
+    ASSERT_EQ(found.size(), expected.displacement.size());
+    for (std::size_t c = 0; c < found.size(); ++c) {
+      EXPECT_FLOAT_EQ(found[c], expected.displacement[c]) << expected.units << ' ' << c;
+    }
   }
 }
 

@@ -74,6 +74,46 @@ TEST_F(CliPair, WarnsWhereAllStepsTakeOneOfTheVolume) {
       << result.err;
 }
 
+/// The mesh has one step: by it all steps of the volume are warped, in one file with their times.
+TEST_F(CliPair, OneDeformationWarpsAllStepsOfASeries) {
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({1}));
+  for (const std::string end : {".vtkhdf", ".nii.gz"}) {
+    const CommandResult result =
+        scene.warp({"-o", "out" + end, "--outputs", "displacement", "--resume"});
+
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("(3 steps of the volume by the one of the mesh in one file)"),
+              std::string::npos)
+        << result.out;
+    EXPECT_EQ(read_volume_header(scene / ("out" + end)).times, (std::vector<double>{0, 1, 2}));
+    for (int step = 0; step < 3; ++step) {
+      scene.warp({"-o", "one.vtkhdf", "--source-step", std::to_string(step)});
+      EXPECT_EQ(read_volume(scene / ("out" + end), "", step).data,
+                read_volume(scene / "one.vtkhdf").data)
+          << step;
+    }
+    const CommandResult again =
+        scene.warp({"-o", "out" + end, "--outputs", "displacement", "--resume"});
+    EXPECT_NE(again.out.find("0 written"), std::string::npos) << again.out;
+  }
+  EXPECT_EQ(read_volume_header(scene / "out_displacement.nii.gz").times.size(), 0U)
+      << "the field is the same at all steps, and ITK reads no series of fields";
+}
+
+TEST_F(CliPair, SaysWhichStepsHaveNoPair) {
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({1}));
+
+  const CommandResult result = scene.warp({"-o", "out.vtkhdf", "--pair"});
+
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("--pair: the mesh has 1 of the 3 steps of the volume, the others are "
+                            "left out; without --pair its one step warps all of them"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(result.out.find("(1 pair of steps)"), std::string::npos) << result.out;
+  EXPECT_EQ(scene.warp({"-o", "out.vtkhdf", "--pair", "--strict"}).exit_code, 1);
+}
+
 TEST_F(CliPair, RefusesStepsWithoutAPair) {
   const CommandResult all = scene.warp({"-o", "out.vtkhdf", "--pair"});
   EXPECT_EQ(all.exit_code, 1);

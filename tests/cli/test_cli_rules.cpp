@@ -119,5 +119,37 @@ TEST(CliRules, TellWhatStoringIntegersChanges) {
   EXPECT_EQ(warp({"--intensity", "conservative", "--quiet"}).err, "");
   EXPECT_EQ(warp({}).err.find("total"), std::string::npos);
 }
+
+/// Labels of floats are whole numbers: the same as labels of integers.
+TEST(CliRules, LabelsOfFloatsAreThoseOfIntegers) {
+  const Scene scene;
+  Volume whole = ramp_volume<std::int16_t>("labels"), floats = ramp_volume<float>("labels");
+  for (std::size_t v = 0; v < 960; ++v) {
+    whole.samples<std::int16_t>()[v] = static_cast<std::int16_t>(v / 7 % 5);
+    floats.samples<float>()[v] = static_cast<float>(v / 7 % 5);
+  }
+  write_volumes(scene / "whole.vtkhdf", {&whole});
+  write_volumes(scene / "floats.vtkhdf", {&floats});
+  write_mesh(scene / "mesh.vtkhdf", box_mesh(), shifts({0.4}));
+  const auto warp = [&](const std::string& name) {
+    return run_command(scene, {"warp", name + ".vtkhdf", "mesh.vtkhdf", "-o", name + "_out.vtkhdf",
+                               "--filter", "labels"});
+  };
+
+  EXPECT_EQ(warp("whole").exit_code, 0);
+  const CommandResult result = warp("floats");
+
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("labels of float32 are written as int32"), std::string::npos);
+  const Volume a = read_volume(scene / "whole_out.vtkhdf"),
+               b = read_volume(scene / "floats_out.vtkhdf");
+  ASSERT_EQ(b.type, PixelType::int32);
+  for (std::size_t v = 0; v < 960; ++v) {
+    ASSERT_EQ(a.samples<std::int16_t>()[v], b.samples<std::int32_t>()[v]) << v;
+  }
+  floats.samples<float>()[100] = 0.5F;
+  write_volumes(scene / "floats.vtkhdf", {&floats});
+  EXPECT_NE(warp("floats").err.find("holds 0.500000, which is no label"), std::string::npos);
+}
 }  // namespace
 }  // namespace tetwarp::test

@@ -233,7 +233,8 @@ TEST(SimulateContact, ErrorsOfItsOptions) {
   const Landing scene;
   const CommandResult no_name = scene.simulate({"-o", "out", "--contacts", "touch.txt"});
   EXPECT_EQ(no_name.exit_code, 2) << no_name.err;
-  const CommandResult no_folder = scene.simulate({"-o", "out", "--contacts", "no/touch.vtkhdf"});
+  const CommandResult no_folder =
+      scene.simulate({"-o", "out", "--contacts", "scene.json/touch.vtkhdf"});
   EXPECT_EQ(no_folder.exit_code, 1);
   EXPECT_TRUE(no_folder.has_one_line_error()) << no_folder.err;
   const CommandResult of_a_body = scene.simulate({"-o", "out", "--contacts", "out/soft.vtkhdf"});

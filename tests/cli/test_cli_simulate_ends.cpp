@@ -124,7 +124,7 @@ TEST(SimulateErrors, AreOneLineAndWriteNothing) {
       {{"scene.json", "-o", "out", "--warp", "nobody"}, "nobody"},
       {{"scene.json", "-o", "out", "--restart", "state"}, "state"},
       {{"scene.json", "-o", "out", "--restart", "missing"}, "missing"},
-      {{"scene.json", "-o", "missing/deeper/out", "--film", "missing/film.gif"}, "film.gif"},
+      {{"scene.json", "-o", "missing/deeper/out", "--film", "state/film.gif"}, "film.gif"},
       {{"scene.json", "-o", "scene.json"}, "'scene.json' is not a folder"},
       {{"scene.json", "-o", "out", "--restart", "."}, "name a file that --checkpoint wrote"},
       {{"scene.json", "-o", "out", "--checkpoint", "out/beam.vtkhdf"}, "another name for --check"},

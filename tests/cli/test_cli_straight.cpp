@@ -157,7 +157,8 @@ TEST_F(Straight, TakesMeshesOfVtkAndGmsh) {
     run(words);
     EXPECT_TRUE(read_nifti(scene / "out.nii").data == expected) << mesh.front();
   }
-  run({"deform", "m.msh", "-o", "bent.vtkhdf", "--steps", "1", "--quiet"});
+  run({"deform", "m.msh", "-o", "bent.vtkhdf", "--steps", "1", "--quiet"},
+      "m.msh: left out: cell array 'group', data 'u'");
   EXPECT_EQ(MeshReader(scene / "bent.vtkhdf").header().tet_count, 5);
 }
 

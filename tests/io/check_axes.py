@@ -4,9 +4,11 @@ Usage: check_axes.py COMMAND
 
 A linear vector field and a linear tensor field on an oblique, a mirrored and a sheared grid are
 imported, warped by a rotation about three axes and exported. SimpleITK and nibabel write the input
-and read the output; what they must find there is computed here. Exits 77 when SimpleITK, nibabel or
+and read the output; what they must find there is computed here. Displacement fields of images of all
+48 orientations and three units of length, without a form and of one slice are applied by SimpleITK. Exits 77 when SimpleITK, nibabel or
 h5py is missing, 1 when a value or a field of a header differs.
 """
+import itertools
 import os
 import subprocess
 import sys
@@ -163,6 +165,72 @@ def check_displacement(files, centre):
         expect(f"displacement {' '.join(axes) or 'as by default'}", moved, expected, 1e-4)
 
 
+UNITS = {"mm": 1.0, "micron": 1e-3, "meter": 1e3}  # in ITK's millimetres
+
+
+def orientations():
+    """All 48: axes of the image along those of the world in any order and direction."""
+    for order in itertools.permutations(range(3)):
+        for signs in itertools.product((1.0, -1.0), repeat=3):
+            matrix = np.zeros((3, 3))
+            matrix[order, range(3)] = signs
+            yield matrix @ np.diag([1.5, 2.0, 2.5])
+
+
+def field_cases():
+    """Affine map, unit, dims and whether the header has a form."""
+    for n, matrix in enumerate(orientations()):
+        yield matrix, np.array([12.0, -34, 56]), list(UNITS)[n % 3], DIMS, True
+    for unit in UNITS:
+        yield np.diag([1.5, 2.0, 2.5]), np.zeros(3), unit, DIMS, False
+        for has_form in True, False:
+            yield np.diag([1.5, 2.0, 2.5]), np.zeros(3), unit, (9, 8, 1), has_form
+        yield np.diag([-1.5, 2.0, 2.5]), np.array([1.0, 2, 3]), unit, (9, 8), True
+
+
+def check_fields(files):
+    """ITK applies displacement fields in millimetres, along the axes in which it places the image:
+    LPS, but where the header has no form, the header's own."""
+    worst = 0.0
+    for matrix, origin, unit, dims, has_form in field_cases():
+        affine = np.eye(4)
+        affine[:3, :3], affine[:3, 3] = matrix, origin
+        image = nibabel.Nifti1Image(np.ones(dims, np.float32), affine)
+        image.set_sform(affine, code=int(has_form))
+        image.set_qform(affine, code=int(has_form))
+        image.header.set_xyzt_units(unit)
+        nibabel.save(image, files.path("head.nii"))
+        index = np.array([4, 4, 3 if len(dims) == 3 and dims[2] > 1 else 0])
+        centre = origin + matrix @ index + [0.3, -0.2, 0]
+        write_box(files.path("mesh.vtkhdf"), centre)
+        to_itk = UNITS[unit] * (LPS if has_form else np.eye(3))
+        is_flat = index[2] == 0
+        files("warp", "head.nii", "mesh.vtkhdf", "-o", "out.nii", "--outputs",
+              "displacement,forward", "--quiet")
+        names = ["out_displacement.nii", "out_forward.nii"]
+        if not is_flat:
+            files("import", "head.nii", "-o", "head.vtkhdf")
+            files("warp", "head.vtkhdf", "mesh.vtkhdf", "-o", "out.vtkhdf", "--outputs",
+                  "displacement", "--quiet")
+            files("export", "out.vtkhdf", "--array", "tetwarp_displacement", "-o", "exported.nii")
+            names.append("exported.nii")
+        for name in names:
+            read = sitk.ReadImage(files.path(name), sitk.sitkVectorFloat64)
+            axes = read.GetDimension()
+            expect_equal("axes of the field", axes, 2 if is_flat else 3)
+            place = np.array(read.TransformIndexToPhysicalPoint(index[:axes].tolist()))
+            moved = sitk.DisplacementFieldTransform(read).TransformPoint(place.tolist())
+            world = matrix @ index + origin
+            rest = rest_of(world, centre)
+            if name == "out_forward.nii":
+                rest = (world - centre) @ TURN.T + centre
+            error = np.abs(np.array(moved) - (to_itk @ rest)[:axes]).max() / UNITS[unit]
+            worst = max(worst, error)
+            if not error < 1e-4:
+                sys.exit(f"{name}: {matrix.tolist()} {unit} {dims} form {has_form}: {error}")
+    print(f"fields for ITK, worst: {worst:.1e} units")
+
+
 def check_tensors(files, affine, centre, axes):
     """nibabel writes and reads tensors in NIfTI's order, along RAS or LPS."""
     turn = LPS if axes == "lps" else np.eye(3)
@@ -204,6 +272,7 @@ def main(command):
                 continue
             check_vectors(files, affine, centre)
             check_displacement(files, centre)
+        check_fields(files)
 
 
 if __name__ == "__main__":

@@ -215,9 +215,6 @@ TEST_F(BadFiles, AreNamedWhenTheRestFileHasOtherNodes) {
 }
 
 TEST_F(BadFiles, AreNotWrittenWithNamesOrShapesThatVtkCannotRead) {
-  Grid flat;
-  flat.dims = {4, 4, 1};
-  const Volume slice = make_volume(flat, PixelType::uint8);
   const Volume dotted = counting_volume(PixelType::uint8, 1, "a.b");
   Volume moved = counting_volume(PixelType::uint8, 1, "moved");
   moved.grid.origin[0] += 1;
@@ -228,7 +225,6 @@ TEST_F(BadFiles, AreNotWrittenWithNamesOrShapesThatVtkCannotRead) {
     expect_line(io_error([&] { write_volumes(path, volumes); }), path, words);
   };
 
-  error({&slice}, "repeat the slice or export to NIfTI");
   error({&dotted}, "must not be empty or hold '/' or '.'");
   error({&samples, &samples}, "two arrays have this name");
   error({&samples, &moved}, "another grid");
@@ -274,7 +270,8 @@ TEST_F(BadFiles, AreNotWrittenOverFoldersOrDevices) {
   EXPECT_THROW(write_volumes(folder / ".", {&samples}), IoError);
   EXPECT_THROW(write_volumes("/dev/null", {&samples}), IoError);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-  EXPECT_THROW(write_volumes(folder / "none/out", {&samples}), IoError);
+  write_volumes(folder / "file", {&samples});
+  EXPECT_THROW(write_volumes(folder / "file/out", {&samples}), IoError);
 }
 }  // namespace
 }  // namespace tetwarp::test

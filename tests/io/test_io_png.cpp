@@ -39,13 +39,16 @@ TEST(Png, RefusesPicturesWithoutAllPixels) {
   EXPECT_EQ(folder.entry_count(), 0);
 }
 
-TEST(Png, NamesTheFolderThatIsMissing) {
+TEST(Png, NamesTheFolderThatCannotBeMade) {
   const ScratchFolder folder;
   const Image image{1, 1, {0, 0, 0}};
 
-  const std::string error = io_error([&] { write_png(folder / "none/p.png", image); });
+  const std::string error = io_error([&] {
+    write_png(folder / "file", image);
+    write_png(folder / "file/none/p.png", image);
+  });
 
-  EXPECT_NE(error.find("No such file or directory"), std::string::npos) << error;
+  EXPECT_NE(error.find("file/none' cannot be made: Not a directory"), std::string::npos) << error;
 }
 }  // namespace
 }  // namespace tetwarp::test

@@ -259,6 +259,27 @@ TEST(VtkhdfMesh, ReadsCountsRepeatedForEveryStep) {
   EXPECT_EQ(reader.read_step(1)[0], (Point3{2, 0, 0}));
 }
 
+TEST(VtkhdfMesh, TakesDisplacementsThatAreNoNumberAtNodesOfNoCell) {
+  const ScratchFolder folder;
+  Mesh mesh = two_tets();
+  mesh.rest_positions.push_back({9, 9, 9});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> rows(15, 1.0);
+  rows.insert(rows.end(), 3, nan);
+  write_mesh(folder / "m.vtkhdf", mesh);
+  Hdf5Editor(folder / "m.vtkhdf").dataset("VTKHDF/PointData/displacement", {6, 3}, rows);
+
+  const std::vector<Point3> moved = MeshReader(folder / "m.vtkhdf").read_step(0);
+  EXPECT_EQ(moved[4], (Point3{2, 2, 2}));
+  EXPECT_EQ(moved[5], (Point3{9, 9, 9}));
+  rows[12] = nan;
+  Hdf5Editor(folder / "m.vtkhdf").dataset("VTKHDF/PointData/displacement", {6, 3}, rows);
+  EXPECT_NE(io_error([&] {
+              MeshReader(folder / "m.vtkhdf").read_step(0);
+            }).find("displacement: node 4 is not finite"),
+            std::string::npos);
+}
+
 TEST(VtkhdfMesh, RefusesToWriteWhatCannotBeRead) {
   const ScratchFolder folder;
   Mesh outside = two_tets();

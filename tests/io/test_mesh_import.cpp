@@ -237,6 +237,46 @@ TEST_F(MeshImport, KeepsHexahedra) {
   }
 }
 
+/// msh4_file() with a sixth node that no cell has.
+std::string with_stray_node() {
+  std::string text = msh4_file();
+  const std::string nodes = "1 5 10 50\n3 1 0 5\n", last = "1 1 1\n$EndNodes";
+  text.replace(text.find(nodes), nodes.size(), "1 6 10 60\n3 1 0 6\n");
+  text.replace(text.find("50\n0 0 0\n"), 3, "50\n60\n");
+  return text.replace(text.find(last), 6, "1 1 1\n9 9 9\n");
+}
+
+/// Nodes of no cell need no data, and what they have moves nothing. Others need all.
+TEST_F(MeshImport, TakesDataOfTheNodesThatCellsHave) {
+  const auto partial = imported("a.msh", with_stray_node());
+  if (!partial) GTEST_SKIP() << error;
+  std::string text = with_stray_node();
+  const std::string rows = "3\n0\n3\n5\n";
+  text.replace(text.find(rows), rows.size(), "3\n0\n3\n6\n60 nan nan nan\n");
+  const auto no_number = imported("b.msh", text);
+  std::string lacking = with_stray_node();
+  lacking.replace(lacking.find(rows), rows.size(), "3\n0\n3\n4\n");
+  lacking.replace(lacking.find("50 0 0 0\n$End"), 9, "");
+  const std::string message = complaint("c.msh", lacking);
+
+  std::string old = msh2_file();
+  old.replace(old.find("$EndNodes"), 0, "60 9 9 9\n");
+  old.replace(old.find("$Nodes\n5"), 8, "$Nodes\n6");
+  const auto lost = imported("d.msh", old);
+
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->left_out, std::vector<std::string>{"1 nodes of no cell"});
+  for (const auto& mesh : {partial, no_number}) {
+    ASSERT_TRUE(mesh);
+    ASSERT_EQ(mesh->mesh.rest_positions.size(), 6U);
+    EXPECT_EQ(mesh->mesh.tets, two_tets().tets);
+    EXPECT_EQ(mesh->displacements.back()[4], (Point3{4, 8, 12}));
+    for (const auto& step : mesh->displacements) EXPECT_EQ(step[5], (Point3{0, 0, 0}));
+  }
+  EXPECT_NE(message.find("step 0 has no data of node 50, which cells have"), std::string::npos)
+      << message;
+}
+
 /// The readers run in a fork of this process, in which its other threads are missing.
 TEST_F(MeshImport, WorksBesideOtherThreads) {
 #ifdef __SANITIZE_ADDRESS__
@@ -309,7 +349,7 @@ TEST_F(MeshImport, RefusesWhatItCannotReadInOneLine) {
     EXPECT_NE(message.find(bad.expected), std::string::npos) << bad.name << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
-  EXPECT_NE(complaint("j.stl", "").find(".msh, .vtu or .vtk"), std::string::npos);
+  EXPECT_NE(complaint("j.xyz", "").find(".msh, .vtu or .vtk"), std::string::npos);
 }
 }  // namespace
 }  // namespace tetwarp::test

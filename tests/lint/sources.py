@@ -51,7 +51,7 @@ DECLARED_IN = {
     "host/contact/cuda/device.hpp": ["host/contact/cuda/contact_nocuda.cpp"],
     "io/import/mesh_import.hpp": [
         "io/import/mesh_gmsh.cpp", "io/import/mesh_nogmsh.cpp", "io/import/mesh_novtk.cpp",
-        "io/import/mesh_vtk.cpp"],
+        "io/import/mesh_vtk.cpp", "io/import/surface_vtk.cpp"],
     # Compiling CUB takes long: only this file includes it.
     "kernels/exec/exec_cuda.cuh": ["kernels/exec/primitives_cuda.cu"],
 }

@@ -43,6 +43,7 @@ const Slip slips[] = {
     {"\"kind\": \"cloth\"", "\"kind\": \"scripted\"",
      "bodies[3].stretch: is not for scripted bodies"},
     {"\"type\": \"box\"", "\"type\": \"cube\"", "bodies[0].shape.type: is no shape, expected box"},
+    {"\"type\": \"box\"", "\"type\": \"bix\"", "plate; did you mean 'box'?"},
     {"\"half\": [1, 2, 3]", "\"half\": [1, 2, -3]",
      "bodies[0].shape.half: is -3, expected a number above 0 (m)"},
     {"\"half\": [1, 2, 3]", "\"halb\": [1, 2, 3]", "bodies[0].shape.half: is missing"},

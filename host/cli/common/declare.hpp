@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/nearest_word.hpp"
+
 namespace tetwarp::cli {
 
 /// Declares the option --quiet: print nothing but errors.
@@ -67,7 +69,9 @@ T meaning_of(const std::string& option, const std::string& word, const Choices<T
   const auto found = std::find_if(choices.begin(), choices.end(),
                                   [&](const auto& choice) { return choice.first == word; });
   if (found == choices.end()) {
-    throw CLI::ValidationError(option, "'" + word + "' is not one of " + listed(words_of(choices)));
+    const std::string remedy = did_you_mean(word, words_of(choices));
+    throw CLI::ValidationError(option, "'" + word + "' is not one of " + listed(words_of(choices)) +
+                                           (remedy.empty() ? "" : "; " + remedy));
   }
   return found->second;
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <tetwarp/mesh_import.hpp>
 
+#include "io/files/extension.hpp"
 #include "io/files/finished_file.hpp"
 
 namespace tetwarp::cli {
@@ -18,9 +19,6 @@ void check_output_folder(const std::string& folder, const std::string& output) {
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
     throw IoError(output, "", "'" + folder + "' is not a folder; name another one");
   }
-  if (!fs::is_directory(folder, error)) {
-    throw IoError(output, "", "folder '" + folder + "' does not exist; create it first");
-  }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
     throw IoError(output, "", "no permission to write in folder '" + folder + "'");
   }
@@ -28,7 +26,7 @@ void check_output_folder(const std::string& folder, const std::string& output) {
 
 void check_new_folder(const std::string& folder, const std::string& output) {
   std::error_code error;
-  fs::path above = fs::absolute(folder, error);
+  fs::path above = fs::exists(folder, error) ? fs::path(folder) : fs::absolute(folder, error);
   while (!fs::exists(above, error) && above.has_relative_path()) above = above.parent_path();
   check_output_folder(above.string(), output);
 }
@@ -49,25 +47,25 @@ void check_output_file(const std::string& output, const std::vector<std::string>
     }
   }
   const std::string folder = fs::path(link_target(output)).parent_path().string();
-  check_output_folder(folder.empty() ? "." : folder, output);
+  check_new_folder(folder.empty() ? "." : folder, output);
 }
 
 namespace {
-bool is_hdf_extension(const std::string& extension) {
-  return extension == ".vtkhdf" || extension == ".hdf" || extension == ".h5";
+bool has_hdf_extension(const std::string& name) {
+  return has_extension(name, ".vtkhdf") || has_extension(name, ".hdf") ||
+         has_extension(name, ".h5");
 }
 }  // namespace
 
 void check_hdf_name(const std::string& output) {
-  if (!is_hdf_extension(fs::path(output).extension().string())) {
+  if (!has_hdf_extension(output)) {
     throw IoError(output, "", "the name of a VTKHDF file ends in .vtkhdf, .hdf or .h5");
   }
 }
 
 void check_volume_name(const std::string& output) {
   if (has_nifti_name(output)) return;
-  const std::string extension = fs::path(output).extension().string();
-  if (!is_hdf_extension(extension)) {
+  if (!has_hdf_extension(output)) {
     throw IoError(output, "", "the name of a volume ends in .vtkhdf, .hdf, .h5, .nii or .nii.gz");
   }
 }
@@ -83,6 +81,8 @@ struct ForeignFormat {
 constexpr const char* to_nifti = "convert it to NIfTI, for example by SimpleITK or 3D Slicer";
 constexpr const char* to_vtu =
     "convert it to .vtu, .vtk or .msh, for example by ParaView or meshio";
+constexpr const char* to_mesh =
+    "make a mesh of tetrahedra of it: tetwarp mesh --from-surface, or Gmsh";
 constexpr ForeignFormat foreign_formats[] = {
     {".nrrd", "NRRD image", to_nifti},
     {".nhdr", "NRRD image", to_nifti},
@@ -100,10 +100,10 @@ constexpr ForeignFormat foreign_formats[] = {
     {".med", "MED mesh", to_vtu},
     {".xdmf", "XDMF mesh", to_vtu},
     {".mesh", "Medit mesh", to_vtu},
-    {".stl", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
-    {".ply", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
-    {".obj", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"},
-    {".vtp", "surface", "make a mesh of tetrahedra of it, for example by Gmsh"}};
+    {".stl", "surface", to_mesh},
+    {".ply", "surface", to_mesh},
+    {".obj", "surface", to_mesh},
+    {".vtp", "surface", to_mesh}};
 
 /// Throws IoError for a file that is known not to be readable: of another format, or empty.
 void refuse_foreign(const std::string& path, const std::string& expected) {
@@ -112,7 +112,7 @@ void refuse_foreign(const std::string& path, const std::string& expected) {
     throw IoError(path, "", "is empty, expected a " + expected + "; copy it again");
   }
   for (const ForeignFormat& format : foreign_formats) {
-    if (!path.ends_with(format.extension)) continue;
+    if (!has_extension(path, format.extension)) continue;
     throw IoError(path, "",
                   std::string("is a ") + format.noun + ", which is not read; " + format.remedy);
   }
@@ -121,7 +121,7 @@ void refuse_foreign(const std::string& path, const std::string& expected) {
 /// What a file is, in words for a message.
 std::string noun_of(const std::string& path, FileKind kind) {
   if (kind == FileKind::unknown && has_mesh_extension(path)) return "mesh";
-  if (kind == FileKind::unknown && (has_nifti_name(path) || path.ends_with(".hdr"))) {
+  if (kind == FileKind::unknown && (has_nifti_name(path) || has_extension(path, ".hdr"))) {
     return "file without a NIfTI header (damaged, truncated or of another format)";
   }
   return name_of(kind);

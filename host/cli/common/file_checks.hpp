@@ -8,13 +8,14 @@
 
 namespace tetwarp::cli {
 
-/// Checks that a file can be written: not a folder, none of `inputs`, and its folder is writable.
+/// Checks that a file can be written: not a folder, none of `inputs`, and its folder is writable or
+/// can be made, as FinishedFile does.
 void check_output_file(const std::string& output, const std::vector<std::string>& inputs);
 
 /// Checks that a folder exists and is writable. @param output  named in the message
 void check_output_folder(const std::string& folder, const std::string& output);
 
-/// Checks that a folder that does not exist can be made: the nearest folder above it that exists is
+/// Checks that a folder is writable or can be made: it, or the nearest one above it that exists, is
 /// writable. @param output  named in the message
 void check_new_folder(const std::string& folder, const std::string& output);
 

@@ -16,6 +16,7 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/json_text.hpp"
 #include "host/cli/contact/contact_arguments.hpp"
 #include "io/files/finished_file.hpp"
 
@@ -91,7 +92,7 @@ void write_report(const std::string& path,
   json["timings"]["read"] = seconds.read;
   json["timings"]["write"] = seconds.write;
   json["timings"]["total"] = seconds.read + report.total_seconds + seconds.write;
-  write_finished_file(path, json.dump(2) + "\n");
+  write_finished_file(path, json_text(json, 2) + "\n");
 }
 
 /// "residual 1.2e-07 after 40 sweeps".

@@ -65,6 +65,9 @@ void Fingerprint::add(const NiftiFacts& facts) {
   add(facts.intent_name);
   add(facts.description);
   add(facts.component_axes);
+  add(facts.cal_min);
+  add(facts.cal_max);
+  add(facts.time_step);
 }
 
 void Fingerprint::add(const WarpOptions& options) {

@@ -17,6 +17,7 @@
 #include "host/cli/job/array_checks.hpp"
 #include "host/cli/job/memory_plan.hpp"
 #include "host/cli/job/output_writer.hpp"
+#include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -101,13 +102,12 @@ std::vector<ArrayHeader> choose_arrays(const VolumeHeader& header,
   return chosen;
 }
 
-/// Checks that the volume has the steps that are to be warped.
-void check_source_steps(const std::string& path,
-                        const VolumeHeader& header,
-                        const WarpArguments& arguments,
-                        const std::vector<std::int64_t>& steps) {
+/// Checks that the volume has the last step that is to be warped.
+void check_volume_step(const std::string& path,
+                       const VolumeHeader& header,
+                       const WarpArguments& arguments,
+                       std::int64_t last) {
   const auto count = std::max<std::int64_t>(1, std::ssize(header.times));
-  const std::int64_t last = arguments.source_step_of(steps.back());
   if (last < count) return;
   throw IoError(path, "",
                 arguments.pair
@@ -118,6 +118,28 @@ void check_source_steps(const std::string& path,
                                   last, count, count - 1));
 }
 
+/// Which step of the mesh warps which step of the volume.
+void set_steps(VolumePlan& plan,
+               const VolumeHeader& header,
+               const WarpArguments& arguments,
+               const MeshHeader& mesh,
+               const std::vector<std::int64_t>& steps) {
+  plan.has_one_deformation = mesh.times.size() <= 1 && header.times.size() > 1 && !arguments.pair &&
+                             !arguments.source_step;
+  plan.is_series = arguments.temporal || plan.has_one_deformation;
+  if (plan.has_one_deformation) {
+    for (std::int64_t step = 0; step < std::ssize(header.times); ++step) {
+      plan.steps.push_back({step, 0, step, header.times[static_cast<std::size_t>(step)]});
+    }
+    return;
+  }
+  for (const std::int64_t step : steps) {
+    const std::int64_t source = arguments.pair ? step : arguments.source_step.value_or(0);
+    plan.steps.push_back({step, step, source, mesh.times[static_cast<std::size_t>(step)]});
+  }
+  check_volume_step(plan.path, header, arguments, plan.steps.back().volume_step);
+}
+
 /// True when writing a step while the next one is computed saves time: on a device, with fewer
 /// threads than processors, or with compression, which uses one thread.
 bool leaves_time(Backend backend, const WarpArguments& arguments) {
@@ -126,51 +148,28 @@ bool leaves_time(Backend backend, const WarpArguments& arguments) {
   return backend != Backend::cpu || threads < processors || arguments.compress > 0;
 }
 
-/// Throws std::invalid_argument when VTKHDF cannot hold the output.
-void check_flat(const VolumePlan& plan, const fs::path& output) {
-  if (has_nifti_name(output.string())) return;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (plan.written_grid.dims[axis] == 1) {
-      throw std::invalid_argument(
-          fmt::format("{}: the output has a single voxel along {}, which VTK cannot read; write "
-                      "NIfTI (.nii.gz) "
-                      "or widen --roi, --dims or the source to two",
-                      plan.path, "ijk"[axis]));
-    }
-  }
-}
-
 /// One file per step: `output` for a single file, else its stem with the number of the step.
-std::vector<std::string> output_names(const fs::path& output,
-                                      const std::vector<std::int64_t>& steps,
-                                      bool temporal) {
-  if (temporal || steps.size() == 1) return {output.string()};
+std::vector<std::string> output_names(const fs::path& output, const VolumePlan& plan) {
+  if (plan.is_series || plan.steps.size() == 1) return {output.string()};
   std::vector<std::string> names;
-  for (const std::int64_t step : steps) {
+  for (const WarpStep& step : plan.steps) {
     const SplitName name = split_name(output.string());
-    names.push_back(fmt::format("{}_{:04}{}", name.stem, step, name.extension));
+    names.push_back(fmt::format("{}_{:04}{}", name.stem, step.number, name.extension));
   }
   return names;
 }
 
-/// Sets steps and names of outputs, and warns of times that the output does not keep.
-void set_outputs(VolumePlan& plan,
-                 const fs::path& output,
-                 const WarpArguments& arguments,
-                 const MeshReader& mesh,
-                 const std::vector<std::int64_t>& steps) {
-  plan.steps = steps;
-  plan.outputs = output_names(output, steps, arguments.temporal);
+/// Sets names of outputs, and warns of times that the output does not keep.
+void set_outputs(VolumePlan& plan, const fs::path& output, const WarpArguments& arguments) {
+  plan.outputs = output_names(output, plan);
   for (const std::string& name : plan.outputs) {
     const std::vector<std::string> files = files_of_output(name, arrays_written(plan, arguments));
     plan.files.insert(plan.files.end(), files.begin(), files.end());
   }
-  if (arguments.temporal) {
+  if (plan.is_series) {
     std::vector<double> times;
-    times.reserve(steps.size());
-    for (const std::int64_t step : steps) {
-      times.push_back(mesh.header().times[static_cast<std::size_t>(step)]);
-    }
+    times.reserve(plan.steps.size());
+    for (const WarpStep& step : plan.steps) times.push_back(step.time);
     const std::string warning = times_warning(output.string(), times);
     if (!warning.empty()) plan.warnings.push_back(warning);
   }
@@ -185,10 +184,20 @@ VolumePlan plan_volume(const std::string& path,
   VolumePlan plan;
   plan.path = path;
   plan.read = read_options(path, arguments, output);
+  const VolumeHeader stored = read_volume_header(path, plan.read);
+  plan.read.are_labels = arguments.warp.filter == Filter::labels;
   const VolumeHeader header = read_volume_header(path, plan.read);
-  check_source_steps(path, header, arguments, steps);
+  set_steps(plan, header, arguments, mesh.header(), steps);
   plan.arrays = choose_arrays(header, arguments, path);
   plan.active = header.active;
+  plan.notes = volume_notes(path, header, arguments);
+  for (const ArrayHeader& array : plan.arrays) {
+    const auto is_same = [&](const ArrayHeader& one) { return one.name == array.name; };
+    const PixelType type = std::ranges::find_if(stored.arrays, is_same)->type;
+    if (type == array.type) continue;
+    plan.notes.push_back(fmt::format("{}: {}: labels of {} are written as {}", path, array.name,
+                                     name_of(type), name_of(array.type)));
+  }
   plan.source_grid = header.grid;
   check_arrays(path, plan.source_grid, plan.arrays, arguments);
   plan.warnings = volume_warnings(path, header, mesh.header(), arguments);
@@ -201,17 +210,21 @@ VolumePlan plan_volume(const std::string& path,
   } catch (const std::invalid_argument& error) {
     throw IoError(path, "", fmt::format("--roi: {}", error.what()));
   }
-  check_flat(plan, output);
   if (arguments.extra.contains(forward_output) && plan.output_grid != plan.source_grid) {
     throw std::invalid_argument(path +
                                 ": --outputs forward is on the volume's own grid; leave out "
                                 "--grid, --dims, --origin, --spacing and --direction");
   }
-  plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && steps.size() > 1 &&
+  plan.writes_beside = plan_memory(plan, arguments, mesh, steps) && plan.steps.size() > 1 &&
                        leaves_time(backend, arguments);
   // On the cpu begin_step() computes the step: the previous one is finished and written first.
   plan.overlaps = plan.writes_beside && backend != Backend::cpu;
-  set_outputs(plan, output, arguments, mesh, steps);
+  set_outputs(plan, output, arguments);
+  const auto is_field = [](const ArrayHeader& array) { return nifti_array(array).is_itk_field; };
+  if (has_nifti_name(output.string()) && itk_components(plan.written_grid) == 2 &&
+      std::ranges::any_of(arrays_written(plan, arguments), is_field)) {
+    plan.notes.push_back(output.string() + ": " + itk_slice_note);
+  }
   return plan;
 }
 
@@ -220,38 +233,29 @@ VolumePlan plan_volume(const std::string& path,
 std::string output_name_of(const std::string& volume) {
   std::string name = fs::path(volume).filename().string();
   for (const std::string end : {".hdr", ".hdr.gz", ".img", ".img.gz"}) {
-    if (name.ends_with(end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
+    if (has_extension(name, end)) return name.substr(0, name.size() - end.size()) + ".nii.gz";
   }
   check_volume_name(name);
   return name;
 }
 
 /// Checks that the folder of the outputs can be written to, or made.
-/// @param makes_parents  the folders above it, too
-void check_folder(const std::string& folder, bool makes_parents) {
+void check_folder(const std::string& folder) {
   std::error_code error;
-  if (!fs::exists(folder, error)) {
-    makes_parents ? check_new_folder(folder, folder) : check_output_file(folder, {});
-  } else if (!fs::is_directory(folder, error)) {
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
     throw IoError(folder, "", "is a file; the output of several volumes is a folder");
-  } else {
-    check_output_folder(folder, folder);
   }
+  check_new_folder(folder, folder);
 }
 
 /// Checks that outputs and report can be written and that no two of them are the same file.
 void check_outputs(const JobPlan& plan, const WarpArguments& arguments) {
-  const fs::path folder = plan.output_folder;
-  if (!folder.empty()) check_folder(folder.string(), arguments.makes_folder);
+  if (!plan.output_folder.empty()) check_folder(plan.output_folder);
   std::vector<std::string> outputs = plan.outputs();
   if (!arguments.report.empty()) outputs.push_back(arguments.report);
   std::set<std::string> seen;
   for (const std::string& output : outputs) {
-    std::error_code error;
-    const bool is_in_folder =
-        output != arguments.report || fs::path(output).parent_path() == folder;
-    const bool folder_is_made = !folder.empty() && is_in_folder && !fs::exists(folder, error);
-    if (!folder_is_made) check_output_file(output, inputs_of(arguments));
+    check_output_file(output, inputs_of(arguments));
     if (!seen.insert(canonical_path(output)).second) {
       throw IoError(output, "", "would be written twice; give the volumes or outputs other names");
     }
@@ -268,9 +272,7 @@ std::vector<std::string> JobPlan::outputs() const {
 }
 
 bool may_resume_within(const VolumePlan& volume, const WarpArguments& arguments) {
-  if (!arguments.temporal || !arguments.resume) return false;
-  // VTKHDF holds no image of a single slice.
-  return std::ranges::find(volume.written_grid.dims, 1) == volume.written_grid.dims.end();
+  return volume.is_series && arguments.resume;
 }
 
 JobPlan plan_job(const WarpArguments& arguments) {
@@ -295,20 +297,14 @@ JobPlan plan_job(const WarpArguments& arguments) {
   const std::vector<std::string> volumes = arguments.volumes();
   const bool several = volumes.size() > 1;
   if (several) plan.output_folder = arguments.output;
-  if (!several) {
-    check_volume_name(arguments.output);
-    const fs::path folder = fs::path(arguments.output).parent_path();
-    std::error_code error;
-    if (arguments.makes_folder && !folder.empty() && !fs::exists(folder, error)) {
-      plan.output_folder = folder.string();
-    }
-  }
+  if (!several) check_volume_name(arguments.output);
   for (const std::string& volume : volumes) {
     const fs::path output =
         several ? fs::path(arguments.output) / output_name_of(volume) : fs::path(arguments.output);
     plan.volumes.push_back(plan_volume(volume, output, arguments, plan.mesh, backend, plan.steps));
-    const Warnings& more = plan.volumes.back().warnings;
-    plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
+    const VolumePlan& planned = plan.volumes.back();
+    plan.warnings.insert(plan.warnings.end(), planned.warnings.begin(), planned.warnings.end());
+    plan.notes.insert(plan.notes.end(), planned.notes.begin(), planned.notes.end());
   }
   check_axes_turn(plan, arguments);
   check_outputs(plan, arguments);

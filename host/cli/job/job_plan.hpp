@@ -2,7 +2,9 @@
 /// What a warp will read, compute and write. Making a plan finds every error that can be found
 /// without reading samples, before anything is written.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,14 @@
 
 namespace tetwarp::cli {
 
+/// A step of the mesh, and the step of the volume that it warps.
+struct WarpStep {
+  std::int64_t number;     ///< in names of files and in the report
+  std::int64_t mesh_step;  ///< the same, but 0 of a mesh of one step that warps a series
+  std::int64_t volume_step;
+  double time;  ///< in a series
+};
+
 /// One volume file.
 struct VolumePlan {
   std::string path;
@@ -23,8 +33,10 @@ struct VolumePlan {
   Grid source_grid;
   Grid output_grid;                  ///< the whole, of which --roi may be a part
   Grid written_grid;                 ///< output_grid, or the part that --roi takes of it
-  std::vector<std::int64_t> steps;   ///< of the mesh; with several ranks those of this rank
-  std::vector<std::string> outputs;  ///< one per step; a single one with --temporal
+  std::vector<WarpStep> steps;       ///< with several ranks those of this rank
+  bool has_one_deformation = false;  ///< the one step of the mesh warps all steps of the volume
+  bool is_series = false;            ///< all steps are written to one file
+  std::vector<std::string> outputs;  ///< one per step; a single one of a series
   std::vector<std::string> files;    ///< all that are written: of NIfTI one per output and array
   double memory_limit = 0;           ///< limit for computing in blocks [byte]; 0: as a whole
   double memory = 0;                 ///< of the process that computes the whole [byte]
@@ -32,19 +44,26 @@ struct VolumePlan {
   bool writes_beside = false;        ///< write a step while the next one is computed
   bool overlaps = false;             ///< begin a step before the previous one is copied to the host
   Warnings warnings;
+  Warnings notes;  ///< what is left out by design: no error with --strict
 
+  /// Arrays of a series that differ from step to step. The others, of NIfTI images, are written
+  /// once.
+  std::size_t changing_arrays() const {
+    return has_one_deformation ? arrays.size() : std::numeric_limits<std::size_t>::max();
+  }
   std::int64_t files_per_output() const { return std::ssize(files) / std::ssize(outputs); }
 };
 
 /// A whole job.
 struct JobPlan {
   MeshReader mesh;
-  std::vector<std::int64_t> steps;  ///< ascending
+  std::vector<std::int64_t> steps;  ///< of the mesh, ascending
   Backend backend;                  ///< never automatic
   std::string backend_reason;       ///< why this one
-  std::string output_folder;        ///< created when missing; empty: it exists
+  std::string output_folder;        ///< of several volumes, created when missing; else empty
   std::vector<VolumePlan> volumes;
   Warnings warnings;  ///< those of the volumes included
+  Warnings notes;     ///< of the volumes
 
   std::vector<std::string> outputs() const;
 };

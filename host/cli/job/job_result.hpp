@@ -36,6 +36,7 @@ struct StepPlan {
 struct JobResult {
   Report report;
   std::vector<std::string> outputs;  ///< of all steps and volumes, also those skipped
+  std::string steps;                 ///< what was done with steps, for the summary; empty: no word
   std::vector<StepPlan> plans;       ///< filled by --dry-run, which does nothing else
   std::string refusal;               ///< with --dry-run: why the job cannot run here
   std::int64_t written = 0;          ///< outputs written

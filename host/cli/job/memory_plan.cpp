@@ -99,11 +99,11 @@ double temporary_disk(const VolumePlan& plan, const WarpArguments& arguments, st
     const std::int64_t step = arguments.source_step.value_or(0);
     bytes += VolumeReader(plan.path, array.name, step, plan.read).unpacked_bytes();
   }
-  const auto steps = arguments.temporal ? static_cast<double>(plan.steps.size()) : 1;
+  const auto steps = plan.is_series ? static_cast<double>(plan.steps.size()) : 1;
   const double outputs = steps * static_cast<double>(plan.written_grid.voxel_count()) *
                          voxel_bytes(arrays_written(plan, arguments));
   if (may_resume_within(plan, arguments)) bytes += outputs;
-  if (!has_nifti_name(plan.outputs.front()) || (blocks <= 1 && !arguments.temporal)) return bytes;
+  if (!has_nifti_name(plan.outputs.front()) || (blocks <= 1 && !plan.is_series)) return bytes;
   return bytes + outputs;
 }
 

@@ -2,7 +2,10 @@
 /// Names of output files, and one writer for each.
 #include "host/cli/job/output_writer.hpp"
 
+#include <algorithm>
 #include <filesystem>
+
+#include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -13,20 +16,20 @@ bool is_displacement(const ArrayHeader& array) {
 
 ArrayHeader nifti_array(ArrayHeader array, const std::optional<Axes>& axes) {
   NiftiFacts facts = array.nifti.value_or(default_nifti_facts(array.components));
-  const bool is_field = is_displacement(array);
-  facts.component_axes = axes.value_or(is_field ? Axes::lps : facts.component_axes);
+  const bool is_field = is_displacement(array) && array.components == 3 && !is_integer(array.type);
+  array.is_itk_field = is_field && axes != Axes::ras;
+  facts.component_axes = array.is_itk_field ? Axes::lps : axes.value_or(facts.component_axes);
   // ITK turns displacements of this intent from RAS to LPS when it reads them.
-  if (is_field && facts.component_axes == Axes::ras) {
-    facts.intent_code = nifti_displacement_intent;
-  }
+  if (is_field && !array.is_itk_field) facts.intent_code = nifti_displacement_intent;
   array.nifti = facts;
   return array;
 }
 
 SplitName split_name(const std::string& path) {
   const std::string whole = ".nii.gz";
-  const std::string extension =
-      path.ends_with(whole) ? whole : std::filesystem::path(path).extension().string();
+  const std::string extension = has_extension(path, whole)
+                                    ? path.substr(path.size() - whole.size())
+                                    : std::filesystem::path(path).extension().string();
   return {path.substr(0, path.size() - extension.size()), extension};
 }
 
@@ -50,7 +53,9 @@ OutputWriter::OutputWriter(const std::string& output,
                            const std::vector<ArrayHeader>& arrays,
                            const VolumeWriteOptions& options,
                            bool is_temporal,
-                           ChunkShape chunks) {
+                           std::size_t changing,
+                           ChunkShape chunks)
+    : changing_(std::min(changing, arrays.size())) {
   if (!has_nifti_name(output)) {
     files_.emplace_back(output, grid, arrays, options, is_temporal, chunks);
     return;
@@ -58,21 +63,26 @@ OutputWriter::OutputWriter(const std::string& output,
   const std::vector<std::string> files = files_of_output(output, arrays);
   for (std::size_t a = 0; a < arrays.size(); ++a) {
     const std::vector<ArrayHeader> array = {nifti_array(arrays[a])};
-    files_.emplace_back(files[a], grid, array, options, is_temporal, chunks);
+    files_.emplace_back(files[a], grid, array, options, is_temporal && a < changing_, chunks);
   }
 }
 
 void OutputWriter::begin_step(double time) {
-  for (BlockVolumeWriter& file : files_) file.begin_step(time);
+  ++steps_;
+  for (std::size_t f = 0; f < files_.size() && f < changing_; ++f) files_[f].begin_step(time);
 }
 
 void OutputWriter::repeat_step(double time) {
-  for (BlockVolumeWriter& file : files_) file.repeat_step(time);
+  ++steps_;
+  for (std::size_t f = 0; f < files_.size() && f < changing_; ++f) files_[f].repeat_step(time);
 }
 
 void OutputWriter::write(std::size_t array, const Region& region, const void* samples) {
-  files_.size() == 1 ? files_.front().write(array, region, samples)
-                     : files_[array].write(0, region, samples);
+  if (files_.size() == 1) {
+    files_.front().write(array, region, samples);
+  } else if (array < changing_ || steps_ <= 1) {
+    files_[array].write(0, region, samples);
+  }
 }
 
 WrittenFile OutputWriter::finish() {

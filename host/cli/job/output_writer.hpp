@@ -1,6 +1,8 @@
 /// @file output_writer.hpp
 /// The files of an output: one of VTKHDF for all arrays, or one NIfTI image for each array.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,9 +12,15 @@
 namespace tetwarp::cli {
 
 /// An array as a NIfTI image holds it: with its facts, or the defaults if it has none.
-/// @param axes  of vectors and tensors; nothing: LPS for displacement fields of the warp, which ITK
-///              and ANTs read, else those of the file that the array comes from
+/// @param axes  of vectors and tensors; nothing: those of the file that the array comes from.
+///              Displacement fields of the warp are written as ITK and ANTs read them, unless RAS
+///              is asked for
 ArrayHeader nifti_array(ArrayHeader array, const std::optional<Axes>& axes = {});
+
+/// What is left out of a displacement field of two components.
+inline constexpr const char* itk_slice_note =
+    "the displacement field of a single slice has the two components in the slice, as ITK's 2D "
+    "transforms take it; the third one is left out";
 
 /// NAME and EXTENSION of a file; .nii.gz is one extension.
 struct SplitName {
@@ -29,11 +37,15 @@ std::vector<std::string> files_of_output(const std::string& output,
 /// Writes these files region by region; calls and errors as of BlockVolumeWriter.
 class OutputWriter {
  public:
+  /// @param changing  arrays of a series that differ from step to step, the first ones; NIfTI
+  /// images
+  ///                  of the others hold the first step alone
   OutputWriter(const std::string& output,
                const Grid& grid,
                const std::vector<ArrayHeader>& arrays,
                const VolumeWriteOptions& options,
                bool is_temporal,
+               std::size_t changing,
                ChunkShape chunks);
 
   void begin_step(double time);
@@ -44,6 +56,8 @@ class OutputWriter {
 
  private:
   std::vector<BlockVolumeWriter> files_;
+  std::size_t changing_;  ///< files that have all steps of a series; the others have the first
+  std::int64_t steps_ = 0;
 };
 
 }  // namespace tetwarp::cli

@@ -102,6 +102,12 @@ Warnings volume_warnings(const std::string& path,
                     "takes step n for step n, --source-step another one",
                     path, volume.times.size()));
   }
+  if (arguments.pair && volume.times.size() > mesh.times.size()) {
+    warnings.push_back(fmt::format(
+        "{}: --pair: the mesh has {} of the {} steps of the volume, the others are left out{}",
+        path, mesh.times.size(), volume.times.size(),
+        mesh.times.size() == 1 ? "; without --pair its one step warps all of them" : ""));
+  }
   if (!arguments.arrays.empty()) return warnings;
   std::string changes;
   if (!volume.not_read.empty()) changes = "not warped: " + listed(volume.not_read);
@@ -113,6 +119,23 @@ Warnings volume_warnings(const std::string& path,
     warnings.push_back(path + ": " + changes + "; --array names what to warp");
   }
   return warnings;
+}
+
+Warnings volume_notes(const std::string& path,
+                      const VolumeHeader& volume,
+                      const WarpArguments& arguments) {
+  Warnings notes;
+  if (!volume.left_out.empty()) notes.push_back(path + ": left out: " + listed(volume.left_out));
+  if (!arguments.arrays.empty()) return notes;
+  std::vector<std::string> results;
+  for (const ArrayHeader& array : volume.arrays) {
+    if (array.name.starts_with("tetwarp_")) results.push_back(array.name);
+  }
+  if (!results.empty() && results.size() < volume.arrays.size()) {
+    notes.push_back(path + ": not warped: " + listed(results) +
+                    ", results of an earlier warp; --array names what to warp");
+  }
+  return notes;
 }
 
 Warnings array_warnings(const std::string& volume,
@@ -139,12 +162,15 @@ Warnings array_warnings(const std::string& volume,
   return warnings;
 }
 
-Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps) {
+Warnings step_warnings(const std::string& mesh,
+                       std::int64_t mesh_steps,
+                       std::span<const StepReport> steps) {
   Steps inverted, uncovered;
   for (const StepReport& step : steps) {
     const Counts& counts = step.counts;
-    if (counts.inverted > 0) inverted.emplace(step.step, &counts);
-    if (counts.voxels > 0 && counts.covered == 0) uncovered.emplace(step.step, &counts);
+    const std::int64_t number = mesh_steps > 1 ? step.step : 0;
+    if (counts.inverted > 0) inverted.emplace(number, &counts);
+    if (counts.voxels > 0 && counts.covered == 0) uncovered.emplace(number, &counts);
   }
   Warnings warnings;
   if (!inverted.empty()) {

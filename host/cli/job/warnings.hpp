@@ -1,6 +1,7 @@
 /// @file warnings.hpp
 /// Warnings of a warp: inputs and results that are valid but rarely intended. One line each.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +18,19 @@ using Warnings = std::vector<std::string>;
 /// A mesh without a deformation.
 Warnings mesh_warnings(const MeshHeader& mesh, const WarpArguments& arguments);
 
-/// A volume of several steps of which one is warped by all steps of the mesh. Unless --array names
-/// arrays: those that are not read, and those of float16, which become float32.
+/// A volume of several steps of which one is warped by all steps of the mesh, or some have no pair.
+/// Unless --array names arrays: those that are not read, and those of float16, which become
+/// float32.
 Warnings volume_warnings(const std::string& path,
                          const VolumeHeader& volume,
                          const MeshHeader& mesh,
                          const WarpArguments& arguments);
+
+/// What is left out of a volume by design, which is no warning: what its header holds beyond what
+/// volumes keep, and results of an earlier warp that --array does not name.
+Warnings volume_notes(const std::string& path,
+                      const VolumeHeader& volume,
+                      const WarpArguments& arguments);
 
 /// A background that the type of an array cannot hold; densities and totals that its integers
 /// round.
@@ -33,7 +41,10 @@ Warnings array_warnings(const std::string& volume,
 
 /// Results of steps: inverted cells, and meshes that cover no voxel. Steps that were not computed
 /// have no warnings.
-Warnings step_warnings(const std::string& mesh, std::span<const StepReport> steps);
+/// @param mesh_steps  of the mesh; a single one has the number 0 whatever it warps
+Warnings step_warnings(const std::string& mesh,
+                       std::int64_t mesh_steps,
+                       std::span<const StepReport> steps);
 
 /// Times of the steps of a series that its format or its readers do not keep: in NIfTI those that
 /// are not equally spaced, in VTKHDF those that do not increase. Empty when there are none.

@@ -148,7 +148,7 @@ void declare_files(CLI::App& app, WarpArguments& arguments) {
       ->allow_extra_args(false)
       ->type_name("NAME");
   app.add_option("--source-step", arguments.source_step,
-                 "step of a volume file with several steps [0]")
+                 "step of a volume file with several steps [0; by a mesh of one step all]")
       ->check(at_least(0))
       ->type_name("N");
   app.add_flag("--pair", arguments.pair, "warp step n of the volume by step n of the mesh");

@@ -22,7 +22,7 @@ struct WarpArguments {
   std::vector<std::string> files;           ///< volumes, then the mesh
   std::string output;                       ///< file, or folder for several volumes
   std::vector<std::string> arrays;          ///< empty: every array
-  std::optional<std::int64_t> source_step;  ///< of volume files with several steps; none: 0
+  std::optional<std::int64_t> source_step;  ///< of volume files with several steps
   bool pair = false;                        ///< step n of the mesh warps step n of the volume
   StepSelection steps;
   MeshReadOptions mesh;      ///< without the axes of `import`
@@ -40,14 +40,9 @@ struct WarpArguments {
   bool quiet = false;
   std::string report;
   std::string batch;
-  bool makes_folder = false;  ///< the output's folder is made if it is missing: for jobs of a batch
 
   std::vector<std::string> volumes() const { return {files.begin(), files.end() - 1}; }
   const std::string& mesh_file() const { return files.back(); }
-  /// The step of the volume that a step of the mesh warps.
-  std::int64_t source_step_of(std::int64_t step) const {
-    return pair ? step : source_step.value_or(0);
-  }
   Quantity quantity_of(const std::string& array) const {
     const auto found = quantities.find(array);
     return found == quantities.end() ? Quantity::components : found->second;

@@ -8,6 +8,7 @@
 #include "host/base/parallel.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/job/warp_arguments.hpp"
+#include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -104,10 +105,10 @@ void check_file_options(const SimulateArguments& arguments) {
   if (arguments.checkpoint_every > 0 && arguments.checkpoint.empty()) {
     refuse("--checkpoint-every", "needs --checkpoint FILE");
   }
-  if (!arguments.film.empty() && !arguments.film.ends_with(".gif")) {
+  if (!arguments.film.empty() && !has_extension(arguments.film, ".gif")) {
     refuse("--film", "the name of a film ends in .gif");
   }
-  if (!arguments.contacts.empty() && !arguments.contacts.ends_with(".vtkhdf")) {
+  if (!arguments.contacts.empty() && !has_extension(arguments.contacts, ".vtkhdf")) {
     refuse("--contacts", "the name of a file of contacts ends in .vtkhdf");
   }
 }

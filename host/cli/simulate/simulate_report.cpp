@@ -6,6 +6,7 @@
 #include <tetwarp/version.hpp>
 
 #include "host/base/parallel.hpp"
+#include "host/cli/common/json_text.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -69,7 +70,7 @@ std::string report_json(const SimulateArguments& arguments,
   json["warnings"] = result.warnings;
   json["bodies"] = json_of_bodies(simulator);
   json["series"] = json_of_series(series);
-  return json.dump(2);
+  return json_text(json, 2);
 }
 
 }  // namespace tetwarp::cli

@@ -26,36 +26,39 @@ constexpr double flush_interval = 0.5;      // least time between writes of resu
 constexpr double most_flush_share = 0.05;   // share of the time of a run for such writes
 constexpr double last_picture_seconds = 1;  // time for which a film shows its last picture [s]
 
-Scene load(const SimulateArguments& arguments) {
+/// @param files  out: the files that the scene names
+Scene load(const SimulateArguments& arguments, std::vector<std::string>& files) {
   if (!arguments.scene_name.empty()) {
     return parse_scene(scene_text(arguments.scene_name), arguments.scene_name);
   }
-  return read_scene(arguments.scene_file);
+  return read_scene(arguments.scene_file, &files);
 }
 
-/// Checks the names of all files before anything is computed.
+/// Checks the names of all files before anything is computed. The checkpoint that a run continues
+/// from may be replaced by its own.
 void check_files(const SimulateArguments& arguments) {
-  const std::vector<std::string> inputs =
-      arguments.scene_file.empty() ? std::vector<std::string>() : std::vector{arguments.scene_file};
-  std::error_code error;
-  if (fs::exists(arguments.folder, error)) {
-    check_output_folder(arguments.folder, arguments.folder);
-  } else {
-    check_new_folder(arguments.folder, arguments.folder);
-  }
-  for (const std::string& file :
-       {arguments.checkpoint, arguments.film, arguments.report, arguments.contacts}) {
-    if (file.empty()) continue;
-    const fs::path parent = fs::path(file).parent_path();
-    const bool is_in_new_folder =
-        !parent.empty() && canonical_path(parent.string()) == canonical_path(arguments.folder) &&
-        !fs::exists(arguments.folder, error);
-    if (!is_in_new_folder) check_output_file(file, inputs);
+  std::vector<std::string> inputs;
+  if (!arguments.scene_file.empty()) inputs.push_back(arguments.scene_file);
+  check_new_folder(arguments.folder, arguments.folder);
+  if (!arguments.checkpoint.empty()) check_output_file(arguments.checkpoint, inputs);
+  if (!arguments.restart.empty()) inputs.push_back(arguments.restart);
+  for (const std::string& file : {arguments.film, arguments.report, arguments.contacts}) {
+    if (!file.empty()) check_output_file(file, inputs);
   }
 }
 
-/// No two results are written to one file.
-void check_results(const SimulateArguments& arguments, const Scene& scene) {
+/// True for the names of the files that a run writes of a body.
+bool is_of_body(const std::string& name, const std::string& body) {
+  if (!name.starts_with(body + ".")) return false;
+  const std::string rest = name.substr(body.size());
+  return rest == ".vtkhdf" || rest == ".surface.vtkhdf" ||
+         (rest.starts_with(".warped_") && rest.ends_with(".vtkhdf"));
+}
+
+/// No two results are written to one file, and none to a file that the scene names.
+void check_results(const SimulateArguments& arguments,
+                   const Scene& scene,
+                   const std::vector<std::string>& inputs) {
   std::map<std::string, std::string> taken;  // what each path is
   const auto add = [&](const fs::path& path, const std::string& what, const char* option) {
     const auto [place, is_new] = taken.try_emplace(canonical_path(path.string()), what);
@@ -78,6 +81,42 @@ void check_results(const SimulateArguments& arguments, const Scene& scene) {
   add_option(arguments.checkpoint, "--checkpoint");
   add_option(arguments.contacts, "--contacts");
   add_option(arguments.film, "--film");
+  for (const std::string& input : inputs) {
+    const fs::path path = canonical_path(input);
+    const bool is_in_folder = path.parent_path() == canonical_path(folder.string());
+    for (const Body& body : scene.bodies) {
+      if (!is_in_folder || !is_of_body(path.filename().string(), body.name)) continue;
+      throw IoError(input, "",
+                    "is a file of the scene, and body '" + body.name +
+                        "' would be written to it; choose another folder for -o");
+    }
+    if (const auto found = taken.find(path.string()); found != taken.end()) {
+      throw IoError(
+          input, "",
+          "is a file of the scene and " + found->second + "; choose another name for the latter");
+    }
+  }
+}
+
+/// Adhesion that never breaks, which a scene may say without a wish for it.
+void add_adhesion_warnings(const std::string& file, const Scene& scene, Warnings& warnings) {
+  const auto check = [&](const std::optional<AdhesionMaterial>& adhesion,
+                         const std::string& place) {
+    if (!adhesion || adhesion->energy != 0 || adhesion->viscosity != 0) return;
+    warnings.push_back(file + ": " + place +
+                       ": with energy 0 and viscosity 0 bonds never weaken and never break; bonds "
+                       "with a viscosity above 0 do");
+  };
+  check(scene.contact.material.adhesion, "contact.adhesion");
+  for (std::size_t p = 0; p < scene.contact.pairs.size(); ++p) {
+    check(scene.contact.pairs[p].adhesion, "contact.pairs[" + std::to_string(p) + "].adhesion");
+  }
+  for (const Body& body : scene.bodies) {
+    if (body.contact) check(body.contact->adhesion, body.name + ".contact.adhesion");
+  }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (obstacle.contact) check(obstacle.contact->adhesion, obstacle.name + ".contact.adhesion");
+  }
 }
 
 std::vector<std::byte> bytes_of_file(const std::string& path) {
@@ -96,9 +135,10 @@ std::vector<std::byte> bytes_of_file(const std::string& path) {
 SimulateRun::SimulateRun(const SimulateArguments& arguments) : arguments_(arguments) {
   check_files(arguments);
   const Stopwatch reading;
-  Scene scene = load(arguments);
+  std::vector<std::string> files;
+  Scene scene = load(arguments, files);
   result_.read_seconds = reading.seconds();
-  check_results(arguments, scene);
+  check_results(arguments, scene, files);
   last_step_ = arguments.steps.value_or(scene.step_count());
   frames_.emplace(scene.output, scene.time_step, last_step_);
   SimulateOptions options = arguments.simulate;
@@ -276,6 +316,7 @@ void SimulateRun::finish() {
     result_.write_seconds += warps_->write_seconds();
   }
   result_.warnings = simulator_->scene().notes;
+  add_adhesion_warnings(arguments_.scene(), simulator_->scene(), result_.warnings);
   if (result_.unconverged_steps > 0) {
     result_.warnings.push_back(fmt::format(
         "{}: {} of {} steps ended above their tolerance (series.h5: converged)", arguments_.scene(),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -43,6 +44,11 @@ int run_deform(const DeformArguments& arguments) {
   write_deformed_mesh(arguments.output, reader.mesh(), arguments.deform, arguments.steps);
   const std::string& merged = reader.header().merged;
   if (!merged.empty()) print_warnings({arguments.input + ": " + merged}, "");
+  std::vector<std::string> left_out = reader.header().not_read;
+  if (reader.header().has_displacement) left_out.insert(left_out.begin(), "its own displacement");
+  if (!left_out.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input, one_line(listed(left_out)));
+  }
   if (arguments.quiet) return 0;
   fmt::print("{} nodes, {} cells, {} steps of {}: {}\n", reader.header().node_count,
              reader.mesh().cell_count(), arguments.steps, name_of(arguments.deform.kind),

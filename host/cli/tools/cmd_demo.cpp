@@ -76,12 +76,11 @@ void print_timings(const Report& report) {
 }
 
 int run_demo(const DemoArguments& arguments) {
-  if (!fs::exists(arguments.folder)) check_output_file(arguments.folder, {});
   if (fs::exists(arguments.folder) && !fs::is_directory(arguments.folder)) {
     throw IoError(arguments.folder, "", "is a file; name a folder");
   }
-  fs::create_directory(arguments.folder);
-  check_output_folder(arguments.folder, arguments.folder);
+  check_new_folder(arguments.folder, arguments.folder);
+  fs::create_directories(arguments.folder);
   const DemoFiles files(arguments.folder);
   make_inputs(arguments, files);
   WarpArguments warp;

@@ -22,7 +22,7 @@ struct ExportArguments {
   std::string input;
   std::string output;
   std::string array;
-  std::int64_t step = 0;
+  std::optional<std::int64_t> step;
   bool temporal = false;
   std::optional<Axes> axes;
   bool quiet = false;
@@ -31,6 +31,7 @@ struct ExportArguments {
 /// " with 3 components along LPS axes"; nothing for scalars.
 std::string axes_text(const ArrayHeader& array) {
   if (array.components == 1) return {};
+  if (array.is_itk_field) return ", a displacement field for ITK in mm";
   return fmt::format(" with {} components along {} axes", array.components,
                      array.nifti->component_axes == Axes::lps ? "LPS" : "RAS");
 }
@@ -42,10 +43,14 @@ int run_export(const ExportArguments& arguments) {
   }
   check_output_file(arguments.output, {arguments.input});
   const std::vector<double> times = read_volume_header(arguments.input).times;
-  const std::int64_t first = arguments.temporal ? 0 : arguments.step;
+  const std::optional<std::int64_t> first =
+      arguments.temporal ? std::optional<std::int64_t>(0) : arguments.step;
   const Volume volume = read_array(arguments.input, arguments.array, first);
-  const ArrayHeader array =
-      nifti_array(VolumeReader(arguments.input, volume.name, first).array(), arguments.axes);
+  const ArrayHeader array = nifti_array(
+      VolumeReader(arguments.input, volume.name, first.value_or(0)).array(), arguments.axes);
+  if (array.is_itk_field && itk_components(volume.grid) == 2) {
+    fmt::print(stderr, "tetwarp: {}: {}\n", arguments.output, itk_slice_note);
+  }
   const bool is_series = arguments.temporal && times.size() > 1;
   BlockVolumeWriter writer(arguments.output, volume.grid, {array}, {}, is_series, ChunkShape::rows);
   const Region whole{{0, 0, 0}, volume.grid.dims};

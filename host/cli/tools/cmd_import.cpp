@@ -56,6 +56,10 @@ void run_volume_import(const ImportArguments& arguments) {
     writer.write(0, {{0, 0, 0}, grid.dims}, volume.data.data());
   }
   writer.finish();
+  if (!header.left_out.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.input,
+               one_line(listed(header.left_out)));
+  }
   if (arguments.quiet) return;
   fmt::print("{} x {} x {} voxels of {}{}{}: {}\n", grid.dims[0], grid.dims[1], grid.dims[2],
              name_of(array.type), components_text(array, arguments),

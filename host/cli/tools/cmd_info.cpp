@@ -16,6 +16,8 @@
 #include "host/cli/common/commands.hpp"
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
+#include "host/cli/common/json_text.hpp"
+#include "io/fclib/fclib_left_out.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -80,6 +82,7 @@ Json volume_json(const InfoArguments& arguments) {
   }
   if (header.arrays.size() > 1) json["active"] = header.active;
   if (!header.not_read.empty()) json["not_read"] = header.not_read;
+  if (!header.left_out.empty()) json["left_out"] = header.left_out;
   if (const auto fingerprint = read_fingerprint(arguments.file)) json["fingerprint"] = *fingerprint;
   return json;
 }
@@ -95,6 +98,7 @@ Json mesh_json(const InfoArguments& arguments) {
                         : header.has_moving_points ? "points that move"
                                                    : "none";
   for (const auto& [group, name] : header.group_names) json["groups"][std::to_string(group)] = name;
+  if (!header.not_read.empty()) json["not_read"] = header.not_read;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Point3 low{infinity, infinity, infinity};
   Point3 high{-infinity, -infinity, -infinity};
@@ -141,6 +145,9 @@ Json contact_json(const InfoArguments& arguments) {
     json["friction"] = {*low, *high};
   }
   if (!problem.adhesion.empty()) json["adhesion"] = adhesion_json(problem);
+  if (const auto left_out = fclib_left_out(arguments.file); !left_out.empty()) {
+    json["not_read"] = left_out;
+  }
   json["guesses"] = header.guesses;
   json["solution"] = header.status.value_or(header.has_solution ? "of unknown quality" : "none");
   if (header.residual) json["residual"] = *header.residual;
@@ -155,7 +162,7 @@ void print_lines(const Json& json, int indent) {
       fmt::print("\n");
       print_lines(value, indent + 2);
     } else {
-      fmt::print(" {}\n", value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print(" {}\n", value.is_string() ? value.get<std::string>() : json_text(value, -1));
     }
   }
 }
@@ -188,7 +195,7 @@ int run_info(const InfoArguments& arguments) {
   }
   if (arguments.quiet) return 0;
   if (arguments.json) {
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     print_lines(json, 0);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -27,7 +28,7 @@ struct MeshArguments {
   std::int64_t surface_triangles = 0;  // 0: as many as there are
   std::string output;
   std::string array;
-  std::int64_t step = 0;
+  std::optional<std::int64_t> step;
   LatticeOptions lattice;
   bool quiet = false;
 };
@@ -66,9 +67,14 @@ void check_outputs(const MeshArguments& arguments, const std::string& input) {
 
 int run_mesh_of_surface(const MeshArguments& arguments) {
   check_outputs(arguments, arguments.from_surface);
+  std::vector<std::string> left_out;
   std::string merged;
-  const Surface surface = read_surface(arguments.from_surface, &merged);
+  const Surface surface = read_surface(arguments.from_surface, &left_out, &merged);
   if (!merged.empty()) print_warnings({arguments.from_surface + ": " + merged}, "");
+  if (!left_out.empty()) {
+    fmt::print(stderr, "tetwarp: {}: left out: {}\n", arguments.from_surface,
+               one_line(listed(left_out)));
+  }
   Mesh mesh;
   try {
     mesh = make_lattice_mesh(surface, arguments.lattice.cells);
@@ -136,9 +142,10 @@ void check_options(const MeshArguments& arguments) {
 void declare_options(CLI::App& command, MeshArguments& arguments) {
   command.add_option("VOLUME", arguments.volume, "volume, VTKHDF or NIfTI")->type_name("");
   command
-      .add_option("--from-surface", arguments.from_surface,
-                  "instead of a volume: tetrahedra that this closed surface of triangles touches "
-                  "or contains")
+      .add_option(
+          "--from-surface", arguments.from_surface,
+          "instead of a volume: tetrahedra that this closed surface (VTKHDF, .stl, .ply, .obj, "
+          ".vtp, .vtu, .vtk, .msh) touches or contains")
       ->type_name("FILE");
   command.add_option("-o,--output", arguments.output, "mesh to write")
       ->required()

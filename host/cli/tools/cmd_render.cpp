@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <tetwarp/io.hpp>
 #include <tetwarp/make.hpp>
@@ -12,6 +13,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/tools/read_array.hpp"
+#include "io/files/extension.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -20,7 +22,7 @@ struct RenderArguments {
   std::string beside;
   std::string output;
   std::string array;
-  std::int64_t step = 0;
+  std::optional<std::int64_t> step;
   RenderOptions render;
   bool quiet = false;
 };
@@ -31,7 +33,7 @@ int run_render(const RenderArguments& arguments) {
   for (const std::string& input : inputs) {
     check_volume(input, "usage: tetwarp render VOLUME -o FILE.png");
   }
-  if (!arguments.output.ends_with(".png")) {
+  if (!has_extension(arguments.output, ".png")) {
     throw IoError(arguments.output, "", "the name of a picture ends in .png");
   }
   check_output_file(arguments.output, inputs);

@@ -13,6 +13,7 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/common/json_text.hpp"
 #include "host/cli/job/job_plan.hpp"
 #include "host/cli/warp/batch_file.hpp"
 #include "host/cli/warp/warp_job.hpp"
@@ -36,7 +37,7 @@ void write_report(const std::string& path, const Outcome& outcome, bool is_ended
   const Json report{{"version", TETWARP_VERSION},      {"status", is_ended ? ended : "interrupted"},
                     {"jobs_done", outcome.done},       {"jobs_failed", outcome.failed},
                     {"jobs_skipped", outcome.skipped}, {"jobs", outcome.reports}};
-  write_finished_file(path, report.dump(2) + "\n");
+  write_finished_file(path, json_text(report, 2) + "\n");
 }
 
 /// The files that a job will write. Where planning fails, e.g. because an earlier job makes the

@@ -177,7 +177,6 @@ std::vector<BatchJob> read_batch(const std::string& path, const CLI::App& defaul
     reader.name_files(job, parsed);
     try {
       parsed.arguments = parse_warp_arguments(reader.words_of(job));
-      parsed.arguments.makes_folder = true;
     } catch (const CLI::ParseError& error) {
       parsed.error = name + one_line(error.what());
     } catch (const std::invalid_argument& error) {

@@ -49,7 +49,7 @@ VolumePart BlockWarper::finish() {
   step.report.totals = computed.totals;
   if (task_.is_whole) {
     step.is_repeat =
-        task_.arguments.temporal && changes_nothing(step.report.counts, task_.arguments.extra);
+        task_.volume.is_series && changes_nothing(step.report.counts, task_.arguments.extra);
   } else {
     end_block(begun);
   }

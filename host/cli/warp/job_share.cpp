@@ -16,7 +16,7 @@ namespace tetwarp::cli {
 namespace {
 /// The plan with only this rank's steps and outputs, which are assigned round-robin.
 VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
-  const std::vector<std::int64_t> steps = std::exchange(volume.steps, {});
+  const std::vector<WarpStep> steps = std::exchange(volume.steps, {});
   const std::vector<std::string> outputs = std::exchange(volume.outputs, {});
   const std::vector<std::string> files = std::exchange(volume.files, {});
   for (std::size_t o = 0; o < outputs.size(); ++o) {
@@ -26,8 +26,9 @@ VolumePlan share_of(VolumePlan volume, const Ranks& ranks, std::size_t task) {
     const std::size_t count = files.size() / outputs.size();
     const auto first = files.begin() + static_cast<std::ptrdiff_t>(o * count);
     volume.files.insert(volume.files.end(), first, first + static_cast<std::ptrdiff_t>(count));
-    if (outputs.size() == steps.size()) volume.steps.push_back(steps[o]);
+    if (!volume.is_series) volume.steps.push_back(steps[o]);
   }
+  if (volume.is_series) volume.steps = steps;
   return volume;
 }
 }  // namespace

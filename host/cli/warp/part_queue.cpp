@@ -13,7 +13,9 @@ void PartQueue::start_writing() {
   if (!computed_) return;
   finish_writing();
   if (computed_->is_last && task_.arguments.strict) {
-    refuse_warnings(step_warnings(task_.arguments.mesh_file(), {&computed_->step->report, 1}));
+    refuse_warnings(step_warnings(task_.arguments.mesh_file(),
+                                  std::ssize(task_.job.mesh.header().times),
+                                  {&computed_->step->report, 1}));
   }
   writing_part_ = take_computed();
   writing_ = files_.run([this, part = writing_part_] { writer_.write(part); });

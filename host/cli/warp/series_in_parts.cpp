@@ -21,12 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The files of the steps, in a folder beside the output.
-std::vector<std::string> part_names(const fs::path& folder,
-                                    const std::vector<std::int64_t>& steps) {
+std::vector<std::string> part_names(const fs::path& folder, const std::vector<WarpStep>& steps) {
   std::vector<std::string> names;
   names.reserve(steps.size());
-  for (const std::int64_t step : steps) {
-    names.push_back((folder / fmt::format("step_{:04}.vtkhdf", step)).string());
+  for (const WarpStep& step : steps) {
+    names.push_back((folder / fmt::format("step_{:04}.vtkhdf", step.number)).string());
   }
   return names;
 }
@@ -38,20 +37,18 @@ Counts join(const VolumeTask& task,
             const Fingerprint& fingerprint,
             const std::vector<std::string>& files) {
   const WarpArguments& arguments = task.arguments;
-  const std::vector<std::int64_t>& steps = task.job.steps;
+  const std::vector<WarpStep>& steps = task.volume.steps;
   StepWriter writer(task);
   writer.begin_series(task.volume.outputs.front(), fingerprint);
   std::vector<Point3> last;
   for (std::size_t s = 0; s < steps.size(); ++s) {
     stop_if_interrupted();
-    std::vector<Point3> positions = task.job.mesh.read_step(steps[s]);
-    const double time = task.job.mesh.header().times[static_cast<std::size_t>(steps[s])];
-    const bool is_same_source =
-        s > 0 && arguments.source_step_of(steps[s]) == arguments.source_step_of(steps[s - 1]);
+    std::vector<Point3> positions = task.job.mesh.read_step(steps[s].mesh_step);
+    const bool is_same_source = s > 0 && steps[s].volume_step == steps[s - 1].volume_step;
     if (arguments.warp.skip.unchanged_steps && is_same_source && positions == last) {
-      writer.repeat_step(time);
+      writer.repeat_step(steps[s].time);
     } else {
-      writer.copy_step(time, files[s]);
+      writer.copy_step(steps[s].time, files[s]);
     }
     last = std::move(positions);
   }
@@ -67,10 +64,9 @@ void write_series_in_parts(const VolumeTask& task,
                            JobResult& result) {
   const fs::path folder = task.volume.outputs.front() + ".steps";
   VolumePlan parts = task.volume;
-  parts.steps = task.job.steps;
-  parts.outputs = parts.files = part_names(folder, task.job.steps);
+  parts.is_series = false;
+  parts.outputs = parts.files = part_names(folder, parts.steps);
   WarpArguments arguments = task.arguments;
-  arguments.temporal = false;
   arguments.compress = 0;
   fs::create_directories(folder);
   const std::int64_t written = result.written, skipped = result.skipped;

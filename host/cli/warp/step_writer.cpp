@@ -52,6 +52,7 @@ void StepWriter::begin_file(const std::string& output,
                             bool is_temporal) {
   file_.emplace(output, task_.volume.written_grid, task_.outputs,
                 write_options(task_.arguments, task_.volume, fingerprint), is_temporal,
+                task_.volume.changing_arrays(),
                 task_.is_whole ? ChunkShape::rows : ChunkShape::bricks);
 }
 

@@ -30,7 +30,7 @@ VolumeRun::VolumeRun(const WarpArguments& arguments,
       steps_(task_, sources_, blocks_, writer_, ranks, bar, result) {}
 
 void VolumeRun::run() {
-  if (task_.arguments.temporal) {
+  if (task_.volume.is_series) {
     run_series();
   } else {
     run_each_step();
@@ -39,16 +39,16 @@ void VolumeRun::run() {
 
 void VolumeRun::plan_only() {
   const VolumePlan& volume = task_.volume;
-  for (const std::int64_t number : task_.job.steps) {
+  for (const WarpStep& planned : volume.steps) {
     stop_if_interrupted();
-    StepPlan step{volume.path, number, volume.written_grid.dims};
+    StepPlan step{volume.path, planned.number, volume.written_grid.dims};
     if (task_.is_whole) {
       step.memory = volume.memory;
       step.disk = temporary_disk(volume, task_.arguments, 0);
       result_.plans.push_back(step);
       continue;
     }
-    const BlockPlan plan = blocks_.plan(task_.job.mesh.read_step(number));
+    const BlockPlan plan = blocks_.plan(task_.job.mesh.read_step(planned.mesh_step));
     step.blocks = std::ssize(plan.blocks);
     step.disk = temporary_disk(volume, task_.arguments, step.blocks);
     for (const WarpBlock& block : plan.blocks) {
@@ -65,7 +65,7 @@ void VolumeRun::plan_only() {
 void VolumeRun::run_each_step() {
   const VolumePlan& volume = task_.volume;
   for (std::size_t s = 0; s < volume.steps.size(); ++s) {
-    const Fingerprint inputs = take_sources(task_.arguments.source_step_of(volume.steps[s]));
+    const Fingerprint inputs = take_sources(volume.steps[s].volume_step);
     const std::shared_ptr<VolumeStep> step = read_step(volume.steps[s]);
     step->output = volume.outputs[s];
     step->fingerprint = inputs;
@@ -89,7 +89,7 @@ void VolumeRun::run_series() {
   const std::string& output = task_.volume.outputs.front();
   const Fingerprint fingerprint = fingerprint_of_series();
   if (may_keep(output, fingerprint)) {
-    bar_.skip_steps(task_.job.steps.size());
+    bar_.skip_steps(task_.volume.steps.size());
     return;
   }
   if (ranks_.count() == 1 && may_resume_within(task_.volume, task_.arguments)) {
@@ -100,10 +100,10 @@ void VolumeRun::run_series() {
     return;
   }
   if (ranks_.is_root()) writer_.begin_series(output, fingerprint);
-  for (const std::int64_t number : task_.job.steps) {
-    take_sources(task_.arguments.source_step_of(number));
-    const std::shared_ptr<VolumeStep> step = read_step(number);
-    step->time = task_.job.mesh.header().times[static_cast<std::size_t>(number)];
+  for (const WarpStep& planned : task_.volume.steps) {
+    take_sources(planned.volume_step);
+    const std::shared_ptr<VolumeStep> step = read_step(planned);
+    step->time = planned.time;
     steps_.start_writing();
     steps_.run(step);
   }
@@ -130,29 +130,29 @@ Fingerprint VolumeRun::take_sources(std::int64_t source_step) {
   return sources_.fingerprint();
 }
 
-/// With --pair the sources are read twice: here, and to be warped.
+/// Several sources are read twice: here, and to be warped.
 Fingerprint VolumeRun::fingerprint_of_series() {
-  const std::vector<std::int64_t>& steps = task_.job.steps;
-  Fingerprint fingerprint = take_sources(task_.arguments.source_step_of(steps.front()));
-  for (const std::int64_t step : steps) {
+  const std::vector<WarpStep>& steps = task_.volume.steps;
+  Fingerprint fingerprint = take_sources(steps.front().volume_step);
+  for (const WarpStep& step : steps) {
     stop_if_interrupted();
-    if (task_.arguments.pair) {
-      fingerprint.add(take_sources(task_.arguments.source_step_of(step)).text());
+    if (task_.arguments.pair || task_.volume.has_one_deformation) {
+      fingerprint.add(take_sources(step.volume_step).text());
     }
-    fingerprint.add(task_.job.mesh.header().times[static_cast<std::size_t>(step)]);
-    fingerprint.add(task_.job.mesh.read_step(step));
+    fingerprint.add(step.time);
+    fingerprint.add(task_.job.mesh.read_step(step.mesh_step));
   }
   return fingerprint;
 }
 
 /// Reads the positions of a step. Waits for the thread for files.
-std::shared_ptr<VolumeStep> VolumeRun::read_step(std::int64_t number) {
+std::shared_ptr<VolumeStep> VolumeRun::read_step(const WarpStep& planned) {
   stop_if_interrupted();
   steps_.finish_writing();
   auto step = std::make_shared<VolumeStep>();
-  step->report.step = number;
+  step->report.step = planned.number;
   const Stopwatch watch;
-  step->positions = task_.job.mesh.read_step(number);
+  step->positions = task_.job.mesh.read_step(planned.mesh_step);
   step->report.timings.read = watch.seconds();
   if (task_.is_whole) {
     step->report.counts.bytes_read =

@@ -42,7 +42,7 @@ class VolumeRun {
   void run_series();
   Fingerprint take_sources(std::int64_t source_step);
   Fingerprint fingerprint_of_series();
-  std::shared_ptr<VolumeStep> read_step(std::int64_t number);
+  std::shared_ptr<VolumeStep> read_step(const WarpStep& planned);
   bool may_keep(const std::string& output, const Fingerprint& fingerprint);
 
   VolumeTask task_;

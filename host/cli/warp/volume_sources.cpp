@@ -15,7 +15,7 @@ namespace tetwarp::cli {
 
 VolumeSources::VolumeSources(const VolumeTask& task, Report& report)
     : task_(task), report_(report) {
-  if (!task.is_whole) open(task.arguments.source_step_of(task.job.steps.front()));
+  if (!task.is_whole) open(task.volume.steps.front().volume_step);
 }
 
 void VolumeSources::take(std::int64_t step, double host_bytes, bool scans) {

@@ -66,7 +66,7 @@ void VolumeSteps::repeat_last(const std::shared_ptr<VolumeStep>& step) {
   finish_computing(0);
   if (!ranks_.is_root()) return;
   repeat_report(last_->report, step->report);
-  step->is_repeat = task_.arguments.temporal;
+  step->is_repeat = task_.volume.is_series;
   queue_.add({step, task_.region, warper_.last_outputs()});
   if (!task_.is_whole) finish_all();
 }
@@ -103,7 +103,7 @@ void VolumeSteps::run_blocks(const std::shared_ptr<VolumeStep>& step) {
     compute(std::move(part), blocks[b], windows.samples);
   }
   // With one file per step blocks are computed again, because their outputs are not kept.
-  if (task_.is_whole || task_.arguments.temporal) last_ = step;
+  if (task_.is_whole || task_.volume.is_series) last_ = step;
   if (!task_.is_whole) end_step_of_blocks(*step);
 }
 

@@ -6,14 +6,18 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <tetwarp/error.hpp>
 #include <tetwarp/version.hpp>
 
 #include "host/base/stopwatch.hpp"
+#include "host/cli/common/declare.hpp"
 #include "host/cli/common/interrupt.hpp"
+#include "host/cli/common/json_text.hpp"
 #include "host/cli/common/progress_bar.hpp"
 #include "host/cli/job/job_plan.hpp"
 #include "host/cli/warp/job_share.hpp"
@@ -31,7 +35,7 @@ std::vector<double> progress_work(const WarpArguments& arguments,
   for (const VolumePlan& volume : plan.volumes) {
     const auto arrays = static_cast<double>(volume.arrays.size() + arguments.extra.size());
     const auto voxels = static_cast<double>(volume.written_grid.voxel_count());
-    work.insert(work.end(), plan.steps.size(), voxels * arrays);
+    work.insert(work.end(), volume.steps.size(), voxels * arrays);
   }
   const auto count = static_cast<std::size_t>(ranks.count());
   std::size_t outputs = 0;
@@ -49,6 +53,24 @@ std::string plan_text(const StepPlan& plan) {
   return text + fmt::format(", {} blocks of up to {} voxels from windows of up to {}, {} to read\n",
                             plan.blocks, plan.largest_block, plan.largest_window,
                             bytes_text(plan.bytes_read));
+}
+
+/// What --pair, --temporal and a mesh of one step made of the steps, once for equal volumes; empty:
+/// one file for each step of the mesh.
+std::string steps_text(const WarpArguments& arguments, const JobPlan& plan) {
+  std::set<std::string> texts;
+  for (const VolumePlan& volume : plan.volumes) {
+    const std::size_t count = volume.steps.size();
+    std::string text = volume.has_one_deformation
+                           ? fmt::format("{} steps of the volume by the one of the mesh", count)
+                       : arguments.pair
+                           ? fmt::format("{} pair{} of steps", count, count == 1 ? "" : "s")
+                       : volume.is_series ? fmt::format("{} steps of the mesh", count)
+                                          : "";
+    if (!text.empty() && volume.is_series) text += " in one file";
+    if (!text.empty()) texts.insert(text);
+  }
+  return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 /// Names the mesh in errors about its positions, which a Warper finds.
@@ -82,7 +104,11 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
   };
   if (arguments.strict) refuse_warnings(plan.warnings);
   warn(plan.warnings);
+  if (context.shows_progress && ranks.is_root()) {
+    for (const std::string& note : plan.notes) fmt::print(stderr, "tetwarp: {}\n", one_line(note));
+  }
   result.outputs = plan.outputs();
+  result.steps = steps_text(arguments, plan);
   result.report.version = TETWARP_VERSION;
   result.report.backend = plan.backend;
   result.report.backend_reason = plan.backend_reason;
@@ -109,7 +135,8 @@ JobResult run_warp_job(const WarpArguments& arguments, const JobContext& context
     }
   }
   gather_results(ranks, result);
-  warn(step_warnings(arguments.mesh_file(), result.report.steps));
+  warn(step_warnings(arguments.mesh_file(), std::ssize(plan.mesh.header().times),
+                     result.report.steps));
   result.report.timings.total = watch.seconds();
   if (!arguments.report.empty() && ranks.is_root()) {
     write_finished_file(arguments.report, report_json(result) + "\n");
@@ -134,7 +161,7 @@ std::string report_json(const JobResult& result) {
                              {"bytes_read", plan.bytes_read},
                              {"disk", plan.disk}});
   }
-  return json.dump(2);
+  return json_text(json, 2);
 }
 
 std::string storing_note(const Report& report) {
@@ -177,6 +204,7 @@ std::string summary(const JobResult& result) {
   if (!result.plans.empty()) return text;
   text += fmt::format("{} written", result.written);
   if (result.skipped > 0) text += fmt::format(", {} skipped", result.skipped);
+  if (!result.steps.empty()) text += fmt::format(" ({})", result.steps);
   if (counts.voxels > 0) {
     text += fmt::format(", {} of {} voxels covered", counts.covered, counts.voxels);
   }
