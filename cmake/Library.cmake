@@ -67,7 +67,7 @@ tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
   body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
-  fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
+  fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   saved_state.cpp simulated_scene.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp step_start.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve

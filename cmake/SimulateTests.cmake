@@ -82,6 +82,7 @@ if(NOT BUILD_SHARED_LIBS)
     )
   set(tetwarp_pair_contact_tests  # contacts of pairs, reduction, tracker of deformable bodies
     tests/simulate/pair_scene.cpp
+    tests/simulate/touch/test_contact_names.cpp
     tests/simulate/touch/test_flat_edges.cpp
     tests/simulate/touch/test_pair_contacts.cpp
     tests/simulate/touch/test_rigid_patches.cpp
@@ -106,6 +107,7 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/body_models.cpp
     tests/simulate/touch/test_expected_motion.cpp
+    tests/simulate/touch/test_step_failures.cpp
     tests/simulate/touch/test_touch_capsules.cpp
     tests/simulate/touch/test_touch_edges.cpp
     tests/simulate/touch/test_touch_fall.cpp
