@@ -81,8 +81,8 @@ tetwarp_sources(tetwarp host/simulate/solve/two_level
   two_level_on_device.cpp two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp
   unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
-  cage_growth.cpp cage_pose.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp start_check.cpp
-  start_shrink.cpp)
+  cage_growth.cpp cage_pose.cpp inset_places.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp
+  start_check.cpp start_movers.cpp start_push.cpp start_shrink.cpp)
 tetwarp_sources(tetwarp host/simulate/step
   cell_fields.cpp scene_drive.cpp scene_loads.cpp scene_record.cpp step_sums.cpp system_pattern.cpp
   ALONE reference_rows.cpp reference_stepper.cpp)

@@ -77,6 +77,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/touch/test_scene_surfaces.cpp
     tests/simulate/touch/test_start_cages.cpp
     tests/simulate/touch/test_start_check.cpp
+    tests/simulate/touch/test_start_push.cpp
     tests/simulate/touch/test_surface_motion.cpp
     tests/simulate/touch/test_untangle_run.cpp
     )
