@@ -91,7 +91,9 @@ class Detector {
   /// of the first motion. Call it after find_touches() and before any other detection; valid until
   /// the next call.
   virtual std::span<const ChosenTouch> touches() = 0;
-  /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
+  /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals. The
+  /// cap is smaller where too many pairs would have to be compared, at least twice the thickness.
+  /// @throws TooManyPairs  there are as many within twice the thickness
   /// @param resident  a motion that starts and ends at these places, as SurfaceMotion::resident
   virtual ClosestPair closest(const SurfacePlaces& places,
                               double cap,

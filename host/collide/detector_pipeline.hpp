@@ -71,37 +71,62 @@ class DetectorPipeline {
   const std::vector<std::int32_t>& reached() const { return still_.reached(); }
   std::span<const ChosenTouch> touches() { return step_.choose(); }
 
-  /// Searches within small distances first: of many near pairs few are then compared. Pairs that
-  /// the step has found are kept where they suffice.
+  /// Searches within twice the thickness first: where surfaces touch, few of many near pairs are
+  /// then compared. Pairs that the step has found are kept where they suffice. Where the cap has
+  /// many pairs of items, distances between both are tried; where one has too many, the cap is the
+  /// one before.
   ClosestPair closest(const SurfacePlaces& places, double cap, const MotionView& resident) {
     if (!std::isfinite(cap)) {
       throw std::invalid_argument("collision detection: the cap is not finite");
     }
     const MotionView motion = motions_.view_of(places, resident);
     at_rest_.start.planes = at_rest_.end.planes = places.planes;
-    bool suffices = std::exchange(has_pairs_, false) && still_.are_none();
-    for (double within = std::min(cap, 2 * thickness_); within > 0;
-         within = std::min(cap, 4 * within)) {
-      suffices = suffices && broad_.pairs_suffice(motion, within, counts_);
-      if (!suffices) broad_.search(motion, within, 0, {}, counts_);
-      features_.find(broad_, at_rest_, motion, within, {}, counts_);
-      const View<const FeaturePair> pairs = features_.view();
-      if (pairs.size > 0) {
-        counts_.evaluations += pairs.size;
-        const PairGap gap = gaps_.nearest(buffers_.scene(), motion, pairs);
+    double within = std::min(cap, 2 * thickness_), searched = 0;
+    const bool are_kept = std::exchange(has_pairs_, false) && still_.are_none() &&
+                          broad_.pairs_suffice(motion, within, counts_);
+    if (!are_kept) broad_.search(motion, within, 0, {}, counts_);
+    try {
+      while (within > searched) {
+        const PairGap gap = nearest_within(motion, within);
         if (gap.distance < within) {
           return {gap.pair.kind, gap.pair.a, gap.pair.b, gap.distance};
         }
+        searched = within;
+        within = cap;
+        if (within == searched || finds_few_pairs(motion, cap)) continue;
+        within = std::min(cap, 4 * searched);
+        broad_.search(motion, within, 0, {}, counts_);
       }
-      if (within >= cap) break;
+    } catch (const TooManyPairs&) {
+      if (searched == 0) throw;
     }
-    return {.distance = cap};
+    return {.distance = searched};
   }
 
   DetectionCounts take_counts() { return std::exchange(counts_, {}); }
 
  private:
-  static constexpr double nowhere = -1;  ///< no pair counts as near at the start
+  static constexpr double nowhere = -1;          ///< no pair counts as near at the start
+  static constexpr std::int64_t few_pairs = 16;  ///< per item
+
+  /// Searches pairs of items at rest. @returns whether these are so few that all are compared
+  bool finds_few_pairs(const MotionView& motion, double within) {
+    try {
+      broad_.search(motion, within, 0, {}, counts_);
+    } catch (const TooManyPairs&) {
+      return false;
+    }
+    return broad_.pairs().size <= few_pairs * broad_.item_count();
+  }
+  /// The nearest pair of features at rest, of the pairs of items of the last search.
+  /// @returns a distance of `within` where there is none below
+  PairGap nearest_within(const MotionView& motion, double within) {
+    features_.find(broad_, at_rest_, motion, within, {}, counts_);
+    const View<const FeaturePair> pairs = features_.view();
+    if (pairs.size == 0) return {{}, within};
+    counts_.evaluations += pairs.size;
+    return gaps_.nearest(buffers_.scene(), motion, pairs);
+  }
 
   /// All stages of a detection, in order: boxes, pairs of items, pairs of features, touches.
   /// @param near_at_start  pairs within this distance at the start are found, too [m]
