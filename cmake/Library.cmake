@@ -9,7 +9,8 @@ add_library(tetwarp)
 tetwarp_sources(tetwarp host/base
   backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp report.cpp volume.cpp)
 tetwarp_sources(tetwarp host/collide
-  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp touch_areas.cpp)
+  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp
+  self_clearance.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
   detector_cpu.cpp)
 tetwarp_sources(tetwarp host/collide/cuda

@@ -63,6 +63,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/test_detector_extremes.cpp
     tests/collide/test_detector_pairs.cpp
     tests/collide/test_detector_steps.cpp
+    tests/collide/test_self_clearance.cpp
     tests/collide/test_step_touches.cpp
     tests/collide/test_detector_turns.cpp
     $<TARGET_OBJECTS:tetwarp_emulated_detector>

@@ -57,6 +57,8 @@ struct DetectorOptions {
   int device = 0;               ///< CUDA device number
   bool reuse_pairs = true;      ///< pairs of the broad phase suffice while boxes lie within its own
   bool skip_flat_edges = true;  ///< edges within flat faces of rigid bodies are in no pair
+  bool skip_clear_bodies = true;  ///< of the cpu: bodies that hardly deform are not compared with
+                                  ///< themselves, see SelfClearance
 };
 
 class Detector {
