@@ -10,7 +10,8 @@ tetwarp_sources(tetwarp host/base
   backend.cpp error.cpp mesh.cpp names.cpp page_lock.cpp parallel.cpp repeated_cells.cpp report.cpp
   volume.cpp)
 tetwarp_sources(tetwarp host/collide
-  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp touch_areas.cpp)
+  body_partners.cpp collide_items.cpp grid_plan.cpp known_hits.cpp near_planes.cpp
+  self_clearance.cpp touch_areas.cpp)
 tetwarp_sources(tetwarp host/collide/cpu
   detector_cpu.cpp)
 tetwarp_sources(tetwarp host/collide/cuda
@@ -69,7 +70,7 @@ tetwarp_sources(tetwarp host/simulate/patches
   pair_contacts.cpp patch_moments.cpp patch_supports.cpp rigid_patches.cpp)
 tetwarp_sources(tetwarp host/simulate/run
   body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
-  fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
+  fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
   saved_state.cpp simulated_scene.cpp simulator.cpp step_attempt.cpp step_division.cpp
   step_records.cpp step_start.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
@@ -83,8 +84,8 @@ tetwarp_sources(tetwarp host/simulate/solve/two_level
   two_level_on_device.cpp two_level_solver.cpp two_level_step.cpp two_level_sweeps.cpp
   unit_velocities.cpp)
 tetwarp_sources(tetwarp host/simulate/start
-  cage_growth.cpp cage_pose.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp start_check.cpp
-  start_shrink.cpp)
+  cage_growth.cpp cage_pose.cpp inset_places.cpp medial_node.cpp prepare_start.cpp rest_growth.cpp
+  start_check.cpp start_movers.cpp start_push.cpp start_shrink.cpp)
 tetwarp_sources(tetwarp host/simulate/step
   cell_fields.cpp scene_drive.cpp scene_loads.cpp scene_record.cpp step_sums.cpp system_pattern.cpp
   ALONE reference_rows.cpp reference_stepper.cpp)

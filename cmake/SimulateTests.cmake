@@ -64,6 +64,7 @@ if(NOT BUILD_SHARED_LIBS)
     tests/collide/test_detector_extremes.cpp
     tests/collide/test_detector_pairs.cpp
     tests/collide/test_detector_steps.cpp
+    tests/collide/test_self_clearance.cpp
     tests/collide/test_step_touches.cpp
     tests/collide/test_detector_turns.cpp
     $<TARGET_OBJECTS:tetwarp_emulated_detector>
@@ -78,11 +79,13 @@ if(NOT BUILD_SHARED_LIBS)
     tests/simulate/touch/test_scene_surfaces.cpp
     tests/simulate/touch/test_start_cages.cpp
     tests/simulate/touch/test_start_check.cpp
+    tests/simulate/touch/test_start_push.cpp
     tests/simulate/touch/test_surface_motion.cpp
     tests/simulate/touch/test_untangle_run.cpp
     )
   set(tetwarp_pair_contact_tests  # contacts of pairs, reduction, tracker of deformable bodies
     tests/simulate/pair_scene.cpp
+    tests/simulate/touch/test_contact_names.cpp
     tests/simulate/touch/test_flat_edges.cpp
     tests/simulate/touch/test_pair_contacts.cpp
     tests/simulate/touch/test_rigid_patches.cpp
@@ -107,6 +110,7 @@ if(NOT BUILD_SHARED_LIBS)
   set(tetwarp_touch_tests       # whole steps with contact
     tests/simulate/body_models.cpp
     tests/simulate/touch/test_expected_motion.cpp
+    tests/simulate/touch/test_step_failures.cpp
     tests/simulate/touch/test_touch_capsules.cpp
     tests/simulate/touch/test_touch_edges.cpp
     tests/simulate/touch/test_touch_fall.cpp

@@ -20,24 +20,23 @@ void BodyPartners::set_boxes(const CollideItems& items, const View<const RunBox>
   }
 }
 
-void BodyPartners::find(const CollideItems& items, std::span<const std::uint8_t> is_still) {
+void BodyPartners::find(const CollideView& scene, std::span<const std::uint8_t> is_still) {
   order_.clear();
-  for (std::size_t b = 0; b < items.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < has_box.size(); ++b) {
     if (has_box[b] != 0) order_.push_back(static_cast<std::int32_t>(b));
   }
   pairs_.clear();
   if (order_.size() > most_bodies) {
     find_crowd(is_still);
   } else {
-    find_overlapping(items, is_still);
+    find_overlapping(scene, is_still);
   }
   make_lists();
 }
 
 /// Bodies ascend along x, so that only boxes that overlap along x are compared.
-void BodyPartners::find_overlapping(const CollideItems& items,
+void BodyPartners::find_overlapping(const CollideView& scene,
                                     std::span<const std::uint8_t> is_still) {
-  const CollideView scene = items.view_of_bodies();
   const auto box_of = [&](std::int32_t b) -> const Box& {
     return boxes[static_cast<std::size_t>(b)];
   };

@@ -22,11 +22,12 @@ struct BodyPartners {
   void set_boxes(const CollideItems& items, const View<const RunBox>& of_bodies);
   /// Finds the partners of all bodies. For more than 512 bodies, pairs of bodies are not compared:
   /// the box of all bodies is the one partner of each body that can meet another one.
+  /// @param scene     bodies and forbidden pairs, on the host
   /// @param is_still  [bodies] two bodies that do not move are not partners; or empty
-  void find(const CollideItems& items, std::span<const std::uint8_t> is_still);
+  void find(const CollideView& scene, std::span<const std::uint8_t> is_still);
 
  private:
-  void find_overlapping(const CollideItems& items, std::span<const std::uint8_t> is_still);
+  void find_overlapping(const CollideView& scene, std::span<const std::uint8_t> is_still);
   void find_crowd(std::span<const std::uint8_t> is_still);
   void make_lists();
 

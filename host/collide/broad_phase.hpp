@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <vector>
 
 #include "host/collide/body_partners.hpp"
 #include "host/collide/detector.hpp"
@@ -44,15 +45,20 @@ class BroadPhase {
 
   /// Searches pairs.
   /// @param distance, fraction  as of MotionBoxes::find()
+  /// @param bodies              as CollideItems::bodies; touches_itself may differ where the host
+  ///                            may read what stages read
   /// @param is_still            as of BodyPartners::find()
   void search(const MotionView& motion,
               double distance,
               double fraction,
+              const std::vector<CollideBody>& bodies,
               std::span<const std::uint8_t> is_still,
               DetectionCounts& counts) {
     partners_.set_boxes(items_, boxes_.find(motion, distance, fraction));
     counts.skipped_edges += items_.flat_edges;
-    partners_.find(items_, is_still);
+    CollideView on_host = items_.view_of_bodies();
+    on_host.bodies = {bodies.data(), std::ssize(bodies)};
+    partners_.find(on_host, is_still);
     entries_.clear();
     pairs_.clear();
     if (!partners_.has_pairs) {
@@ -65,7 +71,7 @@ class BroadPhase {
     counts.skipped_items += item_boxes_.count() - kept;
     if (kept == 0) return;
     host_plan_ = make_grid_plan(sizes, item_boxes_.largest(), partners_.boxes.back());
-    compare_in_grid();
+    compare_in_grid(bodies);
     counts.grid_entries += entries_.size();
     counts.box_tests += pairs_.tally();
     counts.box_pairs += pairs_.size();
@@ -79,14 +85,16 @@ class BroadPhase {
   template <class T>
   using List = typename Exec::template List<T>;
 
-  void compare_in_grid() {
+  void compare_in_grid(const std::vector<CollideBody>& bodies) {
+    CollideView scene = surfaces_.scene();
+    if constexpr (Exec::reads_are_free) scene.bodies = {bodies.data(), std::ssize(bodies)};
     const GridPlan* const plan = exec_.input(&host_plan_, 1, plan_).data;
     const View<const Box> boxes = item_boxes_.boxes();
     const View<const std::int8_t> sizes = item_boxes_.sizes();
     exec_.append("collide/item_cells", item_count(), ItemCellsBody{plan, boxes, sizes}, entries_);
     exec_.sort_pairs("collide/sort", entries_, host_plan_.key_bits);
     exec_.append("collide/entry_pairs", entries_.size(),
-                 EntryPairsBody{surfaces_.scene(), plan, entries_.view(), boxes, sizes}, pairs_,
+                 EntryPairsBody{scene, plan, entries_.view(), boxes, sizes}, pairs_,
                  most_pairs(item_count()));
   }
 

@@ -57,6 +57,8 @@ struct DetectorOptions {
   int device = 0;               ///< CUDA device number
   bool reuse_pairs = true;      ///< pairs of the broad phase suffice while boxes lie within its own
   bool skip_flat_edges = true;  ///< edges within flat faces of rigid bodies are in no pair
+  bool skip_clear_bodies = true;  ///< of the cpu: bodies that hardly deform are not compared with
+                                  ///< themselves, see SelfClearance
 };
 
 class Detector {
@@ -91,7 +93,9 @@ class Detector {
   /// of the first motion. Call it after find_touches() and before any other detection; valid until
   /// the next call.
   virtual std::span<const ChosenTouch> touches() = 0;
-  /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals.
+  /// The pair of the smallest distance below `cap` [m]; the first in sorted order among equals. The
+  /// cap is smaller where too many pairs would have to be compared, at least twice the thickness.
+  /// @throws TooManyPairs  there are as many within twice the thickness
   /// @param resident  a motion that starts and ends at these places, as SurfaceMotion::resident
   virtual ClosestPair closest(const SurfacePlaces& places,
                               double cap,

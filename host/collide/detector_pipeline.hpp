@@ -17,6 +17,7 @@
 #include "host/collide/feature_pairs.hpp"
 #include "host/collide/feature_touches.hpp"
 #include "host/collide/motion_buffers.hpp"
+#include "host/collide/self_clearance.hpp"
 #include "host/collide/step_touches.hpp"
 #include "host/collide/still_bodies.hpp"
 #include "host/collide/surface_buffers.hpp"
@@ -35,6 +36,7 @@ class DetectorPipeline {
         buffers_(exec, surfaces, items_),
         motions_(exec, surfaces),
         still_(exec),
+        clearance_(surfaces, items_, Exec::reads_are_free && options.skip_clear_bodies),
         broad_(exec, buffers_, items_),
         features_(exec, surfaces, buffers_, items_),
         touches_(exec),
@@ -71,37 +73,62 @@ class DetectorPipeline {
   const std::vector<std::int32_t>& reached() const { return still_.reached(); }
   std::span<const ChosenTouch> touches() { return step_.choose(); }
 
-  /// Searches within small distances first: of many near pairs few are then compared. Pairs that
-  /// the step has found are kept where they suffice.
+  /// Searches within twice the thickness first: where surfaces touch, few of many near pairs are
+  /// then compared. Pairs that the step has found are kept where they suffice. Where the cap has
+  /// many pairs of items, distances between both are tried; where one has too many, the cap is the
+  /// one before.
   ClosestPair closest(const SurfacePlaces& places, double cap, const MotionView& resident) {
     if (!std::isfinite(cap)) {
       throw std::invalid_argument("collision detection: the cap is not finite");
     }
     const MotionView motion = motions_.view_of(places, resident);
     at_rest_.start.planes = at_rest_.end.planes = places.planes;
-    bool suffices = std::exchange(has_pairs_, false) && still_.are_none();
-    for (double within = std::min(cap, 2 * thickness_); within > 0;
-         within = std::min(cap, 4 * within)) {
-      suffices = suffices && broad_.pairs_suffice(motion, within, counts_);
-      if (!suffices) broad_.search(motion, within, 0, {}, counts_);
-      features_.find(broad_, at_rest_, motion, within, {}, counts_);
-      const View<const FeaturePair> pairs = features_.view();
-      if (pairs.size > 0) {
-        counts_.evaluations += pairs.size;
-        const PairGap gap = gaps_.nearest(buffers_.scene(), motion, pairs);
+    double within = std::min(cap, 2 * thickness_), searched = 0;
+    const bool are_kept =
+        std::exchange(has_pairs_, false) && still_.are_none() && pairs_suffice(motion, within);
+    if (!are_kept) search(motion, within, 0, {});
+    try {
+      while (within > searched) {
+        const PairGap gap = nearest_within(motion, within);
         if (gap.distance < within) {
           return {gap.pair.kind, gap.pair.a, gap.pair.b, gap.distance};
         }
+        searched = within;
+        within = cap;
+        if (within == searched || finds_few_pairs(motion, cap)) continue;
+        within = std::min(cap, 4 * searched);
+        search(motion, within, 0, {});
       }
-      if (within >= cap) break;
+    } catch (const TooManyPairs&) {
+      if (searched == 0) throw;
     }
-    return {.distance = cap};
+    return {.distance = searched};
   }
 
   DetectionCounts take_counts() { return std::exchange(counts_, {}); }
 
  private:
-  static constexpr double nowhere = -1;  ///< no pair counts as near at the start
+  static constexpr double nowhere = -1;          ///< no pair counts as near at the start
+  static constexpr std::int64_t few_pairs = 16;  ///< per item
+
+  /// Searches pairs of items at rest. @returns whether these are so few that all are compared
+  bool finds_few_pairs(const MotionView& motion, double within) {
+    try {
+      search(motion, within, 0, {});
+    } catch (const TooManyPairs&) {
+      return false;
+    }
+    return broad_.pairs().size <= few_pairs * broad_.item_count();
+  }
+  /// The nearest pair of features at rest, of the pairs of items of the last search.
+  /// @returns a distance of `within` where there is none below
+  PairGap nearest_within(const MotionView& motion, double within) {
+    features_.find(broad_, at_rest_, motion, within, {}, counts_);
+    const View<const FeaturePair> pairs = features_.view();
+    if (pairs.size == 0) return {{}, within};
+    counts_.evaluations += pairs.size;
+    return gaps_.nearest(buffers_.scene(), motion, pairs);
+  }
 
   /// All stages of a detection, in order: boxes, pairs of items, pairs of features, touches.
   /// @param near_at_start  pairs within this distance at the start are found, too [m]
@@ -111,15 +138,64 @@ class DetectorPipeline {
                         double near_at_start) {
     const MotionView own = motions_.view_of(motion);
     const double distance = std::max(near_at_start, limits.distance + limits.slack);
-    if (!has_pairs_ || !broad_.pairs_suffice(own, distance, counts_)) {
+    if (!has_pairs_ || !pairs_suffice(own, distance)) {
       has_pairs_ = false;
-      broad_.search(own, found_thicknesses * thickness_, found_fraction, still_.host(), counts_);
+      const double found = found_thicknesses * thickness_;
+      clearance_.update(own, found, [&](std::int32_t body, double limit) {
+        return self_distance(motion, own, body, limit);
+      });
+      search(own, found, found_fraction, still_.host());
       has_pairs_ = reuses_pairs_;
     }
     features_.find(broad_, motion, own, distance, still_.host(), counts_);
     touches_.find(buffers_.scene(), own, limits, near_at_start, features_.view(), still_.view(),
                   counts_);
     return own;
+  }
+
+  /// Whether the pairs of the last search hold all that come within a distance in a motion.
+  bool pairs_suffice(const MotionView& motion, double distance) {
+    return clearance_.are_clear(motion, distance) &&
+           broad_.pairs_suffice(motion, distance, counts_);
+  }
+  /// As BroadPhase::search().
+  void search(const MotionView& motion,
+              double distance,
+              double fraction,
+              std::span<const std::uint8_t> is_still) {
+    broad_.search(motion, distance, fraction, clearance_.find(motion, distance), is_still, counts_);
+  }
+  /// The smallest distance below a limit of two features of a body, at the start of a motion in
+  /// memory of the host; the limit if there is none, 0 where it cannot be found.
+  /// @param planes  the motion on the host: planes are read
+  double self_distance(const SurfaceMotion& planes,
+                       const MotionView& motion,
+                       std::int32_t body,
+                       double limit) {
+    MotionView at_start = motion;
+    at_start.end = motion.start;
+    at_start.plane_end = motion.plane_start;
+    at_start.frames = {};
+    at_rest_.start.planes = at_rest_.end.planes = planes.start.planes;
+    std::vector<CollideBody> alone = items_.bodies;
+    for (CollideBody& other : alone) other.touches_itself = 0;
+    alone[static_cast<std::size_t>(body)].touches_itself = 1;
+    try {
+      DetectionCounts uncounted;
+      broad_.search(at_start, limit, 0, alone, {}, uncounted);
+      features_.find(broad_, at_rest_, at_start, limit, {}, uncounted);
+    } catch (const TooManyPairs&) {
+      return 0;
+    }
+    const PairGapBody gaps{buffers_.scene(), at_start, features_.view(), {}};
+    double least = limit;
+    for (std::int64_t i = 0; i < gaps.pairs.size; ++i) {
+      std::int32_t bodies[2];
+      bodies_of(gaps.scene, gaps.pairs[i], bodies);
+      if (bodies[0] != body || bodies[1] != body) continue;
+      least = std::min(least, gaps.gap_of(gaps.pairs[i]).distance);
+    }
+    return least;
   }
 
   double thickness_;
@@ -129,6 +205,7 @@ class DetectorPipeline {
   SurfaceBuffers<Exec> buffers_;
   MotionBuffers<Exec> motions_;
   StillBodies<Exec> still_;
+  SelfClearance clearance_;
   BroadPhase<Exec> broad_;
   FeaturePairs<Exec> features_;
   FeatureTouches<Exec> touches_;

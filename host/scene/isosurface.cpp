@@ -101,10 +101,9 @@ class ImageLevel {
   std::vector<double> levels_;
 };
 
-MarchedSurface marched(const std::string& place,
-                       const ImageLevel& level,
-                       const Sampling& sampling) {
-  const auto read_plane = [&](std::int64_t c, std::vector<double>& levels) {
+/// Reads the levels of the nodes of a plane.
+auto plane_reader(const ImageLevel& level, const Sampling& sampling) {
+  return [&](std::int64_t c, std::vector<double>& levels) {
     std::size_t n = 0;
     for (std::int64_t b = 0; b < sampling.counts[1]; ++b) {
       for (std::int64_t a = 0; a < sampling.counts[0]; ++a) {
@@ -112,7 +111,12 @@ MarchedSurface marched(const std::string& place,
       }
     }
   };
-  return march_tets(place, sampling.counts, read_plane);
+}
+
+MarchedSurface marched(const std::string& place,
+                       const ImageLevel& level,
+                       const Sampling& sampling) {
+  return march_tets(place, sampling.counts, plane_reader(level, sampling));
 }
 
 /// Place between the nodes of a cut where the level changes its sign, by bisection.
@@ -176,26 +180,26 @@ Surface make_isosurface(const std::string& place,
   const Region box = foreground_box(place, image);
   const ImageLevel level(image, box);
   Sampling best_sampling = sampling_of(box, 1);
-  MarchedSurface best = marched(place, level, best_sampling);
   const auto wanted = static_cast<double>(triangles);
-  const auto error_of = [&](const MarchedSurface& surface) {
-    return std::abs(static_cast<double>(surface.triangles.size()) - wanted);
-  };
+  const auto error_of = [&](double count) { return std::abs(count - wanted); };
   double step = 1;
-  double count = static_cast<double>(best.triangles.size());
-  if (count <= wanted) return placed(std::move(best), image, level, best_sampling);
+  double count =
+      static_cast<double>(count_marched(best_sampling.counts, plane_reader(level, best_sampling)));
+  if (count <= wanted) {
+    return placed(marched(place, level, best_sampling), image, level, best_sampling);
+  }
   // The number of triangles falls as the square of the step.
-  for (int pass = 0; pass < 6 && error_of(best) > 0.02 * wanted; ++pass) {
+  double best_error = error_of(count);
+  for (int pass = 0; pass < 6 && best_error > 0.02 * wanted; ++pass) {
     step *= std::sqrt(std::max(count, 1.0) / wanted);
     const Sampling sampling = sampling_of(box, std::max(step, 1.0));
-    MarchedSurface surface = marched(place, level, sampling);
-    count = static_cast<double>(surface.triangles.size());
-    if (count > 0 && error_of(surface) < error_of(best)) {
-      best = std::move(surface);
+    count = static_cast<double>(count_marched(sampling.counts, plane_reader(level, sampling)));
+    if (count > 0 && error_of(count) < best_error) {
+      best_error = error_of(count);
       best_sampling = sampling;
     }
   }
-  return placed(std::move(best), image, level, best_sampling);
+  return placed(marched(place, level, best_sampling), image, level, best_sampling);
 }
 
 }  // namespace tetwarp

@@ -23,45 +23,61 @@ struct Corner {
   }
 };
 
-class March {
- public:
-  explicit March(const std::array<std::int64_t, 3>& counts) : counts_(counts) {}
+/// Planes of levels, two at a time.
+using ReadPlane = std::function<void(std::int64_t, std::vector<double>&)>;
 
-  /// Adds the triangles of the boxes between planes c and c + 1.
-  void add_layer(std::int64_t c,
-                 const std::vector<double>& lower,
-                 const std::vector<double>& upper) {
-    std::array<double, 8> level;
-    std::array<std::int64_t, 8> node;
-    for (std::int64_t b = 0; b + 1 < counts_[1]; ++b) {
-      for (std::int64_t a = 0; a + 1 < counts_[0]; ++a) {
+/// Calls visit_tet(corners, level, node) for all tetrahedra of boxes that the surface crosses, and
+/// end_layer() after each layer of boxes.
+template <class VisitTet, class EndLayer>
+void visit_tets(const std::array<std::int64_t, 3>& counts,
+                const ReadPlane& read_plane,
+                const VisitTet& visit_tet,
+                const EndLayer& end_layer) {
+  const auto plane_size = static_cast<std::size_t>(counts[0] * counts[1]);
+  std::vector<double> lower(plane_size), upper(plane_size);
+  std::array<double, 8> level;
+  std::array<std::int64_t, 8> node;
+  read_plane(0, upper);
+  for (std::int64_t c = 0; c + 1 < counts[2]; ++c) {
+    std::swap(lower, upper);
+    read_plane(c + 1, upper);
+    for (std::int64_t b = 0; b + 1 < counts[1]; ++b) {
+      for (std::int64_t a = 0; a + 1 < counts[0]; ++a) {
         int inside_count = 0;
         for (std::size_t corner = 0; corner < 8; ++corner) {
           const auto place = static_cast<std::size_t>(
-              (b + static_cast<std::int64_t>(corner >> 1 & 1)) * counts_[0] + a +
+              (b + static_cast<std::int64_t>(corner >> 1 & 1)) * counts[0] + a +
               static_cast<std::int64_t>(corner & 1));
           const bool is_upper = corner >= 4;
           level[corner] = (is_upper ? upper : lower)[place];
-          node[corner] =
-              (c + is_upper) * counts_[0] * counts_[1] + static_cast<std::int64_t>(place);
+          node[corner] = (c + is_upper) * counts[0] * counts[1] + static_cast<std::int64_t>(place);
           inside_count += level[corner] >= 0;
         }
         if (inside_count == 0 || inside_count == 8) continue;
-        for (const auto& corners : tets_of_cell[(a + b + c) % 2]) add_tet(corners, level, node);
+        for (const auto& corners : tets_of_cell[(a + b + c) % 2]) visit_tet(corners, level, node);
       }
     }
+    end_layer();
   }
+}
 
+int inside_of(const int (&tet)[4], const std::array<double, 8>& level) {
+  int inside = 0;
+  for (const int corner : tet) inside += level[static_cast<std::size_t>(corner)] >= 0;
+  return inside;
+}
+
+class March {
+ public:
   std::vector<Corner> corners;  ///< three per triangle
 
- private:
   void add_tet(const int (&tet)[4],
                const std::array<double, 8>& level,
                const std::array<std::int64_t, 8>& node) {
     // Nodes inside first; an even permutation keeps the volume positive.
     std::array<std::size_t, 4> order{};
-    std::size_t inside = 0, next = 0;
-    for (const int corner : tet) inside += level[static_cast<std::size_t>(corner)] >= 0;
+    std::size_t next = 0;
+    const int inside = inside_of(tet, level);
     if (inside == 0 || inside == 4) return;
     int swaps = 0, outside_before = 0;
     for (const int corner : tet) {
@@ -95,11 +111,10 @@ class March {
     }
   }
 
+ private:
   void add(const Corner& a, const Corner& b, const Corner& c) {
     corners.insert(corners.end(), {a, b, c});
   }
-
-  std::array<std::int64_t, 3> counts_;
 };
 
 MarchedSurface joined(const std::vector<Corner>& corners,
@@ -127,23 +142,32 @@ MarchedSurface joined(const std::vector<Corner>& corners,
 }
 }  // namespace
 
-MarchedSurface march_tets(
-    const std::string& place,
-    const std::array<std::int64_t, 3>& counts,
-    const std::function<void(std::int64_t, std::vector<double>&)>& read_plane) {
-  const auto plane_size = static_cast<std::size_t>(counts[0] * counts[1]);
-  std::vector<double> lower(plane_size), upper(plane_size);
-  March march(counts);
-  read_plane(0, upper);
-  for (std::int64_t c = 0; c + 1 < counts[2]; ++c) {
-    std::swap(lower, upper);
-    read_plane(c + 1, upper);
-    march.add_layer(c, lower, upper);
-    if (march.corners.size() >= (std::size_t{1} << 31)) {
-      fail_at(place, "its isosurface has 2^31 / 3 or more triangles; give surface.triangles");
-    }
-  }
+MarchedSurface march_tets(const std::string& place,
+                          const std::array<std::int64_t, 3>& counts,
+                          const ReadPlane& read_plane) {
+  March march;
+  visit_tets(
+      counts, read_plane,
+      [&](const auto& tet, const auto& level, const auto& node) {
+        march.add_tet(tet, level, node);
+      },
+      [&] {
+        if (march.corners.size() < (std::size_t{1} << 31)) return;
+        fail_at(place, "its isosurface has 2^31 / 3 or more triangles; give surface.triangles");
+      });
   return joined(march.corners, counts);
+}
+
+std::int64_t count_marched(const std::array<std::int64_t, 3>& counts, const ReadPlane& read_plane) {
+  constexpr std::array<std::int64_t, 5> triangles{0, 1, 2, 1, 0};  // by corners inside
+  std::int64_t count = 0;
+  visit_tets(
+      counts, read_plane,
+      [&](const auto& tet, const auto& level, const auto&) {
+        count += triangles[static_cast<std::size_t>(inside_of(tet, level))];
+      },
+      [] {});
+  return count;
 }
 
 }  // namespace tetwarp

@@ -38,4 +38,9 @@ MarchedSurface march_tets(
     const std::array<std::int64_t, 3>& counts,
     const std::function<void(std::int64_t c, std::vector<double>& levels)>& read_plane);
 
+/// The number of triangles that march_tets() would make.
+std::int64_t count_marched(
+    const std::array<std::int64_t, 3>& counts,
+    const std::function<void(std::int64_t c, std::vector<double>& levels)>& read_plane);
+
 }  // namespace tetwarp

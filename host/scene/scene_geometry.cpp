@@ -49,6 +49,36 @@ Faces faces_of(const Scene& scene, const Body& body) {
                                                                          : Faces::whole;
 }
 
+/// Whether two bodies are made of the same image in the same way, so that their parts are equal
+/// before selections.
+bool are_alike(const Body& a, const Body& b) {
+  const auto *of_a = std::get_if<ImageGeometry>(&a.geometry),
+             *of_b = std::get_if<ImageGeometry>(&b.geometry);
+  if (of_a == nullptr || of_b == nullptr || a.kind != b.kind || a.lattice != b.lattice)
+    return false;
+  if (std::holds_alternative<Surface>(a.surface) || a.surface.index() != b.surface.index()) {
+    return false;
+  }
+  const auto *count_a = std::get_if<std::int64_t>(&a.surface),
+             *count_b = std::get_if<std::int64_t>(&b.surface);
+  if (count_a != nullptr && *count_a != *count_b) return false;
+  const Volume &volume_a = of_a->volume, &volume_b = of_b->volume;
+  return of_a->threshold == of_b->threshold && volume_a.grid == volume_b.grid &&
+         volume_a.type == volume_b.type && volume_a.data == volume_b.data;
+}
+
+/// The parts of body b; those of an earlier body that is alike are copied, as images take long.
+BodyParts parts_of(const Scene& scene, std::size_t b, const std::vector<BodyParts>& before) {
+  for (std::size_t other = 0; other < b; ++other) {
+    if (!are_alike(scene.bodies[other], scene.bodies[b])) continue;
+    BodyParts parts = before[other];
+    parts.geometry.fixed.clear();
+    parts.geometry.driven.clear();
+    return parts;
+  }
+  return make_body_parts(item_of("bodies", b), scene.bodies[b], faces_of(scene, scene.bodies[b]));
+}
+
 void select_supports(const std::string& place, const Body& body, BodyParts& parts) {
   BodyGeometry& geometry = parts.geometry;
   if (!body.fixed.empty()) {
@@ -76,7 +106,7 @@ SceneGeometry make_scene_geometry(const Scene& scene) {
   std::map<std::string, std::size_t> index;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string place = item_of("bodies", b);
-    parts.push_back(make_body_parts(place, scene.bodies[b], faces_of(scene, scene.bodies[b])));
+    parts.push_back(parts_of(scene, b, parts));
     select_supports(place, scene.bodies[b], parts.back());
     index.emplace(scene.bodies[b].name, b);
   }

@@ -3,6 +3,7 @@
 #include "host/scene/selection.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <variant>
 
@@ -12,6 +13,8 @@
 
 namespace tetwarp {
 namespace {
+constexpr double rounding_share = 1e-9;  // of the largest coordinate
+
 /// Marks what the parts of a selection select.
 class Marks {
  public:
@@ -24,6 +27,9 @@ class Marks {
     positions_.reserve(points.size());
     for (const Point3& x : points) {
       positions_.push_back(plus(body.pose.position, times(rotation, x)));
+      for (const double coordinate : positions_.back()) {
+        rounding_ = std::max(rounding_, rounding_share * std::fabs(coordinate));
+      }
     }
     marks_.resize(points.size());
   }
@@ -31,16 +37,19 @@ class Marks {
   void operator()(const BoxSelection& box) {
     mark_where([&](const Point3& x) {
       for (std::size_t d = 0; d < 3; ++d) {
-        if (x[d] < box.low[d] || x[d] > box.high[d]) return false;
+        if (x[d] < box.low[d] - rounding_ || x[d] > box.high[d] + rounding_) return false;
       }
       return true;
     });
   }
   void operator()(const SphereSelection& sphere) {
-    mark_where([&](const Point3& x) { return norm(minus(x, sphere.centre)) <= sphere.radius; });
+    mark_where([&](const Point3& x) {
+      return norm(minus(x, sphere.centre)) <= sphere.radius + rounding_;
+    });
   }
   void operator()(const HalfSpaceSelection& half) {
-    mark_where([&](const Point3& x) { return dot(half.normal, x) >= half.offset; });
+    const double least = half.offset - rounding_ * norm(half.normal);
+    mark_where([&](const Point3& x) { return dot(half.normal, x) >= least; });
   }
   void operator()(const AllSelection&) { std::fill(marks_.begin(), marks_.end(), 1); }
 
@@ -100,6 +109,7 @@ class Marks {
   const BodyParts& parts_;
   bool takes_nodes_ = false;
   std::vector<Point3> positions_;
+  double rounding_ = 0;  ///< by which positions may miss decimals [m]
   std::vector<std::uint8_t> marks_;
 };
 }  // namespace

@@ -1,5 +1,5 @@
 /// @file voxel_owner.cpp
-/// Warps the image with its mesh at rest, which writes the owners.
+/// Warps a volume of zeros on the grid of the image with its mesh at rest, which writes the owners.
 #include "host/scene/voxel_owner.hpp"
 
 #include <algorithm>
@@ -21,9 +21,10 @@ std::vector<std::int32_t> voxel_owners(const Volume& volume,
   options.filter = Filter::nearest;
   options.region = region;
   options.backend = Backend::cpu;
-  Warper warper(volume, {mesh.nodes, mesh.tets}, options);
-  std::vector<std::byte> samples(voxel_count * size_of(volume.type) *
-                                 static_cast<std::size_t>(volume.components));
+  // Samples are written as well: those of zeros in one byte take the least time.
+  const Volume zeros = make_volume(volume.grid, PixelType::uint8);
+  Warper warper(zeros, {mesh.nodes, mesh.tets}, options);
+  std::vector<std::byte> samples(voxel_count);
   void* const target = samples.data();
   warper.step(mesh.nodes, {.volumes = {&target, 1}, .owner = owners.data()});
   return owners;

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <tetwarp/contact.hpp>
@@ -55,6 +57,18 @@ struct ContactKey {
   std::int32_t feature_b = 0;
 
   auto operator<=>(const ContactKey&) const = default;
+};
+
+/// A report, a record or a solution of a contact that a tracker refuses; what() names it.
+class TETWARP_EXPORT ContactKeyError : public std::invalid_argument {
+ public:
+  ContactKeyError(const ContactKey& key, const std::string& what)
+      : std::invalid_argument(what), key_(key) {}
+
+  const ContactKey& key() const { return key_; }
+
+ private:
+  ContactKey key_;
 };
 
 /// Constants of a pair of surfaces; units and ranges as in ContactProblem and AdhesionState.

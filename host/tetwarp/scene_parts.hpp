@@ -91,6 +91,8 @@ struct Lattice {
       {};                                 ///< boxes along x, y, z (an image's i, j, k)
   std::optional<double> edge = {};        ///< length of cubes [m]
   std::optional<std::int64_t> tets = {};  ///< number of tetrahedra kept, about
+
+  bool operator==(const Lattice&) const = default;
 };
 /// The triangles of a body: monostate is the boundary of the tetrahedra for shapes and meshes, an
 /// isosurface at the threshold for images; a number is about how many triangles.

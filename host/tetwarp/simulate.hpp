@@ -50,7 +50,7 @@ struct SimulateOptions {
   std::int64_t max_iterations = 10000;  ///< of conjugate gradients per solve
   SimulateSkipOptions skip = {};
   bool untangle =
-      false;  ///< bodies that are nearer than the thickness at the start are shrunk until
+      false;  ///< elastic bodies and cloth that intersect others at the start are shrunk until
               ///< they are apart and grow back within 0.2 s; otherwise they are an error
   /// Called within steps, from the thread that steps; false ends the step, which then has no
   /// effect: step() returns false.
@@ -157,7 +157,9 @@ class TETWARP_EXPORT Simulator {
   std::string device() const;       ///< name of the processor or device
 
   /// Advances by time_step. @returns false if `progress` ended the step
-  /// @throws std::runtime_error  positions would not be finite; the state is as before
+  /// @throws std::runtime_error  one line with step, bodies and remedy: positions would not be
+  ///                             finite, or too many surfaces are near each other; the state is as
+  ///                             before
   bool step();
 
   /// The last step's diagnostics, computed on request.

@@ -38,10 +38,11 @@ struct PairGapBody {
     gaps[run] = nearest;
   }
 
- private:
   TETWARP_HD PairGap gap_of(const FeaturePair& pair) const {
     return {pair, axis_distance(pair) - radius_of(scene, pair)};
   }
+
+ private:
   /// Distance of the features without their radii.
   TETWARP_HD double axis_distance(const FeaturePair& pair) const {
     const PairVertices own = vertices_of(scene, pair);

@@ -43,6 +43,35 @@ TEST(Simulate, LeavesReadableFilesWhenInterrupted) {
   EXPECT_TRUE(fs::exists(scene / "state"));
 }
 
+/// A load beyond the range of numbers acts from the sixth step on.
+TEST(Simulate, LeavesAllStepsBeforeOneThatFails) {
+  const SimulateScene scene;
+  std::string text = small_scene;
+  text.insert(
+      text.find("\"output\""),
+      R"("loads": [{"load": "ball", "select": "all", "force": [0, 0, 1e300], "from": 0.055}],
+                 )");
+  write_text(scene / "scene.json", text);
+
+  const CommandResult result = scene.simulate({"-o", "out", "--checkpoint", "state"});
+
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(result.has_one_line_error()) << result.err;
+  EXPECT_NE(result.err.find("scene.json: step 5: bodies[1] 'ball'"), std::string::npos)
+      << result.err;
+  const auto report = nlohmann::json::parse(text_of(scene.in("out", "report.json")));
+  EXPECT_EQ(report["status"], "failed");
+  EXPECT_EQ(report["steps_done"], 5);
+  EXPECT_NE(result.err.find(report["error"].get<std::string>()), std::string::npos);
+  EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "time").size(), 6u);
+
+  // The checkpoint is the state before: the same step fails when the run goes on from there.
+  const CommandResult again = scene.simulate({"-o", "out", "--restart", "state"});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_NE(again.err.find("step 5: "), std::string::npos) << again.err;
+  EXPECT_EQ(h5_numbers(scene.in("out", "series.h5"), "time").size(), 6u);
+}
+
 /// A process that is killed between two writes leaves what it has flushed.
 TEST(Simulate, LeavesReadableFilesWhenKilled) {
   const SimulateScene scene;

@@ -32,7 +32,7 @@ TEST(DetectorCounts, ATriangleHasFewCellsAndFewTests) {
 TEST(DetectorCounts, ATriangleOfBodiesThatTouchThemselvesHasFewTests) {
   const CollideScene scene = candy_like({.touches_itself = true});
   const auto triangles = static_cast<double>(scene.surfaces.triangles.size());
-  const auto detector = make_cpu_detector(scene.surfaces, {});
+  const auto detector = make_cpu_detector(scene.surfaces, {.skip_clear_bodies = false});
 
   detector->detect(scene.motion);
 

@@ -39,7 +39,7 @@ void expect_same_touches(const CollideScene& scene, Detector& cpu, Detector& cud
 }
 
 void expect_parity(const CollideScene& scene) {
-  const auto cpu = make_cpu_detector(scene.surfaces, {});
+  const auto cpu = make_cpu_detector(scene.surfaces, {.skip_clear_bodies = false});
   const auto cuda = make_cuda_detector(scene.surfaces, {});
   for (int step = 0; step < 2; ++step) {
     cpu->begin_step();

@@ -168,6 +168,26 @@ TEST(SimulatorEmulated, DividedStepsAreMadeAnewOnTheDevice) {
   EXPECT_GT(simulator.record().substeps, 1);
 }
 
+/// Bodies that touch at the start are pushed apart, from the touches of either back end.
+TEST(SimulatorEmulated, BodiesThatTouchStartAsOnTheCpu) {
+  Scene scene = scene_of({rigid_box("low", {0.1, 0.1, 0.05}, {0, 0, 0.05}),
+                          elastic_box("high", {0.07, 0.08, 0.05}, {1, 1, 1}),
+                          sheet_body("sheet", {0.1, 0.12}, {2, 2})},
+                         0.005);
+  for (Body& body : scene.bodies) body.surface = std::monostate{};
+  scene.bodies[0].surface = std::int64_t{12};
+  scene.bodies[1].pose.position = {0.01, 0.013, 0.15};
+  std::get<Sheet>(scene.bodies[2].geometry).origin = {-0.05, -0.06, 0.2};
+  scene.thickness = 1e-3;
+  scene.obstacles = {{"floor", PlaneObstacle{}, {}, {}}};
+  Simulator cpu(scene, on(Backend::cpu)), cuda(scene, on(Backend::cuda));
+  EXPECT_NEAR(cpu.record().bodies[0].centre[2], 0.051, 1e-5);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    expect_near(cpu.node_positions(b), cuda.node_positions(b), 1e-12);
+  }
+  EXPECT_GT(cuda.record().smallest_distance, 0.99e-3);
+}
+
 TEST(SimulatorEmulated, AnEndedStepHasNoEffect) {
   SimulateOptions options = on(Backend::cuda);
   bool goes_on = true;

@@ -48,6 +48,26 @@ std::string error_of(const Scene& scene) {
   return test::message_of([&] { make_scene_geometry(scene); });
 }
 
+/// Positions that miss the decimals of a limit by rounding alone are within it, others are not.
+TEST(SceneGeometry, LimitsOfSelectionsHoldUpToRounding) {
+  Body body = box_body(BodyKind::fem);
+  body.lattice = Lattice{.cells = std::array<std::int64_t, 3>{7, 3, 3}};
+  body.pose.position = {0.1 + 0.2, 0.7, 0};
+  const double end = 1.3, side = 1.2;  // 0.30000000000000004 + 1, 0.7 + 0.5
+  const auto count = [&](const SelectionPart& part) {
+    body.fixed = {part};
+    return make_scene_geometry(scene_of({body})).bodies[0].fixed.size();
+  };
+  for (const double rounding : {0.0, 3e-16, -3e-16, 5e-10, -5e-10}) {
+    EXPECT_EQ(count(HalfSpaceSelection{{2, 0, 0}, 2 * (end + rounding)}), 16U);
+    EXPECT_EQ(count(HalfSpaceSelection{{0, 1, 0}, side + rounding}), 32U);
+    EXPECT_EQ(count(BoxSelection{{end + rounding, 0, -1}, {end + rounding, 2, 1}}), 16U);
+    EXPECT_EQ(count(SphereSelection{{end, side, 1.5}, 1 + rounding}), 1U);
+  }
+  EXPECT_EQ(count(HalfSpaceSelection{{1, 0, 0}, end - 2.0 / 7 - 1e-8}), 32U);
+  EXPECT_EQ(count(HalfSpaceSelection{{1, 0, 0}, end - 2.0 / 7 + 1e-8}), 16U);
+}
+
 TEST(SceneGeometry, OfAFemBoxIsItsLatticeAndBoundary) {
   const BodyGeometry box = make_scene_geometry(scene_of({box_body(BodyKind::fem)})).bodies[0];
 

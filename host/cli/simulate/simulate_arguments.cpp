@@ -23,9 +23,10 @@ void declare_scene(CLI::App& app, SimulateArguments& arguments) {
   app.add_option("--steps", arguments.steps, "steps from the start of the scene [its duration]")
       ->check(at_least(0))
       ->type_name("N");
-  app.add_flag("--untangle", arguments.simulate.untangle,
-               "shrink bodies that overlap at the start until they are apart, and let them grow "
-               "back within 0.2 s");
+  app.add_flag(
+      "--untangle", arguments.simulate.untangle,
+      "shrink elastic bodies and cloth that intersect others at the start, and let them grow "
+      "back within 0.2 s");
   app.add_option("--contacts", arguments.contacts,
                  "write the contacts of every output as points with normals and impulses")
       ->type_name("FILE.vtkhdf");

@@ -53,7 +53,10 @@ std::string report_json(const SimulateArguments& arguments,
   json["device"] = simulator.device();
   json["threads"] =
       simulator.backend() == Backend::cpu ? thread_count(arguments.simulate.threads) : 1;
-  json["status"] = result.is_interrupted ? "interrupted" : "done";
+  json["status"] = !result.error.empty()   ? "failed"
+                   : result.is_interrupted ? "interrupted"
+                                           : "done";
+  if (!result.error.empty()) json["error"] = result.error;
   json["converged"] = result.unconverged_steps == 0;
   json["unconverged_steps"] = result.unconverged_steps;
   json["first_step"] = result.first_step;

@@ -20,6 +20,7 @@ struct SimulateResult {
   std::int64_t frames = 0;             ///< written by this run
   std::int64_t unconverged_steps = 0;  ///< above their tolerance
   bool is_interrupted = false;
+  std::string error;  ///< why a step failed; empty: none did
   double read_seconds = 0, setup_seconds = 0, step_seconds = 0, write_seconds = 0, warp_seconds = 0,
          draw_seconds = 0, total_seconds = 0;
   std::vector<std::string> outputs;

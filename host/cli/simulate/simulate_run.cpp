@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 #include <tetwarp/error.hpp>
@@ -260,12 +261,26 @@ void SimulateRun::write_checkpoint() {
   result_.write_seconds += writing.seconds();
 }
 
+/// @returns false if it failed; then all is as before, and the result has the error
+bool SimulateRun::take_step() {
+  const Stopwatch stepping;
+  try {
+    if (!simulator_->step()) throw Cancelled();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    result_.error = "out of memory; use fewer or coarser bodies";
+  } catch (const std::exception& error) {
+    result_.error = error.what();
+  }
+  result_.step_seconds += stepping.seconds();
+  return result_.error.empty();
+}
+
 void SimulateRun::take_steps(ProgressBar& bar) {
   while (simulator_->step_index() < last_step_) {
     stop_if_interrupted();
-    const Stopwatch stepping;
-    if (!simulator_->step()) throw Cancelled();
-    result_.step_seconds += stepping.seconds();
+    if (!take_step()) return;
     const std::int64_t step = simulator_->step_index();
     if (!simulator_->record().converged) ++result_.unconverged_steps;
     write_row();
@@ -295,6 +310,7 @@ const SimulateResult& SimulateRun::run() {
     result_.is_interrupted = true;
   }
   finish();
+  if (!result_.error.empty()) throw std::runtime_error(arguments_.scene() + ": " + result_.error);
   return result_;
 }
 

@@ -29,7 +29,8 @@ class SimulateRun {
  public:
   explicit SimulateRun(const SimulateArguments& arguments);
 
-  /// Runs until the last step or an interrupt, then writes the report.
+  /// Runs until the last step or an interrupt, then writes the report. Where a step fails, files
+  /// hold all steps before it, and the error is thrown after the report says so.
   const SimulateResult& run();
 
   const Simulator& simulator() const { return *simulator_; }
@@ -43,6 +44,7 @@ class SimulateRun {
   void flush_if_due();
   void flush();
   void take_steps(ProgressBar& bar);
+  bool take_step();
   void finish();
   double frame_seconds(std::int64_t frame) const;
 

@@ -49,6 +49,8 @@ class CpuDetectExec {
   template <class T>
   using List = HostList<T>;
 
+  static constexpr bool reads_are_free = true;  ///< the host may read what stages read
+
   explicit CpuDetectExec(int threads) : exec_(threads) {}
 
   /// Sets the size; new entries are undefined.

@@ -96,6 +96,8 @@ class CudaDetectExec {
   template <class T>
   using List = DeviceList<T>;
 
+  static constexpr bool reads_are_free = false;
+
   explicit CudaDetectExec(int device) : exec_(device) {}
 
   /// @returns  an object during whose life the device is the current one of this thread

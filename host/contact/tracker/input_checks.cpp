@@ -33,9 +33,8 @@ void check_material(const ContactKey& key, const BodyPlace& place, const Materia
     sum += point.weight[k];
   }
   if (is_good && std::abs(sum - 1) <= 1e-6) return;
-  refuse(name_of(key),
-         "needs a material point on its deformable body: one to three of the body's " +
-             std::to_string(place.vertices.size()) + " vertices, with weights of sum 1");
+  refuse(key, "needs a material point on its deformable body: one to three of the body's " +
+                  std::to_string(place.vertices.size()) + " vertices, with weights of sum 1");
 }
 
 void check_place(std::size_t body, const BodyPlace& place) {
@@ -63,18 +62,21 @@ void check_bodies(const ContactKey& key, std::span<const BodyPlace> places) {
     return body < 0 || static_cast<std::size_t>(body) >= places.size();
   };
   if (is_out(key.body_a) || is_out(key.body_b)) {
-    refuse(name_of(key),
+    refuse(key,
            "has a body index out of range, there are " + std::to_string(places.size()) + " bodies");
   }
   if (key.body_a != key.body_b) return;
   if (place_of(places, key.body_a).is_rigid() || key.feature_a == key.feature_b) {
-    refuse(name_of(key), "has the same body on both sides");
+    refuse(key, "has the same body on both sides");
   }
 }
 }  // namespace
 
 void refuse(const std::string& subject, const std::string& problem) {
   throw std::invalid_argument("ContactTracker: " + subject + " " + problem);
+}
+void refuse(const ContactKey& key, const std::string& problem) {
+  throw ContactKeyError(key, "ContactTracker: " + name_of(key) + " " + problem);
 }
 
 std::string name_of(const ContactKey& key) {
@@ -106,25 +108,25 @@ void check_report(const ReportedContact& report,
   check_material(report.key, place_of(places, report.key.body_a), report.material_a);
   check_material(report.key, place_of(places, report.key.body_b), report.material_b);
   if (!(std::abs(vector_of(report.normal).norm() - 1) <= 1e-6)) {
-    refuse(name_of(report.key), "has a normal that is not a unit vector");
+    refuse(report.key, "has a normal that is not a unit vector");
   }
   if (!(report.area >= 0) || !std::isfinite(report.area)) {
-    refuse(name_of(report.key),
+    refuse(report.key,
            "has area " + std::to_string(report.area) + ", expected a finite number of 0 or more");
   }
   if (report.material < 0 || static_cast<std::size_t>(report.material) >= material_count) {
-    refuse(name_of(report.key), "has material " + std::to_string(report.material) + ", there are " +
-                                    std::to_string(material_count) + " materials");
+    refuse(report.key, "has material " + std::to_string(report.material) + ", there are " +
+                           std::to_string(material_count) + " materials");
   }
   if (!are_finite({report.point_a_world, report.point_b_world, report.tangent})) {
-    refuse(name_of(report.key), "has a position or tangent that is not finite");
+    refuse(report.key, "has a position or tangent that is not finite");
   }
   if (!are_finite({report.surface_velocity, report.obstacle_velocity}) ||
       !std::isfinite(report.approach_speed)) {
-    refuse(name_of(report.key), "has a velocity that is not finite");
+    refuse(report.key, "has a velocity that is not finite");
   }
   if (!(report.bonded_share > 0 && report.bonded_share <= 1)) {
-    refuse(name_of(report.key), "has a bonded share that is not above 0 and at most 1");
+    refuse(report.key, "has a bonded share that is not above 0 and at most 1");
   }
 }
 
@@ -132,24 +134,23 @@ void check_records(const std::vector<ContactRecord>& records, std::size_t materi
   for (std::size_t k = 0; k < records.size(); ++k) {
     const ContactRecord& record = records[k];
     if (k > 0 && !(records[k - 1].key < record.key)) {
-      refuse(name_of(record.key), "is out of order, sort the records by key");
+      refuse(record.key, "is out of order, sort the records by key");
     }
     const ContactKey& key = record.key;
     const bool is_ordered =
         key.body_a < key.body_b || (key.body_a == key.body_b && key.feature_a < key.feature_b &&
                                     !record.material_a.is_rigid());
-    if (!is_ordered) refuse(name_of(key), "must name the body with the smaller index first");
+    if (!is_ordered) refuse(key, "must name the body with the smaller index first");
     if (!(record.intensity >= 0 && record.intensity <= 1) || record.material < 0 ||
         static_cast<std::size_t>(record.material) >= material_count) {
-      refuse(name_of(record.key),
-             "has an intensity outside [0, 1] or a material index out of range");
+      refuse(record.key, "has an intensity outside [0, 1] or a material index out of range");
     }
     if (!(record.area >= 0) || !std::isfinite(record.area) ||
         !are_finite({record.anchor_a, record.anchor_b, record.normal_a, record.normal_b,
                      record.impulse_world, record.material_a.weight, record.material_b.weight,
                      record.normal_world}) ||
         !std::isfinite(record.standoff)) {
-      refuse(name_of(record.key), "has a negative area or a number that is not finite");
+      refuse(record.key, "has a negative area or a number that is not finite");
     }
   }
 }
@@ -179,9 +180,11 @@ void check_solution(const ContactSolution& solution, const std::vector<TrackedCo
     }
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (std::isfinite(values[row])) continue;
-      refuse(std::string("solution.") + name,
-             "of " + name_of(contacts[row / 3].key) + " is " + text_of(values[row]) +
-                 ", expected a finite number; do not pass on a solve that failed");
+      const ContactKey& key = contacts[row / 3].key;
+      throw ContactKeyError(key, std::string("ContactTracker: solution.") + name + " of " +
+                                     name_of(key) + " is " + text_of(values[row]) +
+                                     ", expected a finite number; do not pass on a solve that "
+                                     "failed");
     }
   };
   check("impulse", solution.impulse);

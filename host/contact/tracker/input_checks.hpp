@@ -1,6 +1,6 @@
 /// @file input_checks.hpp
 /// Checks of what the tracker is given. All throw std::invalid_argument with one line that names
-/// the contact, body or material.
+/// the contact, body or material; of a contact ContactKeyError.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -13,6 +13,8 @@ namespace tetwarp {
 
 /// Throws std::invalid_argument: "ContactTracker: SUBJECT PROBLEM".
 [[noreturn]] void refuse(const std::string& subject, const std::string& problem);
+/// The same of a contact.
+[[noreturn]] void refuse(const ContactKey& key, const std::string& problem);
 
 std::string name_of(const ContactKey& key);
 

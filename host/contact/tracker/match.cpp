@@ -97,7 +97,7 @@ std::span<const ReportedContact> sorted_reports(std::span<const ReportedContact>
   storage.reserve(reports.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i > 0 && order[i].first == order[i - 1].first) {
-      refuse(name_of(order[i].first), "is reported twice");
+      refuse(order[i].first, "is reported twice");
     }
     storage.push_back(in_key_order(reports[order[i].second]));
   }

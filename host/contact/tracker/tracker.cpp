@@ -238,7 +238,7 @@ AdhesionStep ContactTracker::end_step(const ContactSolution& solution,
       impulse += solution.impulse[3 * c + axis] * vector_of(contacts_[c].axes[axis]);
     }
     if (!impulse.allFinite() || !std::isfinite(step.intensity[c])) {
-      refuse(name_of(record.key), "has an impulse or a velocity beyond the range of numbers");
+      refuse(record.key, "has an impulse or a velocity beyond the range of numbers");
     }
     record.impulse_world = point_of(impulse);
   });

@@ -50,43 +50,24 @@ void PairContacts::list_groups(std::span<const ChosenTouch> touches) {
   }
 }
 
-/// Sets the number of a touch: that of the record with the nearest normal, or a free one.
-/// @returns the record with this number, or null
-const ContactRecord* PairContacts::set_slot(std::span<const ChosenTouch> touches,
-                                            const Group& group,
-                                            std::size_t t,
-                                            std::span<const ContactRecord> records) {
-  constexpr std::int32_t last = -64;
-  const PairTouch& touch = touches[t].touch;
-  const auto own = std::ranges::equal_range(
-      vertex_records_, std::pair(touch.a, touch.body_b), {},
-      [](const VertexRecord& record) { return std::pair(record.vertex, record.body); });
-  const auto is_taken = [&](std::int32_t slot) {
-    const std::span<const std::int32_t> taken(slots_.data() + group.begin, t - group.begin);
-    return std::ranges::find(taken, slot) != taken.end();
-  };
-  const ContactRecord* best = nullptr;
+/// @param own  records of contacts of the vertex with the body
+/// @returns the one with the nearest normal that no other touch has taken, or null
+PairContacts::VertexRecord* PairContacts::nearest(const PairTouch& touch,
+                                                  std::span<VertexRecord> own,
+                                                  std::span<const ContactRecord> records) {
+  VertexRecord* best = nullptr;
   double closest = cosine_45;
-  for (const VertexRecord& of : own) {
-    if (is_taken(of.slot)) continue;
+  for (VertexRecord& of : own) {
+    if (of.is_taken) continue;
     const ContactRecord& record = records[of.record];
-    const bool is_known = record.normal_world != Point3{0, 0, 0};
+    if (record.normal_world == Point3{0, 0, 0}) return &of;
     const double sign = record.key.feature_a == touch.a ? 1 : -1;
-    const double cosine = is_known ? sign * dot(record.normal_world, point_of(touch.normal)) : 1;
-    if (is_known && cosine <= closest) continue;
+    const double cosine = sign * dot(record.normal_world, point_of(touch.normal));
+    if (cosine <= closest) continue;
     closest = cosine;
-    best = &record;
-    slots_[t] = of.slot;
-    if (!is_known) break;
+    best = &of;
   }
-  if (best != nullptr) return best;
-  const auto has_record = [&](std::int32_t slot) {
-    return std::ranges::find(own, slot, &VertexRecord::slot) != own.end();
-  };
-  std::int32_t free = -1;
-  while (free > last && (is_taken(free) || has_record(free))) --free;
-  slots_[t] = free;
-  return nullptr;
+  return best;
 }
 
 /// Lists the records of contacts of vertices.
@@ -98,9 +79,7 @@ void PairContacts::list_records(std::span<const ContactRecord> records) {
     const VertexRecord own{is_second ? key.feature_b : key.feature_a,
                            is_second ? key.body_a : key.body_b,
                            is_second ? key.feature_a : key.feature_b, r};
-    if (own.vertex >= 0 && own.slot < 0 && own.slot > RigidPatches::first_feature) {
-      vertex_records_.push_back(own);
-    }
+    if (own.vertex >= 0 && own.slot < 0) vertex_records_.push_back(own);
   }
   std::ranges::sort(vertex_records_, {}, [](const VertexRecord& own) {
     return std::tuple(own.vertex, own.body, -own.slot);
@@ -143,17 +122,32 @@ void PairContacts::report(const NamedTouch& named, ReportedContact& contact) con
   }
 }
 
-/// Names the touches of a vertex with a body.
+/// Names the touches of a vertex with a body: by the number of the record with the nearest normal,
+/// or the next free one.
 void PairContacts::name_vertex(std::span<const ChosenTouch> touches,
                                const Group& group,
                                std::span<const ContactRecord> records) {
+  const PairTouch& first = touches[group.begin].touch;
+  const auto own = std::ranges::equal_range(
+      vertex_records_, std::pair(first.a, first.body_b), {},
+      [](const VertexRecord& record) { return std::pair(record.vertex, record.body); });
+  auto used = own.begin();  // by descending numbers
+  std::int32_t free = 0;
   for (std::size_t t = group.begin; t < group.end; ++t) {
     const PairTouch& touch = touches[t].touch;
-    // The area of a bonded contact stays the same while the surfaces turn away from each other.
-    const ContactRecord* const record = set_slot(touches, group, t, records);
-    const bool is_bonded = record != nullptr && record->intensity > 0;
-    const double area = touches[t].area;
-    named_[t] = named(touch, touch.a, slots_[t], is_bonded ? std::max(area, record->area) : area);
+    double area = touches[t].area;
+    std::int32_t slot = 0;
+    if (VertexRecord* const known = nearest(touch, own, records)) {
+      known->is_taken = true;
+      slot = known->slot;
+      // The area of a bonded contact stays the same while the surfaces turn away from each other.
+      const ContactRecord& record = records[known->record];
+      if (record.intensity > 0) area = std::max(area, record.area);
+    } else {
+      for (--free; used != own.end() && used->slot == free; ++used) --free;
+      slot = free;
+    }
+    named_[t] = named(touch, touch.a, slot, area);
   }
 }
 
@@ -162,7 +156,6 @@ std::vector<ReportedContact>& PairContacts::find(std::span<const ChosenTouch> to
                                                  std::span<const ContactRecord> records) {
   list_records(records);
   list_groups(touches);
-  slots_.resize(touches.size());
   named_.resize(touches.size());
   const auto vertex_count = static_cast<std::int32_t>(scene_.surfaces.vertex_body.size());
   const auto edge_count = static_cast<std::int32_t>(scene_.surfaces.edges.size());

@@ -34,8 +34,9 @@ class PairContacts {
   ///          from the vertex count on (at the first and second end of an overlap plus the number
   ///          of edges once and twice), and below zero what a vertex touches: -1 the first such
   ///          contact of the vertex and the body, -2 the second; a contact takes the number of the
-  ///          record whose normal is nearest. Vertices of material points are
-  ///          counted from the first of the body.
+  ///          record whose normal is nearest. So one feature of a vertex's contact is below zero,
+  ///          none of one of edges, and both of an adhesion point: no two contacts have one key.
+  ///          Vertices of material points are counted from the first of the body.
   std::vector<ReportedContact>& find(std::span<const ChosenTouch> touches,
                                      const std::vector<Point3>& vertices,
                                      std::span<const ContactRecord> records = {});
@@ -46,6 +47,7 @@ class PairContacts {
     std::int32_t vertex = 0, body = 0;  ///< the vertex, and the body that it touches
     std::int32_t slot = 0;              ///< its number, below 0
     std::size_t record = 0;             ///< in the records
+    bool is_taken = false;              ///< a touch of the step has its number
   };
 
   /// A touch with the key of its contact; the sides of the key may be in the other order.
@@ -63,10 +65,9 @@ class PairContacts {
 
   void list_groups(std::span<const ChosenTouch> touches);
   void list_records(std::span<const ContactRecord> records);
-  const ContactRecord* set_slot(std::span<const ChosenTouch> touches,
-                                const Group& group,
-                                std::size_t touch,
-                                std::span<const ContactRecord> records);
+  static VertexRecord* nearest(const PairTouch& touch,
+                               std::span<VertexRecord> own,
+                               std::span<const ContactRecord> records);
   MaterialPoint material_of(const std::int32_t* vertex,
                             const double* weight,
                             std::int32_t body) const;
@@ -84,7 +85,6 @@ class PairContacts {
   TouchAreas areas_;
   RigidPatches patches_;
   std::vector<Group> groups_;
-  std::vector<std::int32_t> slots_;           ///< [touches] of vertices, below 0
   std::vector<VertexRecord> vertex_records_;  ///< of the step, sorted by all but the record
   std::vector<NamedTouch> named_;
   std::vector<ReportedContact> contacts_;

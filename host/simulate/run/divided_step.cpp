@@ -6,7 +6,23 @@
 #include <string>
 #include <utility>
 
+#include "host/simulate/run/fastest_body.hpp"
+#include "host/simulate/surfaces/round_shape.hpp"
+
 namespace tetwarp {
+namespace {
+
+constexpr const char* fault_remedy =
+    "; this is a fault of tetwarp, please report it with the scene; another time_step or thickness "
+    "may avoid it";
+
+/// No division of the step is good enough.
+class StepFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace
 
 DividedStep::DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies)
     : scene_(scene), count_(count), bodies_(bodies), division_(scene) {
@@ -19,14 +35,24 @@ bool DividedStep::step() {
   seconds_ = {};
   count_.begin_step();
   bodies_.begin_step();
+  std::string what;
   try {
     const bool is_made = make();
     if (!is_made) go_back();
     return is_made;
+  } catch (const StepFailed& error) {
+    what = error.what();
+  } catch (const ContactKeyError& error) {
+    what = place_of_body(scene_.scene, error.key().body_a) + " and " +
+           place_of_body(scene_.scene, error.key().body_b) + ": " + error.what() + fault_remedy;
+  } catch (const std::logic_error& error) {
+    what = fastest_body(scene_, bodies_.stepper()) + ": " + error.what() + fault_remedy;
   } catch (...) {
     go_back();
     throw;
   }
+  go_back();
+  throw std::runtime_error("step " + std::to_string(count_.done()) + ": " + what);
 }
 
 bool DividedStep::make() {
@@ -39,7 +65,9 @@ bool DividedStep::make() {
   }
   if (!made.is_completed) return false;
   if (!made.is_finite) {
-    refuse("positions would not be finite", parts, "reduce time_step or the stiffness");
+    throw StepFailed(failed_in(parts) +
+                     "positions would not be finite; reduce time_step, the "
+                     "stiffness or loads");
   }
   bodies_.end_step(made.is_good);
   accept(std::move(made), parts);
@@ -71,7 +99,8 @@ bool DividedStep::make_part(int part, int parts, StepAttempt& made) {
     contact = bodies_.advance(of, made);
   } catch (const TooManyPairs& error) {
     if (!division_.can_double(parts)) {
-      refuse(error.what(), parts, "reduce time_step or the speeds");
+      throw StepFailed(failed_in(parts) + error.what() +
+                       "; reduce time_step, the speeds or the thickness");
     }
     made.is_good = false;
     return false;
@@ -113,9 +142,9 @@ void DividedStep::accept(StepAttempt made, int parts) {
   if (bodies_.contact() != nullptr) bodies_.contact()->take_points(last_.points);
 }
 
-void DividedStep::refuse(const std::string& what, int parts, const std::string& remedy) const {
-  throw std::runtime_error("step " + std::to_string(count_.done()) + ": " + what + ", also in " +
-                           std::to_string(parts) + " substeps; " + remedy);
+std::string DividedStep::failed_in(int parts) {
+  return fastest_body(scene_, bodies_.stepper()) + " in " + std::to_string(parts) +
+         (parts == 1 ? " part: " : " parts: ");
 }
 
 void DividedStep::save(SavedState& saved) const {

@@ -21,8 +21,9 @@ class DividedStep {
   DividedStep(const SimulatedScene& scene, StepCount& count, MovingBodies& bodies);
 
   /// Makes a step. @returns false if `progress` ended it; then all is as before
-  /// @throws std::runtime_error  positions would not be finite, or too many pairs are near each
-  ///                             other, in the smallest parts too; then all is as before
+  /// @throws std::runtime_error  one line with step, bodies and remedy: positions would not be
+  ///                             finite, or too many pairs are near each other, in the smallest
+  ///                             parts too; or a fault of this library. Then all is as before
   bool step();
   /// Of the last step.
   const LastStep& last() const { return last_; }
@@ -38,7 +39,7 @@ class DividedStep {
   StepPart part_of(int part, int parts) const;
   void add_all_seconds(const StepAttempt& made);
   void accept(StepAttempt made, int parts);
-  [[noreturn]] void refuse(const std::string& what, int parts, const std::string& remedy) const;
+  std::string failed_in(int parts);
 
   const SimulatedScene& scene_;
   StepCount& count_;

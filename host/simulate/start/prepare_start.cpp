@@ -8,6 +8,7 @@
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/start/cage_growth.hpp"
 #include "host/simulate/start/start_check.hpp"
+#include "host/simulate/start/start_push.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"
 
@@ -15,13 +16,11 @@ namespace tetwarp {
 namespace {
 
 /// Moves the anchors of handles to the starts of their points.
-void move_anchors(const std::vector<ShrunkBody>& bodies, Model& model) {
+/// @param has_moved  [bodies]
+void move_anchors(const std::vector<std::uint8_t>& has_moved, Model& model) {
   for (std::size_t s = 0; s < model.springs.a.size(); ++s) {
-    if (model.springs.handle[s] < 0) continue;
-    for (const ShrunkBody& body : bodies) {
-      if (model.springs.a[s].body != body.body) continue;
-      model.springs.b[s].local = position_of(model.springs.a[s], model.start, model.node_count);
-    }
+    if (model.springs.handle[s] < 0 || at(has_moved, model.springs.a[s].body) == 0) continue;
+    model.springs.b[s].local = position_of(model.springs.a[s], model.start, model.node_count);
   }
 }
 
@@ -38,7 +37,9 @@ void start_by_cages(const StartParts& parts, Model& model) {
                                 "move it apart from others, or drive none of its nodes");
   }
   grow_by_cages(parts, shrunk, model);
-  move_anchors(shrunk, model);
+  std::vector<std::uint8_t> has_moved(bodies.size(), 0);
+  for (const ShrunkBody& body : shrunk) has_moved[static_cast<std::size_t>(body.body)] = 1;
+  move_anchors(has_moved, model);
 }
 
 RestGrowth start_untangled(const StartParts& parts, Model& model) {
@@ -61,7 +62,9 @@ RestGrowth prepare_start(const StartParts& parts, bool untangle, Model& model) {
   if (untangle) growth = start_untangled(parts, model);
   SurfacePlaces places;
   surface_places(parts.surfaces, model, model.start, parts.threads, places);
-  check_start(parts.scene, parts.surfaces, places, parts.detector, parts.threads);
+  if (check_start(parts.scene, parts.surfaces, places, parts.detector, parts.threads)) {
+    move_anchors(push_apart(parts, model), model);
+  }
   return growth;
 }
 

@@ -6,10 +6,10 @@
 
 namespace tetwarp {
 
-/// Separates bodies that overlap, or are nearer than the thickness, at the start: bodies with
-/// cage_start by their cages; with `untangle` other elastic bodies and cloth are shrunk and grow
-/// back during the simulation. Then checks that all bodies are apart. Surfaces keep the areas that
-/// they had before.
+/// Separates bodies that intersect at the start: bodies with cage_start by their cages; with
+/// `untangle` other elastic bodies and cloth are shrunk and grow back during the simulation. Then
+/// checks that no bodies intersect, and pushes those apart that are nearer than the thickness.
+/// Surfaces keep the areas that they had before.
 /// @param model  in, out: its start, and the anchors of handles of caged bodies
 /// @returns the growth of the shrunk bodies
 /// @throws std::invalid_argument  as check_start() and shrink_apart(); or a body with cage_start

@@ -1,5 +1,5 @@
 /// @file start_check.cpp
-/// Lists the pairs of bodies in conflict, and reports the worst.
+/// Lists the pairs of bodies in conflict, and reports the worst intersection.
 #include "host/simulate/start/start_check.hpp"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include "host/base/parallel.hpp"
 #include "host/scene/checks/scene_checks.hpp"
 #include "host/scene/surface_lattice.hpp"
+#include "host/simulate/start/inset_places.hpp"
 #include "host/simulate/surfaces/near_pair.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
 #include "host/simulate/surfaces/triangle_tree.hpp"
@@ -25,7 +26,7 @@ using Bodies = std::array<std::int32_t, 2>;
 class StartSearch {
  public:
   StartSearch(const SceneSurfaces& scene, const SurfacePlaces& places)
-      : surfaces_(scene.surfaces), places_(places) {}
+      : surfaces_(scene.surfaces), inset_(scene.surfaces, places), places_(inset_.places()) {}
 
   std::vector<StartConflict> run(Detector& detector, int threads) {
     find_near(detector);
@@ -52,10 +53,33 @@ class StartSearch {
     SurfaceMotion rest{places_, places_, std::vector<double>(places_.vertices.size(), 0.0)};
     detector.begin_step();
     for (const TouchingPair& pair : detector.detect(rest)) {
-      const NearPair near = near_pair(pair, surfaces_, places_);
-      if (near.distance >= surfaces_.thickness) continue;
-      add({near.bodies, StartConflict::Kind::near, near.place, near.distance});
+      const NearPair near = near_pair(pair, surfaces_, inset_.given());
+      const auto [a, b] = near.bodies;
+      const double rounding = inset_.rounding(a) + inset_.rounding(b);
+      if (near.distance >= surfaces_.thickness - rounding) continue;
+      Kind kind = Kind::near;
+      if (is_of_meshes(pair)) {
+        if (near_pair(pair, surfaces_, places_).distance <= least_apart(a, b)) kind = Kind::crosses;
+      } else if (near.distance < -rounding) {
+        kind = Kind::overlaps;
+      }
+      add({near.bodies, kind, near.place, near.distance});
     }
+  }
+
+  bool is_of_meshes(const TouchingPair& pair) const {
+    if (pair.kind == PairKind::vertex_face) return at(surfaces_.vertex_radius, pair.a) == 0;
+    return pair.kind == PairKind::edge_edge && at(surfaces_.edge_radius, pair.a) == 0 &&
+           at(surfaces_.edge_radius, pair.b) == 0;
+  }
+  /// Inset surfaces that are not farther apart than this intersect, or it is not known on which
+  /// side of each other they are: sheets that touch have none.
+  double least_apart(std::int32_t a, std::int32_t b) const {
+    constexpr double share = 0.1;  // of the way inwards
+    const double own = inset_.is_inset(a) ? inset_.rounding(a) : 0;
+    const double other = inset_.is_inset(b) ? inset_.rounding(b) : 0;
+    const double way = std::max(own, other);
+    return way > 0 ? share * way : inset_.rounding(a) + inset_.rounding(b);
   }
 
   bool may_meet(std::int32_t a, std::int32_t b) const {
@@ -139,29 +163,14 @@ class StartSearch {
   }
 
   /// The triangles of a body if they form a closed surface.
-  std::optional<Surface> closed_surface(const CollisionBody& body) const {
-    if (body.first_triangle == body.triangle_end) return std::nullopt;
-    std::vector<std::array<std::int32_t, 3>> half_edges;  // low, high, direction
+  std::optional<Surface> closed_surface(std::int32_t index) const {
+    if (!inset_.is_closed(index)) return std::nullopt;
+    const CollisionBody& body = at(surfaces_.bodies, index);
     Surface surface;
     for (std::int32_t t = body.first_triangle; t < body.triangle_end; ++t) {
       std::array<std::int32_t, 3> own = at(surfaces_.triangles, t);
       for (std::int32_t& corner : own) corner -= body.first_vertex;
       surface.triangles.push_back(own);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t from = own[c], to = own[(c + 1) % 3];
-        half_edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
-      }
-    }
-    std::sort(half_edges.begin(), half_edges.end());
-    for (std::size_t e = 0; e < half_edges.size();) {
-      std::int32_t balance = 0;
-      const std::size_t first = e;
-      for (; e < half_edges.size() && half_edges[e][0] == half_edges[first][0] &&
-             half_edges[e][1] == half_edges[first][1];
-           ++e) {
-        balance += half_edges[e][2];
-      }
-      if (balance != 0) return std::nullopt;
     }
     surface.points.assign(places_.vertices.begin() + body.first_vertex,
                           places_.vertices.begin() + body.vertex_end);
@@ -175,7 +184,7 @@ class StartSearch {
     }
     std::sort(parts.begin(), parts.end());
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(surfaces_.bodies.size()); ++b) {
-      const auto surface = closed_surface(at(surfaces_.bodies, b));
+      const auto surface = closed_surface(b);
       if (!surface) continue;
       const Bounds box = bounds_of(surface->points);
       auto part = std::lower_bound(parts.begin(), parts.end(), std::pair(box.low[0], -1));
@@ -194,8 +203,11 @@ class StartSearch {
     }
   }
 
+  using Kind = StartConflict::Kind;
+
   const CollisionSurfaces& surfaces_;
-  const SurfacePlaces& places_;
+  const InsetPlaces inset_;
+  const SurfacePlaces& places_;  ///< of inset_
   std::map<Bodies, StartConflict> found_;
 };
 
@@ -213,13 +225,15 @@ std::vector<StartConflict> start_conflicts(const SceneSurfaces& scene,
   return StartSearch(scene, places).run(detector, threads);
 }
 
-void check_start(const Scene& scene,
+bool check_start(const Scene& scene,
                  const SceneSurfaces& surfaces,
                  const SurfacePlaces& places,
                  Detector& detector,
                  int threads) {
-  const std::vector<StartConflict> conflicts = start_conflicts(surfaces, places, detector, threads);
-  if (conflicts.empty()) return;
+  std::vector<StartConflict> conflicts = start_conflicts(surfaces, places, detector, threads);
+  const bool are_near = !conflicts.empty();
+  std::erase_if(conflicts, [](const StartConflict& of) { return !of.is_intersection(); });
+  if (conflicts.empty()) return are_near;
   const StartConflict& worst = *std::min_element(
       conflicts.begin(), conflicts.end(), [](const StartConflict& a, const StartConflict& b) {
         return std::pair(a.kind, a.distance) < std::pair(b.kind, b.distance);
@@ -227,18 +241,14 @@ void check_start(const Scene& scene,
   const auto [a, b] = worst.bodies;
   std::string what = place_of_body(scene, a);
   if (a == b) {
-    what += worst.kind == StartConflict::Kind::near ? " is nearer to itself than the thickness"
-                                                    : " intersects itself";
-  } else if (worst.kind == StartConflict::Kind::near) {
-    what += " and " + place_of_body(scene, b) + " are nearer than the thickness";
+    what += " intersects itself";
   } else {
     what += worst.kind == StartConflict::Kind::inside ? " is inside " : " intersects ";
     what += place_of_body(scene, b);
   }
   what += " at the start, at " + point_text(worst.place);
-  if (worst.kind == StartConflict::Kind::near) {
-    what += ": their distance is " + number_text(worst.distance) + " m, the thickness " +
-            number_text(surfaces.surfaces.thickness) + " m";
+  if (worst.kind == StartConflict::Kind::overlaps) {
+    what += ", by " + number_text(-worst.distance) + " m";
   }
   if (conflicts.size() > 1) {
     what += " (" + std::to_string(conflicts.size()) + " pairs of bodies in all)";
@@ -250,7 +260,7 @@ void check_start(const Scene& scene,
     });
   };
   if (a == b) {
-    what += "; set its self to false, make the thickness smaller or change its shape";
+    what += "; set its self to false or change its shape";
   } else {
     what += "; move them apart, ";
     if (is_any(BodyKind::fem)) what += "set cage_start of an elastic one, ";

@@ -40,6 +40,7 @@ class ShrinkingBodies {
     return true;
   }
 
+  bool has(std::int32_t body) const { return bodies_.contains(body); }
   std::vector<ShrunkBody> list() const {
     std::vector<ShrunkBody> result;
     for (const auto& [body, shrunk] : bodies_) result.push_back(shrunk);
@@ -78,9 +79,11 @@ std::vector<ShrunkBody> shrink_apart(const StartParts& parts,
          start_conflicts(parts.surfaces, places, parts.detector, parts.threads)) {
       const auto [a, b] = conflict.bodies;
       if (!can_shrink(a) && !can_shrink(b)) continue;
+      const bool has_shrunk = a != b && (bodies.has(a) || bodies.has(b));
+      if (!conflict.is_intersection() && !has_shrunk) continue;
       if (a == b) {
         throw std::invalid_argument(place_of_body(parts.scene, a) +
-                                    ": it is in conflict with itself at the start, which " + what +
+                                    ": it intersects itself at the start, which " + what +
                                     " cannot change; set its self to false or change its shape");
       }
       pairs.push_back(conflict);

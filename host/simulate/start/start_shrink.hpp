@@ -26,15 +26,15 @@ struct StartParts {
   int threads = 1;
 };
 
-/// Scales elastic bodies and cloth about their medial nodes, by successive factors of 0.9 for all
-/// bodies in conflict, until no pair with one of them is nearer than the thickness. Pairs of two
-/// bodies that must not shrink are ignored.
+/// Scales elastic bodies and cloth that intersect others about their medial nodes, by successive
+/// factors of 0.9 for all bodies in conflict, until no pair with one of them is nearer than the
+/// thickness. Pairs of two bodies that must not shrink are ignored.
 /// @param may_shrink  [bodies]
 /// @param what        why the bodies shrink, for messages
 /// @param model       in, out: its start
 /// @returns the bodies that were scaled, by number
 /// @throws std::invalid_argument  in one line naming two bodies that are still in conflict at 1/30
-///         of their size, or a body that is in conflict with itself
+///         of their size, or a body that intersects itself
 std::vector<ShrunkBody> shrink_apart(const StartParts& parts,
                                      const std::vector<std::uint8_t>& may_shrink,
                                      const std::string& what,

@@ -165,26 +165,37 @@ TEST(Untangle, ShrinksBodiesUntilTheyAreApart) {
   }
 }
 
+/// Bodies that only are nearer than the thickness are pushed apart, not shrunk.
+TEST(Untangle, LeavesBodiesThatTouch) {
+  Scene scene = two_balls(0.201);
+  scene.bodies[0] = elastic_box("left", {0.1, 0.1, 0.1}, {1, 1, 1});
+  scene.bodies[1] = elastic_box("right", {0.1, 0.1, 0.1}, {1, 1, 1});
+  scene.bodies[1].pose.position = {0.2, 0.01, 0.02};
+  PreparedStart start(scene, true);
+  EXPECT_TRUE(start.growth.empty());
+  EXPECT_TRUE(start.conflicts().empty());
+}
+
 TEST(Untangle, RigidBodiesCannotShrink) {
   Scene scene = two_balls(0.15);
   scene.bodies[0] = rigid_ball("left", 0.1, {0, 0, 0});
   scene.bodies[1] = rigid_ball("right", 0.1, {0.15, 0, 0});
   EXPECT_EQ(message_of([&] {
               PreparedStart(scene, true);
-            }).find("bodies[0] 'left' and bodies[1] 'right' are nearer than the thickness"),
+            }).find("bodies[0] 'left' intersects bodies[1] 'right' at the start"),
             0U);
   scene.bodies[1] = soft_ball("right", {0.15, 0, 0});
   EXPECT_TRUE(PreparedStart(scene, true).conflicts().empty());
 }
 
-TEST(Untangle, CannotHelpABodyThatTouchesItself) {
+TEST(Untangle, CannotHelpABodyThatIntersectsItself) {
   Body cloth = sheet_body("cloth", {1, 1}, {1, 1});
-  cloth.geometry =
-      Surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0.9, 1e-4}}, {{{0, 1, 2}}, {{1, 0, 3}}}};
+  cloth.geometry = Surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -0.1}, {0.2, 0.2, 0.1}},
+                           {{{0, 1, 2}}, {{0, 3, 4}}}};
   Scene scene = scene_of({cloth}, 0.01);
   scene.thickness = 1e-3;
   EXPECT_EQ(message_of([&] { PreparedStart(scene, true); }),
-            "bodies[0] 'cloth': it is in conflict with itself at the start, which untangle cannot "
+            "bodies[0] 'cloth': it intersects itself at the start, which untangle cannot "
             "change; set its self to false or change its shape");
 }
 

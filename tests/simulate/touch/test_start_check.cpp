@@ -1,5 +1,5 @@
 /// @file test_start_check.cpp
-/// Bodies that are too near, cross or are inside one another at the start are errors.
+/// Bodies that cross, overlap or are inside one another at the start are errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,12 +25,15 @@ std::vector<StartConflict> conflicts_of(const TouchScene& touch, int threads = 1
   return start_conflicts(touch.surfaces, places, *detector, threads);
 }
 
-std::string message_of_start(const Scene& scene) {
+bool is_near_start(const Scene& scene) {
   const TouchScene touch(scene);
   const auto detector = make_cpu_detector(touch.surfaces.surfaces, {});
   SurfacePlaces places;
   surface_places(touch.surfaces, touch.model, touch.model.start, 1, places);
-  return message_of([&] { check_start(touch.scene, touch.surfaces, places, *detector, 1); });
+  return check_start(touch.scene, touch.surfaces, places, *detector, 1);
+}
+std::string message_of_start(const Scene& scene) {
+  return message_of([&] { is_near_start(scene); });
 }
 
 Scene two_boxes(const Point3& half, const Point3& other_half, const Point3& offset) {
@@ -43,18 +46,17 @@ Scene two_boxes(const Point3& half, const Point3& other_half, const Point3& offs
 const std::string remedy =
     "; move them apart, or set collide to false for the pair in contact.pairs";
 
-TEST(StartCheck, BodiesThatAreNearerThanTheThicknessAreAnError) {
+TEST(StartCheck, BodiesThatTouchOrAreNearerThanTheThicknessAreNoError) {
   const Point3 half{0.1, 0.1, 0.1}, small{0.05, 0.05, 0.05};
-  EXPECT_EQ(message_of_start(two_boxes(half, small, {0, 0, 0.1511})), "");
-  const std::string message = message_of_start(two_boxes(half, small, {0, 0, 0.1505}));
-  EXPECT_EQ(
-      message.find("bodies[0] 'low' and bodies[1] 'high' are nearer than the thickness at the "
-                   "start, at ("),
-      0U)
+  EXPECT_FALSE(is_near_start(two_boxes(half, small, {0, 0, 0.1511})));
+  EXPECT_FALSE(is_near_start(two_boxes(half, small, {0, 0, 0.151 - 5e-11})));
+  for (const double height : {0.1505, 0.15, 0.15 - 5e-11}) {
+    EXPECT_TRUE(is_near_start(two_boxes(half, small, {0, 0, height})));
+  }
+  const std::string message = message_of_start(two_boxes(half, small, {0, 0, 0.15 - 1e-6}));
+  EXPECT_EQ(message.find("bodies[0] 'low' intersects bodies[1] 'high' at the start, at ("), 0U)
       << message;
-  EXPECT_NE(message.find("): their distance is 0.0005 m, the thickness 0.001 m" + remedy),
-            std::string::npos)
-      << message;
+  EXPECT_NE(message.find(")" + remedy), std::string::npos) << message;
 }
 
 TEST(StartCheck, NamesWhatHelpsTheKindsOfBodies) {
@@ -90,7 +92,7 @@ TEST(StartCheck, BodiesWithinOthersAreFound) {
   EXPECT_EQ(message_of_start(scene), "");
   // A mesh within a ball, and a ball below a plane, have negative distances.
   scene.bodies[1] = rigid_ball("ball", 9, {0, 0, 0});
-  EXPECT_EQ(conflicts_of(TouchScene(scene))[0].kind, Kind::near);
+  EXPECT_EQ(conflicts_of(TouchScene(scene))[0].kind, Kind::overlaps);
   EXPECT_LT(conflicts_of(TouchScene(scene))[0].distance, -7);
   scene.bodies[1] = rigid_ball("ball", 0.5, {3, 0, -5});
   scene.obstacles = {{"floor", PlaneObstacle{{0, 0, 1}, {0, 0, -4}}, {}, {}}};
@@ -126,16 +128,16 @@ TEST(StartCheck, PairsThatMayNotTouchAreLeftOut) {
   EXPECT_EQ(message_of_start(scene), "");
 }
 
-TEST(StartCheck, ClothThatIsNearItselfIsAnError) {
+TEST(StartCheck, ClothThatCrossesItselfIsAnError) {
   Body cloth = sheet_body("cloth", {1, 1}, {1, 1});
-  // Two layers 1e-4 m apart that share an edge.
-  cloth.geometry =
-      Surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0.9, 1e-4}}, {{{0, 1, 2}}, {{1, 0, 3}}}};
+  // Two triangles that share a corner.
+  cloth.geometry = Surface{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -0.1}, {0.2, 0.2, 0.1}},
+                           {{{0, 1, 2}}, {{0, 3, 4}}}};
   Scene scene = scene_of({cloth}, 0.01);
   scene.thickness = 1e-3;
-  EXPECT_EQ(message_of_start(scene).find("bodies[0] 'cloth' is nearer to itself than the thickness "
-                                         "at the start, at ("),
-            0U);
+  EXPECT_EQ(message_of_start(scene).find("bodies[0] 'cloth' intersects itself at the start, at ("),
+            0U)
+      << message_of_start(scene);
   scene.bodies[0].self = false;
   EXPECT_EQ(message_of_start(scene), "");
 }
@@ -148,8 +150,9 @@ TEST(StartCheck, NamesTheWorstOfManyPairs) {
         rigid_ball("ball" + std::to_string(b), 0.5, {b == 0 ? 0.05 : 0.99 * b, 0, 0}));
   }
   const std::string message = message_of_start(scene);
-  EXPECT_EQ(message.find("bodies[0] 'ball0' and bodies[1] 'ball1' are nearer"), 0U) << message;
-  EXPECT_NE(message.find("their distance is -0.06 m"), std::string::npos) << message;
+  EXPECT_EQ(message.find("bodies[0] 'ball0' intersects bodies[1] 'ball1' at the start"), 0U)
+      << message;
+  EXPECT_NE(message.find(", by 0.06 m"), std::string::npos) << message;
   EXPECT_NE(message.find("(4 pairs of bodies in all)"), std::string::npos) << message;
 }
 

@@ -30,9 +30,7 @@ class Intersections {
       }
     }
     const auto conflicts = start_conflicts(touch_.surfaces, places_, *detector_, 1);
-    return std::any_of(conflicts.begin(), conflicts.end(), [](const StartConflict& conflict) {
-      return conflict.kind != StartConflict::Kind::near || conflict.distance <= 0;
-    });
+    return std::ranges::any_of(conflicts, &StartConflict::is_intersection);
   }
 
  private:
