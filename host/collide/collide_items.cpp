@@ -26,10 +26,11 @@ void check_range(const char* what, std::int32_t first, std::int32_t past, std::s
 
 void check_sizes(const CollisionSurfaces& s) {
   const std::size_t vertices = s.vertex_body.size();
-  const bool has_flat_edges = !s.edge_is_flat.empty();
+  const bool has_flat = !s.edge_is_flat.empty() || !s.vertex_is_flat.empty();
   if (s.vertex_radius.size() != vertices || s.vertex_area.size() != vertices ||
       s.edge_radius.size() != s.edges.size() ||
-      (has_flat_edges && s.edge_is_flat.size() != s.edges.size())) {
+      (has_flat &&
+       (s.edge_is_flat.size() != s.edges.size() || s.vertex_is_flat.size() != vertices))) {
     fail("lists of vertices or edges have different lengths");
   }
   if (!(s.thickness > 0)) fail("thickness must be positive");
@@ -74,9 +75,13 @@ class EdgeFinder {
 class ItemMaker {
  public:
   ItemMaker(const CollisionSurfaces& surfaces, bool skips_flat_edges, CollideItems& made)
-      : s_(surfaces), made_(made), vertex_is_owned_(s_.vertex_body.size()) {
-    if (skips_flat_edges) edge_is_owned_ = s_.edge_is_flat;
+      : s_(surfaces), made_(made) {
+    if (skips_flat_edges) {  // as if an item owned them
+      vertex_is_owned_ = s_.vertex_is_flat;
+      edge_is_owned_ = s_.edge_is_flat;
+    }
     made_.flat_edges = std::count(edge_is_owned_.begin(), edge_is_owned_.end(), 1);
+    vertex_is_owned_.resize(s_.vertex_body.size());
     edge_is_owned_.resize(s_.edges.size());
   }
 

@@ -36,8 +36,9 @@ struct CollisionSurfaces {
   std::vector<std::array<std::int32_t, 2>> edges;  ///< vertices; of triangles, each edge once, and
                                                    ///< axes of capsules
   std::vector<double> edge_radius;                 ///< [edges] [m]
-  std::vector<std::uint8_t> edge_is_flat;  ///< [edges] within a flat face of a rigid body: in no
-                                           ///< pair of edges; or empty: none
+  /// [vertices], [edges] within a flat face of a body that keeps its shape: not the first feature
+  /// of any pair, nor the second edge; or empty: none.
+  std::vector<std::uint8_t> vertex_is_flat, edge_is_flat;
   std::vector<std::array<std::int32_t, 3>> triangles;  ///< vertices, counter-clockwise from outside
   std::vector<std::int32_t> plane_body;                ///< [planes]
 

@@ -36,7 +36,7 @@ struct DetectionCounts {
   std::int64_t pairs = 0;          ///< of features, tested by the narrow phase
   std::int64_t evaluations = 0;    ///< of distances
   std::int64_t reused = 0;         ///< detections that kept the pairs of an earlier one
-  std::int64_t skipped_edges = 0;  ///< within flat faces of rigid bodies, in all searches
+  std::int64_t skipped_edges = 0;  ///< within flat faces, in all searches
 };
 
 struct ClosestPair {
@@ -56,7 +56,7 @@ struct DetectorOptions {
   int threads = 1;              ///< of the cpu; any number: same pairs
   int device = 0;               ///< CUDA device number
   bool reuse_pairs = true;      ///< pairs of the broad phase suffice while boxes lie within its own
-  bool skip_flat_edges = true;  ///< edges within flat faces of rigid bodies are in no pair
+  bool skip_flat_edges = true;    ///< CollisionSurfaces::edge_is_flat and vertex_is_flat are read
   bool skip_clear_bodies = true;  ///< of the cpu: bodies that hardly deform are not compared with
                                   ///< themselves, see SelfClearance
 };

@@ -9,6 +9,7 @@
 
 #include "host/collide/area_buffers.hpp"
 #include "host/collide/known_hits.hpp"
+#include "host/collide/sunk_hits.hpp"
 #include "host/collide/touch_choice.hpp"
 #include "host/collide/touch_lists.hpp"
 
@@ -34,6 +35,7 @@ class StepTouches {
         thickness_(surfaces.thickness),
         areas_(exec, surfaces),
         known_(surfaces),
+        sunk_(exec, surfaces),
         touches_(exec, std::ranges::any_of(surfaces.edge_radius, [](double r) { return r > 0; })),
         choice_(exec, surfaces) {}
 
@@ -76,13 +78,15 @@ class StepTouches {
     first_end_view_ = exec_.keep(motion.end, first_end_);
     first_planes_view_ = exec_.keep(motion.plane_end, first_planes_);
     touches_.set_first(found, view_of(motion));
-    exec_.append("collide/touches", found.size, HitBody{found}, first_hits_);
+    sunk_.leave_out(found, view_of(motion), touches_.first());
+    exec_.append(label, found.size, HitBody{found, std::as_const(touches_).first()}, hits_);
     exec_.wait();  // the caller may change the motion after this
     return found.size;
   }
   std::int64_t add_later(const MotionView& motion, View<const FeatureTouch> found) {
-    if (pass_ == 1) known_.add(exec_.on_host(first_hits_.view(), host_hits_));
-    const std::vector<FeatureTouch>* pairs = &known_.add(exec_.on_host(found, host_hits_));
+    if (pass_ == 1) known_.add(exec_.on_host(hits_.view(), host_hits_));
+    exec_.append(label, found.size, NearestHitBody{found, view_of(motion)}, hits_);
+    const std::vector<FeatureTouch>* pairs = &known_.add(exec_.on_host(hits_.view(), host_hits_));
     if (pairs->empty()) pairs = &known_.of_rigid_bodies();
     if (pairs->empty()) return 0;
     exec_.put(pairs->data(), std::ssize(*pairs), later_pairs_);
@@ -97,11 +101,13 @@ class StepTouches {
 
   template <class T>
   using Vector = typename Exec::template Vector<T>;
+  static constexpr const char* label = "collide/touches";
 
   Exec& exec_;
   double thickness_;
   AreaBuffers<Exec> areas_;
   KnownHits known_;
+  SunkHits<Exec> sunk_;
   TouchLists<Exec> touches_;
   TouchChoice<Exec> choice_;
 
@@ -111,7 +117,7 @@ class StepTouches {
   /// Ends of the first motion of the step, and copies of them where the executor needs copies.
   View<const double> first_end_view_, first_planes_view_;
   Vector<double> first_end_, first_planes_;
-  typename Exec::template List<FeatureTouch> first_hits_;
+  typename Exec::template List<FeatureTouch> hits_;  ///< last added, of features that are nearest
   Vector<FeatureTouch> later_pairs_;
   std::vector<FeatureTouch> host_hits_;
 };

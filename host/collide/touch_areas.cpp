@@ -3,6 +3,7 @@
 #include "host/collide/touch_areas.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "host/base/point3.hpp"
 
@@ -32,10 +33,14 @@ TouchAreas::TouchAreas(const CollisionSurfaces& surfaces)
   }
   for (const CollisionBody& body : surfaces.bodies) {
     double sum = 0;
+    bool has_flat = false;
     for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
       sum += at(surfaces.vertex_area, v);
+      has_flat =
+          has_flat || (!surfaces.vertex_is_flat.empty() && at(surfaces.vertex_is_flat, v) != 0);
     }
-    mean_area.push_back(sum / std::max(1, body.vertex_end - body.first_vertex));
+    mean_area.push_back(has_flat ? std::numeric_limits<double>::infinity()
+                                 : sum / std::max(1, body.vertex_end - body.first_vertex));
   }
 }
 

@@ -41,6 +41,9 @@ class TouchLists {
     later_count_ = count;
   }
 
+  /// Of the first detection, in the order of its pairs.
+  View<PairTouch> first() { return exec_.view(first_); }
+  View<const PairTouch> first() const { return exec_.view(first_); }
   TouchList view() const { return {exec_.view(first_), first_ends_.view(), later()}; }
 
  private:

@@ -30,8 +30,8 @@ struct SimulateSkipOptions {
   bool hits = true;     ///< contacts with surfaces that bodies would hit only without the contacts
                         ///< of the step before
   bool islands = true;  ///< coupling islands without contacts are not solved again with contacts
-  bool flat_edges = true;  ///< edges within flat faces of rigid bodies touch nothing: whatever
-                           ///< meets one meets another feature of the face as soon
+  bool flat_edges = true;  ///< edges and vertices within flat faces of bodies that keep their shape
+                           ///< touch nothing: whatever meets one meets another feature as soon
 };
 
 /// How far a running step is.

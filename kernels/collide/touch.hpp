@@ -16,7 +16,9 @@ constexpr double cosine_45 = 0.7071067811865476;  ///< parts that face elsewhere
 /// false becomes no contact; it only replaces earlier touches of its pair.
 struct PairTouch {
   PairKind kind = PairKind::vertex_face;
-  bool counts = true;  ///< false: edges that touch at an end, or beside which a triangle is nearer
+  bool counts = true;     ///< false: edges that touch at an end, or features that are not what is
+                          ///< nearest of their surfaces, or what other contacts forbid
+  bool is_hit = false;    ///< hit, by features that are what is nearest of their surfaces then
   bool has_ends = false;  ///< capsules side by side, which also touch at both ends of their overlap
   bool is_inside = true;  ///< nearest point inside a face; of two edges: between all ends
   std::int32_t a = 0, b = 0;  ///< the features, as in TouchingPair
@@ -34,6 +36,10 @@ struct PairTouch {
   double weight_a[3] = {}, weight_b[3] = {};  ///< their weights in the nearest points; sum 1
 
   TETWARP_HD bool is_of_edges() const { return kind == PairKind::edge_edge; }
+  /// Whether the normal is that of a face or a plane, so that it stays as side a slides over it.
+  TETWARP_HD bool is_of_face() const {
+    return kind == PairKind::vertex_plane || (kind == PairKind::vertex_face && is_inside);
+  }
   bool operator==(const PairTouch&) const = default;
 };
 

@@ -1,5 +1,5 @@
 /// @file touch_area.hpp
-/// The area of the contact of a vertex, and the triangles beside an edge.
+/// The area of the contact of a vertex.
 #pragma once
 #include <cstdint>
 
@@ -12,7 +12,8 @@ struct TouchAreaView {
   View<const std::int32_t> start, triangle;  ///< of each vertex, see TouchAreas
   View<const std::int32_t> corners;          ///< [triangles][3] vertices
   View<const double> vertex_area;            ///< [vertices] CollisionSurfaces::vertex_area
-  View<const double> mean_area;              ///< [bodies] of a vertex [m^2]
+  View<const double> mean_area;  ///< [bodies] of a vertex [m^2]; infinite where vertices within
+                                 ///< flat faces touch nothing: the other body has their area
 };
 
 /// Twice the area of a triangle times its normal.
@@ -67,35 +68,14 @@ TETWARP_HD double seen_area(const TouchAreaView& areas,
   return around.all > 0 ? area * min_of(1.0, most / around.all) : 0;
 }
 
+constexpr double largest_area = 1e300;  ///< finite ones are smaller [m^2]
+
 /// The weight of `body` in the area of a contact with `other`, both meshes: the weights of the two
 /// add up to 1, the finer mesh has the larger one.
 TETWARP_HD double area_share(const TouchAreaView& areas, std::int64_t body, std::int64_t other) {
   const double own = areas.mean_area[body], others = areas.mean_area[other];
+  if (!(own + others < largest_area)) return own == others ? 0.5 : own < others ? 1 : 0;
   return own + others > 0 ? others / (own + others) : 0.5;
-}
-
-/// Whether no triangle beside an edge is nearer than the edge itself to a point in direction
-/// `toward` from it: false where this direction leans over a triangle by more than 3 degrees.
-/// @param edge    its two vertices
-/// @param toward  unit, across the edge
-TETWARP_ANY_EXEC inline bool edge_is_nearest(const TouchAreaView& areas,
-                                             const std::int32_t* edge,
-                                             const Vec3& toward,
-                                             View<const double> vertices) {
-  constexpr double sine_3 = 0.0523359562429438;
-  const std::int32_t v = edge[0], w = edge[1];
-  const Vec3 at_v = vec3_at(vertices, v), along = unit(minus(vec3_at(vertices, w), at_v));
-  for (std::int32_t k = areas.start[v]; k < areas.start[v + 1]; ++k) {
-    const std::int32_t* const corner = areas.corners.data + 3 * std::int64_t{areas.triangle[k]};
-    if (corner[0] != w && corner[1] != w && corner[2] != w) continue;
-    for (int c = 0; c < 3; ++c) {
-      if (corner[c] == v || corner[c] == w) continue;
-      const Vec3 into = minus(vec3_at(vertices, corner[c]), at_v);
-      const Vec3 across = unit(minus(into, times(dot(into, along), along)));
-      if (dot(across, toward) > sine_3) return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "kernels/collide/nearest_cones.hpp"
 #include "kernels/collide/pair_distance.hpp"
 #include "kernels/collide/pair_touch.hpp"
 #include "kernels/collide/touch.hpp"
@@ -46,6 +47,44 @@ class TouchMaker {
     }
     finish();
     return touch_;
+  }
+
+  /// After make(): whether the nearest points of both sides are what is nearest of the surfaces
+  /// around them at the time of the touch.
+  TETWARP_ANY_EXEC bool is_nearest() const {
+    if (touch_.kind == PairKind::vertex_plane) return true;
+    return is_nearest_of(a_, touch_.body_a, times(-1, touch_.normal)) &&
+           is_nearest_of(b_, touch_.body_b, touch_.normal);
+  }
+
+  /// After make(): how fast its nearest points come apart on the motion, times their distance
+  /// [m^2 per motion]; 0 where they hardly move. Negative before the time at which the features are
+  /// nearest, since the distance of convex features is a convex function of time.
+  TETWARP_ANY_EXEC double opening() const {
+    const View<const double> start = view_.motion.start, end = view_.motion.end;
+    const Vec3 way =
+        minus(minus(a_.mean(end), a_.mean(start)), minus(b_.mean(end), b_.mean(start)));
+    return norm(way) > least_way * norm(apart_) ? dot(apart_, way) : 0;
+  }
+
+  /// After make(): the distance of the features at the time of the touch if both sides were moved.
+  TETWARP_ANY_EXEC double distance_moved(const Vec3& move_a, const Vec3& move_b) const {
+    Vec3 x[4];
+    int count = 0;
+    for (int k = 0; k < 3 && a_.vertex[k] >= 0; ++k) x[count++] = plus(place(a_.vertex[k]), move_a);
+    for (int k = 0; k < 3 && b_.vertex[k] >= 0; ++k) x[count++] = plus(place(b_.vertex[k]), move_b);
+    const double radius = a_.radius + b_.radius;
+    double weight[3];
+    switch (touch_.kind) {
+      case PairKind::vertex_face:
+        return vertex_face_distance(x[0].x, x[1].x, x[2].x, x[3].x, weight) - radius;
+      case PairKind::edge_edge:
+        return edge_edge_distance(x[0].x, x[1].x, x[2].x, x[3].x, weight, weight + 1) - radius;
+      case PairKind::vertex_edge:
+        return std::sqrt(vertex_edge_square(x[0].x, x[1].x, x[2].x, weight)) - radius;
+      default:
+        return norm(minus(x[0], x[1])) - radius;
+    }
   }
 
   /// Whether two capsules are side by side, to 10 degrees.
@@ -91,6 +130,44 @@ class TouchMaker {
     const Vec3 start = view_.start(vertex), end = vec3_at(view_.motion.end, vertex);
     const TurningFrame* const frame = view_.motion.frame_of(view_.scene.vertex_body[vertex]);
     return plus(minus(start, origin_), way_at(frame, start, end, time_));
+  }
+
+  /// The vertices of a side whose weights are not 0.
+  struct Corners {
+    std::int32_t vertex[3];
+    int count = 0;
+  };
+  TETWARP_HD static Corners corners_of(const SidePoint& side) {
+    Corners own;
+    for (int k = 0; k < 3 && side.vertex[k] >= 0; ++k) {
+      if (side.weight[k] > 0) own.vertex[own.count++] = side.vertex[k];
+    }
+    return own;
+  }
+  /// The surface of a body that turns is that of the start, seen from its frame.
+  TETWARP_HD const TurningFrame* frame_at_touch(std::int32_t body) const {
+    return time_ > 0 ? view_.motion.frame_of(body) : nullptr;
+  }
+  TETWARP_HD VerticesAt vertices_at_touch(const TurningFrame* frame) const {
+    return {view_.motion.start, view_.motion.end, frame != nullptr ? 0 : time_};
+  }
+
+  /// @param toward  the other side, from this one
+  TETWARP_ANY_EXEC bool is_nearest_of(const SidePoint& side,
+                                      std::int32_t body,
+                                      const Vec3& toward) const {
+    const Corners own = corners_of(side);
+    if (own.count > 2 || side.radius > 0) return true;
+    const bool gives_way = view_.moves(body) && !view_.is_rigid(body);
+    if (gives_way && touch_.is_of_face()) return true;
+    const double sine = !(time_ > 0)                        ? sine_3
+                        : gives_way && touch_.is_of_edges() ? sine_20
+                                                            : half_sine;
+    const TurningFrame* const frame = frame_at_touch(body);
+    const Vec3 other = frame != nullptr ? turned(*frame, -time_, toward) : toward;
+    const VerticesAt vertices = vertices_at_touch(frame);
+    return own.count == 2 ? edge_is_nearest(view_.areas, own.vertex, other, vertices, sine)
+                          : vertex_is_nearest(view_.areas, own.vertex[0], other, vertices, sine);
   }
 
   TETWARP_ANY_EXEC void set_vertex(SidePoint& side,
@@ -165,12 +242,37 @@ class TouchMaker {
   TETWARP_ANY_EXEC void finish() {
     const Vec3 start_a = a_.mean(view_.motion.start), start_b = b_.mean(view_.motion.start);
     touch_.normal = normal_at(minus(start_a, start_b));
+    if (a_.radius + b_.radius == 0) lean_on_faces();
     touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
     touch_.point_b = plus(start_b, times(b_.radius, touch_.normal));
     touch_.way =
         minus(minus(a_.mean(view_.first_end), start_a), minus(b_.mean(view_.first_end), start_b));
     set_gap();
   }
+  /// Where one side cannot give way and one of its faces around the touch leans by at most 3
+  /// degrees from the normal, takes the face's normal. What slides over the edges of level faces so
+  /// is not slowed down, however little it is turned against them.
+  TETWARP_ANY_EXEC void lean_on_faces() {
+    if (!view_.moves(touch_.body_b)) {
+      touch_.normal = face_normal_near(b_, touch_.body_b, touch_.normal);
+    } else if (!view_.moves(touch_.body_a)) {
+      touch_.normal = times(-1, face_normal_near(a_, touch_.body_a, times(-1, touch_.normal)));
+    }
+  }
+  /// The normal of the face around the nearest point of a side that is nearest to a direction, to 3
+  /// degrees; else the direction. Inside a face that is the direction.
+  TETWARP_ANY_EXEC Vec3 face_normal_near(const SidePoint& side,
+                                         std::int32_t body,
+                                         const Vec3& direction) const {
+    const Corners own = corners_of(side);
+    if (own.count > 2) return direction;
+    const TurningFrame* const frame = frame_at_touch(body);
+    const Vec3 toward = frame != nullptr ? turned(*frame, -time_, direction) : direction;
+    const Vec3 normal = nearest_face_normal(view_.areas, own.vertex, own.count, toward,
+                                            vertices_at_touch(frame), cosine_3);
+    return frame != nullptr ? turned(*frame, time_, normal) : normal;
+  }
+
   /// The unit vector along `apart_`; where it vanishes, along or against `otherwise_`.
   /// @param start  apart at the start of the motion; the result points to the same side
   TETWARP_HD Vec3 normal_at(const Vec3& start) const {
@@ -240,6 +342,16 @@ class TouchMaker {
     if (is_rigid_a != view_.is_rigid(touch_.body_b)) return is_rigid_a ? 1 : 0;
     return 0.5;
   }
+
+  // By how much the direction between nearest points may lean over a surface around them. At a hit
+  // with speed v a leaning normal costs v times the sine along the surface. In the expected motion
+  // parts of a deformable body may be through the other surface already, and lead their neighbors:
+  // its edges may lean more, and its vertices on faces by any angle.
+  static constexpr double half_sine = 0.0087265354983739;  ///< of 0.5 degrees: hits
+  static constexpr double sine_3 = 0.0523359562429438;     ///< of 3 degrees: near at the start
+  static constexpr double cosine_3 = 0.9986295347545738;
+  static constexpr double sine_20 = 0.3420201433256687;  ///< of 20 degrees
+  static constexpr double least_way = 0.1;  ///< distances: shorter ways do not turn normals
 
   const TouchView& view_;
   double time_;  ///< of the hit; 0 where the pair is near but not hit

@@ -5,7 +5,7 @@
 
 #include "kernels/base/cell_pair.hpp"
 #include "kernels/base/heap_sort.hpp"
-#include "kernels/collide/touch_maker.hpp"
+#include "kernels/collide/touch_on_way.hpp"
 
 namespace tetwarp {
 
@@ -19,12 +19,18 @@ struct TouchBody {
   View<PairTouch> touches;  ///< out
 
   TETWARP_HD void operator()(std::int64_t i) const {
-    TouchMaker maker(pairs[i], pass, view);
+    const FeatureTouch& pair = pairs[i];
+    TouchMaker maker(pair, pass, view);
     TouchMaker ends = maker, other = maker;
     PairTouch touch = maker.make();
+    touch.counts = maker.is_nearest();
+    touch.is_hit = touch.counts && pair.time <= 1;
+    if (!touch.is_hit && pair.start_distance < 2 * view.thickness) {
+      touch = touch_on_way(pair, pass, view).touch;
+    }
     double part[2];
     if (touch.is_of_edges()) {
-      touch.counts = touch.is_inside && (pairs[i].time <= 1 || is_nearest(touch));
+      touch.counts = touch.counts && touch.is_inside;
       touch.has_ends = ends.overlaps(part);
     }
     if (touch.has_ends) {
@@ -37,12 +43,6 @@ struct TouchBody {
 
  private:
   static constexpr double same_gap = 0.1;  ///< thicknesses
-
-  TETWARP_HD bool is_nearest(const PairTouch& touch) const {
-    const View<const double> start = view.motion.start;
-    return edge_is_nearest(view.areas, view.edge(touch.b), touch.normal, start) &&
-           edge_is_nearest(view.areas, view.edge(touch.a), times(-1, touch.normal), start);
-  }
 };
 
 /// One index = one pair and its touch. Appends the touches at both ends of an overlap of capsules.
@@ -64,13 +64,30 @@ struct EndTouchBody {
   }
 };
 
-/// One index = one pair. Appends it if it is hit during the motion.
+/// One index = one pair and its touch. Appends the pair if the touch is a hit.
 struct HitBody {
   View<const FeatureTouch> pairs;
+  View<const PairTouch> touches;
 
   template <class Emit>
   TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
-    if (pairs[i].time <= 1) emit(pairs[i]);
+    if (touches[i].is_hit) emit(pairs[i]);
+  }
+};
+
+/// One index = one pair that is hit. Appends it if its features are what is nearest of their
+/// surfaces at the hit.
+struct NearestHitBody {
+  static constexpr int resident_blocks = 1;  ///< else registers are spilled
+
+  View<const FeatureTouch> pairs;
+  TouchView view;
+
+  template <class Emit>
+  TETWARP_HD void operator()(std::int64_t i, Emit& emit) const {
+    TouchMaker maker(pairs[i], 0, view);
+    maker.make();
+    if (maker.is_nearest()) emit(pairs[i]);
   }
 };
 

@@ -33,6 +33,8 @@ struct WritingEmit {
 /// One index = one index of the body.
 template <class Body>
 struct AppendCountBody {
+  static constexpr int resident_blocks = 1;  ///< else registers of some bodies are spilled
+
   Body body;
   View<std::int64_t> counts, tallies;  ///< out
   __device__ void operator()(std::int64_t i) const {

@@ -1,5 +1,5 @@
 /// @file flat_edges.cpp
-/// Joins triangles of one plane to faces, and marks the edges within these.
+/// Joins triangles of one plane to faces, and marks edges and vertices within these.
 #include "host/simulate/surfaces/flat_edges.hpp"
 
 #include <algorithm>
@@ -126,12 +126,21 @@ class FlatFaces {
 
 }  // namespace
 
-void mark_flat_edges(const CollisionSurfaces& surfaces,
+void mark_flat_edges(CollisionSurfaces& surfaces,
                      const CollisionBody& body,
                      std::span<const Point3> position,
-                     double tolerance,
-                     std::vector<std::uint8_t>& is_flat) {
-  FlatFaces(surfaces, body, position, tolerance).mark(is_flat);
+                     double tolerance) {
+  FlatFaces(surfaces, body, position, tolerance).mark(surfaces.edge_is_flat);
+  const auto mark_ends = [&](bool of_flat, std::uint8_t mark) {
+    for (std::int32_t e = body.first_edge; e < body.edge_end; ++e) {
+      if ((surfaces.edge_is_flat[index_of(e)] != 0) != of_flat) continue;
+      for (const std::int32_t v : surfaces.edges[index_of(e)]) {
+        surfaces.vertex_is_flat[index_of(v)] = mark;
+      }
+    }
+  };
+  mark_ends(true, 1);
+  mark_ends(false, 0);
 }
 
 }  // namespace tetwarp

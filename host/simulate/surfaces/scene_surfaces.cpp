@@ -82,7 +82,31 @@ class SurfaceParts {
     end();
   }
 
+  /// After the thickness is known. Vertices of bodies that adhere stay: their areas touch.
+  void mark_flat_faces() {
+    CollisionSurfaces& surfaces = result_.surfaces;
+    surfaces.edge_is_flat.assign(surfaces.edges.size(), 0);
+    surfaces.vertex_is_flat.assign(surfaces.vertex_body.size(), 0);
+    std::vector<Point3> position;
+    for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
+      if (!keeps_shape(b)) continue;
+      const CollisionBody& body = surfaces.bodies[b];
+      position.clear();
+      for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
+        position.push_back(body.is_rigid ? at(result_.vertex_point, v).local : start_of(v));
+      }
+      mark_flat_edges(surfaces, body, position, flat_share * surfaces.thickness);
+      if (!adheres_to_any(static_cast<std::int32_t>(b))) continue;
+      for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
+        surfaces.vertex_is_flat[index_of(v)] = 0;
+      }
+    }
+  }
+
  private:
+  // Largest distance of a flat face's vertices from its plane; the end check has a slack of 0.05.
+  static constexpr double flat_share = 1e-3;  // thicknesses
+
   void begin(std::int32_t body) {
     body_ = body;
     CollisionSurfaces& surfaces = result_.surfaces;
@@ -105,6 +129,14 @@ class SurfaceParts {
     result_.body_rigid.push_back(has_nodes ? -1 : at(frame_, body_));
     parts.is_rigid = result_.body_rigid.back() >= 0;
     result_.body_size.push_back(size_of(parts));
+  }
+
+  /// Whether all motions of a body or obstacle are rigid.
+  bool keeps_shape(std::size_t body) const {
+    if (result_.surfaces.bodies[body].is_rigid) return true;
+    if (body >= scene_.bodies.size()) return false;
+    const Body& of = scene_.bodies[body];
+    return of.kind == BodyKind::scripted && !std::holds_alternative<Wave>(of.motion);
   }
 
   /// Whether a body or obstacle has unknowns.
@@ -259,25 +291,6 @@ void add_forbidden(const Scene& scene, CollisionSurfaces& surfaces) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-// Largest distance of a flat face's vertices from its plane; the end check has a slack of 0.05.
-constexpr double flat_share = 1e-3;  // thicknesses
-
-void mark_flat_faces(SceneSurfaces& result) {
-  CollisionSurfaces& surfaces = result.surfaces;
-  surfaces.edge_is_flat.assign(surfaces.edges.size(), 0);
-  std::vector<Point3> position;
-  for (std::size_t b = 0; b < surfaces.bodies.size(); ++b) {
-    const CollisionBody& body = surfaces.bodies[b];
-    if (!result.surfaces.bodies[b].is_rigid) continue;
-    position.clear();
-    for (std::int32_t v = body.first_vertex; v < body.vertex_end; ++v) {
-      position.push_back(at(result.vertex_point, v).local);
-    }
-    mark_flat_edges(surfaces, body, position, flat_share * surfaces.thickness,
-                    surfaces.edge_is_flat);
-  }
-}
-
 }  // namespace
 
 SceneSurfaces make_scene_surfaces(const Scene& scene,
@@ -292,7 +305,7 @@ SceneSurfaces make_scene_surfaces(const Scene& scene,
   for (std::int32_t b = 0; b < bodies; ++b) parts.add_body(b);
   for (std::int32_t o = 0; o < obstacles; ++o) parts.add_obstacle(bodies + o);
   result.surfaces.thickness = contact_thickness(scene, geometry, model, result);
-  mark_flat_faces(result);
+  parts.mark_flat_faces();
   return result;
 }
 

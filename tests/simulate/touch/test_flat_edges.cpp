@@ -19,12 +19,13 @@ constexpr double tolerance = 1e-3 * h;
 void mark_flat_edges(PairScene& scene) {
   CollisionSurfaces& all = scene.scene.surfaces;
   all.edge_is_flat.assign(all.edges.size(), 0);
+  all.vertex_is_flat.assign(all.vertex_body.size(), 0);
   for (const CollisionBody& body : all.bodies) {
     const auto position =
         std::span(scene.motion.start.vertices)
             .subspan(static_cast<std::size_t>(body.first_vertex),
                      static_cast<std::size_t>(body.vertex_end - body.first_vertex));
-    mark_flat_edges(all, body, position, tolerance, all.edge_is_flat);
+    mark_flat_edges(all, body, position, tolerance);
   }
 }
 
