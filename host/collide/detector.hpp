@@ -56,7 +56,7 @@ struct DetectorOptions {
   int threads = 1;              ///< of the cpu; any number: same pairs
   int device = 0;               ///< CUDA device number
   bool reuse_pairs = true;      ///< pairs of the broad phase suffice while boxes lie within its own
-  bool skip_flat_edges = true;    ///< CollisionSurfaces::edge_is_flat and vertex_is_flat are read
+  bool skip_flat_edges = true;  ///< CollisionSurfaces::edge_is_flat and vertex_is_flat are read
   bool skip_clear_bodies = true;  ///< of the cpu: bodies that hardly deform are not compared with
                                   ///< themselves, see SelfClearance
 };

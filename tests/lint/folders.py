@@ -99,7 +99,7 @@ ALLOWED = {
     "host/cli/job": ["host/cli/common", *CLI],
     "host/cli/warp": ["host/cli/common", "host/cli/job", *CLI],
     "host/cli/simulate": ["host/cli/common", "host/cli/job", "io/vtkhdf", *CLI],
-    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", *CLI],
+    "host/cli/tools": ["host/cli/common", "host/cli/job", "host/cli/warp", "io/fclib", *CLI],
     "host/cli": ["host/cli/common", *CLI],
 }
 INCLUDE_ROOTS = ["host", "io", "kernels/base"]  # of headers named <tetwarp/...>
