@@ -148,5 +148,24 @@ TEST(ContactTracker, RefusesRecordsAndReportsThatAreNotFinite) {
   lively.materials[0].restitution = 1.5;
   EXPECT_THROW(ContactTracker{lively}, std::invalid_argument);
 }
+/// The caller knows by the key which bodies it has to name.
+TEST(ContactTracker, NamesTheContactThatItRefuses) {
+  ContactTracker tracker(glue());
+  const std::vector<BodyPose> poses(2);
+  ReportedContact second = at(1, 7);
+  try {
+    tracker.begin_step(std::vector{at(0, 3), second, at(2, 7)}, poses, dt);
+    FAIL() << "expected an error";
+  } catch (const ContactKeyError& error) {
+    EXPECT_EQ(error.key(), (ContactKey{0, 0, 1, 7}));
+    EXPECT_NE(std::string(error.what()).find("is reported twice"), std::string::npos);
+  }
+  second.normal = {0, 0, 2};
+  EXPECT_NE(refusal<ContactKeyError>([&] {
+              tracker.begin_step(std::vector{second}, poses, dt);
+            }).find("has a normal that is not a unit vector"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace tetwarp::test

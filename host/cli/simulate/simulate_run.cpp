@@ -269,7 +269,10 @@ bool SimulateRun::take_step() {
   } catch (const Cancelled&) {
     throw;
   } catch (const std::bad_alloc&) {
-    result_.error = "out of memory; use fewer or coarser bodies";
+    result_.error = fmt::format("step {}: out of memory; use fewer or coarser bodies",
+                                simulator_->step_index());
+  } catch (const CudaError& error) {
+    result_.error = fmt::format("step {}: {}", simulator_->step_index(), error.what());
   } catch (const std::exception& error) {
     result_.error = error.what();
   }
