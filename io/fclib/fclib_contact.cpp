@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/fclib/fclib.hpp"
+#include "io/fclib/fclib_left_out.hpp"
 #include "io/fclib/fclib_matrix.hpp"
 #include "io/fclib/fclib_numbers.hpp"
 #include "io/fclib/fclib_rows.hpp"
@@ -255,6 +256,7 @@ ContactFileHeader read_contact_header(const std::string& path) {
       header.residual = h5::read_real_attribute(solution, "residual", 1).front();
     }
   }
+  header.not_read = fclib::left_out(file);
   return header;
 }
 

@@ -8,7 +8,7 @@
 #include "io/fclib/fclib.hpp"
 #include "io/h5/h5_read.hpp"
 
-namespace tetwarp {
+namespace tetwarp::fclib {
 namespace {
 /// The names that are read in a group.
 using Known = std::map<std::string, std::vector<std::string>>;
@@ -23,7 +23,7 @@ Known known_names(bool is_local) {
               {"solution",
                {"r", "u", "v", "l", "m", "residual_history", "contact_mode", "contact_residual"}},
               {"adhesion_next", {"intensity", "gap"}}};
-  for (const fclib::AdhesionVector& vector : fclib::adhesion_vectors) {
+  for (const AdhesionVector& vector : adhesion_vectors) {
     known["adhesion"].emplace_back(vector.name);
   }
   if (is_local) {
@@ -40,9 +40,7 @@ Known known_names(bool is_local) {
 }
 }  // namespace
 
-std::vector<std::string> fclib_left_out(const std::string& path) {
-  const h5::Silence silence;
-  const h5::Object file = h5::open_file(path);
+std::vector<std::string> left_out(const h5::Object& file) {
   Known known = known_names(h5::is_group(file, "fclib_local"));
   if (h5::is_group(file, "guesses")) {
     const h5::Object guesses = h5::open_group(file, "guesses");
@@ -54,20 +52,21 @@ std::vector<std::string> fclib_left_out(const std::string& path) {
   for (const auto& [group, names] : Known(known)) {
     if (group.find('/') == std::string::npos) known[""].push_back(group);
   }
-  std::vector<std::string> left_out;
+  std::vector<std::string> paths;
   for (const auto& [group, names] : known) {
     const std::size_t slash = group.find('/');
     const bool is_there =
         group.empty() || (h5::is_group(file, group.substr(0, slash)) &&
                           (slash == std::string::npos || h5::is_group(file, group)));
     if (!is_there) continue;
-    const h5::Object open = group.empty() ? h5::open_file(path) : h5::open_group(file, group);
-    for (const std::string& name : h5::child_names(open)) {
+    const std::vector<std::string> children =
+        group.empty() ? h5::child_names(file) : h5::child_names(h5::open_group(file, group));
+    for (const std::string& name : children) {
       if (std::ranges::find(names, name) != names.end()) continue;
-      left_out.push_back(group.empty() ? name : group + "/" + name);
+      paths.push_back(group.empty() ? name : group + "/" + name);
     }
   }
-  return left_out;
+  return paths;
 }
 
-}  // namespace tetwarp
+}  // namespace tetwarp::fclib

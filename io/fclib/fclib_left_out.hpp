@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <tetwarp/io_export.hpp>
+#include "io/h5/h5.hpp"
 
-namespace tetwarp {
+namespace tetwarp::fclib {
 
-/// Paths of groups and datasets that read_contact_problem() and read_contact_header() do not know,
-/// and of those that the form of the problem has no place for. A file with a solution, which is a
-/// copy, keeps them.
-TETWARP_IO_EXPORT std::vector<std::string> fclib_left_out(const std::string& path);
+/// ContactFileHeader::not_read of an open file.
+std::vector<std::string> left_out(const h5::Object& file);
 
-}  // namespace tetwarp
+}  // namespace tetwarp::fclib

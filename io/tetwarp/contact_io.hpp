@@ -26,6 +26,10 @@ struct ContactFileHeader {
   std::optional<std::string>
       status;                      ///< written by write_contact_solution(): name_of(ContactStatus)
   std::optional<double> residual;  ///< eta; written by write_contact_solution()
+  /// Paths of what neither is in a ContactProblem nor here: names that FCLIB does not define, and
+  /// what the form of the problem has no place for. A file with a solution, which is a copy, keeps
+  /// it.
+  std::vector<std::string> not_read = {};
 };
 
 TETWARP_IO_EXPORT ContactFileHeader read_contact_header(const std::string& path);

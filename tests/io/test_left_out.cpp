@@ -11,7 +11,6 @@
 #include <tetwarp/mesh_import.hpp>
 #include <tetwarp/scene_io.hpp>
 
-#include "io/fclib/fclib_left_out.hpp"
 #include "tests/support/contact_files.hpp"
 #include "tests/support/io_files.hpp"
 #include "tests/support/nifti_files.hpp"
@@ -221,7 +220,7 @@ TEST(LeftOut, OfContactProblemsWhatNoSolverReads) {
   ContactProblem problem = sliding_point();
   problem.impulse_guess = {1, 0, 0};
   write_contact_problem(folder / "p.hdf5", problem, "a title", "a description");
-  EXPECT_EQ(fclib_left_out(folder / "p.hdf5"), std::vector<std::string>());
+  EXPECT_EQ(read_contact_header(folder / "p.hdf5").not_read, std::vector<std::string>());
   Hdf5Editor(folder / "p.hdf5")
       .dataset<double>("fclib_local/vectors/s", {1}, {0})
       .dataset<double>("fclib_local/info/author", {1}, {0})
@@ -229,7 +228,7 @@ TEST(LeftOut, OfContactProblemsWhatNoSolverReads) {
       .group("blocks")
       .group("certified");
 
-  EXPECT_EQ(set_of(fclib_left_out(folder / "p.hdf5")),
+  EXPECT_EQ(set_of(read_contact_header(folder / "p.hdf5").not_read),
             (std::set<std::string>{"fclib_local/vectors/s", "fclib_local/info/author",
                                    "guesses/1/v", "blocks", "certified"}));
 }

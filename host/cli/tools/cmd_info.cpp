@@ -17,7 +17,6 @@
 #include "host/cli/common/declare.hpp"
 #include "host/cli/common/file_checks.hpp"
 #include "host/cli/common/json_text.hpp"
-#include "io/fclib/fclib_left_out.hpp"
 
 namespace tetwarp::cli {
 namespace {
@@ -145,9 +144,7 @@ Json contact_json(const InfoArguments& arguments) {
     json["friction"] = {*low, *high};
   }
   if (!problem.adhesion.empty()) json["adhesion"] = adhesion_json(problem);
-  if (const auto left_out = fclib_left_out(arguments.file); !left_out.empty()) {
-    json["not_read"] = left_out;
-  }
+  if (!header.not_read.empty()) json["not_read"] = header.not_read;
   json["guesses"] = header.guesses;
   json["solution"] = header.status.value_or(header.has_solution ? "of unknown quality" : "none");
   if (header.residual) json["residual"] = *header.residual;
