@@ -15,19 +15,17 @@ namespace tetwarp {
 /// nearest part is that of the smallest distance among parts that are near at the start, else the
 /// one that is hit first. Of a pair with touches from several detections the last touch counts.
 ///
+/// - A touch counts only if its nearest points are what is nearest of both surfaces around them,
+/// and
+///   no other contact of the step forbids it; see TouchBody and sink_stages.hpp.
 /// - A vertex and a body: the touch at the nearest part becomes a contact. A touch at another part
-///   of the body becomes a contact, too, if its normal differs by more than 45 degrees from the
-///   normals of all nearer parts that became contacts, or by more than 5 degrees if its nearest
-///   point is inside the part, not on its boundary. The limit is 5 degrees also for a sphere or the
-///   end of a capsule and a part that is near at the start and whose gap exceeds that of the nearer
-///   part by at most a quarter of the thickness: a ball in a ring has contacts all around. A touch
-///   whose nearest point lies on an edge or a corner that a nearer part shares does not become a
-///   contact. A vertex beside an edge between nearly coplanar faces so has one contact, and slides
-///   across the edge.
+///   of the body becomes a contact, too, if its normal differs by more than 5 degrees from the
+///   normals of all nearer parts that became contacts, so that a ball in a ring has contacts all
+///   around. What is round and sinks into a deformable body has a contact with each part: each
+///   gives way by itself. A touch whose nearest point lies on an edge or a corner that a nearer
+///   part shares does not become a contact.
 /// - Two edges: their touch becomes a contact if the nearest points are inside both edges, that is,
 ///   where the edges cross. A nearest point at an end is a vertex, which has a touch of its own.
-///   Edges that are near without a hit must also be the nearest parts of their surfaces: an edge
-///   within a flat face does not support what passes over the face.
 /// - Two capsules: the touch at their nearest points becomes a contact. If they are parallel to 10
 ///   degrees and overlap along their axes, the touches at both ends of the overlap become contacts,
 ///   and that at the nearest points only where the gap is smaller by a tenth of the thickness.
@@ -41,9 +39,7 @@ template <class Exec>
 class TouchChoice {
  public:
   TouchChoice(Exec& exec, const CollisionSurfaces& surfaces)
-      : exec_(exec),
-        thickness_(surfaces.thickness),
-        vertex_count_(std::ssize(surfaces.vertex_body)) {
+      : exec_(exec), vertex_count_(std::ssize(surfaces.vertex_body)) {
     const std::int64_t features = vertex_count_ + std::ssize(surfaces.edges);
     while ((features >> key_bits_) > 0) ++key_bits_;
   }
@@ -58,9 +54,9 @@ class TouchChoice {
     exec_.sort_pairs(label, order_, key_bits_);
     exec_.resize(mark_, order_.size());
     exec_.resize(ordered_, order_.size());
-    exec_.for_each(label, order_.size(),
-                   TouchChoiceBody{touches, scene, thickness_, order_.view(), exec_.view(ordered_),
-                                   exec_.view(mark_)});
+    exec_.for_each(
+        label, order_.size(),
+        TouchChoiceBody{touches, scene, order_.view(), exec_.view(ordered_), exec_.view(mark_)});
     exec_.append(label, order_.size(),
                  ChosenTouchBody{touches, areas, start, exec_.view(std::as_const(ordered_)),
                                  exec_.view(std::as_const(mark_))},
@@ -77,7 +73,6 @@ class TouchChoice {
   static constexpr const char* label = "collide/touches";
 
   Exec& exec_;
-  double thickness_;
   std::int64_t vertex_count_;
   int key_bits_ = 1;          ///< of the number of a feature
   List<CellPair> order_;      ///< feature, number of a touch; sorted by feature

@@ -137,7 +137,6 @@ struct TouchChoiceBody {
 
   TouchList touches;
   CollideView scene;
-  double thickness;
   View<const CellPair> given;  ///< sorted by first feature
   View<CellPair> order;        ///< out: the same; touches of a vertex by body, time and distance
   View<std::int8_t> mark;      ///< out [order] Mark
@@ -159,7 +158,6 @@ struct TouchChoiceBody {
   }
 
  private:
-  static constexpr double level_gap = 0.25;  ///< thicknesses
   static constexpr double cosine_5 = 0.9961946980917455;
 
   TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[tet_of(order[k])]; }
@@ -207,8 +205,9 @@ struct TouchChoiceBody {
   /// @returns the index after the last of them
   TETWARP_HD std::int64_t choose(std::int64_t first, std::int64_t begin, std::int64_t end) const {
     const std::int32_t body = touch_at(first).body_b;
-    const bool is_round = scene.vertex_radius[touch_at(first).a] > 0;
-    const double level = level_gap * thickness;
+    const CollideBody& other = scene.bodies[body];
+    const bool sinks_in = scene.vertex_radius[touch_at(first).a] > 0 && other.has_unknowns != 0 &&
+                          other.is_rigid == 0;
     std::int64_t i = first;
     for (; i < end && touch_at(i).body_b == body; ++i) {
       const PairTouch& touch = touch_at(i);
@@ -216,10 +215,8 @@ struct TouchChoiceBody {
       for (std::int64_t k = first; k < i && own != dropped; ++k) {
         if (mark[k] == dropped) continue;
         const PairTouch& nearer = touch_at(k);
-        const bool is_as_near = is_round && touch.time == 0 && touch.gap <= nearer.gap + level;
-        const double limit = touch.is_inside || is_as_near ? cosine_5 : cosine_45;
         const double cosine = dot(touch.normal, nearer.normal);
-        if (!(cosine < limit) || is_edge_of(touch, nearer)) {
+        if (is_edge_of(touch, nearer) || (!sinks_in && !(cosine < cosine_5))) {
           own = dropped;
         } else if (cosine >= cosine_45) {
           own = kept;  // the area is that of a nearer part that faces almost the same way
