@@ -13,6 +13,7 @@
 #include <tetwarp/error.hpp>
 #include <tetwarp/volume.hpp>
 
+#include "host/base/point3.hpp"
 #include "io/files/extension.hpp"
 #include "io/files/memory.hpp"
 #include "io/import/merge_cells.hpp"

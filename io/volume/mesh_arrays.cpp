@@ -3,10 +3,10 @@
 #include "io/volume/mesh_arrays.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
+#include "host/base/point3.hpp"
 #include "io/nifti/nifti_components.hpp"
 
 namespace tetwarp {
@@ -33,10 +33,6 @@ std::string group_name(std::size_t index) {
 bool is_free_name(const std::string& name) {
   return !name.empty() && name.find_first_of("/.") == std::string::npos && name != "displacement" &&
          name != "original_cell" && name != "original_node";
-}
-
-bool is_finite(const Point3& x) {
-  return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
 }
 
 std::vector<bool> nodes_of_cells(const Mesh& mesh,

@@ -33,8 +33,6 @@ std::string group_name(std::size_t index);
 /// True unless a VTKHDF file cannot hold the name, or import writes another array of that name.
 bool is_free_name(const std::string& name);
 
-bool is_finite(const Point3& x);
-
 /// Which nodes cells and triangles have. @pre  their indices are checked
 std::vector<bool> nodes_of_cells(const Mesh& mesh,
                                  const std::vector<std::array<std::int32_t, 3>>& triangles = {});
