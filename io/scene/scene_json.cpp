@@ -102,7 +102,7 @@ void SceneValue::fail_word(const std::string& problem,
   std::string listed;
   for (const std::string& word : words) listed += (listed.empty() ? "" : ", ") + word;
   const std::string remedy = did_you_mean(text(), words);
-  fail(problem + ", expected " + listed + (remedy.empty() ? "" : "; " + remedy));
+  fail(problem + ", expected one of " + listed + (remedy.empty() ? "" : "; " + remedy));
 }
 
 bool SceneValue::boolean() const {

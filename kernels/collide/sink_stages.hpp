@@ -125,7 +125,8 @@ struct NoWayOutBody {
 };
 
 /// One index = one touch. Leaves it out if its features are apart by more than nine tenths of the
-/// thickness at its time, once each side is moved by its way out; any order. A side is not moved
+/// thickness at its time, once each side is moved by its way out; any order. Features that are near
+/// at the start and face each other as they do then press where they are. A side is not moved
 /// where the touch itself pushes along the way out. Planes have nothing that could be hit from
 /// beneath.
 struct SunkHitBody {
@@ -145,8 +146,11 @@ struct SunkHitBody {
     const CellPair way_b = way_out(touch.body_b, touch.vertex_b, touch.weight_b);
     if (way_a == rejected_pair && way_b == rejected_pair) return;
     FeatureTouch at = pairs[i];
-    if (!touch.is_hit) at.time = touch_on_way(at, 0, view).time;
-    if (!(at.time > 0)) return;
+    if (at.start_distance < 2 * view.thickness) {
+      const PairTouch start = touch_at(at, 0, 0, view).touch;
+      if (start.counts && dot(start.normal, touch.normal) >= cosine_5) return;
+      if (!touch.is_hit) at.time = touch_on_way(at, 0, view).time;
+    }
     const bool is_soft = is_deformable(touch.body_a) && is_deformable(touch.body_b);
     const double cosine = is_soft ? cosine_20 : cosine_5;
     const Vec3 move_a = move(way_a, touch.normal, cosine, at.time);
@@ -161,9 +165,9 @@ struct SunkHitBody {
 
  private:
   static constexpr double least_apart = 0.9;  ///< thicknesses
-  /// Of the angle up to which a touch pushes along a way out: 5 degrees; between deformable bodies,
-  /// whose vertices sink in one after the other, 20, which takes fewer detections.
-  static constexpr double cosine_5 = 0.9961946980917455, cosine_20 = 0.9396926207859084;
+  /// Of the largest angle of a touch to a way out along which it pushes, between deformable bodies:
+  /// 20 degrees instead of 5, since their vertices sink in one after the other.
+  static constexpr double cosine_20 = 0.9396926207859084;
 
   TETWARP_HD bool is_deformable(std::int32_t body) const {
     return view.moves(body) && !view.is_rigid(body);

@@ -10,6 +10,7 @@
 
 namespace tetwarp {
 
+constexpr double cosine_5 = 0.9961946980917455;   ///< normals that are the same: at least
 constexpr double cosine_45 = 0.7071067811865476;  ///< parts that face elsewhere: less
 
 /// The touch of a pair of features. Side a is that of the first feature. A touch with `counts` =

@@ -53,8 +53,8 @@ class TouchMaker {
   /// around them at the time of the touch.
   TETWARP_ANY_EXEC bool is_nearest() const {
     if (touch_.kind == PairKind::vertex_plane) return true;
-    return is_nearest_of(a_, touch_.body_a, times(-1, touch_.normal)) &&
-           is_nearest_of(b_, touch_.body_b, touch_.normal);
+    return is_nearest_of(a_, touch_.body_a, times(-1, direction_)) &&
+           is_nearest_of(b_, touch_.body_b, direction_);
   }
 
   /// After make(): how fast its nearest points come apart on the motion, times their distance
@@ -241,7 +241,7 @@ class TouchMaker {
 
   TETWARP_ANY_EXEC void finish() {
     const Vec3 start_a = a_.mean(view_.motion.start), start_b = b_.mean(view_.motion.start);
-    touch_.normal = normal_at(minus(start_a, start_b));
+    touch_.normal = direction_ = normal_at(minus(start_a, start_b));
     if (a_.radius + b_.radius == 0) lean_on_faces();
     touch_.point_a = minus(start_a, times(a_.radius, touch_.normal));
     touch_.point_b = plus(start_b, times(b_.radius, touch_.normal));
@@ -360,6 +360,7 @@ class TouchMaker {
   Vec3 origin_{};
   Vec3 hit_a_{}, hit_b_{};  ///< relative to origin_, without radii
   Vec3 apart_{}, otherwise_{{0, 0, 1}};
+  Vec3 direction_{{0, 0, 1}};  ///< unit, between the nearest points: the normal before it leans
 };
 
 }  // namespace tetwarp

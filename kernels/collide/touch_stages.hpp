@@ -158,8 +158,6 @@ struct TouchChoiceBody {
   }
 
  private:
-  static constexpr double cosine_5 = 0.9961946980917455;
-
   TETWARP_HD const PairTouch& touch_at(std::int64_t k) const { return touches[tet_of(order[k])]; }
 
   TETWARP_HD static bool comes_before(const PairTouch& p, const PairTouch& q) {

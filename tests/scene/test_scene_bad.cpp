@@ -42,8 +42,12 @@ const Slip slips[] = {
     {"\"kind\": \"fem\"", "\"kind\": \"rigid\"", "bodies[0].mass: is text, expected a number"},
     {"\"kind\": \"cloth\"", "\"kind\": \"scripted\"",
      "bodies[3].stretch: is not for scripted bodies"},
-    {"\"type\": \"box\"", "\"type\": \"cube\"", "bodies[0].shape.type: is no shape, expected box"},
-    {"\"type\": \"box\"", "\"type\": \"bix\"", "plate; did you mean 'box'?"},
+    {"\"type\": \"box\"", "\"type\": \"cube\"",
+     "bodies[0].shape.type: is no shape, expected one of box, sphere"},
+    {"\"type\": \"box\"", "\"type\": \"bix\"",
+     "bodies[0].shape.type: is no shape, expected one of box, sphere, ellipsoid, capsule, "
+     "cylinder, "
+     "torus, arc, bent_strip, plate; did you mean 'box'?"},
     {"\"half\": [1, 2, 3]", "\"half\": [1, 2, -3]",
      "bodies[0].shape.half: is -3, expected a number above 0 (m)"},
     {"\"half\": [1, 2, 3]", "\"halb\": [1, 2, 3]", "bodies[0].shape.half: is missing"},
@@ -109,7 +113,7 @@ const Slip slips[] = {
     {"\"lateral\": 1", "\"lateral\": 2", "bodies[5].wave.lateral: equals axis"},
     {"\"lateral\": 1", "\"lateral\": 3", "bodies[5].wave.lateral: is 3, expected 0, 1 or 2"},
     {"\"phantom\": \"orange\"", "\"phantom\": \"apple\"",
-     "bodies[11].volume.phantom: is no phantom, expected torso, orange or fish"},
+     "bodies[11].volume.phantom: is no phantom, expected one of torso, orange, fish"},
     {"\"dims\": [8, 9, 10]", "\"dims\": [900000, 900000, 900000]", "bodies[11].volume: the grid"},
     {"\"dims\": [8, 9, 10]", "\"dims\": [90000, 90000, 90000]", "bodies[11].volume: needs "},
     {"\"spacing\": [0.01", "\"spacing\": [-0.01", "bodies[11].volume: the grid"},

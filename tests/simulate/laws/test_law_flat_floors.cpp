@@ -244,6 +244,22 @@ TEST(FlatFloor, DoesNotSlowDownBodiesOfOtherKinds) {
   }
 }
 
+/// A box that slides over the edge of a slab tips, leaves it and falls, however it is turned: its
+/// edges touch that of the slab while it tips.
+TEST(FlatFloor, EndsAtItsEdge) {
+  Noise noise(10);
+  for (int k = 0; k < 12; ++k) {
+    const double speed = 0.4, time_step = k % 2 == 0 ? 5e-3 : 2e-3;
+    Scene scene =
+        sliding_scene(box_above({.yaw = 3 * noise(), .velocity = {speed, 0, 0}}), time_step, 0.1);
+    add_floor(k % 3 == 0 ? Floor::mesh : Floor::slab, 0, scene, noise);
+    scene.bodies[0].pose.position[0] = 1.3;
+    const Slide end = slide(scene, {1, 0, 0, 0}, static_cast<int>(1 / time_step));
+    EXPECT_LT(end.height, -0.4) << k;
+    EXPECT_EQ(end.clamped, 0) << k;
+  }
+}
+
 /// A soft slab, whose upper side is uneven where a body presses, on fixed nodes.
 TEST(FlatFloor, OfASoftSlabDoesNotStopABox) {
   for (const double friction : {0.0, 0.4}) {
