@@ -137,7 +137,8 @@ ContactProblem read_local(const h5::Object& root) {
   check_friction_count(root, problem.contact_count(), "q", "W", "m");
   const Expected rows = rows_of(problem.contact_count());
   problem.free_velocity = fclib::read_reals(vectors, "q", rows);
-  problem.delassus = fclib::read_matrix(root, "W", rows, rows, Orientation::plain);
+  problem.delassus =
+      with_both_triangles(fclib::read_matrix(root, "W", rows, rows, Orientation::plain));
   return problem;
 }
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <tetwarp/error.hpp>
@@ -25,6 +26,23 @@ std::string child_path(const Object& parent, const std::string& name) {
                     "' holds " + (there.empty() ? "nothing" : there));
 }
 
+/// The name or number of a filter of a dataset that the HDF5 library does not have; empty: none.
+std::string missing_filter(const Dataset& dataset) {
+  const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
+  if (!properties) return {};
+  for (int k = 0; k < H5Pget_nfilters(properties.id()); ++k) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    std::array<char, 64> name{};
+    const H5Z_filter_t filter =
+        H5Pget_filter2(properties.id(), static_cast<unsigned>(k), &flags, &values, nullptr,
+                       name.size() - 1, name.data(), &config);
+    if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+    return name[0] != 0 ? "'" + std::string(name.data()) + "'" : std::to_string(filter);
+  }
+  return {};
+}
+
 /// Throws when a dataset claims more than its file holds: a cut file, or damaged sizes.
 void check_storage(const Dataset& dataset) {
   const Handle properties(H5Dget_create_plist(dataset.id()), H5Pclose);
@@ -35,6 +53,7 @@ void check_storage(const Dataset& dataset) {
   hsize_t file_bytes = 0;
   if (!file || H5Fget_filesize(file.id(), &file_bytes) < 0) return;
   const H5D_layout_t layout = H5Pget_layout(properties.id());
+  if (layout == H5D_VIRTUAL) return;  // its samples are in other files
   check_memory(dataset.file, dataset.name, chunk_bytes(dataset));
   const hsize_t stored = H5Dget_storage_size(dataset.id());
   auto claimed = static_cast<double>(dataset.type_size);
@@ -240,6 +259,11 @@ void read_block(const Dataset& dataset,
                           nullptr) < 0 ||
       H5Dread(dataset.id(), memory_type, memory_space.id(), file_space.id(), H5P_DEFAULT, out) <
           0) {
+    if (const std::string filter = missing_filter(dataset); !filter.empty()) {
+      dataset.fail(
+          "is compressed by the filter " + filter +
+          ", which this HDF5 library does not have; write it with gzip or without a filter");
+    }
     dataset.fail_with_reason("cannot be read, the file may be truncated or damaged");
   }
 }

@@ -76,6 +76,21 @@ TEST_F(Fclib, CompletesASymmetricMatrixOfOneTriangle) {
   }
 }
 
+TEST_F(Fclib, CompletesALocalMatrixOfOneTriangle) {
+  ContactProblem whole = local_problem();
+  std::vector<std::vector<double>> rows = dense(whole.delassus), lower = rows;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t column = 0; column < row; ++column) {
+      rows[row][column] = rows[column][row] = lower[row][column] = 0.01;
+      lower[column][row] = 0;
+    }
+  }
+  whole.delassus = sparse(lower);
+  write_contact_problem(file, whole);
+
+  EXPECT_EQ(dense(read_contact_problem(file).delassus), rows);
+}
+
 TEST_F(Fclib, ReadsALocalProblemWithoutContacts) {
   write_contact_problem(file, local_problem());
   {
