@@ -14,7 +14,7 @@ namespace tetwarp {
 std::string SceneFiles::path_of(const SceneValue& value) {
   const std::string name = value.text();
   if (name.empty()) value.fail("is empty, expected the name of a file");
-  names_.push_back((fs::path(folder_) / name).string());
+  names_.push_back((std::filesystem::path(folder_) / name).string());
   return names_.back();
 }
 

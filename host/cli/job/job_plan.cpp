@@ -286,7 +286,8 @@ JobPlan plan_job(const WarpArguments& arguments) {
                .backend_reason = reason,
                .output_folder = {},
                .volumes = {},
-               .warnings = {}};
+               .warnings = {},
+               .notes = {}};
   plan.warnings = mesh_warnings(plan.mesh.header(), arguments);
   const std::int64_t step_count = std::max<std::int64_t>(1, std::ssize(plan.mesh.header().times));
   try {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host/base/point3.hpp"
 #include "host/simulate/model/body_points.hpp"
 #include "host/simulate/start/cage_growth.hpp"
 #include "host/simulate/start/start_check.hpp"

@@ -8,6 +8,8 @@
 #include <limits>
 #include <set>
 
+#include <tetwarp/surface.hpp>
+
 #include "host/scene/shape.hpp"
 #include "host/scene/shape_surface.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"
