@@ -126,9 +126,9 @@ struct NoWayOutBody {
 
 /// One index = one touch. Leaves it out if its features are apart by more than nine tenths of the
 /// thickness at its time, once each side is moved by its way out; any order. Features that are near
-/// at the start and face each other as they do then press where they are. A side is not moved
-/// where the touch itself pushes along the way out. Planes have nothing that could be hit from
-/// beneath.
+/// at the start and face each other as they do then press where they are, unless both bodies
+/// deform, which saves sweeps. A side is not moved where the touch itself pushes along the way out.
+/// Planes have nothing that could be hit from beneath.
 struct SunkHitBody {
   static constexpr int resident_blocks = 1;  ///< else registers are spilled
 
@@ -146,12 +146,13 @@ struct SunkHitBody {
     const CellPair way_b = way_out(touch.body_b, touch.vertex_b, touch.weight_b);
     if (way_a == rejected_pair && way_b == rejected_pair) return;
     FeatureTouch at = pairs[i];
+    const bool is_soft = is_deformable(touch.body_a) && is_deformable(touch.body_b);
     if (at.start_distance < 2 * view.thickness) {
       const PairTouch start = touch_at(at, 0, 0, view).touch;
-      if (start.counts && dot(start.normal, touch.normal) >= cosine_5) return;
+      if (!is_soft && start.counts && dot(start.normal, touch.normal) >= cosine_5) return;
       if (!touch.is_hit) at.time = touch_on_way(at, 0, view).time;
+      if (!(at.time > 0)) return;
     }
-    const bool is_soft = is_deformable(touch.body_a) && is_deformable(touch.body_b);
     const double cosine = is_soft ? cosine_20 : cosine_5;
     const Vec3 move_a = move(way_a, touch.normal, cosine, at.time);
     const Vec3 move_b = move(way_b, times(-1, touch.normal), cosine, at.time);
