@@ -13,11 +13,11 @@
 
 namespace tetwarp {
 
-/// What makes two cells the same. Cells with two nodes at one place are told by their nodes.
+/// What makes two cells the same. Cells with two nodes at one place are compared by node numbers.
 enum class SameCells {
   places,         ///< the places of their nodes, in any order
-  turned_places,  ///< the places of their nodes, in the same direction around: a triangle with
-                  ///< another back to back is none of it
+  turned_places,  ///< the places of their nodes, in the same orientation: two triangles back to
+                  ///< back are different
   nodes           ///< their nodes, in any order
 };
 

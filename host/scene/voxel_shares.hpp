@@ -22,7 +22,7 @@ std::vector<Point3> index_positions(const Grid& grid, const std::vector<Point3>&
 /// Calls visit(voxel, share) for the voxels of a region in which a tetrahedron has a share, in
 /// order, until it returns false. Shares of less than 1e-10 of the smaller of both are rounding.
 /// @param corners  of the tetrahedron, not flat [voxel]
-/// @param wants    whether the share in a voxel is needed
+/// @param wants    whether to visit a voxel; others are left out
 void for_shares(const std::array<Point3, 4>& corners,
                 const Region& region,
                 const std::function<bool(const VoxelIndex&)>& wants,

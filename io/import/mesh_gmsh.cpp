@@ -190,7 +190,7 @@ void add_lost_nodes(const std::string& counts, ImportedMesh& into) {
 }
 
 /// Names what the file holds and ImportedMesh does not: groups of surfaces, curves and points,
-/// partitions, and sections that this reader does not ask for.
+/// partitions, and other sections.
 void add_left_out(const std::string& path, const GmshLibrary& gmsh, ImportedMesh& into) {
   GmshArray<int> physical(gmsh);
   gmsh.call<decltype(gmshModelGetPhysicalGroups)>("gmshModelGetPhysicalGroups", &physical.data,

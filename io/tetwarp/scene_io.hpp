@@ -38,7 +38,7 @@ TETWARP_IO_EXPORT std::string scene_text(const std::string& name);
 /// Reads triangles: a VTKHDF UnstructuredGrid of triangles at its first step, or the triangles of a
 /// file that import_mesh() reads, whose other cells of fewer than three dimensions are left out.
 /// Points that no triangle has are left out, and triangles that are there twice: with the same
-/// places of their points in the same direction around. Names that has_surface_extension() knows
+/// places of their points in the same orientation. Files whose names has_surface_extension() knows
 /// are read, too.
 /// @param left_out  out, may be null: other content of the file, by kind and name
 /// @param merged    out, may be null: how many triangles are there twice, as a text; empty: none

@@ -1,6 +1,5 @@
 /// @file touch_on_way.hpp
-/// Where two features touch that are near each other at the start of a motion that does not bring
-/// them to a hit.
+/// Where two features touch that start near each other and are not hit during the motion.
 #pragma once
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 /// @file test_repeated_cells.cpp
-/// Cells that are there twice, told from cells that only meet.
+/// Cells that are there twice, and cells that only share nodes.
 #include "host/base/repeated_cells.hpp"
 
 #include <gtest/gtest.h>

@@ -142,7 +142,7 @@ TEST_F(CliOutputs, MayHaveSuffixesInCapitalLetters) {
   EXPECT_EQ(run_command(scene, {"render", "OUT.VTKHDF", "-o", "OUT.PNG"}).exit_code, 0);
 }
 
-/// A step or an array that is chosen for the user is told; so is adhesion that never breaks.
+/// Commands name the step or array that they choose, and adhesion that never breaks.
 TEST_F(CliOutputs, AreExplainedWhereInputsHoldMore) {
   TemporalVolumeWriter writer(scene / "series.vtkhdf");
   for (const double time : {0.0, 1.0}) {

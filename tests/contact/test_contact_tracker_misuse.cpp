@@ -148,7 +148,7 @@ TEST(ContactTracker, RefusesRecordsAndReportsThatAreNotFinite) {
   lively.materials[0].restitution = 1.5;
   EXPECT_THROW(ContactTracker{lively}, std::invalid_argument);
 }
-/// The caller knows by the key which bodies it has to name.
+/// The error has the key, so that its message can name the bodies.
 TEST(ContactTracker, NamesTheContactThatItRefuses) {
   ContactTracker tracker(glue());
   const std::vector<BodyPose> poses(2);

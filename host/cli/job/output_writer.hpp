@@ -37,9 +37,8 @@ std::vector<std::string> files_of_output(const std::string& output,
 /// Writes these files region by region; calls and errors as of BlockVolumeWriter.
 class OutputWriter {
  public:
-  /// @param changing  arrays of a series that differ from step to step, the first ones; NIfTI
-  /// images
-  ///                  of the others hold the first step alone
+  /// @param changing  number of arrays, the first ones, that differ from step to step of a series;
+  ///                  NIfTI images of the others hold the first step alone
   OutputWriter(const std::string& output,
                const Grid& grid,
                const std::vector<ArrayHeader>& arrays,
