@@ -28,8 +28,8 @@ void refuse_overlap(const std::string& place,
                      std::to_string(both.front()) + "; keep the selections apart");
 }
 
-/// Whether a body keeps points within its faces: where the scene may select them, where a wave bends
-/// the faces, and where the body adheres, since points that touch have the area of adhesion.
+/// Whether a body keeps points within its faces: where the scene may select them, where a wave
+/// bends the faces, and where the body adheres, since points that touch have the area of adhesion.
 Faces faces_of(const Scene& scene, const Body& body) {
   const auto any = [](const auto& list, const auto& test) {
     return std::any_of(list.begin(), list.end(), test);

@@ -232,7 +232,8 @@ TEST_F(ContactCommand, PrintsNothingWithQuiet) {
 }
 
 /// Coulomb's law of random problems with friction far above 1: what is said to be solved keeps it
-/// to 1e-5 of the largest impulse and velocity; else the exit code is 3 and the message states the residual.
+/// to 1e-5 of the largest impulse and velocity; else the exit code is 3 and the message states the
+/// residual.
 TEST_F(ContactCommand, KeepsTheLawOfLargeFrictionOrSaysThatItDoesNot) {
   std::mt19937 random(46);
   std::normal_distribution<double> normal;
