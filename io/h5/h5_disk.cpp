@@ -33,11 +33,14 @@ const DiskFile& disk_file(const H5FD_t* file) {
 }
 
 H5FD_t* open_disk(const char* name, unsigned flags, hid_t properties, haddr_t) {
-  const void* disk = H5Pget_driver_info(properties);
+  // Files behind external links come without it: they are read.
+  const void* given = H5Pget_driver_info(properties);
+  Disk* const disk = given == nullptr ? nullptr : *static_cast<Disk* const*>(given);
+  if (disk == nullptr && (flags & H5F_ACC_RDWR) != 0) return nullptr;
   int mode = (flags & H5F_ACC_RDWR) != 0 ? O_RDWR : O_RDONLY;
   if ((flags & H5F_ACC_CREAT) != 0) mode |= O_CREAT;
   if ((flags & H5F_ACC_TRUNC) != 0) mode |= O_TRUNC;
-  const int descriptor = disk == nullptr ? -1 : open(name, mode | O_CLOEXEC, 0666);
+  const int descriptor = open(name, mode | O_CLOEXEC, 0666);
   if (descriptor < 0) return nullptr;
   auto* file = new (std::nothrow) DiskFile{};
   if (file == nullptr) {
@@ -46,7 +49,7 @@ H5FD_t* open_disk(const char* name, unsigned flags, hid_t properties, haddr_t) {
   }
   file->descriptor = descriptor;
   file->end = static_cast<haddr_t>(std::max<off_t>(0, lseek(descriptor, 0, SEEK_END)));
-  file->disk = *static_cast<Disk* const*>(disk);
+  file->disk = disk;
   return &file->base;
 }
 

@@ -18,6 +18,29 @@ std::string child_path(const Object& parent, const std::string& name) {
   return parent.name + "/" + name;
 }
 
+bool has_link(const Object& parent, const std::string& name) {
+  return H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+bool is_there(const Object& parent, const std::string& name) {
+  return has_link(parent, name) && H5Oexists_by_name(parent.id(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+/// Where a soft or external link leads, in words; empty: it is no such link.
+std::string target_of_link(const Object& parent, const std::string& name) {
+  H5L_info_t link{};
+  if (H5Lget_info(parent.id(), name.c_str(), &link, H5P_DEFAULT) < 0) return {};
+  if (link.type != H5L_TYPE_SOFT && link.type != H5L_TYPE_EXTERNAL) return {};
+  std::string value(link.u.val_size + 1, '\0');
+  if (H5Lget_val(parent.id(), name.c_str(), value.data(), link.u.val_size, H5P_DEFAULT) < 0) {
+    return {};
+  }
+  if (link.type == H5L_TYPE_SOFT) return "'" + std::string(value.c_str()) + "'";
+  const char *file = nullptr, *object = nullptr;
+  if (H5Lunpack_elink_val(value.data(), link.u.val_size, nullptr, &file, &object) < 0) return {};
+  return "'" + std::string(object) + "' in the file '" + file + "'";
+}
+
 [[noreturn]] void fail_missing(const Object& parent, const std::string& name, const char* kind) {
   std::string there;
   for (const std::string& child : child_names(parent)) there += (there.empty() ? "" : ", ") + child;
@@ -142,8 +165,12 @@ Object open_file(const std::string& path) {
 }
 
 bool has_child(const Object& parent, const std::string& name) {
-  return H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT) > 0 &&
-         H5Oexists_by_name(parent.id(), name.c_str(), H5P_DEFAULT) > 0;
+  if (is_there(parent, name)) return true;
+  const std::string target = has_link(parent, name) ? target_of_link(parent, name) : "";
+  if (target.empty()) return false;
+  throw IoError(parent.file, child_path(parent, name),
+                "is a link to " + target +
+                    ", which is not there or cannot be opened; put it there, or remove the link");
 }
 
 std::vector<std::string> child_names(const Object& parent) {
@@ -161,13 +188,13 @@ std::vector<std::string> child_names_as_created(const Object& group) {
 }
 
 bool is_group(const Object& parent, const std::string& name) {
-  if (!has_child(parent, name)) return false;
+  if (!is_there(parent, name)) return false;
   const Handle object(H5Oopen(parent.id(), name.c_str(), H5P_DEFAULT), H5Oclose);
   return object && H5Iget_type(object.id()) == H5I_GROUP;
 }
 
 Object open_group(const Object& parent, const std::string& name) {
-  if (!is_group(parent, name)) fail_missing(parent, name, "group");
+  if (!has_child(parent, name) || !is_group(parent, name)) fail_missing(parent, name, "group");
   Object group{parent.file, child_path(parent, name), {}};
   group.handle = Handle(H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.handle) group.fail_with_reason("damaged group");

@@ -20,7 +20,8 @@ bool is_sound(const Handle& type);
 /// Opens a file for reading. Throws IoError when it is missing, no HDF5 or damaged.
 Object open_file(const std::string& path);
 
-/// True when `parent` holds something readable called `name`.
+/// True when `parent` holds something readable called `name`. Throws IoError for a link that leads
+/// nowhere.
 bool has_child(const Object& parent, const std::string& name);
 
 /// Names of all children, sorted.

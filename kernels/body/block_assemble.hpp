@@ -2,7 +2,7 @@
 /// Stage "assembly" of a step: each 3x3 block of A sums what elements contribute to it, in index
 /// order.
 ///
-/// A = M (1 + dt alpha) + (dt^2 + dt gamma) K + (dt^2 k + dt c) J^T J.
+/// A = M (1 + dt alpha) + (dt^2 + dt gamma) K + (dt^2 k + dt c) J^T J + dt^2 K of turning arms.
 #pragma once
 #include <cstdint>
 
@@ -83,9 +83,13 @@ TETWARP_HD void add_edge_block(const EdgePull& edge, double scale, double* block
   }
 }
 
-/// Adds factor J_i^T J_j of a spring to a column-major block.
-TETWARP_HD void add_spring_block(
-    const SpringConstants& spring, const SpringPull& pull, int slot_i, int slot_j, double* block) {
+/// Adds factor J_i^T J_j of a spring, and what its turning arm adds, to a column-major block.
+TETWARP_HD void add_spring_block(const SpringConstants& spring,
+                                 const SpringPull& pull,
+                                 int slot_i,
+                                 int slot_j,
+                                 double dt,
+                                 double* block) {
   const SlotJacobian row = slot_jacobian(spring, pull, slot_i);
   const SlotJacobian column = slot_jacobian(spring, pull, slot_j);
   for (int j = 0; j < 3; ++j) {
@@ -96,6 +100,10 @@ TETWARP_HD void add_spring_block(
     apply_transposed(row, moved, back);
     for (int i = 0; i < 3; ++i) block[3 * j + i] += pull.factor * column.weight * back[i];
   }
+  if (slot_i != slot_j || column.lever == nullptr) return;
+  double on_point[3];
+  for (int i = 0; i < 3; ++i) on_point[i] = column.weight * pull.impulse[i];
+  add_arm_block(column.lever, on_point, dt, block);
 }
 
 /// One index = one block on or above the diagonal. Writes it and its mirror image; any order.
@@ -162,7 +170,7 @@ struct BlockAssembleBodyOf {
     for (std::int64_t i = springs.begin(k); i < springs.end(k); ++i) {
       const unsigned item = springs.item[i];
       add_spring_block(from.springs[item >> 6], from.spring_pulls[item >> 6], item >> 3 & 7,
-                       item & 7, block);
+                       item & 7, time_step, block);
     }
     double* const at = values.data + 9 * std::int64_t{own.place};
     double* const mirror = values.data + 9 * std::int64_t{own.mirror};

@@ -3,7 +3,8 @@
 ///
 /// A point p = f(q) moves with p' = J v. J is w_a 1 for node a, and [1, -[r]x] for a rigid body, r
 /// from its centre of mass. With J = [J_a, -J_b] the spring adds (dt^2 k + dt c) J^T J to the
-/// system and -dt k J^T (p_a - p_b) to its load.
+/// system and -dt k J^T (p_a - p_b) to its load. The torque r x f of a pull f turns with the arm r:
+/// that adds a stiffness against rotations, see add_arm_block().
 #pragma once
 #include <cstdint>
 
@@ -111,6 +112,26 @@ TETWARP_HD void apply_transposed(const SlotJacobian& j, const double* y, double*
     for (int i = 0; i < 3; ++i) x[i] = y[i];
   }
   for (int i = 0; i < 3; ++i) x[i] *= j.weight;
+}
+
+/// Adds dt^2 K of a turning arm r that a force f = P / dt pulls at, to the column-major block of an
+/// angular velocity. The torque changes by -((r . f) 1 - r f^T) with the rotation, as that of a
+/// pendulum; K = (r . f + |r||f|) / 2 (1 - d d^T), d the direction of r / |r| + f / |f|, is that
+/// where r and f are parallel, positive semidefinite, at least its symmetric part, and zero where f
+/// pushes along r.
+TETWARP_HD void add_arm_block(const double* r, const double* impulse, double dt, double* block) {
+  const double size = root_of(dot3(r, r) * dot3(impulse, impulse));
+  const double pull = 0.5 * (dot3(r, impulse) + size);
+  if (!(pull > 1e-9 * size)) return;  // also where r or f is zero: they push, or have no direction
+  const double along = root_of(dot3(r, r)), force = root_of(dot3(impulse, impulse));
+  double d[3];
+  for (int i = 0; i < 3; ++i) d[i] = r[i] / along + impulse[i] / force;
+  const double square = dot3(d, d);
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      block[3 * j + i] += dt * pull * ((i == j ? 1 : 0) - d[i] * d[j] / square);
+    }
+  }
 }
 
 }  // namespace tetwarp

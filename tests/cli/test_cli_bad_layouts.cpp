@@ -107,7 +107,12 @@ TEST(BadLayouts, VolumesNameTheDataset) {
               H5Ldelete(f, array, H5P_DEFAULT);
               H5Lcreate_soft("/gone", f, array, H5P_DEFAULT, H5P_DEFAULT);
             },
-            "density: missing dataset"},
+            "density: is a link to '/gone', which is not there or cannot be opened; put it there"},
+           {[&](hid_t f) {
+              H5Ldelete(f, array, H5P_DEFAULT);
+              H5Lcreate_external("gone.h5", "/a", f, array, H5P_DEFAULT, H5P_DEFAULT);
+            },
+            "density: is a link to '/a' in the file 'gone.h5', which is not there or cannot be"},
            {[](hid_t f) { set_dataset(f, "/VTKHDF/PointData", H5T_IEEE_F32LE, {3}); },
             "bad.vtkhdf: /VTKHDF/PointData: missing group"}}) {
     make_bad(scene / "volume.vtkhdf", scene / "bad.vtkhdf", bad);

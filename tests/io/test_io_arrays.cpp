@@ -58,5 +58,16 @@ TEST(VtkhdfArrays, ReadsTheActiveArrayOfForeignFiles) {
   Hdf5Editor(path).attribute<double>("VTKHDF/PointData", "Scalars", {1, 2});
   EXPECT_EQ(read_volume(path).name, "A");
 }
+
+TEST(VtkhdfArrays, ReadsWhatOtherFilesHoldBehindLinks) {
+  const ScratchFolder folder;
+  const Volume volume = counting_volume(PixelType::float32, 1, "v");
+  write_volumes(folder / "data.vtkhdf", {&volume}, {});
+  const std::string path = folder / "linked.vtkhdf", array = "/VTKHDF/PointData/v";
+  write_volumes(path, {&volume}, {});
+  Hdf5Editor(path).remove(array).external_link(array, "data.vtkhdf", array);
+
+  EXPECT_EQ(read_volume(path).data, volume.data);
+}
 }  // namespace
 }  // namespace tetwarp::test

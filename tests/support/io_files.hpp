@@ -120,6 +120,12 @@ class Hdf5Editor {
     return *this;
   }
 
+  Hdf5Editor& external_link(const std::string& name,
+                            const std::string& file,
+                            const std::string& object) {
+    H5Lcreate_external(file.c_str(), object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+    return *this;
+  }
   Hdf5Editor& remove_attribute(const std::string& object, const std::string& name) {
     H5Adelete_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT);
     return *this;

@@ -93,7 +93,7 @@ class Assembly {
   }
 
   /// A += (dt^2 k + dt c) J^T J, b += J^T (-dt k d + (dt^2 k + dt c) u), J of p_a - p_b, d their
-  /// difference now and u the velocity of an anchor.
+  /// difference now and u the velocity of an anchor; on rigid bodies also the stiffness of arms.
   void add_springs() {
     for (const BindingSpring& spring : system_.springs) {
       const auto pull = pull_of(system_, state_, drive_, spring);
@@ -104,7 +104,25 @@ class Assembly {
           block(i.block, j.block) += pull->weight * i.matrix.transpose() * j.matrix;
         }
       }
+      add_arm(spring.a, pull->constant);
+      if (spring.handle < 0) add_arm(spring.b, -pull->constant);
     }
+  }
+
+  /// dt^2 times the stiffness that an arm r has against rotations where a force f pulls at it:
+  /// |r||f| cos^2(angle / 2) across the bisector of r and f, nothing about it.
+  void add_arm(const MaterialPoint& point, const Vector3d& impulse) {
+    if (point.rigid < 0) return;
+    const Vector3d arm = state_.frame[static_cast<std::size_t>(point.rigid)].rotation * point.local;
+    const double size = arm.norm() * impulse.norm();
+    if (size == 0) return;
+    const Vector3d bisector = arm.normalized() + impulse.normalized();
+    const double cosine = bisector.norm() / 2;  // of half the angle
+    if (cosine * cosine <= 1e-9) return;
+    const Vector3d d = bisector.normalized();
+    const int angular = system_.linear_block(point.rigid) + 1;
+    block(angular, angular) +=
+        dt_ * size * cosine * cosine * (Matrix3d::Identity() - d * d.transpose());
   }
 
   const System& system_;
