@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
@@ -40,6 +41,7 @@ struct ContactSystem::State {
   void solve_other(BodyStepper& stepper,
                    std::vector<Point3>& velocity,
                    ContactSolveOutcome& outcome);
+  bool is_rounding(const std::vector<Point3>& velocity) const;
   bool stop_fast_turns(std::vector<Point3>& velocity);
   bool iterates_two_levels() const;
 
@@ -118,10 +120,29 @@ void ContactSystem::State::solve_other(BodyStepper& stepper,
   take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
   resident_other = solver_islands.resident();
   const ContactReport& report = solution.report;
-  outcome.converged = outcome.converged && solution.converged();
+  outcome.converged = outcome.converged && (solution.converged() || is_rounding(velocity));
   outcome.residual = std::max(outcome.residual, report.residual.eta);
   outcome.sweeps += report.sweeps;
   outcome.outer_iterations += report.outer_iterations;
+}
+
+/// Whether the contacts of the contact solver neither change nor approach at velocities that stand
+/// above the rounding of those of the bodies: eta, which is relative to both, is noise then.
+bool ContactSystem::State::is_rounding(const std::vector<Point3>& velocity) const {
+  double speed = 0, change = 0;
+  for (std::int32_t b = 0; b < model.block_count(); ++b) {
+    const bool is_angular = b >= model.node_count && (b - model.node_count) % 2 == 1;
+    const std::int32_t island = islands.of_block(b);
+    if (is_angular || island < 0 || shares.other.islands[index_of(island)] == 0) continue;
+    const Point3 &after = velocity[index_of(b)], &before = velocity_before[index_of(b)];
+    speed = std::max(speed, norm(after));
+    change = std::max(change, norm(minus(after, before)));
+  }
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  const double least = rounding / options.solver.tolerance * speed;
+  return change <= least && std::ranges::all_of(shares.other.contacts, [&](std::int32_t c) {
+           return solution.velocity[3 * index_of(c)] >= -least;
+         });
 }
 
 /// Stops rigid bodies that contacts turn by more than half a turn in the step: they stand still,

@@ -27,6 +27,30 @@ Scene collision(double friction, double tolerance) {
   return scene;
 }
 
+/// Once they move as one, what is left to solve is the rounding of their velocities.
+TEST(Collision, OfARowOfBallsConvergesInEveryStep) {
+  for (const double gap : {0.0, 5e-4, 1e-3, 1e-2}) {
+    for (const double time_step : {1e-3, 5e-3, 1e-2}) {
+      std::vector<Body> bodies;
+      for (int i = 0; i < 5; ++i) {
+        const double x = i == 0 ? 0 : 0.15 + (i - 1) * (0.1 + gap);
+        bodies.push_back(exact_ball("ball" + std::to_string(i), 0.05, {x, 0, 0}));
+      }
+      bodies[0].velocity = {1, 0, 0};
+      Scene scene = scene_of(std::move(bodies), time_step);
+      scene.gravity = {0, 0, 0};
+      Simulator simulator(scene);
+      for (int n = 0; n < static_cast<int>(0.4 / time_step); ++n) {
+        simulator.step();
+        EXPECT_TRUE(simulator.record().converged) << gap << " " << time_step << " " << n;
+      }
+      for (const BodyRecord& ball : simulator.record().bodies) {
+        EXPECT_NEAR(ball.velocity[0], 0.2, 1e-6) << gap << " " << time_step;
+      }
+    }
+  }
+}
+
 /// Momentum is kept as exactly as contacts are solved.
 TEST(Collision, KeepsTheMomentumToTheToleranceOfContacts) {
   for (const double friction : {0.0, 0.4}) {

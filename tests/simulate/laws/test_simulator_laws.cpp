@@ -46,6 +46,44 @@ TEST(SpringChain, GapsAreWeightOverStiffness) {
   }
 }
 
+/// The tension turns a light body within much less than a step, as a pendulum: with the arms of the
+/// start alone these chains gain energy.
+TEST(SpringChain, OfLightBodiesUnderAHeavyOneGainsNoEnergy) {
+  for (const std::size_t links : {3, 4, 5}) {
+    for (const double time_step : {2e-3, 1e-2, 2e-2}) {
+      std::vector<Body> bodies;
+      std::vector<Coupling> couplings;
+      double top = 0;
+      for (std::size_t i = 0; i < links; ++i) {
+        const bool is_last = i + 1 == links;
+        const double half = is_last ? 0.2 : 0.05, width = is_last ? 0.2 : 0.02;
+        bodies.push_back(
+            rigid_box("link" + std::to_string(i), {width, width, half}, {0, 0, top - half}));
+        bodies.back().collide = false;
+        bodies.back().rigid.density = (is_last ? 100 : 1) / (8 * width * width * half);
+        if (is_last) bodies.back().velocity = {1, 0.5, 0};
+        couplings.push_back({.a = bodies.back().name,
+                             .b = i == 0 ? "world" : bodies[i - 1].name,
+                             .points = {{0, 0, top}},
+                             .stiffness = 1e6});
+        top -= 2 * half;
+      }
+      Scene scene = scene_of(std::move(bodies), time_step);
+      scene.couplings = couplings;
+      Simulator simulator(scene);
+      const double kinetic = 0.5 * 100 * 1.25;  // of the start [J]
+      double start = 0, most = -1e9;
+      for (int step = 0; step < static_cast<int>(2 / time_step); ++step) {
+        run(simulator, 1);
+        const double energy = simulator.record().energy.total();
+        if (step == 0) start = energy;
+        most = std::max(most, energy);
+      }
+      EXPECT_LT(most - start, 1e-3 * kinetic) << links << " links, dt " << time_step;
+    }
+  }
+}
+
 /// y = a cosh(x / a) of the span 1 and the length 1.3.
 double catenary_parameter() {
   double low = 0.1, high = 10;
