@@ -52,7 +52,7 @@ tetwarp_sources(tetwarp host/reference/simulate
 tetwarp_sources(tetwarp host/reference/warp
   backend_reference.cpp overlap.cpp sample.cpp sample_transform.cpp)
 tetwarp_sources(tetwarp host/scene
-  body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
+  alike_bodies.cpp body_geometry.cpp cage.cpp image_lattice.cpp isosurface.cpp lattice.cpp lattice_search.cpp
   marching_tets.cpp ring_surface.cpp scene_geometry.cpp selection.cpp shape.cpp shape_fraction.cpp
   shape_lattice.cpp shape_surface.cpp sheet.cpp surface.cpp surface_lattice.cpp voxel_owner.cpp
   voxel_shares.cpp)

@@ -103,11 +103,15 @@ struct Material {
   double youngs_modulus = 1e5;  ///< E [Pa], > 0
   double poissons_ratio = 0.3;  ///< nu, in (-1, 0.5)
   double density = 1000;        ///< [kg/m^3], > 0
+
+  bool operator==(const Material&) const = default;
 };
 /// One entry of a transfer table: the material of an image's value.
 struct TransferPoint {
   double value = 0;
   Material material = {};  ///< E and density may be 0: void
+
+  bool operator==(const TransferPoint&) const = default;
 };
 enum class TransferLookup {
   linear,  ///< piecewise linear between the entries, constant beyond them

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "host/base/point3.hpp"
 #include "host/simulate/model/body_part.hpp"
-#include "host/simulate/model/image_materials.hpp"
 #include "host/simulate/model/scalar_entries.hpp"
 #include "host/simulate/model/tet_materials.hpp"
 
@@ -117,13 +115,13 @@ void add_masses(const BodyPart& part,
 
 }  // namespace
 
-void add_fem(const BodyPart& part, Model& model) {
+void add_fem(const BodyPart& part, ImageMaterialsOfBodies& images, Model& model) {
   const std::size_t first_tet = model.tets.nodes.size();
   add_elements(part, model);
   TetMaterials materials;
   if (std::holds_alternative<ImageGeometry>(part.body.geometry)) {
-    ImageMaterials image = image_materials(part, model.tets, first_tet);
-    materials = std::move(image.tets);
+    const ImageMaterials& image = images.of(part, model.tets, first_tet);
+    materials = image.tets;
     model.body_foreground[static_cast<std::size_t>(part.index)] = image.foreground;
     model.body_covered[static_cast<std::size_t>(part.index)] = image.covered;
   } else {

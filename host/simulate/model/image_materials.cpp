@@ -9,10 +9,10 @@
 
 #include "host/base/parallel.hpp"
 #include "host/base/point3.hpp"
+#include "host/scene/alike_bodies.hpp"
 #include "host/scene/volume_rows.hpp"
 #include "host/scene/voxel_owner.hpp"
 #include "host/scene/voxel_shares.hpp"
-#include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/tet_materials.hpp"
 
 namespace tetwarp {
@@ -214,9 +214,7 @@ class ImageSums {
   std::vector<VoxelSums> sums_;
 };
 
-}  // namespace
-
-ImageMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet) {
+ImageMaterials materials_of(const BodyPart& part, const ModelTets& tets, std::size_t first_tet) {
   ImageSums sums(part);
   if (part.geometry.shares_voxels) {
     sums.add_shares();
@@ -224,6 +222,22 @@ ImageMaterials image_materials(const BodyPart& part, const ModelTets& tets, std:
     sums.add_owned(tets, first_tet);
   }
   return {sums.materials(tets, first_tet), sums.whole_volume(), sums.covered_volume()};
+}
+
+bool have_same_materials(const Body& a, const Body& b) {
+  return a.material == b.material && a.transfer == b.transfer && a.lookup == b.lookup &&
+         a.mean == b.mean && are_alike(a, b);
+}
+
+}  // namespace
+
+const ImageMaterials& ImageMaterialsOfBodies::of(const BodyPart& part,
+                                                 const ModelTets& tets,
+                                                 std::size_t first_tet) {
+  for (const Made& made : made_) {
+    if (have_same_materials(*made.body, part.body)) return made.materials;
+  }
+  return made_.emplace_back(Made{&part.body, materials_of(part, tets, first_tet)}).materials;
 }
 
 }  // namespace tetwarp

@@ -2,7 +2,9 @@
 /// Moduli and masses of tetrahedra from the voxels of an image.
 #pragma once
 #include <cstddef>
+#include <deque>
 
+#include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/tet_materials.hpp"
 
 namespace tetwarp {
@@ -18,6 +20,19 @@ struct ImageMaterials {
 /// Otherwise the voxel belongs to the tetrahedron that owns it: masses are sums of density x volume
 /// x N_a N_b at the centre. Moduli are the means over the parts times the covered part of the
 /// tetrahedron's volume, which is taken as 0.02 at least.
-ImageMaterials image_materials(const BodyPart& part, const ModelTets& tets, std::size_t first_tet);
+class ImageMaterialsOfBodies {
+ public:
+  /// Those of an earlier body that is alike are given again, as images take long.
+  /// @param part       its body is kept by the caller
+  /// @param first_tet  of the body among `tets`
+  const ImageMaterials& of(const BodyPart& part, const ModelTets& tets, std::size_t first_tet);
+
+ private:
+  struct Made {
+    const Body* body;
+    ImageMaterials materials;
+  };
+  std::deque<Made> made_;
+};
 
 }  // namespace tetwarp

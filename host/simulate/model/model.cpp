@@ -134,12 +134,13 @@ Model make_model(const Scene& scene, const SceneGeometry& geometry) {
   model.body_rigid.assign(scene.bodies.size(), -1);
   model.body_foreground.assign(scene.bodies.size(), 0);
   model.body_covered.assign(scene.bodies.size(), 0);
+  ImageMaterialsOfBodies images;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const BodyPart part{scene.bodies[b], geometry.bodies[b], static_cast<std::int32_t>(b),
                         model.body_node[b]};
     switch (part.body.kind) {
       case BodyKind::fem:
-        add_fem(part, model);
+        add_fem(part, images, model);
         set_velocities(part, model);
         break;
       case BodyKind::cloth:
