@@ -9,6 +9,7 @@
 #include "host/base/point3.hpp"
 #include "host/base/step_second_fields.hpp"
 #include "host/simulate/start/prepare_start.hpp"
+#include "host/simulate/step/device_stepper.hpp"
 #include "host/simulate/step/reference_stepper.hpp"
 
 namespace tetwarp {
@@ -72,8 +73,8 @@ std::unique_ptr<BodyStepper> MovingBodies::make_stepper() {
 /// @returns null where the host reads every state: for contact, and to choose what sleeps
 ResidentState* MovingBodies::watch() {
   if (contact_ || scene_.scene.solver.sleeping) return nullptr;
-  ResidentState* const resident = stepper_->resident_state();
-  if (resident == nullptr) return nullptr;
+  DeviceStepper* const device = stepper_->on_device();
+  if (device == nullptr) return nullptr;
   StatePlaces places;
   drive_.add_places(places);
   scene_.loads.add_places(places);
@@ -81,8 +82,8 @@ ResidentState* MovingBodies::watch() {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
-  resident->watch(places);
-  return resident;
+  device->resident_state().watch(places);
+  return &device->resident_state();
 }
 
 void MovingBodies::begin_step() {
