@@ -71,8 +71,8 @@ tetwarp_sources(tetwarp host/simulate/patches
 tetwarp_sources(tetwarp host/simulate/run
   body_places.cpp body_sleep.cpp checkpoint.cpp checkpoint_bytes.cpp divided_step.cpp
   fastest_body.cpp fingerprint.cpp host_state.cpp island_lists.cpp island_sleep.cpp moving_bodies.cpp
-  saved_state.cpp simulated_scene.cpp simulator.cpp step_attempt.cpp step_division.cpp
-  step_records.cpp step_start.cpp tet_energies.cpp)
+  simulated_scene.cpp simulation_state.cpp simulator.cpp step_attempt.cpp step_division.cpp
+  step_records.cpp tet_energies.cpp)
 tetwarp_sources(tetwarp host/simulate/solve
   contact_shares.cpp contact_system.cpp soft_islands.cpp solver_islands.cpp)
 tetwarp_sources(tetwarp host/simulate/solve/problem

@@ -1,6 +1,6 @@
 /// @file contact_components.hpp
-/// Stage "components" of the contact solver: connected components of items that share lists, by
-/// union-find.
+/// Stage "components" of the contact solver on a device: connected components of items that share
+/// lists, by union-find in any order of threads. On the host DisjointSets finds them.
 #pragma once
 #include <cstdint>
 

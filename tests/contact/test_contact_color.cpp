@@ -221,6 +221,7 @@ TEST(ContactComponents, AreThoseOfASearchInAnyOrder) {
   for (const std::int64_t size : sizes) {
     const Lists lists = random_groups(53, size, 700);
     const std::vector<std::int32_t> expected = searched_components(lists, 700);
+    EXPECT_EQ(HostStages().lowest_connected(lists, 700), expected) << size << " lists";
     CpuContactExec in_order(1), in_parallel(3);
     ReversedExec reversed;
     const auto expect_found = [&](auto& exec) {

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <random>
 
+#include "host/simulate/step/device_stepper.hpp"
 #include "host/simulate/step/resident_surfaces.hpp"
-#include "host/simulate/step/stepper.hpp"
 #include "host/simulate/surfaces/surface_motion.hpp"
 #include "tests/emulated/device_calls.hpp"
 #include "tests/simulate/touch_run.hpp"
@@ -52,14 +52,13 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   for (Point3& v : velocity) v = {any(random), any(random), any(random)};
   const std::vector<double> fraction{1, 0.25, 0.5, 0.75, 1, 0.125, 0};
   const auto stepper = make_cuda_stepper(model, {});
-  ResidentSurfaces* const surfaces = stepper->resident_surfaces();
-  ASSERT_NE(surfaces, nullptr);
-  surfaces->begin(binding_of(touch.surfaces));
+  ResidentSurfaces& surfaces = stepper->on_device()->resident_surfaces();
+  surfaces.begin(binding_of(touch.surfaces));
 
   for (const auto& fractions : {std::vector<double>{}, fraction}) {
     const SurfaceMotion expected =
         motion_of({touch.surfaces, model, model.start, velocity, 0.01, fractions});
-    const ResidentMotion motion = surfaces->move(velocity, 0.01, fractions);
+    const ResidentMotion motion = surfaces.move(velocity, 0.01, fractions);
     EXPECT_TRUE(has_bits(motion.start, expected.start.vertices));
     EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
     EXPECT_TRUE(has_bits(motion.sagitta, expected.sagitta));
@@ -69,7 +68,7 @@ TEST(SurfacesEmulated, MoveAsOnTheHostBitForBit) {
   }
 
   stepper->set_velocities(velocity);
-  const ResidentMotion motion = surfaces->move({}, 0.01, fraction);
+  const ResidentMotion motion = surfaces.move({}, 0.01, fraction);
   const SurfaceMotion expected =
       motion_of({touch.surfaces, model, model.start, velocity, 0.01, fraction});
   EXPECT_TRUE(has_bits(motion.end, expected.end.vertices));
@@ -80,7 +79,7 @@ TEST(SurfacesEmulated, OnlyChangedVelocitiesAreSent) {
   const TouchScene touch(all_kinds());
   const auto stepper = make_cuda_stepper(touch.model, {});
   std::vector<Point3> velocity(static_cast<std::size_t>(touch.model.block_count()), {1, 2, 3});
-  ResidentSurfaces& surfaces = *stepper->resident_surfaces();
+  ResidentSurfaces& surfaces = stepper->on_device()->resident_surfaces();
   surfaces.begin(binding_of(touch.surfaces));
   surfaces.move(velocity, 0.01, {});
   take_copied();

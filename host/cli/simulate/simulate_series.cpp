@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "host/base/step_second_fields.hpp"
 #include "host/cli/simulate/simulate_frames.hpp"
 
 namespace tetwarp::cli {
@@ -88,15 +89,7 @@ void StepSeries::add_totals() {
 }
 
 void StepSeries::add_seconds() {
-  static constexpr std::array<std::pair<const char*, double StepSeconds::*>, 7> stages{
-      {{"forces", &StepSeconds::forces},
-       {"assembly", &StepSeconds::assembly},
-       {"linear", &StepSeconds::linear},
-       {"detection", &StepSeconds::detection},
-       {"contact", &StepSeconds::contact},
-       {"update", &StepSeconds::update},
-       {"total", &StepSeconds::total}}};
-  for (const auto& [name, member] : stages) {
+  for (const auto& [name, member] : step_second_fields) {
     add_number(std::string("seconds/") + name,
                [member = member](const StepRecord& record) { return record.seconds.*member; });
   }

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/disjoint_sets.hpp"
+#include "host/base/index_of.hpp"
 #include "host/contact/structure/color.hpp"
-#include "host/exec/contact_exec_cpu.hpp"
-#include "kernels/contact/contact_components.hpp"
 
 namespace tetwarp {
 
@@ -30,9 +29,15 @@ Lists make_transposed(const Lists& lists, std::int64_t item_count) {
 
 std::vector<std::int32_t> HostStages::lowest_connected(const Lists& lists,
                                                        std::int64_t item_count) {
+  DisjointSets sets(static_cast<std::size_t>(item_count));
+  for (std::int64_t list = 0; list < lists.size(); ++list) {
+    const std::span<const std::int32_t> items = lists.of(list);
+    for (const std::int32_t item : items) sets.unite(index_of(items[0]), index_of(item));
+  }
   std::vector<std::int32_t> lowest(static_cast<std::size_t>(item_count));
-  CpuContactExec exec(1);
-  contact_components(exec, view_of(lists.start), view_of(lists.item), view_of(lowest));
+  for (std::size_t i = 0; i < lowest.size(); ++i) {
+    lowest[i] = static_cast<std::int32_t>(sets.root_of(i));
+  }
   return lowest;
 }
 

@@ -77,16 +77,12 @@ void ContactHistory::add_records(const std::vector<ContactRecord>& records) {
   set_records(std::move(all));
 }
 
-void ContactHistory::remember(ContactMemory& memory) const {
-  memory.time_step = time_step_;
-  memory.records = tracker_.records();
-  memory.change = change_;
-}
-
-void ContactHistory::restore(const ContactMemory& memory) {
-  set_records(memory.records);
-  time_step_ = memory.time_step;
-  change_ = memory.change;
+void ContactHistory::restore(double time_step,
+                             const std::vector<ContactRecord>& records,
+                             const std::vector<Point3>& change) {
+  set_records(records);
+  time_step_ = time_step;
+  change_ = change;
 }
 
 }  // namespace tetwarp

@@ -5,7 +5,6 @@
 
 #include <tetwarp/contact_tracker.hpp>
 
-#include "host/simulate/contact_step/contact_memory.hpp"
 #include "host/simulate/surfaces/scene_surfaces.hpp"
 
 namespace tetwarp {
@@ -47,9 +46,10 @@ class ContactHistory {
   /// @param records  sorted by key
   void add_records(const std::vector<ContactRecord>& records);
 
-  /// All but sleeping contacts.
-  void remember(ContactMemory& memory) const;
-  void restore(const ContactMemory& memory);
+  /// Goes on from another step; see ContactMemory.
+  void restore(double time_step,
+               const std::vector<ContactRecord>& records,
+               const std::vector<Point3>& change);
 
  private:
   ContactTrackerOptions options_;

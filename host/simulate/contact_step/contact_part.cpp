@@ -4,22 +4,26 @@
 
 #include <algorithm>
 
+#include "host/base/step_second_fields.hpp"
+
 namespace tetwarp {
 
 void add_part(const ContactPart& part, ContactPart& sum) {
-  sum.is_completed = sum.is_completed && part.is_completed;
-  sum.converged = sum.converged && part.converged;
-  sum.residual = std::max(sum.residual, part.residual);
-  sum.contacts = part.contacts;
-  sum.islands = part.islands;
-  sum.passes += part.passes;
-  sum.sweeps += part.sweeps;
-  sum.outer_iterations += part.outer_iterations;
-  sum.clamped_islands += part.clamped_islands;
-  sum.stalled_scripts += part.stalled_scripts;
-  sum.smallest_fraction = std::min(sum.smallest_fraction, part.smallest_fraction);
-  sum.detection_seconds += part.detection_seconds;
-  sum.contact_seconds += part.contact_seconds;
+  const auto& [is_completed, woken, converged, residual, contacts, islands, passes, sweeps,
+               outer_iterations, clamped_islands, stalled_scripts, smallest_fraction, seconds] =
+      part;
+  sum.is_completed = sum.is_completed && is_completed;
+  sum.converged = sum.converged && converged;
+  sum.residual = std::max(sum.residual, residual);
+  sum.contacts = contacts;
+  sum.islands = islands;
+  sum.passes += passes;
+  sum.sweeps += sweeps;
+  sum.outer_iterations += outer_iterations;
+  sum.clamped_islands += clamped_islands;
+  sum.stalled_scripts += stalled_scripts;
+  sum.smallest_fraction = std::min(sum.smallest_fraction, smallest_fraction);
+  add_seconds(seconds, sum.seconds);
 }
 
 }  // namespace tetwarp

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <tetwarp/simulate.hpp>
+
 namespace tetwarp {
 
 struct ContactPart {
@@ -16,7 +18,7 @@ struct ContactPart {
   std::int64_t passes = 0, sweeps = 0, outer_iterations = 0;
   std::int64_t clamped_islands = 0, stalled_scripts = 0;
   double smallest_fraction = 1;  ///< of the step that an island moved
-  double detection_seconds = 0, contact_seconds = 0;
+  StepSeconds seconds;
 };
 
 /// Adds counts and seconds of a later part; contacts and islands are those of the last part.

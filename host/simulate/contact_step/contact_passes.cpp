@@ -56,7 +56,7 @@ void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) 
     const bool was_free = parts_.motion.is_free();
     if (!detect(pass, is_expected, part)) return;
     {
-      const AddedSeconds seconds(part.detection_seconds);
+      const AddedSeconds seconds(part.seconds.detection);
       track(is_first);
     }
     const bool is_solved = solve(stepper, part);
@@ -65,7 +65,7 @@ void ContactPasses::run(bool is_first, BodyStepper& stepper, ContactPart& part) 
     const bool is_free_again = parts_.history.contacts()->empty() && !was_free;
     if (!is_solved && !is_free_again) return;
   }
-  const AddedSeconds seconds(part.detection_seconds);
+  const AddedSeconds seconds(part.seconds.detection);
   parts_.motion.shorten({});
 }
 
@@ -86,7 +86,7 @@ bool ContactPasses::expect_contacts_of_last_step() {
 /// @returns whether there is something to solve; false also where the motion reaches bodies that
 /// sleep
 bool ContactPasses::detect(std::size_t pass, bool is_expected, ContactPart& part) {
-  const AddedSeconds seconds(part.detection_seconds);
+  const AddedSeconds seconds(part.seconds.detection);
   const std::int64_t added = parts_.detector.find_touches(parts_.motion.move(pass));
   ++part.passes;
   has_pairs_ = has_pairs_ || added > 0;
@@ -106,7 +106,7 @@ void ContactPasses::track(bool is_first) {
 
 /// @returns whether there are new velocities, all finite
 bool ContactPasses::solve(BodyStepper& stepper, ContactPart& part) {
-  const AddedSeconds seconds(part.contact_seconds);
+  const AddedSeconds seconds(part.seconds.contact);
   PartMotion& motion = parts_.motion;
   ContactHistory& history = parts_.history;
   motion.set_free();

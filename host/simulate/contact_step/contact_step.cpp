@@ -68,8 +68,7 @@ std::vector<Point3> ContactStep::guess(const ModelState& start, double time_step
 ContactPart ContactStep::advance(const ModelState& start,
                                  double time_step,
                                  bool is_first,
-                                 BodyStepper& stepper,
-                                 StepSeconds& seconds) {
+                                 BodyStepper& stepper) {
   ContactPart part;
   history_.set_time_step(time_step);
   history_.begin_part();
@@ -83,7 +82,7 @@ ContactPart ContactStep::advance(const ModelState& start,
     take_solution(stepper, part);
   }
   add_sleeping(start, part);
-  seconds.update += stepper.move(
+  part.seconds.update = stepper.move(
       time_step, end_check_.all_move() ? std::span<const double>{} : std::span(fractions()));
   return part;
 }
@@ -92,13 +91,13 @@ void ContactStep::begin(const ModelState& start,
                         double time_step,
                         BodyStepper& stepper,
                         ContactPart& part) {
-  const AddedSeconds seconds(part.detection_seconds);
+  const AddedSeconds seconds(part.seconds.detection);
   motion_.begin(start, time_step, stepper);
   detector_->begin_step();
 }
 
 void ContactStep::keep_apart(ContactPart& part) {
-  const AddedSeconds seconds(part.detection_seconds);
+  const AddedSeconds seconds(part.seconds.detection);
   end_check_.begin(history_.contacts(), sleeping_links());
   part.islands = end_check_.island_count();
   // A motion without pairs has passed a detection at a larger distance already.
@@ -120,7 +119,7 @@ void ContactStep::add_sleeping(const ModelState& start, ContactPart& part) {
 }
 
 void ContactStep::end(const ModelState& after, ContactPart& part) {
-  const AddedSeconds seconds(part.contact_seconds);
+  const AddedSeconds seconds(part.seconds.contact);
   const std::vector<double> before = intensities();
   if (history_.contacts() == nullptr) {
     points_.clear();
@@ -150,14 +149,14 @@ void ContactStep::end_contacts(const ModelState& after) {
   points_.set_intensities(history_.end_part(solution, bodies).intensity);
 }
 
-void ContactStep::remember(ContactMemory& memory) const {
-  history_.remember(memory);
-  memory.sleeping = sleeping_.list();
+ContactMemory ContactStep::memory() const {
+  return {history_.time_step(), history_.tracker().records(), history_.change(), sleeping_.list()};
 }
 
-void ContactStep::restore(const ContactMemory& memory) {
-  history_.restore(memory);
-  sleeping_.set(memory.sleeping);
+void ContactStep::set_memory(const ContactMemory& memory) {
+  const auto& [time_step, records, change, sleeping] = memory;
+  history_.restore(time_step, records, change);
+  sleeping_.set(sleeping);
 }
 
 void ContactStep::set_still(std::span<const std::uint8_t> is_still) {

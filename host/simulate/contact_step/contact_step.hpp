@@ -57,8 +57,7 @@ class ContactStep {
   ContactPart advance(const ModelState& start,
                       double time_step,
                       bool is_first,
-                      BodyStepper& stepper,
-                      StepSeconds& seconds);
+                      BodyStepper& stepper);
   /// Ends a part that advance() has completed.
   /// @param after  state at its end
   void end(const ModelState& after, ContactPart& part);
@@ -71,8 +70,9 @@ class ContactStep {
   /// memory for later parts. Once per part.
   void take_points(std::vector<ContactPoint>& points) { points_.swap(points); }
 
-  void remember(ContactMemory& memory) const;
-  void restore(const ContactMemory& memory);
+  ContactMemory memory() const;
+  /// @throws std::invalid_argument  a record is out of range; then nothing has changed
+  void set_memory(const ContactMemory& memory);
 
   /// For the next parts: bodies and obstacles that do not move, [bodies, then obstacles] or empty.
   /// A sleeping body among them must be woken where ContactPart::woken names it.

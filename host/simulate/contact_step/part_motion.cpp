@@ -7,6 +7,7 @@
 
 #include "host/base/index_of.hpp"
 #include "host/base/point3.hpp"
+#include "host/simulate/step/device_stepper.hpp"
 
 namespace tetwarp {
 namespace {
@@ -35,7 +36,8 @@ void PartMotion::begin(const ModelState& start, double time_step, BodyStepper& s
   last_ = &motions_[0];
   places_.take(start, last_->start);
   set_places(start, last_->start, start_places_);
-  resident_ = stepper.resident_surfaces();
+  DeviceStepper* const device = stepper.on_device();
+  resident_ = device != nullptr ? &device->resident_surfaces() : nullptr;
   if (resident_ != nullptr) resident_->begin(binding_of(surfaces_));
 }
 

@@ -79,7 +79,7 @@ class PartMotion {
   int threads_;
   const ModelState* start_ = nullptr;
   double time_step_ = 0;                  ///< [s]
-  ResidentSurfaces* resident_ = nullptr;  ///< of the stepper
+  ResidentSurfaces* resident_ = nullptr;  ///< of the stepper; null: on the host
   std::vector<Point3> free_velocity_, velocity_;
   bool is_free_ = true;  ///< velocity_ is what the stepper has
   KeptPlaces places_;

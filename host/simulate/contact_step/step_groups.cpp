@@ -45,11 +45,9 @@ void StepGroups::begin(const std::vector<TrackedContact>& contacts,
   groups_ = coupling_islands_;
   std::fill(fraction_.begin(), fraction_.end(), 1);
   rounds_ = 0;
-  const auto has_unknowns = [&](std::int32_t body) {
-    return index_of(body) < model_.body_island.size() && at(model_.body_island, body) >= 0;
-  };
   const auto tie = [&](std::int32_t a, std::int32_t b) {
-    if (has_unknowns(a) && has_unknowns(b)) groups_.unite(index_of(a), index_of(b));
+    if (model_.island_of(a) < 0 || model_.island_of(b) < 0) return;
+    groups_.unite(index_of(a), index_of(b));
   };
   for (const TrackedContact& contact : contacts) tie(contact.key.body_a, contact.key.body_b);
   for (const auto& [a, b] : sleeping) tie(a, b);

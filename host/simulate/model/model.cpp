@@ -2,9 +2,9 @@
 /// Numbers nodes and rigid bodies, adds all bodies, and finds coupling islands.
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
+#include "host/base/disjoint_sets.hpp"
 #include "host/simulate/model/body_part.hpp"
 #include "host/simulate/model/cloth.hpp"
 #include "host/simulate/model/fem.hpp"
@@ -99,23 +99,17 @@ void find_islands(const Scene& scene, Model& model) {
     }
     if (scene.bodies[b].kind == BodyKind::rigid) has_unknowns[b] = 1;
   }
-  std::vector<std::size_t> parent(count);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root_of = [&](std::size_t b) {
-    while (parent[b] != b) b = parent[b] = parent[parent[b]];
-    return b;
-  };
+  DisjointSets islands(count);
   for (std::size_t s = 0; s < model.springs.a.size(); ++s) {
     const auto a = static_cast<std::size_t>(model.springs.a[s].body);
     const auto b = static_cast<std::size_t>(model.springs.b[s].body);
     if (a >= count || b >= count || has_unknowns[a] == 0 || has_unknowns[b] == 0) continue;
-    const std::size_t root_a = root_of(a), root_b = root_of(b);
-    parent[std::max(root_a, root_b)] = std::min(root_a, root_b);
+    islands.unite(a, b);
   }
   model.body_island.assign(count, -1);
   for (std::size_t b = 0; b < count; ++b) {
     if (has_unknowns[b] == 0) continue;
-    const std::size_t root = root_of(b);
+    const std::size_t root = islands.root_of(b);
     model.body_island[b] = root == b ? model.island_count++ : model.body_island[root];
   }
 }

@@ -6,6 +6,7 @@
 /// A has one 3x3 block for every pair of blocks that share an element or a spring.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -98,6 +99,11 @@ struct Model {
   /// of an island are listed together. Bodies without unknowns are in none.
   std::vector<std::int32_t> body_island;  ///< [bodies] or -1
   std::int32_t island_count = 0;
+  /// Coupling island of a body or obstacle, or -1.
+  std::int32_t island_of(std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    return b < body_island.size() ? body_island[b] : -1;
+  }
 
   ModelState start;
 };

@@ -88,7 +88,7 @@ std::vector<Point3> BodyPlaces::node_positions(std::size_t body) {
   // A script that was stopped is between two places of its path. One that was moved by
   // Simulator::move_script() has its new place after the next step.
   const SceneDrive& drive = bodies_.drive();
-  const bool is_on_path = drive.delays()[body] == 0 && !drive.overrides().scripts[body];
+  const bool is_on_path = drive.state().delays[body] == 0 && !drive.overrides().scripts[body];
   if (is_scripted(body) && is_on_path) return drive.scripted_positions(body, count_.time());
   return nodes_of(scene_.model, body, bodies_.state().get().position);
 }

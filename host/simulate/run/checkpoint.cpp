@@ -98,38 +98,38 @@ void check_head(std::span<const std::byte> bytes,
   }
 }
 
-void check_end(CheckpointReader& reader, const SavedState& saved) {
+void check_end(CheckpointReader& reader, const SimulationState& state) {
   std::uint64_t checksum = 0;
   reader.read(checksum);
-  if (!reader.is_at_end() || saved.steps < 0) {
+  if (!reader.is_at_end() || state.steps < 0) {
     throw std::invalid_argument("checkpoint: damaged, it is longer than the state of its scene");
   }
 }
 
-void check_numbers(const SavedState& saved) {
-  if (!is_finite_state(saved.state)) {
+void check_numbers(const SimulationState& state) {
+  if (!is_finite_state(state.bodies)) {
     throw std::invalid_argument("checkpoint: damaged, a position or velocity is not a number");
   }
-  const std::vector<Point3>& change = saved.memory.change;
-  if (!change.empty() && change.size() != saved.state.velocity.size()) {
+  const std::vector<Point3>& change = state.memory.contacts.change;
+  if (!change.empty() && change.size() != state.bodies.velocity.size()) {
     throw std::invalid_argument("checkpoint: damaged, changes of velocities have another length");
   }
 }
 
 }  // namespace
 
-std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SavedState& saved) {
+std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SimulationState& state) {
   CheckpointWriter writer;
   writer.add(checkpoint_version);
   writer.add(fingerprint_of(scene));
-  write_state(saved, writer);
+  write_state(state, writer);
   writer.add(checksum_of(writer.bytes()));
   return writer.take();
 }
 
-SavedState read_checkpoint(std::span<const std::byte> checkpoint,
-                           const SimulatedScene& scene,
-                           SavedState now) {
+SimulationState read_checkpoint(std::span<const std::byte> checkpoint,
+                                const SimulatedScene& scene,
+                                SimulationState now) {
   CheckpointReader reader(checkpoint);
   check_head(checkpoint, scene, reader);
   now.last.outcome = {};
@@ -137,7 +137,7 @@ SavedState read_checkpoint(std::span<const std::byte> checkpoint,
   read_state(reader, now);
   check_end(reader, now);
   check_numbers(now);
-  check_contacts(now.memory, scene.surfaces);
+  check_contacts(now.memory.contacts, scene.surfaces);
   check_points(now.last.points, scene);
   return now;
 }

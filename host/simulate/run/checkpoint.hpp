@@ -6,19 +6,19 @@
 #include <span>
 #include <vector>
 
-#include "host/simulate/run/saved_state.hpp"
 #include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/run/simulation_state.hpp"
 
 namespace tetwarp {
 
-std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SavedState& saved);
+std::vector<std::byte> write_checkpoint(const SimulatedScene& scene, const SimulationState& state);
 
 /// Reads and checks a checkpoint.
 /// @param now  of the same scene, for the lengths of lists
 /// @throws std::invalid_argument  in one line: it is damaged, belongs to another scene or was
 ///                                written by another version
-SavedState read_checkpoint(std::span<const std::byte> checkpoint,
-                           const SimulatedScene& scene,
-                           SavedState now);
+SimulationState read_checkpoint(std::span<const std::byte> checkpoint,
+                                const SimulatedScene& scene,
+                                SimulationState now);
 
 }  // namespace tetwarp

@@ -40,9 +40,9 @@ class CheckpointWriter {
     add(static_cast<std::uint64_t>(list.size()));
     for (const T& item : list) add_item(*this, item);
   }
-  template <class T>
-  void operator()(const T& value) {
-    add(value);
+  template <class... Values>
+  void operator()(const Values&... values) {
+    (add(values), ...);
   }
   std::span<const std::byte> bytes() const { return bytes_; }
   std::vector<std::byte> take() { return std::move(bytes_); }
@@ -95,9 +95,9 @@ class CheckpointReader {
     list.assign(static_cast<std::size_t>(size), T{});
     for (T& item : list) read_item(*this, item);
   }
-  template <class T>
-  void operator()(T& value) {
-    read(value);
+  template <class... Values>
+  void operator()(Values&... values) {
+    (read(values), ...);
   }
   bool is_at_end() const { return bytes_.empty(); }
 

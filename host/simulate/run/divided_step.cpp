@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "host/base/step_second_fields.hpp"
 #include "host/simulate/run/fastest_body.hpp"
 #include "host/simulate/surfaces/round_shape.hpp"
 
@@ -125,8 +126,7 @@ StepPart DividedStep::part_of(int part, int parts) const {
 
 void DividedStep::add_all_seconds(const StepAttempt& made) {
   add_seconds(made.outcome.seconds, seconds_);
-  seconds_.detection += made.contact.detection_seconds;
-  seconds_.contact += made.contact.contact_seconds;
+  add_seconds(made.contact.seconds, seconds_);
 }
 
 void DividedStep::accept(StepAttempt made, int parts) {
@@ -147,14 +147,9 @@ std::string DividedStep::failed_in(int parts) {
          (parts == 1 ? " part: " : " parts: ");
 }
 
-void DividedStep::save(SavedState& saved) const {
-  saved.last = last_;
-  division_.save(saved);
-}
-
-void DividedStep::restore(const SavedState& saved) {
-  last_ = saved.last;
-  division_.restore(saved);
+void DividedStep::restore(const LastStep& last, const DivisionState& division) {
+  last_ = last;
+  division_.set_state(division);
 }
 
 }  // namespace tetwarp

@@ -7,7 +7,6 @@
 #include "host/base/stopwatch.hpp"
 #include "host/simulate/run/last_step.hpp"
 #include "host/simulate/run/moving_bodies.hpp"
-#include "host/simulate/run/saved_state.hpp"
 #include "host/simulate/run/simulated_scene.hpp"
 #include "host/simulate/run/step_attempt.hpp"
 #include "host/simulate/run/step_count.hpp"
@@ -27,9 +26,9 @@ class DividedStep {
   bool step();
   /// Of the last step.
   const LastStep& last() const { return last_; }
-
-  void save(SavedState& saved) const;
-  void restore(const SavedState& saved);
+  const DivisionState& division() const { return division_.state(); }
+  /// Goes on after another last step.
+  void restore(const LastStep& last, const DivisionState& division);
 
  private:
   bool make();

@@ -97,10 +97,6 @@ void IslandLists::add_driven(const ModelPoint& point, Island& island) const {
   for (std::size_t k = 0; k < 4 && point.node[k] >= 0; ++k) add(point.node[k]);
 }
 
-std::int32_t IslandLists::island_of(std::int32_t body) const {
-  return index_of(body) < model_.body_island.size() ? at(model_.body_island, body) : -1;
-}
-
 std::int32_t IslandLists::turning_frame(std::int32_t block) const {
   const std::int32_t past = block - model_.node_count;
   return past >= 0 && past % 2 == 1 ? past / 2 : -1;

@@ -27,7 +27,7 @@ class IslandLists {
   /// Number of bodies and obstacles.
   std::size_t body_count() const { return body_driven_.size(); }
   /// Island of a body or obstacle, -1: it has no unknowns.
-  std::int32_t island_of(std::int32_t body) const;
+  std::int32_t island_of(std::int32_t body) const { return model_.island_of(body); }
   /// Prescribed blocks of a body or obstacle.
   const std::vector<std::int32_t>& driven_of(std::size_t body) const { return body_driven_[body]; }
   std::size_t block_count() const { return block_body_.size(); }

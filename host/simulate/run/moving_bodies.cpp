@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "host/base/point3.hpp"
+#include "host/base/step_second_fields.hpp"
 #include "host/simulate/start/prepare_start.hpp"
+#include "host/simulate/step/device_stepper.hpp"
 #include "host/simulate/step/reference_stepper.hpp"
 
 namespace tetwarp {
@@ -22,8 +24,7 @@ MovingBodies::MovingBodies(SimulatedScene& scene, StepCount& count)
       stepper_(make_stepper()),
       resident_(watch()),
       state_(scene.model, *stepper_, resident_),
-      sleep_(scene, contact_.get(), *stepper_, state_),
-      start_(state_, drive_, contact_.get(), sleep_) {}
+      sleep_(scene, contact_.get(), *stepper_, state_) {}
 
 std::unique_ptr<ContactStep> MovingBodies::make_contact() {
   if (!ContactStep::can_touch(scene_.surfaces.surfaces)) return nullptr;
@@ -72,8 +73,8 @@ std::unique_ptr<BodyStepper> MovingBodies::make_stepper() {
 /// @returns null where the host reads every state: for contact, and to choose what sleeps
 ResidentState* MovingBodies::watch() {
   if (contact_ || scene_.scene.solver.sleeping) return nullptr;
-  ResidentState* const resident = stepper_->resident_state();
-  if (resident == nullptr) return nullptr;
+  DeviceStepper* const device = stepper_->on_device();
+  if (device == nullptr) return nullptr;
   StatePlaces places;
   drive_.add_places(places);
   scene_.loads.add_places(places);
@@ -81,8 +82,18 @@ ResidentState* MovingBodies::watch() {
     std::sort(list->begin(), list->end());
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
-  resident->watch(places);
-  return resident;
+  device->resident_state().watch(places);
+  return &device->resident_state();
+}
+
+void MovingBodies::begin_step() {
+  state_.keep();
+  start_ = memory();
+}
+
+void MovingBodies::go_back() {
+  state_.go_back();
+  set_memory(start_);
 }
 
 ContactPart MovingBodies::advance(const StepPart& part, StepAttempt& attempt) {
@@ -120,17 +131,16 @@ bool MovingBodies::solve(const StepPart& part, StepAttempt& attempt, ContactPart
 bool MovingBodies::solve_without_waking(const StepPart& part,
                                         StepAttempt& attempt,
                                         ContactPart& contact) {
-  StepSeconds& seconds = attempt.outcome.seconds;
   if (contact_) input_.guess = contact_->guess(state_.get(), part.time_step);
   StepOutcome outcome = stepper_->solve(input_);
-  add_seconds(outcome.seconds, seconds);
+  add_seconds(outcome.seconds, attempt.outcome.seconds);
   count_.add_iterations(outcome.linear_iterations);
   if (!outcome.completed) return false;
   contact = {};
   if (contact_) {
-    contact = contact_->advance(state_.get(), part.time_step, part.is_first, *stepper_, seconds);
+    contact = contact_->advance(state_.get(), part.time_step, part.is_first, *stepper_);
   } else {
-    seconds.update += stepper_->move(part.time_step, {});
+    contact.seconds.update = stepper_->move(part.time_step, {});
   }
   if (!contact.is_completed) return false;
   if (!contact.woken.empty()) {
@@ -167,22 +177,15 @@ void MovingBodies::end_step(bool may_sleep) {
   sleep_.end_step(may_sleep && !grows, input_);
 }
 
-void MovingBodies::save(SavedState& saved) {
-  saved.state = state_.get();
-  saved.handles = drive_.handles();
-  saved.overrides = drive_.overrides();
-  saved.delays = drive_.delays();
-  if (contact_) contact_->remember(saved.memory);
-  saved.sleep = sleep_.state();
+BodyMemory MovingBodies::memory() const {
+  return {drive_.state(), contact_ ? contact_->memory() : ContactMemory{}, sleep_.state()};
 }
 
-void MovingBodies::restore(const SavedState& saved) {
-  if (contact_) contact_->restore(saved.memory);
-  drive_.handles() = saved.handles;
-  drive_.overrides() = saved.overrides;
-  drive_.delays() = saved.delays;
-  sleep_.set_state(saved.sleep);
-  state_.set(saved.state);
+void MovingBodies::set_memory(const BodyMemory& memory) {
+  const auto& [drive, contacts, sleep] = memory;
+  if (contact_) contact_->set_memory(contacts);
+  drive_.set_state(drive);
+  sleep_.set_state(sleep);
 }
 
 }  // namespace tetwarp

@@ -6,11 +6,10 @@
 #include "host/simulate/contact_step/contact_step.hpp"
 #include "host/simulate/run/body_sleep.hpp"
 #include "host/simulate/run/host_state.hpp"
-#include "host/simulate/run/saved_state.hpp"
 #include "host/simulate/run/simulated_scene.hpp"
+#include "host/simulate/run/simulation_state.hpp"
 #include "host/simulate/run/step_attempt.hpp"
 #include "host/simulate/run/step_count.hpp"
-#include "host/simulate/run/step_start.hpp"
 #include "host/simulate/start/rest_growth.hpp"
 #include "host/simulate/step/scene_drive.hpp"
 #include "host/simulate/step/stepper.hpp"
@@ -32,8 +31,8 @@ class MovingBodies {
   MovingBodies(SimulatedScene& scene, StepCount& count);
 
   /// Keeps the state, for go_back().
-  void begin_step() { start_.keep(); }
-  void go_back() { start_.go_back(); }
+  void begin_step();
+  void go_back();
   /// Moves the bodies over a part of a step, and adds how that went to an attempt.
   /// @returns what contact did; where the attempt is not completed, nothing has moved
   ContactPart advance(const StepPart& part, StepAttempt& attempt);
@@ -51,9 +50,9 @@ class MovingBodies {
   /// Null: no two surfaces may touch.
   ContactStep* contact() { return contact_.get(); }
 
-  void save(SavedState& saved);
+  BodyMemory memory() const;
   /// @throws std::invalid_argument  contacts are out of range; then nothing has changed
-  void restore(const SavedState& saved);
+  void set_memory(const BodyMemory& memory);
 
  private:
   std::unique_ptr<ContactStep> make_contact();
@@ -74,8 +73,8 @@ class MovingBodies {
   ResidentState* resident_;  ///< of the stepper; null: every part copies the state to the host
   HostState state_;
   BodySleep sleep_;
-  StepStart start_;
-  StepInput input_;  ///< kept, so that steps do not allocate it
+  BodyMemory start_;  ///< of the step
+  StepInput input_;   ///< kept, so that steps do not allocate it
 };
 
 }  // namespace tetwarp

@@ -25,17 +25,17 @@ class Simulator::Impl {
         records(scene, count, bodies, steps.last()),
         places(scene, count, bodies) {}
 
-  SavedState saved() {
-    SavedState now;
-    now.steps = count.done();
-    bodies.save(now);
-    steps.save(now);
-    return now;
+  SimulationState state() {
+    return {count.done(),         steps.division(), steps.last(),
+            bodies.state().get(), bodies.memory(),  bodies.drive().overrides()};
   }
-  void restore(const SavedState& saved) {
-    bodies.restore(saved);
-    steps.restore(saved);
-    count.set_done(saved.steps);
+  void set_state(const SimulationState& state) {
+    const auto& [done, division, last, of_bodies, memory, overrides] = state;
+    bodies.set_memory(memory);
+    bodies.drive().overrides() = overrides;
+    bodies.state().set(of_bodies);
+    steps.restore(last, division);
+    count.set_done(done);
     records.forget();
   }
 
@@ -114,10 +114,10 @@ void Simulator::move_script(const std::string& name,
 }
 
 std::vector<std::byte> Simulator::checkpoint() const {
-  return write_checkpoint(impl_->scene, impl_->saved());
+  return write_checkpoint(impl_->scene, impl_->state());
 }
 void Simulator::restore(std::span<const std::byte> checkpoint) {
-  impl_->restore(read_checkpoint(checkpoint, impl_->scene, impl_->saved()));
+  impl_->set_state(read_checkpoint(checkpoint, impl_->scene, impl_->state()));
 }
 
 }  // namespace tetwarp

@@ -7,18 +7,13 @@
 namespace tetwarp {
 
 void add_outcome(const StepOutcome& part, StepOutcome& sum) {
-  sum.converged = sum.converged && part.converged;
-  sum.linear_iterations += part.linear_iterations;
-  sum.linear_residual = std::max(sum.linear_residual, part.linear_residual);
-  sum.skipped_rotations += part.skipped_rotations;
-  sum.skipped_blocks += part.skipped_blocks;
-}
-
-void add_seconds(const StepSeconds& part, StepSeconds& sum) {
-  sum.forces += part.forces;
-  sum.assembly += part.assembly;
-  sum.linear += part.linear;
-  sum.update += part.update;
+  const auto& [completed, converged, linear_iterations, linear_residual, skipped_rotations,
+               skipped_blocks, seconds] = part;
+  sum.converged = sum.converged && converged;
+  sum.linear_iterations += linear_iterations;
+  sum.linear_residual = std::max(sum.linear_residual, linear_residual);
+  sum.skipped_rotations += skipped_rotations;
+  sum.skipped_blocks += skipped_blocks;
 }
 
 }  // namespace tetwarp

@@ -18,7 +18,5 @@ struct StepAttempt {
 
 /// Adds counts of a later part, and its largest residual; no seconds.
 void add_outcome(const StepOutcome& part, StepOutcome& sum);
-/// Adds the seconds of the stages of BodyStepper.
-void add_seconds(const StepSeconds& part, StepSeconds& sum);
 
 }  // namespace tetwarp

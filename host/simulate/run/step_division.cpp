@@ -35,9 +35,9 @@ bool StepDivision::is_good(const StepAttempt& attempt,
   const std::int64_t counted = std::exchange(inverted_, -1);
   if (!attempt.is_finite || !attempt.outcome.converged) return false;
   if (state.largest_spin() * time_step > largest_turn) return false;
-  if (undivided_steps_ > 0) return true;
+  if (now_.undivided_steps > 0) return true;
   if (!attempt.contact.converged) return false;
-  if (contact.smallest_fraction < held_fraction && held_steps_ >= most_held_steps) return false;
+  if (contact.smallest_fraction < held_fraction && now_.held_steps >= most_held_steps) return false;
   if (contact.contacts == 0) return true;
   const std::int64_t before =
       counted >= 0 ? counted : inverted_count(scene_.model, state.before_part());
@@ -47,23 +47,17 @@ bool StepDivision::is_good(const StepAttempt& attempt,
 
 void StepDivision::accept(const StepAttempt& made) {
   const bool is_held = made.contact.smallest_fraction < held_fraction;
-  held_steps_ = is_held ? held_steps_ + 1 : 0;
+  now_.held_steps = is_held ? now_.held_steps + 1 : 0;
   if (!made.is_good) {
-    undivided_steps_ = steps_without_parts;
-  } else if (undivided_steps_ > 0) {
-    --undivided_steps_;
+    now_.undivided_steps = steps_without_parts;
+  } else if (now_.undivided_steps > 0) {
+    --now_.undivided_steps;
   }
 }
 
-void StepDivision::save(SavedState& saved) const {
-  saved.held_steps = held_steps_;
-  saved.undivided_steps = undivided_steps_;
-}
-
-void StepDivision::restore(const SavedState& saved) {
-  held_steps_ = saved.held_steps;
-  undivided_steps_ = saved.undivided_steps;
-  inverted_ = -1;
+void StepDivision::set_state(const DivisionState& state) {
+  now_ = state;
+  forget_counts();
 }
 
 }  // namespace tetwarp

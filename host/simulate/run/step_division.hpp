@@ -5,11 +5,16 @@
 
 #include "host/simulate/contact_step/contact_part.hpp"
 #include "host/simulate/run/host_state.hpp"
-#include "host/simulate/run/saved_state.hpp"
 #include "host/simulate/run/simulated_scene.hpp"
 #include "host/simulate/run/step_attempt.hpp"
 
 namespace tetwarp {
+
+/// What goes on from step to step.
+struct DivisionState {
+  std::int64_t held_steps = 0;       ///< successive ones whose bodies hardly moved
+  std::int64_t undivided_steps = 0;  ///< to come, which contact does not divide
+};
 
 /// A step has a power of two of equal parts, up to SceneSolver::max_substeps: so many that no
 /// rigid body turns too far in one, and twice as many where an attempt was not good.
@@ -36,14 +41,13 @@ class StepDivision {
   /// The step is done.
   void accept(const StepAttempt& made);
 
-  void save(SavedState& saved) const;
-  void restore(const SavedState& saved);
+  const DivisionState& state() const { return now_; }
+  void set_state(const DivisionState& state);
 
  private:
   const SimulatedScene& scene_;
-  std::int64_t inverted_ = -1;        ///< inverted tetrahedra in the state; -1: not counted
-  std::int64_t held_steps_ = 0;       ///< successive ones whose bodies hardly moved
-  std::int64_t undivided_steps_ = 0;  ///< to come, which contact does not divide
+  std::int64_t inverted_ = -1;  ///< inverted tetrahedra in the state; -1: not counted
+  DivisionState now_;
 };
 
 }  // namespace tetwarp

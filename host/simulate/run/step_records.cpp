@@ -30,7 +30,7 @@ void StepRecords::add_state(StepRecord& record) {
   const TetSums tets = tet_energies(scene_.model, state, scene_.threads);
   record.energy.elastic = tets.energy;
   record.inverted = tets.inverted;
-  record_state(scene_.model, state, scene_.scene.gravity, bodies_.drive().handles(), record);
+  record_state(scene_.model, state, scene_.scene.gravity, bodies_.drive().state().handles, record);
   record.energy.work = last_.work;
   record.smallest_distance = 100 * scene_.surfaces.surfaces.thickness;
   if (bodies_.contact() != nullptr) bodies_.contact()->record(state, record);

@@ -55,8 +55,6 @@ struct ContactSystem::State {
   SoftIslands soft_islands;
   SolverIslands solver_islands;
   bool is_resident = false;  ///< all velocities that contacts have changed are on the device
-  ResidentTwoLevel* resident_soft = nullptr;   ///< or null: none there
-  ResidentContacts* resident_other = nullptr;  ///< or null: none there
   ContactSolution solution;
   std::vector<Point3> impulses;         ///< [block_count]
   std::vector<Point3> velocity_before;  ///< without contact, [block_count]
@@ -87,7 +85,6 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
                                       const std::vector<Point3>& change,
                                       std::vector<Point3>& velocity,
                                       ContactSolveOutcome& outcome) {
-  resident_soft = nullptr;
   if (shares.soft.is_empty()) return;
   const TwoLevelOutcome solved =
       soft_islands.solve(stepper,
@@ -107,18 +104,15 @@ void ContactSystem::State::solve_soft(BodyStepper& stepper,
   outcome.converged = solved.converged;
   outcome.residual = solved.residual;
   take_impulses(shares.soft, soft_islands.impulse(), soft_islands.contact_velocity());
-  resident_soft = soft_islands.resident();
 }
 
 void ContactSystem::State::solve_other(BodyStepper& stepper,
                                        std::vector<Point3>& velocity,
                                        ContactSolveOutcome& outcome) {
-  resident_other = nullptr;
   if (shares.other.is_empty()) return;
   solution.report = solver_islands.solve(stepper, islands, rows.rows(), shares.other.islands,
                                          shares.other.contacts, laws.problem(), velocity);
   take_impulses(shares.other, solver_islands.impulse(), solver_islands.contact_velocity());
-  resident_other = solver_islands.resident();
   const ContactReport& report = solution.report;
   outcome.converged = outcome.converged && (solution.converged() || is_rounding(velocity));
   outcome.residual = std::max(outcome.residual, report.residual.eta);
@@ -207,8 +201,8 @@ ContactSolveOutcome ContactSystem::solve(BodyStepper& stepper,
       change != nullptr && change->size() == velocity.size() ? *change : none;
   s.solve_soft(stepper, state, last_change, velocity, outcome);
   s.solve_other(stepper, velocity, outcome);
-  s.is_resident = (s.shares.soft.is_empty() || s.resident_soft != nullptr) &&
-                  (s.shares.other.is_empty() || s.resident_other != nullptr);
+  s.is_resident = (s.shares.soft.is_empty() || s.soft_islands.resident() != nullptr) &&
+                  (s.shares.other.is_empty() || s.solver_islands.resident() != nullptr);
   if (s.stop_fast_turns(velocity)) outcome.converged = false;
   if (change != nullptr) *change = differences(velocity, s.velocity_before);
   s.rows.prescribed_impulses(s.solution.impulse, s.impulses);
@@ -223,8 +217,8 @@ void ContactSystem::set_velocities(const std::vector<Point3>& velocity,
                                    BodyStepper& stepper) const {
   const State& s = *state_;
   if (!s.is_resident) return stepper.set_velocities(velocity);
-  if (s.resident_soft != nullptr) s.resident_soft->set_velocities();
-  if (s.resident_other != nullptr) s.resident_other->set_velocities();
+  if (!s.shares.soft.is_empty()) s.soft_islands.resident()->set_velocities();
+  if (!s.shares.other.is_empty()) s.solver_islands.resident()->set_velocities();
 }
 
 const ContactSolution& ContactSystem::solution() const {

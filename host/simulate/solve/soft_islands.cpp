@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/simulate/solve/problem/contact_laws.hpp"
+#include "host/simulate/step/device_stepper.hpp"
 
 namespace tetwarp {
 namespace {
@@ -25,9 +26,10 @@ SoftIslands::SoftIslands(const SceneSurfaces& scene,
       uses_device_(options.backend == Backend::cuda) {}
 
 bool SoftIslands::begin(BodyStepper& stepper, const ContactShare& share) {
-  resident_ = uses_device_ && !share.is_empty() ? stepper.resident_two_level() : nullptr;
-  if (resident_ != nullptr && !on_device_.can_take(share.islands)) resident_ = nullptr;
-  return resident_ != nullptr;
+  DeviceStepper* const device = uses_device_ && !share.is_empty() ? stepper.on_device() : nullptr;
+  const bool can_try = device != nullptr && on_device_.can_take(share.islands);
+  resident_ = can_try ? &device->resident_two_level() : nullptr;
+  return can_try;
 }
 
 TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
@@ -42,9 +44,9 @@ TwoLevelOutcome SoftIslands::solve(BodyStepper& stepper,
     on_device = on_device_.solve(*resident_, problem, velocity);
     impulse_ = on_device_.impulse();
     contact_velocity_ = on_device_.contact_velocity();
+    if (!on_device.is_result) resident_ = nullptr;
     if (on_device.is_result || on_device.is_stopped) return on_device;
   }
-  resident_ = nullptr;
   rows.set_all();
   TwoLevelOutcome on_host = on_host_.solve(stepper.system(), problem, velocity);
   impulse_ = on_host_.impulse();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/simulate/solve/problem/contact_laws.hpp"
+#include "host/simulate/step/device_stepper.hpp"
 
 namespace tetwarp {
 
@@ -42,8 +43,9 @@ ContactReport SolverIslands::solve(BodyStepper& stepper,
                                    const std::vector<std::int32_t>& contacts,
                                    const ContactProblem& laws,
                                    std::vector<Point3>& velocity) {
-  resident_ =
-      can_be_resident(islands, takes, contacts.size()) ? stepper.resident_contacts() : nullptr;
+  DeviceStepper* const device =
+      can_be_resident(islands, takes, contacts.size()) ? stepper.on_device() : nullptr;
+  resident_ = device != nullptr ? &device->resident_contacts() : nullptr;
   const SystemRows system_rows = resident_ != nullptr ? resident_->rows() : stepper.system().rows;
   solver_ = &solver_for(contacts.size());  // changes only with the pattern
   const bool is_other = part_.set_pattern(system_rows, islands, rows, takes, contacts);

@@ -175,7 +175,7 @@ class ReferenceStepper final : public BodyStepper {
       const auto of = frame_[static_cast<std::size_t>(r)];
       now.frames[of] = twin_.frame[of];
     }
-    for (const auto& handle : drive_.handles()) {
+    for (const auto& handle : drive_.state().handles) {
       now.handles.push_back(handle ? std::optional(vector_of(*handle)) : std::nullopt);
     }
     return now;
@@ -194,7 +194,7 @@ class ReferenceStepper final : public BodyStepper {
       auto& own = result.bodies.emplace_back();
       if (script) own = {vector_of(script->displacement), vector_of(script->axis_angle)};
     }
-    result.delay = drive_.delays();
+    result.delay = drive_.state().delays;
     return result;
   }
 

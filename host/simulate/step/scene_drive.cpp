@@ -27,13 +27,13 @@ SceneDrive::SceneDrive(const Scene& scene, const SceneGeometry& geometry, const 
   }
   overrides_.handles.resize(scene.handles.size());
   overrides_.scripts.resize(scene.bodies.size() + scene.obstacles.size());
-  for (std::size_t h = 0; h < scene.handles.size(); ++h) handles_.push_back(handle_at(h, 0));
-  next_handles_ = handles_;
-  delays_.assign(overrides_.scripts.size(), 0);
+  for (std::size_t h = 0; h < scene.handles.size(); ++h) now_.handles.push_back(handle_at(h, 0));
+  next_handles_ = now_.handles;
+  now_.delays.assign(overrides_.scripts.size(), 0);
 }
 
 void SceneDrive::delay(std::span<const double> fraction, double time_step) {
-  for (std::size_t b = 0; b < fraction.size(); ++b) delays_[b] += (1 - fraction[b]) * time_step;
+  for (std::size_t b = 0; b < fraction.size(); ++b) now_.delays[b] += (1 - fraction[b]) * time_step;
 }
 
 Pose SceneDrive::frame_of(std::size_t body, double time) const {
@@ -46,7 +46,7 @@ Pose SceneDrive::frame_of(std::size_t body, double time) const {
 }
 
 std::vector<Point3> SceneDrive::scripted_positions(std::size_t body, double time) const {
-  const double delayed = time - delays_[body];
+  const double delayed = time - now_.delays[body];
   std::vector<Point3> positions = waves_[body].points_at(delayed);
   const Pose frame = frame_of(body, delayed);
   for (Point3& x : positions) x = world_of(frame, x);
@@ -78,7 +78,7 @@ void SceneDrive::fill_prescribed(const ModelState& state,
       for (const Point3& target : scripted_positions(b, end_time)) head_for(node++, target);
     }
     for (const DrivenGroup& group : of.driven) {
-      const auto place = place_at(*group.path, end_time - delays_[b]);
+      const auto place = place_at(*group.path, end_time - now_.delays[b]);
       const Pose frame = moved(body.pose, place.value_or(PathPlace{}));
       for (const std::int32_t n : group.nodes) {
         head_for(first + n, world_of(frame, at(of.nodes, n)));
@@ -89,7 +89,7 @@ void SceneDrive::fill_prescribed(const ModelState& state,
     const std::int32_t block = model_.node_count + 2 * r;
     if (at(model_.prescribed, block) == 0) continue;
     const std::size_t body = index_of(at(model_.rigid.body, r));
-    const Pose frame = frame_of(body, end_time - delays_[body]);
+    const Pose frame = frame_of(body, end_time - now_.delays[body]);
     input.prescribed_velocity[index_of(block)] =
         times(1 / dt, minus(frame.position, at(state.position, model_.node_count + r)));
     const Quaternion turn = product(normalized(frame.rotation), conjugate(at(state.rotation, r)));
@@ -113,7 +113,7 @@ void SceneDrive::add_places(StatePlaces& places) const {
 }
 
 void SceneDrive::fill_anchors(double end_time, double dt, StepInput& input) {
-  for (std::size_t h = 0; h < handles_.size(); ++h) next_handles_[h] = handle_at(h, end_time);
+  for (std::size_t h = 0; h < now_.handles.size(); ++h) next_handles_[h] = handle_at(h, end_time);
   const ModelSprings& springs = model_.springs;
   input.anchor.assign(springs.a.size(), {0, 0, 0});
   input.anchor_velocity.assign(springs.a.size(), {0, 0, 0});
@@ -125,7 +125,7 @@ void SceneDrive::fill_anchors(double end_time, double dt, StepInput& input) {
     if (!next_handles_[h]) continue;
     input.anchor[s] = plus(springs.b[s].local, *next_handles_[h]);
     // An anchor that takes hold again has no velocity in this step.
-    const Point3 before = handles_[h].value_or(*next_handles_[h]);
+    const Point3 before = now_.handles[h].value_or(*next_handles_[h]);
     input.anchor_velocity[s] = times(1 / dt, minus(*next_handles_[h], before));
   }
 }

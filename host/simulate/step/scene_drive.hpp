@@ -22,6 +22,14 @@ struct DriveOverrides {
   std::vector<std::optional<PathPlace>> scripts;  ///< [bodies, then obstacles]
 };
 
+/// What goes on from step to step.
+struct DriveState {
+  /// [handles] displacement of the anchors at the end of the last step; nothing: let go.
+  std::vector<std::optional<Point3>> handles;
+  /// [bodies, then obstacles] by how much each is behind its path [s].
+  std::vector<double> delays;
+};
+
 class SceneDrive {
  public:
   /// @param scene, geometry, model  kept by the caller
@@ -34,7 +42,7 @@ class SceneDrive {
   /// Adds the places that fill() reads of a state.
   void add_places(StatePlaces& places) const;
   /// Call when the step that fill() prepared has been made.
-  void accept() { handles_ = next_handles_; }
+  void accept() { now_.handles = next_handles_; }
   /// Delays the paths of bodies and obstacles that moved only a part of a step.
   /// @param fraction  [bodies, then obstacles] of the step that each moved
   void delay(std::span<const double> fraction, double time_step);
@@ -48,12 +56,8 @@ class SceneDrive {
   void release_handle(const std::string& name);
   void move_script(const std::string& name, const PathPlace& place);
 
-  /// Displacement of the anchors of each handle at the end of the last step; nothing: let go.
-  std::vector<std::optional<Point3>>& handles() { return handles_; }
-  const std::vector<std::optional<Point3>>& handles() const { return handles_; }
-  /// By how much each body or obstacle is behind its path [s], [bodies, then obstacles].
-  std::vector<double>& delays() { return delays_; }
-  const std::vector<double>& delays() const { return delays_; }
+  const DriveState& state() const { return now_; }
+  void set_state(const DriveState& state) { now_ = state; }
   DriveOverrides& overrides() { return overrides_; }
   const DriveOverrides& overrides() const { return overrides_; }
 
@@ -70,8 +74,8 @@ class SceneDrive {
   const Model& model_;
   std::vector<WaveMotion> waves_;  ///< [bodies]; of bodies that are not scripted: no points
   DriveOverrides overrides_;
-  std::vector<std::optional<Point3>> handles_, next_handles_;
-  std::vector<double> delays_;
+  DriveState now_;
+  std::vector<std::optional<Point3>> next_handles_;
 };
 
 }  // namespace tetwarp

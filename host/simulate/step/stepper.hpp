@@ -16,6 +16,7 @@
 
 namespace tetwarp {
 
+class DeviceStepper;
 class RestFactors;
 
 /// What acts from outside in one step. Sizes are those of the model.
@@ -67,11 +68,6 @@ struct StepSystem {
   View<const double> velocity;  ///< v without contact, [rows][3]
 };
 
-class ResidentContacts;
-class ResidentTwoLevel;
-class ResidentState;
-class ResidentSurfaces;
-
 class BodyStepper {
  public:
   virtual ~BodyStepper() = default;
@@ -105,15 +101,8 @@ class BodyStepper {
   virtual std::vector<Point3> support_impulses() const = 0;
   /// Positions of successive nodes, in memory of the back end, valid until the next step.
   virtual PositionsView positions(std::int32_t first_node, std::int32_t count) const = 0;
-  /// Reads the state where it is, in memory of a device; null where it is in memory of the host.
-  virtual ResidentState* resident_state() { return nullptr; }
-  /// Builds contact problems in memory of a device; null where the state is in memory of the host.
-  virtual ResidentContacts* resident_contacts() { return nullptr; }
-  /// Solves contacts of deformable and coupled bodies in memory of a device; null where the state
-  /// is in memory of the host.
-  virtual ResidentTwoLevel* resident_two_level() { return nullptr; }
-  /// Moves surfaces in memory of a device; null where the state is in memory of the host.
-  virtual ResidentSurfaces* resident_surfaces() { return nullptr; }
+  /// This stepper, if its state is in memory of a device; else null.
+  virtual DeviceStepper* on_device() { return nullptr; }
 };
 
 /// @param model  kept by the caller

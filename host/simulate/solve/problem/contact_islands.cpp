@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "host/base/disjoint_sets.hpp"
 #include "host/base/index_of.hpp"
 
 namespace tetwarp {
@@ -49,14 +49,6 @@ ContactIslands::ContactIslands(const SceneSurfaces& scene, const Model& model)
   }
 }
 
-std::int32_t ContactIslands::root_of(std::int32_t island) {
-  while (root_[index_of(island)] != island) {
-    root_[index_of(island)] = root_[index_of(root_[index_of(island)])];
-    island = root_[index_of(island)];
-  }
-  return island;
-}
-
 ContactIslands::Unknowns ContactIslands::of_side(const ContactSide& side) const {
   if (side.frame >= 0) {
     const std::int32_t island = of_block(first_frame_ + 2 * side.frame);
@@ -74,7 +66,7 @@ ContactIslands::Unknowns ContactIslands::of_side(const ContactSide& side) const 
 
 void ContactIslands::join(std::span<const ContactSides> contacts) {
   std::fill(has_contacts_.begin(), has_contacts_.end(), 0);
-  std::iota(root_.begin(), root_.end(), 0);
+  DisjointSets joined(root_.size());
   of_contact_.assign(contacts.size(), -1);
   for (std::size_t c = 0; c < of_contact_.size(); ++c) {
     const Unknowns a = of_side(contacts[c].a), b = of_side(contacts[c].b);
@@ -83,14 +75,13 @@ void ContactIslands::join(std::span<const ContactSides> contacts) {
       if (island < 0) continue;
       has_contacts_[index_of(island)] = 1;
       if (of_contact_[c] < 0) of_contact_[c] = island;
-      const std::int32_t root = root_of(of_contact_[c]), other = root_of(island);
-      root_[index_of(std::max(root, other))] = std::min(root, other);
+      joined.unite(index_of(of_contact_[c]), index_of(island));
     }
   }
   contact_island_count_ = 0;
   std::fill(is_soft_.begin(), is_soft_.end(), 0);
   for (std::int32_t i = 0; i < count(); ++i) {
-    root_[index_of(i)] = root_of(i);  // the island of lowest number in the contact island
+    root_[index_of(i)] = static_cast<std::int32_t>(joined.root_of(index_of(i)));
     if (is_coupled_[index_of(i)] != 0) is_soft_[index_of(root_[index_of(i)])] = 1;
     if (root_[index_of(i)] == i && has_contacts(i)) ++contact_island_count_;
   }

@@ -41,7 +41,6 @@ class ContactIslands {
   std::int64_t contact_island_count() const { return contact_island_count_; }
 
  private:
-  std::int32_t root_of(std::int32_t island);
   /// The blocks with unknowns that move a vertex or a side of a contact; all of one body.
   struct Unknowns {
     std::int32_t island = -1;  ///< their coupling island, -1: there are none
@@ -55,7 +54,7 @@ class ContactIslands {
   std::vector<std::uint8_t> is_coupled_;    ///< [islands] more than a single rigid body
   std::vector<std::uint8_t> has_contacts_;  ///< [islands]
   std::vector<std::uint8_t> is_soft_;       ///< [islands] set at the roots
-  std::vector<std::int32_t> root_;          ///< [islands] root of the contact island
+  std::vector<std::int32_t> root_;          ///< [islands] lowest island of the contact island
   std::vector<std::int32_t> of_contact_;
   std::int64_t contact_island_count_ = 0;
 };

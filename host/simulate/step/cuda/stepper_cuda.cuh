@@ -10,11 +10,12 @@
 #include "host/simulate/step/cuda/resident_surfaces_cuda.cuh"
 #include "host/simulate/step/cuda/resident_two_level_cuda.cuh"
 #include "host/simulate/step/cuda/step_exec_cuda.cuh"
+#include "host/simulate/step/device_stepper.hpp"
 
 namespace tetwarp {
 
 template <class T>
-class CudaStepper final : public BodyStepper {
+class CudaStepper final : public DeviceStepper {
  public:
   CudaStepper(const Model& model, const StepperOptions& options, std::string name)
       : exec_(options.device),
@@ -63,10 +64,10 @@ class CudaStepper final : public BodyStepper {
     exec_.wait();  // whoever reads them does so on a stream of its own
     return {pipeline_.position_of(first_node), count, Memory::device};
   }
-  ResidentState* resident_state() override { return &resident_; }
-  ResidentContacts* resident_contacts() override { return &contacts_; }
-  ResidentTwoLevel* resident_two_level() override { return &two_level_; }
-  ResidentSurfaces* resident_surfaces() override { return &surfaces_; }
+  ResidentState& resident_state() override { return resident_; }
+  ResidentSurfaces& resident_surfaces() override { return surfaces_; }
+  ResidentContacts& resident_contacts() override { return contacts_; }
+  ResidentTwoLevel& resident_two_level() override { return two_level_; }
 
  private:
   mutable CudaStepExec exec_;  ///< reads need its stream
