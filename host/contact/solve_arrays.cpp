@@ -132,7 +132,7 @@ void complete(const ContactStructure& structure, EngineResult& result) {
 
 void ContactSolver::set_structure(const ContactProblem& problem) {
   if (!problem.second_friction.empty() || !problem.bilateral.empty() || !problem.rolling.empty() ||
-      !problem.row_blocks.empty()) {
+      !problem.expert.row_blocks.empty()) {
     throw std::invalid_argument(
         "set_structure: the problem has second_friction, bilateral rows or rolling friction; solve "
         "such problems by solve(ContactProblem)");

@@ -151,7 +151,7 @@ TEST_P(Blocks, CulledByMasksHaveTheBitsOfTheWhole) {
     options.backend = GetParam();
     const Warped whole = run_warp(source, scene, GetParam(), options);
     const BlockLimits large{.max_voxels = 32 * 32 * 32};
-    options.skip.grid_point_masks = true;
+    options.expert.skip.grid_point_masks = true;
 
     const InBlocks blocks = run_blocks(source, scene, options, large);
 
@@ -168,7 +168,7 @@ TEST(BlockPlanner, CountsTheMasks) {
   };
   const double without = bytes();
 
-  options.skip.grid_point_masks = true;
+  options.expert.skip.grid_point_masks = true;
 
   EXPECT_GT(bytes(), without);
 }

@@ -43,9 +43,9 @@ TEST_P(WarpInvariance, AnyNumberOfThreadsGivesTheSameBitsAndCounts) {
 /// 0: all on; 1, 2, 3: one of rejected, accepted, copied off; 4: all off.
 WarpOptions without(int which) {
   WarpOptions options;
-  options.skip.rejected_cells = which != 1 && which != 4;
-  options.skip.accepted_cells = which != 2 && which != 4;
-  options.skip.copied_voxels = which != 3 && which != 4;
+  options.expert.skip.rejected_cells = which != 1 && which != 4;
+  options.expert.skip.accepted_cells = which != 2 && which != 4;
+  options.expert.skip.copied_voxels = which != 3 && which != 4;
   options.outside = Outside::identity;
   return options;
 }

@@ -25,9 +25,9 @@ inline ContactInput input_of(const ContactProblem& problem) {
   in.tangential_stiffness = view_of(adhesion.tangential_stiffness);
   in.intensity = view_of(adhesion.intensity);
   in.gap = view_of(adhesion.gap);
-  in.row_kind = view_of(problem.row_blocks.kind);
-  in.row_contact = view_of(problem.row_blocks.contact);
-  in.torsion = view_of(problem.row_blocks.torsion);
+  in.row_kind = view_of(problem.expert.row_blocks.kind);
+  in.row_contact = view_of(problem.expert.row_blocks.contact);
+  in.torsion = view_of(problem.expert.row_blocks.torsion);
   return in;
 }
 

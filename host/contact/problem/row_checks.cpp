@@ -189,8 +189,8 @@ void check_ellipses(const ContactProblem& problem) {
 }  // namespace
 
 void check_row_blocks(const ContactProblem& problem) {
-  if (!problem.row_blocks.empty()) {
-    throw ContactProblemError("row_blocks", ": not empty; it belongs to the solver");
+  if (!problem.expert.row_blocks.empty()) {
+    throw ContactProblemError("expert.row_blocks", ": not empty; it belongs to the solver");
   }
   check_ellipses(problem);
   check_bilateral(problem);

@@ -32,7 +32,7 @@ ContactSystemOptions system_options(const Scene& scene,
   // simulation that is not solved is divided.
   of.solver.max_newton = 20000;
   // A solver that remembers systems would not go on from a checkpoint bit for bit.
-  of.solver.skip.constant_systems = false;
+  of.solver.expert.skip.constant_systems = false;
   if (options.progress) of.solver.progress = std::move(progress);
   of.skips_islands = options.skip.islands;
   of.factors = options.factors;
