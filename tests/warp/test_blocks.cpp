@@ -88,10 +88,6 @@ InBlocks run_blocks(const Volume& source,
   return all;
 }
 
-bool is_same(const Warped& a, const Warped& b) {
-  return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
-}
-
 /// Small blocks of float32.
 const BlockLimits small{.max_voxels = 16 * 16 * 16};
 

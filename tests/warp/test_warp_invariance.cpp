@@ -13,10 +13,6 @@
 
 namespace tetwarp::test {
 namespace {
-bool is_same(const Warped& a, const Warped& b) {
-  return a.volume.data == b.volume.data && a.mask == b.mask && a.owner == b.owner;
-}
-
 /// Together these scenes take every path of the raster stage.
 const SceneNames raster_scenes = {"aligned", "waved", "tiny", "soup", "overlapping", "other_grid"};
 
