@@ -7,8 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/fill_report.hpp"
-#include "host/contact/problem/vectors.hpp"
 #include "host/contact/solver_state.hpp"
 #include "host/contact/structure/extract.hpp"
 

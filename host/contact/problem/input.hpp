@@ -3,7 +3,8 @@
 #pragma once
 #include <tetwarp/contact_problem.hpp>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "kernels/contact/contact_fill.hpp"
 
 namespace tetwarp {

@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/problem/checks.hpp"
-#include "host/contact/problem/vectors.hpp"
 #include "kernels/contact/contact_law.hpp"
 
 namespace tetwarp {

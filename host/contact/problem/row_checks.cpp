@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/problem/checks.hpp"
 #include "host/contact/problem/matrix.hpp"
-#include "host/contact/problem/vectors.hpp"
 
 namespace tetwarp {
 namespace {

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/index_of.hpp"
+#include "host/base/vector_view.hpp"
 #include "kernels/contact/check_limits.hpp"
 
 namespace tetwarp {

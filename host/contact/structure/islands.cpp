@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "host/contact/problem/vectors.hpp"
+#include "host/base/vector_view.hpp"
 #include "host/contact/structure/color.hpp"
 #include "host/exec/contact_exec_cpu.hpp"
 #include "kernels/contact/contact_components.hpp"

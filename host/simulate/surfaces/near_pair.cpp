@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "host/base/point3.hpp"
+#include "host/base/vector_view.hpp"
 #include "kernels/collide/pair_touch.hpp"
 
 namespace tetwarp {
@@ -13,21 +14,18 @@ namespace {
 
 /// The features as pair_touch.hpp reads them.
 CollideView features_of(const CollisionSurfaces& surfaces) {
-  const auto view = [](const auto& list) {
-    return View{list.data(), static_cast<std::int64_t>(list.size())};
-  };
   const auto corners = [](const auto& list) {
     using Item = typename std::decay_t<decltype(list)>::value_type;
     const auto count = static_cast<std::int64_t>(std::tuple_size_v<Item> * list.size());
     return View<const std::int32_t>{list.empty() ? nullptr : list.front().data(), count};
   };
   CollideView features{};
-  features.vertex_body = view(surfaces.vertex_body);
-  features.vertex_radius = view(surfaces.vertex_radius);
+  features.vertex_body = view_of(surfaces.vertex_body);
+  features.vertex_radius = view_of(surfaces.vertex_radius);
   features.edges = corners(surfaces.edges);
-  features.edge_radius = view(surfaces.edge_radius);
+  features.edge_radius = view_of(surfaces.edge_radius);
   features.triangles = corners(surfaces.triangles);
-  features.plane_body = view(surfaces.plane_body);
+  features.plane_body = view_of(surfaces.plane_body);
   return features;
 }
 
